@@ -2,11 +2,13 @@
 
 numba's own cache looks only at the file a function is in and writes its index before the code: after an edit,
 a second process or a kill at that moment can leave old code under the new index for good. Here each kernel is
-one file, named after everything its code depends on, see ``lumped.cache``.
+one file, named after everything its code depends on, see ``lumped.cache``. Of processes side
+by side one compiles a kernel and the others wait for its file.
 """
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import pickle
@@ -18,6 +20,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import filelock
 import numba
 from numba.core.caching import FunctionCache
 from numba.core.compiler import CompileResult
@@ -30,6 +33,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 #: Folders of kernels that stay: one for each set of source files and each of its latest states.
 _MOST_FOLDERS = 40
+#: Longest wait for a kernel that another process compiles [s]; the largest one takes a tenth of it.
+_LONGEST_WAIT = 120.0
 
 
 class Compiler:
@@ -55,6 +60,10 @@ class Compiler:
             dispatcher._cache = _KernelFiles(function, self.stamp)
         return cast(F, dispatcher)
 
+    def stored(self, name: str) -> bool:
+        """Whether there is a file with compiled code of the function of that name."""
+        return any((kernel_folder() / self.stamp[:24]).glob(f"{name}-*.kernel"))
+
 
 def kernel_folder() -> Path:
     """Folder of all compiled kernels: in ``NUMBA_CACHE_DIR`` if set, else in the user's cache folder."""
@@ -68,6 +77,7 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
     def __init__(self, function: Callable[..., Any], stamp: str) -> None:
         self._py_func = function
         self._stamp = stamp
+        self._held: dict[Path, filelock.BaseFileLock] = {}
         self.enable()
 
     @property
@@ -81,20 +91,41 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
         return Path(self.cache_path, f"{function.__name__}-{digest[:32]}.kernel")
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
-        content = read_whole(self._path(sig, target_context.codegen()))
+        path = self._path(sig, target_context.codegen())
+        content = read_whole(path)
+        if content is None and self._hold(path):
+            content = read_whole(path)  # another process may have stored it while this one waited
+            if content is not None:
+                self._release(path)
         return None if content is None else CompileResult._rebuild(target_context, *pickle.loads(content))
 
     def _save_overload(self, sig: Any, data: Any) -> None:
-        if not self._enabled or data.library.has_dynamic_globals:  # addresses of this process
-            return
         path = self._path(sig, data.codegen)
+        try:
+            if self._enabled and not data.library.has_dynamic_globals:  # addresses of this process
+                write_whole(path, dumps(data._reduce()))
+        except OSError as error:
+            _warn_once(f"{kernel_folder()}: {error.strerror}")
+        finally:
+            self._release(path)
+
+    def _hold(self, path: Path) -> bool:
+        """Wait until no other process compiles this kernel, and keep the others waiting; False: no place."""
         try:
             if not path.parent.exists():
                 path.parent.mkdir(parents=True, exist_ok=True)
                 _remove_old(path.parent.parent)
-            write_whole(path, dumps(data._reduce()))
-        except OSError as error:
-            _warn_once(f"{kernel_folder()}: {error.strerror}")
+            lock = filelock.FileLock(path.with_suffix(".lock"), timeout=_LONGEST_WAIT)
+            lock.acquire()
+        except (OSError, filelock.Timeout):
+            return False
+        self._held[path] = lock
+        return True
+
+    def _release(self, path: Path) -> None:
+        if (lock := self._held.pop(path, None)) is not None:
+            with contextlib.suppress(OSError):
+                lock.release()
 
     def flush(self) -> None:
         """Remove the files of this function."""

@@ -4,9 +4,11 @@ import importlib
 import pkgutil
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
+import filelock
 import pytest
 from numba.core.dispatcher import Dispatcher
 
@@ -91,6 +93,23 @@ def test_a_process_killed_while_it_writes_leaves_no_old_code(package: Path, run:
     assert subprocess.run([sys.executable, "-c", killed], check=False).returncode == 9
     assert run() == (3.0, 0)
     assert run() == (3.0, 1)
+
+
+def test_a_kernel_that_another_process_compiles_is_waited_for(run: Run, tmp_path: Path) -> None:
+    run()
+    stored = {path: path.read_bytes() for path in (tmp_path / "cache").rglob("*.kernel")}
+    locks = [filelock.FileLock(path.with_suffix(".lock"), thread_local=False) for path in stored]
+    for path, lock in zip(stored, locks, strict=True):
+        path.unlink()
+        lock.acquire()
+
+    def finish() -> None:
+        for (path, content), lock in zip(stored.items(), locks, strict=True):
+            path.write_bytes(content)
+            lock.release()
+
+    threading.Timer(0.3, finish).start()
+    assert run() == (2.0, 1)
 
 
 def test_a_damaged_file_is_compiled_again(run: Run, tmp_path: Path) -> None:

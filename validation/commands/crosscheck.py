@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from validation.commands import options as opt
+from validation.commands.kernels import compiling
 from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def crosscheck(
     target = None if output is None else check_file(output, _SUFFIXES, force=force)
     share = opt.number_in("--limit", limit, "1")
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
-    with progress_bar("cross-check") as tell:
+    with progress_bar("cross-check") as bar, compiling(bar) as tell:
         check = run(gear_pair, cycles=cycles, samples_per_cycle=samples, limit=share, progress=tell)
     if as_json:
         print_json(_data(check))

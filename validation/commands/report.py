@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, progress_bar, stdout
+from validation.commands.kernels import compiling
+from validation.commands.terminal import FAILED, guarded, progress_bar, stderr, stdout
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from validation.reporting.gate import Comparison
+    from validation.reporting.page_one import Number
 
 #: Changes listed in the terminal.
 _MOST = 30
@@ -75,7 +79,7 @@ def report(
     required = some_of("--require", require or (), _REQUIRE)
     check_target(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
-    with progress_bar("report") as tell:
+    with progress_bar("report") as bar, compiling(bar) as tell:
         written = write(
             gear_pair,
             output,
@@ -85,6 +89,7 @@ def report(
             tolerance=tolerance,
             name=pair,
             progress=tell,
+            early=_show_early,
         )
     console, first = stdout(), written.first
     console.print(first.title)
@@ -104,6 +109,14 @@ def report(
     if missed := sorted(written.findings & set(required)):
         console.print(f"--require is not met: {', '.join(missed)}")
         raise typer.Exit(_FOUND)
+
+
+def _show_early(title: str, numbers: Sequence[Number]) -> None:
+    """Print what is known before the range of the inputs, the second program and the charts."""
+    console = stderr()
+    console.print(f"{title}\nFirst result, with the inputs as given:")
+    for number in numbers:
+        console.print(f"  {number.label}: {number.shown}")
 
 
 def _show_changes(comparison: Comparison) -> None:

@@ -6,7 +6,7 @@ import base64
 import json
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
@@ -29,7 +29,7 @@ from validation.reporting.first_figures import first_figures
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
-from validation.reporting.page_one import Number, PageOne, page_one
+from validation.reporting.page_one import Number, PageOne, first_numbers, page_one, title
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import FULL, QUICK, Results
 from validation.reporting.tables import write_tables
@@ -67,6 +67,7 @@ def report(
     tolerance: float = TOLERANCE,
     name: str = "",
     progress: Progress | None = None,
+    early: Callable[[str, Sequence[Number]], None] | None = None,
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
 
@@ -84,6 +85,7 @@ def report(
     tolerance : relative change of a number that passes in this comparison
     name : how commands name the pair, its file or preset; default the pair's name
     progress : called with the finished fraction and what is being done
+    early : called with the title and the numbers that need neither samples nor charts, once they are known
 
     Raises
     ------
@@ -102,6 +104,9 @@ def report(
         # would say it again.
         warnings.simplefilter("ignore", LawRangeWarning)
         results = Results(gear_pair, QUICK if quick else FULL, named)
+        if early is not None:
+            tell(0.0, "motion")
+            early(title(results), first_numbers(results.prediction))
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         first, pictures = page_one(results), first_figures(results)
         blocks = [block for _, content in chapters for block in content.blocks]
@@ -148,13 +153,14 @@ def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -
         shown = max(shown, (first + fraction * own) / total)  # a chapter may compute several results
         progress(shown, stage)
 
-    for chapter in chapters:
+    # The second program first: its kernels compile here while another process compiles those of the charts.
+    for chapter in sorted(chapters, key=lambda one: one.key != "second_program"):
         results.progress = partial(tell, done, chapter.seconds)
         content = chapter.write(results)
         if content is not None:
             made.append((chapter, content))
         done += chapter.seconds
-    return tuple(made)
+    return tuple(sorted(made, key=lambda one: chapters.index(one[0])))
 
 
 def document(

@@ -162,13 +162,7 @@ def title(results: Results) -> str:
 def six_numbers(results: Results) -> tuple[Number, ...]:
     """The rows of the table: result, range of the samples, second program."""
     prediction, second = results.prediction, results.second
-    rows = [
-        _row(results, "dte_peak_to_peak", "Transmission error, peak to peak"),
-        _row(results, "dynamic_factor", "Dynamic factor: largest mesh force / static"),
-        _row(results, "tooth_load", "Largest load on one tooth / static mesh force"),
-        _row(results, "bearing_rms", "Dynamic force on the pinion bearings, rms", note=_orders(results)),
-        _row(results, "efficiency", "Mesh efficiency"),
-    ]
+    rows = [_row(results, key, note=_orders(results) if key == "bearing_rms" else "") for key in _ROWS]
     if prediction.contact_lost:
         of_second = math.nan if isinstance(second, Absent) else second.least_force
         rows[4:4] = [
@@ -200,14 +194,32 @@ def six_numbers(results: Results) -> tuple[Number, ...]:
     return tuple(rows)
 
 
-def _row(results: Results, key: str, label: str, note: str = "") -> Number:
+#: Key of a number of the prediction -> its words on page 1.
+_ROWS = {
+    "dte_peak_to_peak": "Transmission error, peak to peak",
+    "dynamic_factor": "Dynamic factor: largest mesh force / static",
+    "tooth_load": "Largest load on one tooth / static mesh force",
+    "bearing_rms": "Dynamic force on the pinion bearings, rms",
+    "efficiency": "Mesh efficiency",
+}
+
+
+def first_numbers(prediction: Prediction) -> tuple[Number, ...]:
+    """The numbers of page 1 that the prediction alone gives."""
+    return tuple(Number(key, label, prediction.numbers[key], _unit(key)) for key, label in _ROWS.items())
+
+
+def _unit(key: str) -> str:
+    return "%" if key == "efficiency" else QUANTITIES[key][0]
+
+
+def _row(results: Results, key: str, note: str = "") -> Number:
     prediction, second, found = results.prediction, results.second, results.uncertainty
-    unit = "%" if key == "efficiency" else QUANTITIES[key][0]
     low = high = math.nan
     if isinstance(found, xr.Dataset):
         low, high = (float(end) for end in found[f"{key}_percentile"].to_numpy()[[0, -1]])
     of_second = math.nan if isinstance(second, Absent) else second.numbers[key]
-    return Number(key, label, prediction.numbers[key], unit, low, high, of_second, note)
+    return Number(key, _ROWS[key], prediction.numbers[key], _unit(key), low, high, of_second, note)
 
 
 def _orders(results: Results) -> str:

@@ -1,0 +1,65 @@
+"""Does a long command compile in two processes, and say what it does?"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+import floquet
+from floquet.orbits.kernel import propagate
+from floquet.rank_one.kernels.taylor import propagate_points
+from lumped import load_gear_pair
+from validation.commands import kernels
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+    """Second processes, which do nothing here."""
+    made: list[subprocess.Popen[bytes]] = []
+
+    def start() -> subprocess.Popen[bytes]:
+        made.append(subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"]))
+        return made[-1]
+
+    monkeypatch.setattr(kernels, "_start", start)
+    return made
+
+
+@pytest.mark.parametrize(("processors", "stored", "count"), [(2, False, 1), (1, False, 0), (2, True, 0)])
+def test_a_second_process_compiles_while_the_command_runs(
+    processors: int,
+    stored: bool,
+    count: int,
+    started: list[subprocess.Popen[bytes]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(kernels, "_processors", lambda: processors)
+    monkeypatch.setattr(kernels, "_all_stored", lambda: stored)
+    with kernels.compiling(lambda fraction, stage="", /: None):
+        assert len(started) == count
+        assert all(process.poll() is None for process in started)
+    assert all(process.poll() is not None for process in started)
+
+
+def test_what_is_compiled_is_told_and_the_fraction_stays() -> None:
+    told: list[tuple[float, str]] = []
+    listener = kernels._Listener(lambda fraction, stage="", /: told.append((fraction, stage)))
+    listener.tell(0.3, "motion")
+    for start in (True, True, False, False):
+        listener.notify(SimpleNamespace(is_start=start))
+    assert listener._depth == 0
+    assert {fraction for fraction, _ in told} == {0.3}
+    assert told[-1][1].startswith("compiling, once for this machine: about ")
+
+
+def test_the_second_process_compiles_what_charts_and_orbits_of_any_pair_take() -> None:
+    kernels.main()
+    before = [len(kernel.signatures) for kernel in (propagate_points, propagate)]
+    pair = load_gear_pair("fzg_c").with_({"mesh.contact": "loaded"})
+    floquet.stability_chart(pair, {"speed_rpm": [900.0, 1000.0], "damping_ratio": [0.02, 0.05]})
+    floquet.periodic_orbit(pair)
+    assert before == [1, 1] == [len(kernel.signatures) for kernel in (propagate_points, propagate)]
+    assert kernels._all_stored()

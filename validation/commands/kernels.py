@@ -1,0 +1,102 @@
+"""The first run on a machine compiles for a minute: a second process helps, and the bar says what goes on."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lumped.typing import Progress
+
+#: Functions that a whole report compiles, nested ones too (listener on an empty cache, numba 0.63).
+_FUNCTIONS = 150
+#: Guess of the time of one of them before the first is compiled [s].
+_FIRST_GUESS = 0.3
+
+
+@contextmanager
+def compiling(bar: Progress) -> Iterator[Progress]:
+    """Compile beside the block what it needs late; the block's own progress, with what it compiles itself.
+
+    The second process begins with the stability chart and motions beyond contact loss, while the block
+    compiles the lumped and the multibody model. A kernel that one of them compiles, the other one waits for.
+    """
+    from numba.core import event
+
+    event.Listener.register(_Listener)
+    listener = _Listener(bar)
+    event.register("numba:compile", listener)
+    helper = None if _processors() < 2 or _all_stored() else _start()
+    try:
+        yield listener.tell
+    finally:
+        event.unregister("numba:compile", listener)
+        if helper is not None:
+            helper.kill()
+            helper.wait()
+
+
+def _processors() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _all_stored() -> bool:
+    from floquet.orbits.polynomials import _COMPILE as orbits
+    from floquet.rank_one.kernels.simd import _COMPILE as charts
+
+    return charts.stored("spectra") and orbits.stored("propagate")
+
+
+def _start() -> subprocess.Popen[bytes]:
+    """Start this file as a program; -P keeps folders of the user's from standing for the packages."""
+    nothing = subprocess.DEVNULL
+    command = [sys.executable, "-P", "-m", "validation.commands.kernels"]
+    return subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
+
+
+class _Listener:
+    """Tells the remaining time while numba compiles; compilations are nested."""
+
+    def __init__(self, bar: Progress) -> None:
+        self._bar, self._depth, self._done = bar, 0, 0
+        self._since = self._seconds = self._fraction = 0.0
+
+    def tell(self, fraction: float, stage: str = "", /) -> None:
+        """Take the progress of the work, and remember how far it is."""
+        self._fraction = fraction
+        self._bar(fraction, stage)
+
+    def notify(self, event: Any) -> None:
+        """Take one event of numba, the begin or the end of a compilation."""
+        if event.is_start:
+            if self._depth == 0:
+                self._since = time.monotonic()
+            self._depth += 1
+        else:
+            self._depth, self._done = self._depth - 1, self._done + 1
+        spent = self._seconds + time.monotonic() - self._since
+        if self._depth == 0:
+            self._seconds = spent
+        each = spent / self._done if self._done > 3 else _FIRST_GUESS
+        left = max(_FUNCTIONS - self._done, 1) * each
+        tens = 10 * max(round(left / 10), 1)
+        self._bar(self._fraction, f"compiling, once for this machine: about {tens} s left")
+
+
+def main() -> None:
+    """Compute a chart of one point and a motion with unilateral contact: their kernels are stored."""
+    import floquet
+    from lumped import load_gear_pair
+
+    pair = load_gear_pair("nasa_28_28")
+    floquet.stability_chart(pair, {"speed_rpm": [4000.0]})
+    floquet.periodic_orbit(pair)
+
+
+if __name__ == "__main__":
+    main()
