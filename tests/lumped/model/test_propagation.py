@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from lumped import NumericalError, geometry, periodic_system
+from lumped import geometry, periodic_system
 from lumped.gauss_legendre import gauss_tableau
 from lumped.model import propagation
 from lumped.model.periodic_system import MeshGain
@@ -178,16 +178,6 @@ class TestSteps:
             fastest = np.abs(np.linalg.eigvals(system.matrices(times))).max()
             assert fastest <= fastest_frequency(system) <= 1.3 * fastest
 
-    def test_states_follow_the_maps(self, unequal):
-        system = periodic_system(unequal, "full")
-        maps = step_maps(system, np.zeros((12, 0)))
-        x = np.linspace(-1e-5, 1e-5, 12)
-        states = maps.states(x, np.array([1.0]))
-        phi, forced = maps.over_all()
-        end = phi @ x + forced[:, 0]
-        np.testing.assert_allclose(states[-1], end, rtol=1e-9, atol=1e-12 * np.abs(end).max())
-        np.testing.assert_array_equal(states[0], x)
-
     def test_intervals_and_blocks_only_group_the_steps(self, unequal, monkeypatch):
         system = periodic_system(unequal.with_(operating__pinion_speed=300), "full")
         x, outputs = np.linspace(-1e-5, 1e-5, 12), np.array([0.0, 0.1, 0.15, 0.8]) * system.period
@@ -204,37 +194,3 @@ class TestSteps:
         assert np.all(np.abs(a - b) <= 1e-10 * np.abs(a).max(axis=0))
         kept, anew = (m.energy_residual(x, np.array([1.0])) for m in (maps, again))
         assert kept == pytest.approx(anew, rel=1e-9)
-
-    def test_a_standstill_is_refused_before_memory_runs_out(self, nasa):
-        system = periodic_system(nasa.with_(operating__pinion_speed=1e-3), "full")
-        with pytest.raises(NumericalError, match="raise the speed"):
-            step_maps(system, np.zeros((12, 0)))
-
-
-@pytest.mark.parametrize("name", ["nasa", "unequal", "high_contact"])
-def test_rigid_rotation_is_a_defective_double_multiplier(name, request):
-    """M v = v and M w = w + T_m v: a Jordan block at +1, to rounding; nothing else is at +1."""
-    system = periodic_system(request.getfixturevalue(name), "full")
-    monodromy, _ = step_maps(system, np.zeros((12, 0))).over_all()
-    g = geometry(request.getfixturevalue(name))
-    v, w = np.zeros(12), np.zeros(12)
-    v[:2] = w[6:8] = 1 / g.base_radius_pinion, 1 / g.base_radius_gear
-    np.testing.assert_allclose(monodromy @ v, v, rtol=0, atol=1e-8 * np.abs(v).max())
-    expected = w + system.period * v
-    # In rates a rounding of the position is multiplied by the fastest frequency, some 1e5 rad/s.
-    np.testing.assert_allclose(monodromy @ w, expected, rtol=0, atol=1e-8 * np.abs(w).max())
-    multipliers = np.linalg.eigvals(monodromy)
-    assert np.sum(np.abs(multipliers - 1.0) < 1e-4) == 2
-    assert np.sort(np.abs(multipliers))[:-2].max() < 1.0
-
-
-@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "smoothed_coulomb", "xu_kahraman"])
-def test_relative_map_is_the_reduced_absolute_map(nasa, law):
-    pair = nasa.with_(friction__law=law, friction__coefficient=0.05 if "coulomb" in law else None)
-    full, relative = periodic_system(pair, "full"), periodic_system(pair, "elastic")
-    m12, _ = step_maps(full, np.zeros((12, 0))).over_all()
-    m10, _ = step_maps(relative, np.zeros((10, 0))).over_all()
-    rows = np.kron(np.eye(2), relative.reduction)
-    left, right = rows @ m12, m10 @ rows
-    scale = np.abs(right).max(axis=1, keepdims=True)
-    np.testing.assert_allclose(left / scale, right / scale, atol=1e-9)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-import multibody
-from lumped import geometry, load_gear_pair, mesh_elements, simulate, steady_state
+from lumped import geometry, load_gear_pair, mesh_elements, steady_state
 from lumped.quasi_static import static_transmission_error
 
 
@@ -18,13 +17,6 @@ def relieved(**changes):
             **changes,
         }
     )
-
-
-def test_relief_is_ignored_unless_asked_for():
-    pair = relieved(**{"mesh.relief": "ignored"})
-    e = mesh_elements(pair)
-    assert not e.error.coefficients.any()
-    assert float(e.stiffness(geometry(pair).L_XA + 1e-6)) > 0.0
 
 
 def test_elements_carry_the_error_and_the_loaded_contact():
@@ -46,14 +38,3 @@ def test_slow_running_is_quasi_static():
     # Inertia forces grow with the square of the speed and damping with the speed; kinks of k and e ring.
     assert differences[1] < 3e-3
     assert differences[1] < differences[0] / 4
-
-
-def test_multibody_takes_the_same_relief():
-    pair = relieved(
-        **{"operating.pinion_speed": 3000.0, "friction.law": "coulomb", "friction.coefficient": 0.05}
-    )
-    ours = simulate(pair, cycles=3).dte.values
-    theirs = multibody.simulate(pair, cycles=3, fidelity="linear").dte.values
-    assert np.abs(ours - theirs).max() < 1e-6 * np.ptp(ours)  # both integrate to 1e-8 or better
-    plain = simulate(pair.with_(mesh__relief="ignored"), cycles=3).dte.values
-    assert np.abs(plain - ours).max() > 0.05 * np.ptp(ours)
