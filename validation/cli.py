@@ -7,6 +7,7 @@ import inspect
 import io
 import os
 import sys
+from contextlib import suppress
 from importlib import metadata
 from typing import Annotated
 
@@ -22,6 +23,7 @@ from validation.commands.response import response
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
+from validation.commands.terminal import NUMERICAL, unprinted
 from validation.commands.uncertainty import uncertainty
 from validation.stop_signals import interrupt_once
 
@@ -109,6 +111,10 @@ def main() -> None:
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     try:
         app(prog_name="spurcheck")
+    except OSError as error:  # of --help and --version, and where stderr takes no message either
+        with suppress(OSError):
+            print(f"error: {unprinted(error)}", file=sys.stderr)
+        sys.exit(NUMERICAL)
     finally:
         gc.freeze()  # or else Python searches all of them once more before it ends
 

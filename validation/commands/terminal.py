@@ -119,14 +119,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except SpurcheckError as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
-            reason = error.strerror or type(error).__name__
             if error.filename:
-                fail(f"{error.filename}: {reason}", REFUSED)
-            try:
-                sys.stdout.flush()
-            except OSError:  # what is left in its buffer would fail again, and decide the exit code
-                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-            fail(f"the result cannot be printed: {reason}", NUMERICAL)
+                fail(f"{error.filename}: {error.strerror or type(error).__name__}", REFUSED)
+            fail(unprinted(error), NUMERICAL)
         except KeyboardInterrupt:
             fail("interrupted", INTERRUPTED)
         except MemoryError:
@@ -156,6 +151,16 @@ def fail(text: str, code: int) -> NoReturn:
         f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True
     )
     raise typer.Exit(code)
+
+
+def unprinted(error: OSError) -> str:
+    """Return the message for standard streams that take no more, and let the rest of them go nowhere."""
+    for stream, number in ((sys.stdout, 1), (sys.stderr, 2)):
+        try:
+            stream.flush()
+        except OSError:  # what is left in its buffer would fail again, and decide the exit code
+            os.dup2(os.open(os.devnull, os.O_WRONLY), number)
+    return f"the result cannot be printed: {error.strerror or type(error).__name__}"
 
 
 def note(text: str) -> None:

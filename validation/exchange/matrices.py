@@ -6,15 +6,12 @@ Sources: docs/how_to/any_system.md.
 from __future__ import annotations
 
 import re
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from scipy.io import loadmat
-from scipy.io.matlab import MatReadError
 
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, SecondOrderSystem, from_second_order
 from floquet.engine.chart import ChartAxis
@@ -23,6 +20,7 @@ from lumped.arguments import file_path, real_array, real_number, real_numbers
 from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.refusals import nearest
 from lumped.typing import FloatArray
+from validation.exchange.foreign_arrays import read_arrays
 
 MATRIX_SUFFIXES = (".npz", ".mat")
 FILE_AXES: Mapping[str, ChartAxis] = {
@@ -131,22 +129,11 @@ def _fields(path: Path) -> dict[str, Any]:
     if not path.is_file():
         raise refuse("path", path, "a file that exists", "Check the folder and the name.")
     advice = "Save it again: numpy.savez, or save('-v7', ...)."
-    broken = (ValueError, TypeError, NotImplementedError, OSError, EOFError, KeyError, AttributeError)
     try:
-        if path.suffix.lower() == ".npz":
-            with np.load(path, allow_pickle=False) as file:
-                return {name: file[name] for name in file.files}
-        found = loadmat(path)
-    except (*broken, zipfile.BadZipFile, MatReadError) as error:
-        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+        return read_arrays(path)
+    except (ValueError, OSError) as error:
         allowed = "a .npz of arrays or a .mat up to version 7"
-        raise refuse("path", path, allowed, f"{advice} ({reason})") from None
-    # Sparse matrices, as finite-element programs save them, become full ones.
-    return {
-        name: value.toarray() if hasattr(value, "toarray") else value
-        for name, value in found.items()
-        if not name.startswith("__")
-    }
+        raise refuse("path", path, allowed, f"{advice} ({shown(str(error), 120)})") from None
 
 
 def _model(fields: dict[str, Any], *, matlab: bool) -> SecondOrderModel:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import xarray as xr
 
@@ -26,6 +27,8 @@ STATE_SPACE_SUFFIXES = (".mat", ".npz")
 _OURS = "a NetCDF file that spurcheck wrote"
 #: Most numbers in a result file, 4 GB in memory.
 _MOST_NUMBERS = 500_000_000
+#: Most numbers for a byte of the file: compression makes 1032 bytes of zeros one byte.
+_MOST_UNPACKED = 1100
 
 
 def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) -> Path:
@@ -54,7 +57,7 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
         if not result.data_vars or not set(result.sizes) - set(COLUMN_DIMENSIONS):
             action = "Write .mat or .nc, which hold everything."
             raise refuse("result", "variables without an axis", "a table over at least one axis", action)
-    write_dataset(result, path)
+    write_dataset(result, path, new=not force)
     return path
 
 
@@ -94,12 +97,15 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
     if not path.is_file():
         raise refuse("result", path, "a file that exists", "Check the path.")
     try:
+        _check_content(path)
         # Times are seconds from the start, not dates; nothing is packed or masked.
         with xr.open_dataset(
             path, engine="h5netcdf", decode_times=False, mask_and_scale=False, phony_dims="sort"
         ) as opened:
-            _check_content(opened, path)
-            return opened.load()
+            result = opened.load()
+        for described in (result, *result.variables.values()):
+            "".join(map(str, described.attrs.values())).encode()  # or else a writer fails at them later
+        return result
     except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
         if isinstance(error, ParameterError):
             raise
@@ -107,15 +113,24 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
         raise refuse("result", path, _OURS, reason) from None
 
 
-def _check_content(result: xr.Dataset, path: Path) -> None:
-    """Refuse what no result holds before it is loaded: a small file may unfold to terabytes."""
-    points = sum(variable.size for variable in result.variables.values())
-    if points > _MOST_NUMBERS:
-        raise refuse("result", path, _OURS, f"It claims to hold {points:.3g} numbers.")
-    for name, variable in result.variables.items():
-        texts = variable.dtype.kind == "O" and all(isinstance(v, str) for v in variable.to_numpy().ravel())
-        if not texts and variable.dtype.kind not in "biufSU":
-            raise refuse("result", path, _OURS, f"{shown(str(name))} holds no numbers and no text.")
+def _check_content(path: Path) -> None:
+    """Refuse what no result holds before anything is loaded.
+
+    A small file may unfold to terabytes, or show bytes of other files as its own.
+    """
+    most = min(_MOST_NUMBERS, _MOST_UNPACKED * path.stat().st_size)
+    points = 0
+    with h5py.File(path) as file:
+        for name in file:
+            own = isinstance(file.get(name, getlink=True), h5py.HardLink)
+            item = file[name] if own else None
+            if not isinstance(item, h5py.Dataset) or item.is_virtual or item.external:
+                raise refuse("result", path, _OURS, f"{shown(name)} is not a variable stored in this file.")
+            if item.dtype.kind not in "biuf" and h5py.check_string_dtype(item.dtype) is None:
+                raise refuse("result", path, _OURS, f"{shown(name)} holds no numbers and no text.")
+            points += item.size or 0
+            if points > most:
+                raise refuse("result", path, _OURS, f"It claims to hold {points:.3g} numbers.")
 
 
 def write_state_space(
@@ -161,7 +176,7 @@ def write_state_space(
         "gear_pair": pair.name,
         "parameters": pair.to_toml(),
     }
-    with whole_file(path) as temporary:
+    with whole_file(path, new=not force) as temporary:
         if matlab:
             save_mat(contents, temporary)
         else:

@@ -1,5 +1,7 @@
 """Result files that spurcheck did not write: read within bounds, or refused by what they hold."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pandas as pd
@@ -9,7 +11,31 @@ import xarray as xr
 from lumped import ParameterError
 from validation.exchange import read_netcdf, write_results
 
+
+def _elsewhere(f):
+    """A file whose bytes nobody wants to find in a table."""
+    path = Path(f.filename).with_name("secret")
+    path.write_bytes(np.arange(3.0).tobytes())
+    with h5py.File(path.with_suffix(".h5"), "w") as other:
+        other["a"] = np.arange(3.0)
+    return path
+
+
+def _virtual(f):
+    layout = h5py.VirtualLayout(shape=(3,), dtype="f8")
+    layout[:] = h5py.VirtualSource(_elsewhere(f).with_suffix(".h5"), "a", shape=(3,))
+    f.create_virtual_dataset("a", layout)
+
+
 UNREADABLE = {
+    "external storage": lambda f: f.create_dataset("a", (3,), "f8", external=[(_elsewhere(f), 0, 24)]),
+    "an external link": lambda f: f.__setitem__(
+        "a", h5py.ExternalLink(_elsewhere(f).with_suffix(".h5"), "a")
+    ),
+    "a virtual dataset": _virtual,
+    "gigabytes in a kilobyte": lambda f: f.create_dataset("a", (4 * 10**8,), "f8", chunks=(10**6,)),
+    "terabytes as coordinate": lambda f: f.create_dataset("a", (10**12,), "f8", chunks=(10**6,)).make_scale(),
+    "text in no encoding": lambda f: f.attrs.create("a", b"\xff", dtype=h5py.string_dtype()),
     "terabytes in a small file": lambda f: f.create_dataset("a", shape=(10**12,), dtype="f8", chunks=(1000,)),
     "records": lambda f: f.create_dataset("a", data=np.zeros(3, dtype=[("x", "f8"), ("y", "i4")])),
     "references": lambda f: f.create_dataset("a", data=np.array([f.ref], dtype=h5py.ref_dtype)),

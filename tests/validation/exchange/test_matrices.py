@@ -1,6 +1,8 @@
 """Are matrices from a file the system that its page says, and is anything else refused by its name?"""
 
+import io
 import json
+import zipfile
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from floquet import monodromy
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 from validation.cli import app
-from validation.exchange import read_second_order
+from validation.exchange import foreign_arrays, read_second_order
 
 T = 0.4
 M, K, C = np.diag([1.0, 2.0]), np.array([[300.0, -100.0], [-100.0, 400.0]]), np.diag([0.3, 0.2])
@@ -64,6 +66,34 @@ def test_what_a_chart_varies_is_varied(tmp_path):
     # det M = exp(-c T)
     damped = monodromy(model.system(damping=2.0))
     assert np.linalg.det(damped.matrix) == pytest.approx(np.exp(-3.0), rel=1e-10)
+
+
+def _bomb(path):
+    if path.suffix == ".mat":
+        scipy.io.savemat(path, {"M": scipy.sparse.csc_matrix((10_000, 10_000))})
+        return
+    header = io.BytesIO()
+    description = {"descr": "<f8", "fortran_order": False, "shape": (10**6, 10**6)}
+    np.lib.format.write_array_header_1_0(header, description)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("M.npy", header.getvalue())
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".mat"])
+def test_a_small_file_does_not_fill_the_memory(tmp_path, suffix):
+    _bomb(tmp_path / f"bomb{suffix}")
+    with pytest.raises(ParameterError, match=r"claims to hold 8e\+08 bytes|MemoryError|ValueError"):
+        read_second_order(tmp_path / f"bomb{suffix}")
+
+
+def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
+    # As some damaged .mat files do in scipy.
+    reader = tmp_path / "reader.py"
+    reader.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)", encoding="utf-8")
+    monkeypatch.setattr(foreign_arrays, "__file__", str(reader))
+    np.savez(tmp_path / "rotor.npz", **FIELDS)
+    with pytest.raises(ParameterError, match="damaged"):
+        read_second_order(tmp_path / "rotor.npz")
 
 
 @pytest.mark.parametrize(
