@@ -103,8 +103,8 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
             path, engine="h5netcdf", decode_times=False, mask_and_scale=False, phony_dims="sort"
         ) as opened:
             result = opened.load()
-        for described in (result, *result.variables.values()):
-            "".join(map(str, described.attrs.values())).encode()  # or else a writer fails at them later
+        for attributes in [result.attrs, *(variable.attrs for variable in result.variables.values())]:
+            "".join(map(str, attributes.values())).encode()  # or else a writer fails at them later
         return result
     except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
         if isinstance(error, ParameterError):
