@@ -54,7 +54,7 @@ size, store = int(sys.argv[1]), sys.argv[2]
 pair = load_gear_pair("nasa_28_28").with_({"friction.law": "coulomb", "friction.coefficient": 0.05})
 axes = {"speed_rpm": np.linspace(500, 20000, size), "damping_ratio": np.linspace(0, 0.1, size)}
 start = time.perf_counter()
-stability_chart(pair, axes, rtol=1e-8, store=store)
+stability_chart(pair, axes, rtol=1e-8, store=store, refine=False)
 took = time.perf_counter() - start
 print(imported, took, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3)
 """
@@ -77,7 +77,7 @@ def dense(law: str, size: int) -> Callable[[], Any]:
     small = {"speed_rpm": np.linspace(900, 1800, 70), "damping_ratio": np.linspace(0.01, 0.02, 5)}
     stability_chart(pair, small, rtol=1e-8)
     axes = {"speed_rpm": np.linspace(*SPEEDS, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
-    return lambda: stability_chart(pair, axes, rtol=1e-8, store="radius")
+    return lambda: stability_chart(pair, axes, rtol=1e-8, refine=False)
 
 
 def charts(size: int) -> float:
@@ -114,7 +114,7 @@ def forms(size: int) -> None:
 def energy_chart(pair: GearPair, size: int) -> Callable[[], Any]:
     """A chart over speed and damping by the direct route."""
     axes = {"speed_rpm": np.linspace(*SPEEDS, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
-    return lambda: stability_chart(pair, axes, rtol=1e-8, store="radius")
+    return lambda: stability_chart(pair, axes, rtol=1e-8, refine=False)
 
 
 def by_turning(points: int) -> None:
@@ -203,7 +203,7 @@ def on_shafts(size: int, points: int) -> None:
     axes = {"speed_rpm": np.linspace(2000.0, 20000.0, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
     modes = gear_block(pair, supports="shafts").v.size
     stability_chart(pair, {"speed_rpm": [9000.0]}, supports="shafts", rtol=1e-8)
-    chart, seconds = cpu(lambda: stability_chart(pair, axes, rtol=1e-8, store="radius", supports="shafts"))
+    chart, seconds = cpu(lambda: stability_chart(pair, axes, rtol=1e-8, refine=False, supports="shafts"))
     each = seconds / size**2
     row(
         f"chart {size} x {size} on shafts, {modes} modes coupled",

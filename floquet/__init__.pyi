@@ -26,9 +26,9 @@ from .gear.multipliers import gear_pair_system as gear_pair_system
 from .gear.orbit import GearOrbit as GearOrbit
 from .gear.orbit import long_run as long_run
 from .gear.orbit import periodic_orbit as periodic_orbit
+from .gear.regions import label_regions as label_regions
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
-from .gear.tongues import label_regions as label_regions
 from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
 from .gear.tongues import stability_margins as stability_margins

@@ -67,7 +67,7 @@ def tongues() -> str:
     axes = {"speed_rpm": np.linspace(2000.0, 20000.0, 361), "damping_ratio": np.linspace(0.002, 0.06, 59)}
     at = {"speed_rpm": 4875.0, "damping_ratio": pair.mesh.damping_ratio}
     traced = stability_margins(pair, (2000.0, 20000.0)).tongues
-    chart = stability_chart(pair, axes, rtol=1e-8, store="radius")
+    chart = stability_chart(pair, axes, rtol=1e-8)
     return svg(stability_figure(chart, at, traced))
 
 

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort, monodromy
-from floquet.engine.multipliers import Spectrum, verdicts
+from floquet.engine.multipliers import Spectrum, radii_with_bounds, verdicts
+from floquet.engine.refinement import refine as refined
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import of_type, real_numbers, some_of
 from lumped.errors import NumericalError, refuse, shown
 from lumped.labelling import Variable, labelled_dataset
-from lumped.typing import BoolArray, FloatArray, Progress
+from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -72,6 +74,102 @@ def checked_axes(axes: Axes) -> dict[str, FloatArray]:
     return result
 
 
+class ChartPoints:
+    """Results at the points of a chart, in C order of its grid.
+
+    Attributes
+    ----------
+    radius, error : (count,) spectral radius and what it may be wrong by
+    verdict : (count,) 1 stable, 0 undecided, -1 unstable
+    proven : (count,) whether the error is a proven bound
+    known : (count,) whether the point was evaluated; the others are interpolated
+    multipliers, multiplier_errors : (count, size) the largest modulus first; None without ``everything``
+    """
+
+    def __init__(self, count: int, *, everything: bool = False) -> None:
+        self.everything = everything
+        self.radius, self.error = np.empty(count), np.empty(count)
+        self.verdict = np.zeros(count, dtype=np.int8)
+        self.proven, self.known = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.multipliers: ComplexArray | None = None
+        self.multiplier_errors: FloatArray | None = None
+
+    def put(
+        self, points: IntArray, values: ComplexArray, errors: FloatArray, proven: bool | BoolArray
+    ) -> None:
+        """Take the multipliers (k, size) of some points (k,) and bounds on their errors."""
+        radius, error = radii_with_bounds(values, errors)
+        self.radius[points], self.error[points] = radius, error
+        self.verdict[points] = verdicts(radius, error)
+        self.proven[points], self.known[points] = proven, True
+        if not self.everything:
+            return
+        if self.multipliers is None or self.multiplier_errors is None:
+            shape = self.radius.size, values.shape[1]
+            self.multipliers, self.multiplier_errors = np.empty(shape, dtype=complex), np.empty(shape)
+        ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
+        self.multipliers[points] = np.take_along_axis(values, ranking, 1)
+        self.multiplier_errors[points] = np.take_along_axis(errors, ranking, 1)
+
+
+#: Charts of no more nodes are evaluated at each of them.
+SMALL = 1024
+#: Evaluates points by their place in the chart and puts them into its `ChartPoints`.
+Evaluate = Callable[[IntArray], None]
+
+
+def refine_planes(
+    grid: Mapping[str, FloatArray],
+    plane: tuple[str, str],
+    points: ChartPoints,
+    evaluate: Evaluate,
+    *,
+    cycles: FloatArray | None = None,
+    lowest_alone: bool = False,
+    progress: Progress | None = None,
+) -> None:
+    """Evaluate a chart near its edges of instability and interpolate the rest, see `refine`.
+
+    Parameters
+    ----------
+    grid : name -> values, in any order
+    plane : names of the two axes to refine over; the other axes are gone through value by value
+    points : takes the results
+    evaluate : of some points
+    cycles : cycles in a unit of time at the values of the first axis of the plane; None: equal ones
+    lowest_alone : whether regions are widest where the second axis of the plane is lowest
+    progress : told the finished fraction
+    """
+    names = list(grid)
+    order = [names.index(name) for name in plane] + [i for i, name in enumerate(names) if name not in plane]
+    shape = [values.size for values in grid.values()]
+    index = np.arange(math.prod(shape)).reshape(shape).transpose(order)
+    first, second = (np.argsort(grid[name]) for name in plane)
+    index = index[first][:, second].reshape(first.size, second.size, -1)
+    smooth = np.ones(first.size) if cycles is None else cycles[first]
+    for k in range(index.shape[2]):
+        here = index[:, :, k].ravel()
+
+        def ask(nodes: IntArray, here: IntArray = here) -> tuple[FloatArray, IntArray]:
+            evaluate(here[nodes])
+            return points.radius[here[nodes]], points.verdict[here[nodes]].astype(np.intp)
+
+        def tell(fraction: float, stage: str = "", /, k: int = k) -> None:
+            if progress is not None:
+                progress((k + fraction) / index.shape[2])
+
+        found = refined(
+            index.shape[:2], smooth, ask, rows=(0,) if lowest_alone else (0, -1), progress=tell
+        )  # fmt: skip
+        rest = ~found.known.ravel()
+        points.radius[here[rest]], points.error[here[rest]] = (
+            found.radius.ravel()[rest],
+            found.misfit.ravel()[rest],
+        )
+        points.verdict[here[rest]] = found.verdict.ravel()[rest]
+        tell(1.0)
+
+
 Family = Callable[[dict[str, float]], Spectrum | PeriodicSystem]
 """Parameters -> the periodic system there, or its multipliers."""
 
@@ -81,6 +179,7 @@ def scan(
     axes: Axes,
     *,
     labels: Mapping[str, tuple[str, str]] | None = None,
+    refine: bool = False,
     rtol: float = 1e-8,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -92,6 +191,8 @@ def scan(
         must give the same number of multipliers
     axes : name -> values
     labels : name -> unit, "1" for none, and plain name of an axis
+    refine : whether the chart is evaluated near its edges of instability alone and interpolated elsewhere,
+        over its first two axes of more than one value; it then has no multipliers
     rtol : of the monodromy matrix of a `PeriodicSystem`
     progress : told the finished fraction
 
@@ -110,24 +211,35 @@ def scan(
     labels = dict(labels or {})
     some_of("labels", labels, names)
     rtol = checked_effort(rtol, 2)[0]
-    mesh = np.stack(np.meshgrid(*grid.values(), indexing="ij"), axis=-1).reshape(-1, len(names))
-    points = [dict(zip(names, map(float, row), strict=True)) for row in mesh]
-    results: list[Spectrum] = []
-    for point in points:
-        spectrum = _at_point(evaluate, rtol, point)
-        results.append(spectrum)
-        if spectrum.multipliers.size != results[0].multipliers.size:
-            counts = f"{spectrum.multipliers.size} multipliers at {_place(point)}"
-            advice = "Keep the number of coordinates over the axes."
-            raise refuse("evaluate", counts, f"{results[0].multipliers.size} as at the first point", advice)
-        if progress is not None:
-            progress(len(results) / len(points))
-    multipliers = np.array([r.multipliers for r in results])
-    errors = np.array([r.multiplier_errors for r in results])
-    radius = np.array([r.spectral_radius for r in results])
-    radius_error = np.array([r.error for r in results])
-    proven = np.array([r.certificate == "proven" for r in results])
-    chart = chart_dataset(grid, multipliers, errors, radius, radius_error, proven)
+    shape = tuple(values.size for values in grid.values())
+    plane = [name for name, values in grid.items() if values.size > 1][:2]
+    if refine and len(plane) < 2:
+        raise refuse("refine", refine, "two axes of more than one value", "Leave it out.")
+    points = ChartPoints(math.prod(shape), everything=not refine)
+    size: list[int] = []
+
+    def at(places: IntArray) -> None:
+        for place in places:
+            node = np.unravel_index(int(place), shape)
+            point = {name: float(grid[name][i]) for name, i in zip(names, node, strict=True)}
+            spectrum = _at_point(evaluate, rtol, point)
+            size.append(spectrum.multipliers.size)
+            if size[-1] != size[0]:
+                counts = f"{size[-1]} multipliers at {_place(point)}"
+                advice = "Keep the number of coordinates over the axes."
+                raise refuse("evaluate", counts, f"{size[0]} as at the first point", advice)
+            proven = spectrum.certificate == "proven"
+            points.put(
+                np.array([place]), spectrum.multipliers[None], spectrum.multiplier_errors[None], proven
+            )
+            if progress is not None and not refine:
+                progress(len(size) / points.radius.size)
+
+    if refine:
+        refine_planes(grid, (plane[0], plane[1]), points, at, progress=progress)
+    else:
+        at(np.arange(points.radius.size))
+    chart = chart_dataset(grid, points)
     for name, (unit, text) in labels.items():
         chart[name].attrs.update(units=unit, long_name=text)
     return chart
@@ -147,50 +259,40 @@ def _place(point: Mapping[str, float]) -> str:
     return ", ".join(f"{name} = {value:g}" for name, value in point.items())
 
 
-def chart_dataset(
-    grid: Mapping[str, FloatArray],
-    multipliers: npt.NDArray[np.complex128] | None,
-    multiplier_errors: FloatArray | None,
-    radius: FloatArray,
-    radius_error: FloatArray,
-    proven: BoolArray,
-) -> xr.Dataset:
-    """Label flat results (points in C order of the grid) as a chart.
+def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dataset:
+    """Label results as a chart.
 
     Returns
     -------
-    Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
-    given, multipliers, multiplier_errors over the axes and ``multiplier``. ``proven`` says where the errors
-    are bounds by a theorem, the attribute ``certificate`` whether all are: "proven", "estimate" or "mixed".
+    Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable), proven and known over
+    the axes, and where all were kept, multipliers, multiplier_errors over the axes and ``multiplier``. Where
+    ``known`` is False a node is interpolated: its error is the largest misfit that is known near it, its
+    verdict that of all evaluated nodes around it. ``proven`` says where the errors are bounds by a theorem,
+    the attribute ``certificate`` whether all are: "proven", "estimate" or "mixed".
     """
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
-    bound = "bound on the error of "
+    each: dict[str, tuple[npt.NDArray[Any], str]] = {
+        "spectral_radius": (points.radius, "spectral radius, largest modulus of the multipliers"),
+        "error": (
+            points.error,
+            "error of the spectral radius: a bound where evaluated, an estimate elsewhere",
+        ),
+        "verdict": (points.verdict, "stability verdict, undecided where the bound contains 1"),
+        "proven": (points.proven, "whether the error is a proven bound, else an estimate"),
+        "known": (points.known, "whether the node was evaluated, else interpolated"),
+    }
     variables: dict[str, Variable] = {
-        "spectral_radius": (
-            dims, radius.reshape(shape), "1", "spectral radius, largest modulus of the multipliers"
-        ),
-        "error": (dims, radius_error.reshape(shape), "1", bound + "the spectral radius"),
-        "verdict": (
-            dims,
-            verdicts(radius, radius_error).reshape(shape),
-            "1",
-            "stability verdict, undecided where the bound contains 1",
-        ),
-        "proven": (dims, proven.reshape(shape), "1", "whether the error is a proven bound, else an estimate"),
-    }  # fmt: skip
-    if multipliers is not None and multiplier_errors is not None:
-        full, each = (*dims, "multiplier"), (*shape, -1)
-        variables["multipliers"] = (
-            full, multipliers.reshape(each), "1", "Floquet multipliers, largest modulus first"
-        )  # fmt: skip
-        variables["multiplier_errors"] = (
-            full,
-            multiplier_errors.reshape(each),
-            "1",
-            bound + "each multiplier",
-        )
+        name: (dims, values.reshape(shape), "1", text) for name, (values, text) in each.items()
+    }
+    if points.multipliers is not None and points.multiplier_errors is not None:
+        full, wide = (*dims, "multiplier"), (*shape, -1)
+        text = "Floquet multipliers, largest modulus first"
+        variables["multipliers"] = (full, points.multipliers.reshape(wide), "1", text)
+        text = "bound on the error of each multiplier"
+        variables["multiplier_errors"] = (full, points.multiplier_errors.reshape(wide), "1", text)
     dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
     dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
+    proven = points.proven
     dataset.attrs["certificate"] = "proven" if proven.all() else "mixed" if proven.any() else "estimate"
     return dataset

@@ -1,24 +1,25 @@
 """Charts over two axes that are evaluated near the edges of instability and interpolated elsewhere.
 
 A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
-cycles in a unit of time, is bilinear in it to the tolerance; else it is cut. The whole lowest row of the
-second axis is evaluated first: where damping is least, tongues of instability are widest, so it seeds them.
+cycles in a unit of time, is bilinear in it to the tolerance; else it is cut. Whole rows of the second axis
+are evaluated first to seed the search: the lowest, since tongues are widest where damping is least, and the
+highest of other parameters than damping.
 
 Both sides of every edge are evaluated. A region can be missed that lies wholly inside a leaf and touches
-neither the lowest row nor an evaluated node.
+neither these rows nor an evaluated node.
 
 Sources: docs/theory/floquet.md, "Charts that refine themselves".
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from lumped.typing import BoolArray, FloatArray, IntArray
+from lumped.typing import BoolArray, FloatArray, IntArray, Progress
 
 #: Largest error of the spectral radius at an interpolated node.
 TOLERANCE = 4e-3
@@ -51,7 +52,15 @@ class Refined:
     misfit: FloatArray
 
 
-def refine(shape: tuple[int, int], cycles: FloatArray, ask: Ask, tolerance: float = TOLERANCE) -> Refined:
+def refine(
+    shape: tuple[int, int],
+    cycles: FloatArray,
+    ask: Ask,
+    tolerance: float = TOLERANCE,
+    *,
+    rows: Sequence[int] = (0,),
+    progress: Progress | None = None,
+) -> Refined:
     """Evaluate a chart where its verdict or its growth rate changes, and interpolate the rest.
 
     Parameters
@@ -60,13 +69,17 @@ def refine(shape: tuple[int, int], cycles: FloatArray, ask: Ask, tolerance: floa
     cycles : (N,) or (N, M) cycles in a unit of time, by which the logarithm of the radius is smooth
     ask : evaluates nodes by their flat index i M + j
     tolerance : largest error of the radius at an interpolated node, as far as nodes of its leaf tell
+    rows : rows of the second axis that are evaluated first, at every node
+    progress : told the finished share of the area
     """
     state = _State(shape, np.broadcast_to(np.reshape(cycles, (shape[0], -1)), shape), ask)
     n, m = shape
-    state.look(np.arange(n), np.zeros(n, dtype=np.intp))
+    for row in rows:
+        state.look(np.arange(n), np.full(n, row % m))
     starts = [*range(0, n - 1, _FIRST)]
     new: list[Box] = [(i, min(i + _FIRST, n - 1), 0, m - 1) for i in starts]
     leaves: dict[Box, int] = {}
+    done = 0.0
     while new:
         nodes = np.concatenate([_nine(box) for box in new])
         state.look(nodes[:, 0], nodes[:, 1])
@@ -80,6 +93,10 @@ def refine(shape: tuple[int, int], cycles: FloatArray, ask: Ask, tolerance: floa
                 new += cuts
             else:
                 leaves[box] = state.count(box)
+        if progress is not None and new:
+            area = sum((b - a) * (d - c) for a, b, c, d in leaves)
+            done = max(done, area / ((n - 1) * (m - 1)))
+            progress(done)
     return state.filled(leaves, tolerance)
 
 

@@ -215,7 +215,7 @@ def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float
     return float(given[0]), float(given[1])
 
 
-def chart_axes(pair: GearPair, speeds: int, dampings: int) -> dict[str, FloatArray]:
+def chart_axes(pair: GearPair, speeds: int = 801, dampings: int = 201) -> dict[str, FloatArray]:
     """Nodes of the stability chart: so many speeds [rpm] and mesh damping ratios."""
     largest = min(max(0.08, 1.5 * pair.mesh.damping_ratio), 1.0)
     return {

@@ -6,69 +6,88 @@ Sources: docs/theory/floquet.md, "Computing M".
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from itertools import product
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from floquet.engine.chart import Axes, chart_dataset
-from floquet.engine.multipliers import radii_with_bounds
-from floquet.gear.axes import GEAR_AXES, GearVariation, friction_families, gear_grid, operating_rpm, vary
+from floquet.engine.chart import SMALL, Axes, ChartPoints, chart_dataset, refine_planes
+from floquet.gear.axes import (
+    GEAR_AXES,
+    FrictionFamily,
+    GearVariation,
+    chart_axes,
+    friction_families,
+    gear_grid,
+    operating_rpm,
+    vary,
+)
 from floquet.gear.block import feedback_system, fitted_block
 from floquet.gear.multipliers import OffLineOfAction
+from floquet.gear.regions import with_regions
 from floquet.rank_one.batch import fast_multipliers
-from lumped.arguments import one_of, real_number
+from floquet.rank_one.system import RankOneSystem
+from lumped.arguments import of_type, one_of, real_number
 from lumped.errors import refuse
 from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair
-from lumped.typing import ComplexArray, FloatArray, Progress
+from lumped.typing import FloatArray, IntArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
-# The chart is cut along speed, which bounds its memory and lets it tell its progress: points of a slice.
-_SLICE = 1 << 18
 _CHUNK = 32_768  # points in memory with their matrices
 _LARGEST = 25_000_000
 
 
 def stability_chart(
     pair: AnyPair,
-    axes: Axes,
+    axes: Axes | None = None,
     *,
     friction_law: str | None = None,
+    refine: bool = True,
     rtol: float = 1e-10,
-    store: Literal["all", "radius"] = "all",
+    store: Literal["all", "radius"] = "radius",
     supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Stability chart of a gear pair.
 
+    Over two axes the chart refines itself: nodes near edges of instability are evaluated, the others
+    interpolated. Both sides of every edge are evaluated. An unstable region can only be missed if it lies
+    between evaluated nodes and does not reach the lowest damping (or lowest and highest value of another
+    second axis).
+
     Parameters
     ----------
     pair : the gear pair
     axes : name -> values, names out of `GEAR_AXES`: speed_rpm, damping_ratio (mesh), friction_coefficient,
-        torque, stiffness_variation, bearing_stiffness, in their stated units; at most 25 million points
+        torque, stiffness_variation, bearing_stiffness, in their stated units; at most 25 million points;
+        default 801 speeds about the operating speed and 201 mesh damping ratios
     friction_law : law to use instead of the pair's: "coulomb" for a constant |mu| that changes sign at the
         pitch point, the others for mu that varies along the path. With an axis friction_coefficient the law
         is scaled to that mean of |mu|.
+    refine : False evaluates every node
     rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
-    store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 18
-        bytes a point instead of 258
+    store : "radius"; or "all" for the multipliers too, which every node must be evaluated for: 258 bytes a
+        point instead of 19
     supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most
     progress : told the finished fraction
 
     Returns
     -------
-    xarray.Dataset over the axes: spectral_radius, error, verdict, proven and, with store "all", multipliers
-    and multiplier_errors (10 each: the feedback block and the off-line-of-action block, on shafts two for
-    each mode; the rigid rotation is no part of them). Its attribute ``certificate`` is "proven", "estimate"
-    or "mixed", which the variable ``proven`` tells for every point: estimates are the errors over speeds that
-    share a friction law to a tolerance.
+    xarray.Dataset over the axes: spectral_radius, error, verdict, proven, known and, with store "all",
+    multipliers and multiplier_errors (10 each: the feedback block and the off-line-of-action block, on shafts
+    two for each mode; the rigid rotation is no part of them). Where ``known`` is False a node is
+    interpolated; its error is an estimate. The attribute ``certificate`` is "proven", "estimate" or "mixed",
+    which the variable ``proven`` tells for every point: estimates are also the errors over speeds that share
+    a friction law to a tolerance. Over ``region`` the unstable regions, the largest first: ``region_label``,
+    ``region_width`` in speed (or the first axis), ``region_nodes``, ``region_radius`` and ``region_<axis>``,
+    the evaluated node where it is largest. Attributes ``thinnest_width`` of all regions and
+    ``nearest_edge_<axis>``, where along an axis the stability changes next to the pair itself; NaN: nowhere.
 
     Raises
     ------
@@ -76,145 +95,194 @@ def stability_chart(
     NumericalError
         A point fails; the message names it.
     """
-    variation, grid = GearVariation.of(pair, supports), gear_grid(axes, supports)
+    variation = GearVariation.of(pair, supports)
+    grid = gear_grid(chart_axes(variation.pair) if axes is None else axes, supports)
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
     one_of("store", store, ("all", "radius"))
+    of_type("refine", refine, bool, "True or False")
     rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
     if friction_law is not None:
         variation = replace(variation, pair=variation.pair.with_({"friction.law": friction_law}))
-    found = solved(variation, grid, rtol, everything=store == "all", progress=progress)
-    dataset = chart_dataset(
-        grid, found.multipliers, found.errors, found.radius, found.radius_error, found.proven
-    )
+    plane = _plane(grid) if refine else None
+    if plane is not None and store == "all":
+        action = "Give refine=False, which evaluates every node."
+        raise refuse("store", store, '"radius" for a chart that refines itself', action)
+    found = solved(variation, grid, rtol, plane, everything=store == "all", progress=progress)
+    dataset = chart_dataset(grid, found)
     for name in grid:
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
-    return dataset.assign_attrs(title=title, friction_law=law, supports=supports, rtol=rtol)
+    dataset = dataset.assign_attrs(title=title, friction_law=law, supports=supports, rtol=rtol)
+    return with_regions(variation, dataset)
+
+
+def _plane(grid: Mapping[str, FloatArray]) -> tuple[str, str] | None:
+    """The two axes to refine over, the inner ones or else the longest first; None: few nodes."""
+    axes = sorted((n for n in grid if grid[n].size > 1), key=lambda n: -grid[n].size)
+    axes.sort(key=lambda n: _INNER.index(n) if n in _INNER else len(_INNER))
+    if len(axes) < 2 or grid[axes[0]].size * grid[axes[1]].size <= SMALL:
+        return None
+    first, second = axes[:2]
+    return (second, first) if first == "damping_ratio" else (first, second)
 
 
 def solved(
     variation: GearVariation,
     grid: Mapping[str, FloatArray],
     rtol: float,
+    plane: tuple[str, str] | None = None,
     *,
     everything: bool = False,
     progress: Progress | None = None,
-) -> Store:
-    """Multipliers of a variation of a pair at all points of a grid, or their spectral radii alone."""
+) -> ChartPoints:
+    """Multipliers of a variation of a pair at all points of a grid, or their spectral radii alone.
+
+    With a ``plane`` of two axes only near the edges of instability in it.
+    """
     count = math.prod(values.size for values in grid.values())
-    found, done = Store(count, everything=everything), 0
-    for part in _slices(variation, grid):
-        part.solve(found, rtol)
-        done += part.index.size
-        if progress is not None:
-            progress(done / count)
-    return found
+    points = ChartPoints(count, everything=everything)
+    evaluate = _Points(variation, grid, rtol, points)
+    if plane is not None:
+        cycles = grid[plane[0]] if plane[0] == "speed_rpm" else None
+        lowest = plane[1] == "damping_ratio"
+        refine_planes(
+            grid, plane, points, evaluate, cycles=cycles, lowest_alone=lowest, progress=progress
+        )  # fmt: skip
+        return points
+    # Slow axes outermost, then speed: few fits of the gains for each call.
+    names, shape = list(grid), [values.size for values in grid.values()]
+    order = sorted(range(len(names)), key=lambda i: (names[i] in _INNER, names[i] != "speed_rpm"))
+    index = np.arange(count).reshape(shape).transpose(order).reshape(-1, evaluate.each)
+    for k, row in enumerate(index):
+        for i in range(0, row.size, _CHUNK):
+            evaluate(row[i : i + _CHUNK])
+            if progress is not None:
+                progress((k * row.size + min(i + _CHUNK, row.size)) / count)
+    return points
 
 
-class Store:
-    """Multipliers of many points, or no more than their spectral radius.
+class _Points:
+    """Evaluates points of a chart; what those of one value of each slow axis share is kept.
 
     Attributes
     ----------
-    radius, radius_error : (count,)
-    proven : (count,) whether the errors are proven bounds
-    multipliers, errors : (count, size) the largest modulus first; None without ``everything``
+    each : number of points that share the values of the slow axes
     """
 
-    def __init__(self, count: int, *, everything: bool) -> None:
-        self.everything = everything
-        self.radius, self.radius_error = np.empty(count), np.empty(count)
-        self.proven = np.zeros(count, dtype=bool)
-        self.multipliers: ComplexArray | None = None
-        self.errors: FloatArray | None = None
-
-    def put(
-        self, points: npt.NDArray[np.intp], values: ComplexArray, errors: FloatArray, *, proven: bool
+    def __init__(
+        self, variation: GearVariation, grid: Mapping[str, FloatArray], rtol: float, points: ChartPoints
     ) -> None:
-        """Take the multipliers (k, size) of some points (k,) and bounds on their errors."""
-        self.radius[points], self.radius_error[points] = radii_with_bounds(values, errors)
-        self.proven[points] = proven
-        if not self.everything:
-            return
-        if self.multipliers is None or self.errors is None:
-            shape = self.radius.size, values.shape[1]
-            self.multipliers, self.errors = np.empty(shape, dtype=complex), np.empty(shape)
-        ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
-        self.multipliers[points] = np.take_along_axis(values, ranking, 1)
-        self.errors[points] = np.take_along_axis(errors, ranking, 1)
+        self.variation, self.grid, self.rtol, self.points = variation, grid, rtol, points
+        self.shape = [values.size for values in grid.values()]
+        # A friction axis that is zero throughout has no reference to scale.
+        self.inner = [n for n in grid if n in _INNER and (n != "friction_coefficient" or grid[n].max() > 0.0)]
+        self.slow = [n for n in grid if n not in self.inner]
+        self.each = math.prod(grid[n].size for n in self.inner)
+        self._slices: dict[int, ChartSlice] = {}
+
+    def __call__(self, places: IntArray) -> None:
+        """Put the multipliers at some places of the chart into its points."""
+        at = dict(zip(self.grid, np.unravel_index(places, self.shape), strict=True))
+        key = np.zeros(places.size, dtype=np.intp)
+        for name in self.slow:
+            key = key * self.grid[name].size + at[name]
+        for k in np.unique(key):
+            here = np.flatnonzero(key == k)
+            if k not in self._slices:
+                point = {name: float(self.grid[name][at[name][here[0]]]) for name in self.slow}
+                self._slices[k] = ChartSlice(self.variation, self.grid, self.inner, point)
+            some = {name: at[name][here] for name in self.inner}
+            for part in np.split(np.arange(here.size), range(_CHUNK, here.size, _CHUNK)):
+                chosen = {name: values[part] for name, values in some.items()}
+                self._slices[k].solve(places[here[part]], chosen, self.points, self.rtol)
 
 
-def _slices(variation: GearVariation, grid: Mapping[str, FloatArray]) -> Iterator[ChartSlice]:
-    """Cut a chart: one slice for each point of the slow axes, in pieces along speed where it is large."""
-    # A friction axis that is zero throughout has no reference to scale.
-    inner = [n for n in grid if n in _INNER and (n != "friction_coefficient" or grid[n].max() > 0.0)]
-    shape = [values.size for values in grid.values()]
-    index = np.arange(math.prod(shape)).reshape(shape)
-    steps = {name: grid[name].size if name in inner else 1 for name in grid}
-    if "speed_rpm" in inner:
-        steps["speed_rpm"] = max(1, _SLICE * steps["speed_rpm"] // math.prod(steps.values()))
-    for block in product(
-        *([slice(i, i + steps[name]) for i in range(0, grid[name].size, steps[name])] for name in grid)
-    ):
-        here = {name: values[part] for (name, values), part in zip(grid.items(), block, strict=True)}
-        mesh = np.meshgrid(*(here[name] for name in inner), indexing="ij")
-        flat = {name: values.ravel() for name, values in zip(inner, mesh, strict=True)}
-        # The references to which the factors of the slice relate.
-        point = {name: float(values.max()) for name, values in here.items() if name != "speed_rpm"}
-        point |= {"damping_ratio": 1.0} if "damping_ratio" in inner else {}
-        yield ChartSlice(vary(variation, point), flat, index[block].ravel())
-
-
-@dataclass(frozen=True, eq=False)
 class ChartSlice:
     """Points of a chart that differ in speed, mesh damping and mean friction only.
 
     Damping only scales wd, the mean friction coefficient only scales what friction adds to w, and speed only
     changes the period, and with many friction laws scales friction too: one fit of the block serves them all.
 
-    Attributes
+    Parameters
     ----------
-    reference : the pair with mesh damping 1 and the largest mean friction, where these are axes
-    flat : name -> values (count,) of the axes
-    index : (count,) place of the points in the chart
+    variation : of the chart
+    grid : name -> values of its axes
+    inner : names of those along which points of the slice differ
+    point : values of the others
     """
 
-    reference: GearVariation
-    flat: Mapping[str, FloatArray]
-    index: npt.NDArray[np.intp]
+    def __init__(
+        self,
+        variation: GearVariation,
+        grid: Mapping[str, FloatArray],
+        inner: list[str],
+        point: Mapping[str, float],
+    ) -> None:
+        top = float(grid["friction_coefficient"].max()) if "friction_coefficient" in inner else 1.0
+        # The references to which the factors of the slice relate.
+        references = {"damping_ratio": 1.0, "friction_coefficient": top}
+        self.reference = vary(variation, {**point, **{n: references[n] for n in inner if n in references}})
+        own = np.array([operating_rpm(self.reference.pair)])
+        self.speeds = grid["speed_rpm"] if "speed_rpm" in inner else own
+        self.damping = grid["damping_ratio"] if "damping_ratio" in inner else np.ones(1)
+        self.friction = grid["friction_coefficient"] / top if "friction_coefficient" in inner else np.ones(1)
+        self._blocks: dict[int, tuple[RankOneSystem, OffLineOfAction, int, float]] = {}
 
-    def solve(self, store: Store, rtol: float) -> None:
-        """Put the multipliers of all points into the store; ``rtol`` is relative to each monodromy matrix."""
-        count = self.index.size
-        speeds = self.flat.get("speed_rpm", np.full(count, operating_rpm(self.reference.pair)))
-        damping = self.flat.get("damping_ratio", np.ones(count))
-        friction = self.flat.get("friction_coefficient", np.ones(count))
-        friction = friction / friction.max()
-        unique, which = np.unique(speeds, return_inverse=True)
-        for family in friction_families(self.reference, unique):
-            row = np.full(unique.size, -1)
-            row[family.members] = np.arange(family.members.size)
-            part = np.flatnonzero(row[which] >= 0)
+    @cached_property
+    def families(self) -> list[FrictionFamily]:
+        """Speeds over which friction needs but one fit."""
+        return friction_families(self.reference, self.speeds)
+
+    @cached_property
+    def _rows(self) -> tuple[IntArray, IntArray]:
+        """Family of each speed, and its row there."""
+        family, row = np.empty(self.speeds.size, dtype=np.intp), np.empty(self.speeds.size, dtype=np.intp)
+        for k, one in enumerate(self.families):
+            family[one.members], row[one.members] = k, np.arange(one.members.size)
+        return family, row
+
+    def _block(self, k: int, rtol: float) -> tuple[RankOneSystem, OffLineOfAction, int, float]:
+        """Of a family the block, what moves apart from it, its levels of friction, period [s] times rpm."""
+        if k not in self._blocks:
+            family = self.families[k]
             variation = GEAR_AXES["speed_rpm"].apply(self.reference, family.speed_rpm)
-            pair, feedback = variation.pair, feedback_system(variation)
-            levels = [] if pair.friction.law == "none" else [0.0]
+            feedback = feedback_system(variation)
+            levels = [] if variation.pair.friction.law == "none" else [0.0]
             levels += [] if family.level is None else [family.level]
             block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-12), levels)
-            periods = block.period * operating_rpm(pair) / speeds
-            # At the other speeds of a family the law is that of one speed times factors found by sampling.
-            exact = family.members.size == 1 or family.law is None
-            separate = OffLineOfAction.of(feedback)
-            for chunk in np.split(part, range(_CHUNK, part.size, _CHUNK)):
-                T = periods[chunk]
-                factors = friction[chunk, None] * family.factors[row[which[chunk]]]
-                factors = factors[:, : len(levels)]
-                found = fast_multipliers(block, T, damping[chunk], factors, tolerance=2e-4 * rtol)
-                values, errors = separate.multipliers(T)
-                store.put(
-                    self.index[chunk],
-                    np.concatenate([found.multipliers, values], axis=1),
-                    np.concatenate([found.errors, errors], axis=1),
-                    proven=exact,
-                )
+            turn = block.period * operating_rpm(variation.pair)
+            self._blocks[k] = block, OffLineOfAction.of(feedback), len(levels), turn
+        return self._blocks[k]
+
+    def solve(self, places: IntArray, at: Mapping[str, IntArray], points: ChartPoints, rtol: float) -> None:
+        """Put the multipliers of points into ``points``.
+
+        Parameters
+        ----------
+        places : (k,) in the chart
+        at : name of an inner axis -> index (k,) of its value
+        points : of the chart
+        rtol : relative to each monodromy matrix
+        """
+        none = np.zeros(places.size, dtype=np.intp)
+        speed = at.get("speed_rpm", none)
+        damping = self.damping[at.get("damping_ratio", none)]
+        friction = self.friction[at.get("friction_coefficient", none)]
+        of, row = self._rows
+        for k in np.unique(of[speed]):
+            part = np.flatnonzero(of[speed] == k)
+            family = self.families[k]
+            block, separate, levels, turn = self._block(int(k), rtol)
+            T = turn / self.speeds[speed[part]]
+            factors = friction[part, None] * family.factors[row[speed[part]]]
+            found = fast_multipliers(block, T, damping[part], factors[:, :levels], tolerance=2e-4 * rtol)
+            values, errors = separate.multipliers(T)
+            points.put(
+                places[part],
+                np.concatenate([found.multipliers, values], axis=1),
+                np.concatenate([found.errors, errors], axis=1),
+                # At other speeds of a family the law is that of one speed times factors found by sampling.
+                family.members.size == 1 or family.law is None,
+            )

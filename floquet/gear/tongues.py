@@ -15,14 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage
 
 from floquet.engine.tongues import (
     Tongue,
     TongueTip,
     UnstableInterval,
     combinations,
-    label_tongue,
     seeded_nodes,
     tongue_coordinates,
     tongue_tip,
@@ -31,7 +29,8 @@ from floquet.engine.tongues import (
 from floquet.gear.axes import GEAR_AXES, GearVariation, checked_range, gear_grid, operating_rpm, vary
 from floquet.gear.block import gear_block
 from floquet.gear.chart import solved
-from floquet.rank_one.batch import fast_monodromies, spectral_radii
+from floquet.gear.regions import label_variation
+from floquet.rank_one.batch import spectral_radii
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
@@ -80,57 +79,6 @@ def predicted_lines(pair: AnyPair | GearVariation, orders: int = 12) -> dict[Ton
         for i, j, sign, total in combinations(omega)
         for k in range(1, orders + 1)
     }
-
-
-def label_variation(variation: GearVariation) -> Tongue:
-    """Label the fastest growing motion of a pair by its mode shape, see `label_tongue`."""
-    block = gear_block(variation)
-    matrix = fast_monodromies(block).matrices[0]
-    return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
-
-
-@dataclass(frozen=True)
-class LabelledRegion:
-    """One connected unstable region of a chart.
-
-    Attributes
-    ----------
-    label : tongue at the node of its largest spectral radius
-    point : axis name -> value of that node
-    radius : the spectral radius there
-    nodes : number of unstable nodes of the region
-    """
-
-    label: Tongue
-    point: dict[str, float]
-    radius: float
-    nodes: int
-
-
-def label_regions(pair: AnyPair, chart: xr.Dataset) -> list[LabelledRegion]:
-    """Name every connected unstable region of a chart by the mode shape at its most unstable node.
-
-    Parameters
-    ----------
-    pair : the pair of the chart, with the friction law of the chart
-    chart : dataset of `stability_chart` over any axes
-
-    Returns
-    -------
-    regions, the largest first
-    """
-    pair = load_gear_pair(pair)
-    radius = chart["spectral_radius"]
-    values = radius.to_numpy()
-    numbered, count = ndimage.label(chart["verdict"].to_numpy() == -1, structure=np.ones((3,) * values.ndim))
-    regions = []
-    for index in range(1, count + 1):
-        inside = numbered == index
-        node = np.unravel_index(int(np.argmax(np.where(inside, values, -np.inf))), values.shape)
-        point = {str(n): float(chart[n].values[i]) for n, i in zip(radius.dims, node, strict=True)}
-        label = label_variation(vary(pair, point))
-        regions.append(LabelledRegion(label, point, float(values[node]), int(inside.sum())))
-    return sorted(regions, key=lambda region: -region.nodes)
 
 
 def stability_boundaries(

@@ -68,7 +68,7 @@ CALLS = {
     floquet.gear_pair_multipliers: ({"source": PAIR}, "rtol method"),
     floquet.stability_chart: (
         {"pair": PAIR, "axes": {"speed_rpm": [4000.0]}},
-        "axes friction_law rtol store",
+        "axes friction_law refine rtol store",
     ),
     floquet.stability_boundaries: ({"pair": PAIR}, "speed_rpm axes nodes orders xtol rtol"),
     floquet.predicted_lines: ({"pair": PAIR}, "orders"),

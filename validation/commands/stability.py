@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
+    from floquet.gear.regions import LabelledRegion
+    from floquet.gear.tongues import StabilityMargins, TongueMargin
     from lumped import GearPair
     from lumped.typing import FloatArray
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     Speeds = tuple[float, float]
 
 #: Speeds and damping ratios of a chart.
-_CHART = (401, 81)
+_CHART = (801, 201)
 _AXES = {
     "chart": "any axes",
     "boundaries": "one axis other than speed_rpm, with or without speed_rpm,",
@@ -201,7 +202,7 @@ def _chart(
 
     grid = dict(axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
-        chart = stability_chart(pair, grid, rtol=1e-8, store="radius", supports=supports, progress=tell)
+        chart = stability_chart(pair, grid, rtol=1e-8, supports=supports, progress=tell)
     stable = chart["verdict"].to_numpy() == 1
     radius = chart["spectral_radius"]
     worst = radius.isel(radius.argmax(...))
@@ -263,7 +264,7 @@ def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
 
 def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
     """Name the unstable regions of a chart, and print them."""
-    from floquet.gear.tongues import label_regions
+    from floquet.gear.regions import label_regions
 
     regions, names = label_regions(pair, chart), list(map(str, chart["spectral_radius"].dims))
     headings = ("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points")

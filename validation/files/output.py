@@ -140,7 +140,8 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
     """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
     import pandas as pd
 
-    ready = _real(result)
+    # A file has one table: the regions of a chart are another one.
+    ready = _real(result.drop_dims("region", errors="ignore"))
     axes = [str(d) for d in ready.sizes if d not in COLUMN_DIMENSIONS]
     grid = np.meshgrid(*(ready[d].to_numpy() for d in axes), indexing="ij")
     columns: list[tuple[str, Any]] = [

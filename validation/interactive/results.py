@@ -13,8 +13,8 @@ import lumped
 from floquet.gear.axes import GEAR_AXES, chart_axes, speed_range, with_point
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
+from floquet.gear.regions import LabelledRegion, label_regions
 from floquet.gear.response import ResponseBranches
-from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
 from lumped.labelling import labelled_dataset, provenance

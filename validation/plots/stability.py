@@ -18,7 +18,8 @@ from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
 from scipy.optimize import isotonic_regression
 
-from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
+from floquet.gear.regions import LabelledRegion
+from floquet.gear.tongues import StabilityMargins, TongueMargin
 from lumped.typing import FloatArray
 from validation.plots.style import (
     BLACK,
@@ -65,7 +66,7 @@ def stability_figure(
     chart : dataset of ``floquet.stability_chart``
     at : name of an axis -> value at the operating point, which is marked
     regions : over the speed and a second axis, unstable regions to name, of
-        ``floquet.gear.tongues.label_regions``; over mesh damping also traced tongues, of
+        ``floquet.gear.regions.label_regions``; over mesh damping also traced tongues, of
         ``stability_margins``, whose edges are then drawn
     lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
     operating_range : speeds of operation [rpm]

@@ -111,7 +111,7 @@ def test_no_unstable_node_of_a_dense_chart_is_missed(preset: str) -> None:
     pair = load_gear_pair(preset).with_(friction__law="coulomb", friction__coefficient=0.05)
     axes = {"damping_ratio": [0.002, 0.006, 0.02]}
     found = stability_boundaries(pair, (500.0, 20000.0), axes, xtol=1e-6)
-    chart = stability_chart(pair, {"speed_rpm": np.linspace(500.0, 20000.0, 2000), **axes}, store="radius")
+    chart = stability_chart(pair, {"speed_rpm": np.linspace(500.0, 20000.0, 2000), **axes})
     unstable, *beside = nodes_beside(found, chart)
     assert unstable > 20
     assert beside == [0, 0]
@@ -200,7 +200,7 @@ def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
     speeds = np.geomspace(*ends, 20_001)  # steps of 3e-5, a quarter of those of the search
 
     def radius(x: np.ndarray) -> np.ndarray:
-        return np.ravel(stability_chart(pair, {"speed_rpm": x}, rtol=1e-9, store="radius").spectral_radius)
+        return np.ravel(stability_chart(pair, {"speed_rpm": x}, rtol=1e-9).spectral_radius)
 
     unstable, missed, _ = nodes_beside(found, stability_chart(pair, {"speed_rpm": speeds}, rtol=1e-9))
     assert unstable > 500

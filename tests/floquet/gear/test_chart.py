@@ -1,35 +1,90 @@
-"""Are charts of any size what the chart of the engine is, whatever method and slices they are made of?"""
+"""Are charts that refine themselves those of the full grid, over any axes, and their regions named?"""
 
 import numpy as np
 import pytest
 
-from floquet import stability_chart
-from floquet.gear import chart as engine
+from floquet import label_regions, stability_chart
+from floquet.gear import chart as module
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 
-SMALL = {"damping_ratio": np.array([0.0, 0.02, 0.05]), "speed_rpm": np.linspace(2000.0, 18000.0, 400)}
+COULOMB = {"friction.law": "coulomb", "friction.coefficient": 0.05}
+SPEEDS = np.linspace(3000.0, 19000.0, 161)
 
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
+    return load_gear_pair("nasa_28_28").with_(COULOMB)
 
 
-def test_slices_make_the_same_chart_and_tell_how_far_it_is(pair, monkeypatch) -> None:
-    whole = stability_chart(pair, SMALL, rtol=1e-8, store="radius")
-    monkeypatch.setattr(engine, "_SLICE", 450)
+CASES = {
+    "damping": ({}, {"damping_ratio": np.linspace(0.0, 0.04, 33)}),
+    "friction": ({"mesh.damping_ratio": 0.004}, {"friction_coefficient": np.linspace(0.0, 0.3, 33)}),
+    "torque": (
+        {"mesh.contact": "loaded", "mesh.damping_ratio": 0.004}, {"torque": np.linspace(20.0, 120.0, 17)}
+    ),
+    "stiffness": ({"mesh.damping_ratio": 0.01}, {"stiffness_variation": np.linspace(0.0, 2.0, 21)}),
+    "bearings": ({"mesh.damping_ratio": 0.01}, {"bearing_stiffness": np.geomspace(5e7, 5e8, 21)}),
+    "law II": ({"friction.law": "benedict_kelley"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
+    "law III": ({"friction.law": "xu_kahraman"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
+    "law IV": ({"friction.law": "smoothed_coulomb"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
+    "law V": ({"friction.law": "composite"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
+}  # fmt: skip
+
+
+@pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
+@pytest.mark.parametrize("case", CASES)
+def test_a_refined_chart_has_the_verdicts_of_the_full_grid(pair, case) -> None:
+    changes, axis = CASES[case]
+    here, axes = pair.with_(changes), {**axis, "speed_rpm": SPEEDS}
+    got = stability_chart(here, axes, rtol=1e-8)
+    full = stability_chart(here, axes, rtol=1e-8, refine=False)
+    assert 0.0 < float(got.known.mean()) < 0.8
+    assert bool(full.known.all())
+    assert got.spectral_radius.dims == full.spectral_radius.dims == tuple(axes)
+    assert (got.verdict == full.verdict).all()
+    known = got.known.to_numpy()
+    for name in ("spectral_radius", "error"):  # the same to rounding: batches do not change a point
+        np.testing.assert_allclose(got[name].values[known], full[name].values[known], rtol=1e-9, atol=1e-12)
+    assert not got.proven.values[~known].any()
+    # The misfit is that of evaluated nodes; where two multipliers change places the radius bends between.
+    off = np.abs(got.spectral_radius - full.spectral_radius).to_numpy()
+    assert np.mean(off <= got.error.to_numpy()) > 0.98
+    assert off.max() < 0.05
+
+
+def test_axes_in_any_order_and_a_third_one_plane_by_plane(pair) -> None:
+    rng = np.random.default_rng(3)
+    axes = {
+        "torque": np.array([90.0, 40.0]),
+        "damping_ratio": rng.permutation(np.linspace(0.0, 0.04, 21)),
+        "speed_rpm": rng.permutation(SPEEDS),
+    }
     told: list[float] = []
-    sliced = stability_chart(pair, SMALL, rtol=1e-8, store="radius", progress=told.append)
-    assert sliced["spectral_radius"].dims == ("damping_ratio", "speed_rpm")
-    assert set(sliced.data_vars) == {"spectral_radius", "error", "verdict", "proven"}
-    for name in ("speed_rpm", "damping_ratio"):
-        assert np.array_equal(sliced[name], whole[name])
-        assert sliced[name].attrs["units"] == whole[name].attrs["units"]
-    assert np.array_equal(sliced["spectral_radius"], whole["spectral_radius"])
-    assert len(told) == 3  # 150 speeds at a time
+    mixed = stability_chart(pair, axes, rtol=1e-8, progress=told.append)
+    alone = {name: np.sort(values) for name, values in axes.items() if name != "torque"}
+    one = stability_chart(pair.with_(operating__pinion_torque=40.0), alone, rtol=1e-8)
+    plane = mixed.sel(torque=40.0).sortby(["damping_ratio", "speed_rpm"])
+    assert mixed.spectral_radius.dims == tuple(axes)
+    assert (plane.verdict == one.verdict).all()
+    assert (plane.known == one.known).all()
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+def test_the_full_grid_is_the_same_in_pieces_and_tells_its_progress(pair, monkeypatch) -> None:
+    axes = {"damping_ratio": [0.0, 0.02, 0.05], "speed_rpm": np.linspace(2000.0, 18000.0, 400)}
+    whole = stability_chart(pair, axes, rtol=1e-8, store="all", refine=False)
+    monkeypatch.setattr(module, "_CHUNK", 450)
+    told: list[float] = []
+    pieces = stability_chart(pair, axes, rtol=1e-8, refine=False, progress=told.append)
+    assert np.array_equal(pieces["spectral_radius"], whole["spectral_radius"])
+    assert told == pytest.approx([450 / 1200, 900 / 1200, 1.0])
+    assert (np.abs(whole.multipliers).max("multiplier") == whole.spectral_radius).all()
+    assert (np.diff(np.abs(whole.multipliers), axis=-1) <= 0.0).all()
+    assert "multipliers" not in pieces
+    with pytest.raises(ParameterError, match="refine=False"):
+        stability_chart(pair, axes, store="all")
 
 
 def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
@@ -40,6 +95,28 @@ def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     assert found["spectral_radius"].dims == ("speed_rpm", "torque")
 
 
+def test_regions_are_named_measured_and_found_nearest(pair) -> None:
+    here = pair.with_({"mesh.damping_ratio": 0.01, "operating.pinion_speed": 15000.0})
+    chart = stability_chart(here, rtol=1e-8)
+    assert chart.spectral_radius.shape == (801, 201)
+    regions = label_regions(here, chart)
+    assert [str(r.label) for r in regions] == list(chart.region_label.values)
+    assert sum(r.nodes for r in regions) == int((chart.verdict < 0).sum())
+    assert chart.thinnest_width == pytest.approx(min(r.width for r in regions))
+    for region in regions:
+        at = chart.sel(region.point)
+        assert at.known
+        assert at.spectral_radius == region.radius
+    # Single speeds on either side: stable from the pair's own speed up to the edge, unstable beyond.
+    edge, step = float(chart.nearest_edge_speed_rpm), float(np.diff(chart.speed_rpm).max())
+    beyond = edge - step if edge < 15000.0 else edge + step
+    calm = np.linspace(15000.0, edge + np.sign(15000.0 - edge) * step, 50)
+    assert (stability_chart(here, {"speed_rpm": calm}).verdict > 0).all()
+    assert (stability_chart(here, {"speed_rpm": [beyond]}).verdict < 0).all()
+
+
 def test_what_cannot_be_computed_is_refused_before_any_work(pair) -> None:
     with pytest.raises(ParameterError, match="at most 25000000"):
         stability_chart(pair, {"speed_rpm": np.arange(1.0, 6000.0), "damping_ratio": np.linspace(0, 1, 6000)})
+    with pytest.raises(ParameterError, match="store"):
+        stability_chart(pair, {"speed_rpm": [900.0]}, store="some")

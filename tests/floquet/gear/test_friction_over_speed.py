@@ -6,7 +6,6 @@ import pytest
 from floquet import gear_block, gear_pair_multipliers, scan, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
 from lumped import load_gear_pair, preset_names
-from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import friction_path_function
 
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
@@ -112,21 +111,3 @@ def test_level_apart_changes_nothing() -> None:
     t = np.linspace(0.01, 0.99, 50) * whole.period
     one, other = (block.to_periodic_system().evaluate(t) for block in (whole, apart))
     assert np.abs(one - other).max() <= 1e-10 * np.abs(one).max()
-
-
-@pytest.mark.parametrize("extra", [{}, {"torque": [40.0, 60.0]}])
-def test_radius_alone_is_that_of_all_multipliers(extra: dict[str, list[float]]) -> None:
-    pair = load_gear_pair("nasa_28_28").with_(friction__law="xu_kahraman")
-    axes = {"damping_ratio": [0.0, 0.03], **extra, "speed_rpm": np.linspace(900.0, 15000.0, 80)}
-    whole = stability_chart(pair, axes, rtol=1e-8)
-    alone = stability_chart(pair, axes, rtol=1e-8, store="radius")
-    assert set(alone.data_vars) == {"spectral_radius", "error", "verdict", "proven"}
-    for name in alone.data_vars:
-        assert (alone[name] == whole[name]).all()
-    assert (np.abs(whole.multipliers).max("multiplier") == whole.spectral_radius).all()
-    assert (np.diff(np.abs(whole.multipliers), axis=-1) <= 0.0).all()
-
-
-def test_unknown_store_is_refused() -> None:
-    with pytest.raises(ParameterError, match="store"):
-        stability_chart(load_gear_pair("nasa_28_28"), {"speed_rpm": [900.0]}, store="some")

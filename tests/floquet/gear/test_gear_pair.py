@@ -180,7 +180,7 @@ def test_weak_friction_acts_linearly(pair) -> None:
 
 def test_chart_axes_are_labelled_and_match_single_points(pair) -> None:
     axes = {"speed_rpm": [3000.0, 6000.0], "damping_ratio": [0.01, 0.05]}
-    result = stability_chart(pair, axes)
+    result = stability_chart(pair, axes, store="all")
     assert result.speed_rpm.attrs == {"units": "rpm", "long_name": "pinion speed"}
     one = gear_pair_multipliers(pair.with_(operating__pinion_speed=6000, mesh__damping_ratio=0.01))
     at = result.sel(speed_rpm=6000, damping_ratio=0.01)

@@ -38,7 +38,7 @@ def matched(found: np.ndarray, exact: np.ndarray) -> np.ndarray:
 
 def test_charts_are_the_general_engine_at_every_speed(slender: GearPair) -> None:
     axes = {"speed_rpm": [5000.0, 12000.0], "friction_coefficient": [0.1], "torque": [150.0]}
-    chart = stability_chart(slender, axes, supports="shafts", rtol=1e-8)
+    chart = stability_chart(slender, axes, supports="shafts", rtol=1e-8, store="all")
     slow = scan(lambda at: gear_pair_multipliers(vary(slender, at, "shafts"), 1e-6, method="gauss"), axes)
     for values, errors, exact, bounds in zip(
         *(part.values.reshape(2, -1) for c in (chart, slow) for part in (c.multipliers, c.multiplier_errors)),

@@ -14,7 +14,8 @@ from typer.testing import CliRunner
 from floquet import predicted_lines, stability_chart
 from floquet.engine.multipliers import verdicts
 from floquet.gear.campbell import campbell
-from floquet.gear.tongues import StabilityMargins, TongueMargin, label_regions
+from floquet.gear.regions import label_regions
+from floquet.gear.tongues import StabilityMargins, TongueMargin
 from lumped import load_gear_pair
 from validation.cli import app
 from validation.plots.stability import campbell_figure, pretty, spread, stability_figure, tongues_figure

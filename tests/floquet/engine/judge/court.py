@@ -112,7 +112,7 @@ def _special(rng: np.random.Generator, kind: str, pair: GearPair) -> GearPair:
 
 def _routes(kind: str, pair: GearPair, truth: Disks) -> list[Finding]:
     found = fast_multipliers(gear_block(pair))
-    chart = stability_chart(pair, {"speed_rpm": [operating_rpm(pair)]}, rtol=1e-8)
+    chart = stability_chart(pair, {"speed_rpm": [operating_rpm(pair)]}, rtol=1e-8, store="all", refine=False)
     own = gear_pair_multipliers(pair, 1e-9)
     return [
         finding(kind, "kernel", found.multipliers[0], found.errors[0], truth, "proven"),
@@ -138,7 +138,9 @@ def _stiffness_variation(rng: np.random.Generator) -> list[Finding]:
         pair, factor = _pair(rng, str(rng.choice(MODELS))), float(rng.uniform(0.0, 1.6))
         point = {"speed_rpm": operating_rpm(pair), "stiffness_variation": factor}
         try:
-            chart = stability_chart(pair, {name: [value] for name, value in point.items()}, rtol=1e-8)
+            chart = stability_chart(
+                pair, {name: [value] for name, value in point.items()}, rtol=1e-8, store="all", refine=False
+            )
             own = gear_pair_multipliers(vary(pair, point), 1e-9)
         except NumericalError:  # a stiffness that is not positive
             continue
@@ -156,7 +158,7 @@ def _over_speeds(kind: str, count: int, rng: np.random.Generator) -> list[Findin
             break
     rpm = operating_rpm(pair)
     axes = {"speed_rpm": rpm * np.linspace(0.8, 1.6, count), "damping_ratio": np.linspace(0.0, 0.1, 9)}
-    chart = stability_chart(pair, axes, rtol=1e-8)
+    chart = stability_chart(pair, axes, rtol=1e-8, store="all", refine=False)
     findings = []
     for i, j in zip(rng.integers(0, count, 3), rng.integers(0, 9, 3), strict=True):
         there = pair.with_(
