@@ -105,7 +105,14 @@ class StorageError(SpurcheckError, OSError):
 
 
 class LawRangeWarning(UserWarning):
-    """A friction or film law was evaluated outside the range in which it was fitted."""
+    """A friction or film law was evaluated outside the range in which it was fitted.
+
+    ``subject``: the law and the quantity, the same for every value of it.
+    """
+
+    def __init__(self, text: str, subject: str = "") -> None:
+        super().__init__(text)
+        self.subject = subject
 
 
 class ResolutionWarning(UserWarning):

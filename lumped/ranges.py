@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -35,23 +36,32 @@ class ValidityRange:
         """Whether the source gives a limit at all."""
         return self.low is not None or self.high is not None
 
+    @property
+    def words(self) -> str:
+        """The quantity in words."""
+        return self.quantity.replace("_", " ")
+
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         if not self.stated:
-            return f"{self.quantity}: {NOT_STATED}"
+            return f"{self.words}: {NOT_STATED}"
         if self.high is None:
-            return f"{self.quantity} >= {self.low:g}{unit}"
+            return f"{self.words} >= {self.low:g}{unit}"
         if self.low is None:
-            return f"{self.quantity} <= {self.high:g}{unit}"
-        return f"{self.quantity} {self.low:g} to {self.high:g}{unit}"
+            return f"{self.words} <= {self.high:g}{unit}"
+        return f"{self.words} {self.low:g} to {self.high:g}{unit}"
 
 
 @dataclass(frozen=True)
 class RangeViolation:
     """One argument that left its range.
 
-    ``minimum`` and ``maximum`` are the extreme values met, in the range's unit; ``share`` is the fraction of
-    the positions that lie outside.
+    Attributes
+    ----------
+    law, range : what is left
+    minimum, maximum : extreme values of the argument, in the range's unit
+    share : fraction of the positions that lie outside
+    largest : largest friction coefficient there; NaN where the law is of something else
     """
 
     law: str
@@ -59,19 +69,34 @@ class RangeViolation:
     minimum: float
     maximum: float
     share: float
+    largest: float = math.nan
 
     def __str__(self) -> str:
         unit = "" if self.range.unit == "1" else f" {self.range.unit}"
+        low, high = f"{self.minimum:.4g}", f"{self.maximum:.4g}"
+        values = f"is {low}" if low == high else f"runs from {low} to {high}"
+        friction = "" if math.isnan(self.largest) else f", where mu is up to {self.largest:.2g}"
         return (
-            f"{self.law}: {self.range.quantity} runs from {self.minimum:.4g} to {self.maximum:.4g}{unit}, "
-            f"outside {self.range} over {100 * self.share:.3g} % of the positions ({self.range.source})"
+            f"{self.law}: {self.range.words} {values}{unit}, outside {self.range} over "
+            f"{100 * self.share:.3g} % of the positions{friction} ({self.range.source})"
         )
 
 
 def range_violations(
-    law: str, ranges: Iterable[ValidityRange], values: Mapping[str, ArrayLike]
+    law: str,
+    ranges: Iterable[ValidityRange],
+    values: Mapping[str, ArrayLike],
+    friction: ArrayLike = math.nan,
 ) -> tuple[RangeViolation, ...]:
-    """Compare a law's arguments by name, any shape, in the units of the ranges, with its validity ranges."""
+    """Compare the arguments of a law with its validity ranges.
+
+    Parameters
+    ----------
+    law : its title
+    ranges : of its arguments
+    values : arguments by name, any shape, in the units of the ranges
+    friction : friction coefficient at the same positions [-]; NaN for a law of something else
+    """
     result = []
     for limits in ranges:
         if not limits.stated or limits.quantity not in values:
@@ -83,16 +108,17 @@ def range_violations(
         if limits.high is not None:
             outside |= value > limits.high
         if outside.any():
-            result.append(
-                RangeViolation(law, limits, float(value.min()), float(value.max()), float(outside.mean()))
-            )
+            largest = float(np.max(np.where(outside, np.abs(friction), 0.0)))
+            share = float(outside.mean())
+            result.append(RangeViolation(law, limits, float(value.min()), float(value.max()), share, largest))
     return tuple(result)
 
 
 def warn_violations(violations: Iterable[RangeViolation]) -> None:
     """Issue one ``LawRangeWarning`` per violation."""
     for violation in violations:
-        warnings.warn(str(violation), LawRangeWarning, stacklevel=3)
+        subject = f"{violation.law}: {violation.range.quantity}"
+        warnings.warn(LawRangeWarning(str(violation), subject), stacklevel=3)
 
 
 def checked(field: str, value: ArrayLike, unit: str, *, allow_zero: bool = False) -> FloatArray:

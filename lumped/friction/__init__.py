@@ -1,4 +1,4 @@
-"""Friction laws I to V of the tooth contact, one file each, and their registry."""
+"""Friction laws of the tooth contact, one file each, and their registry."""
 
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings, mean_coefficient
 from lumped.friction.benedict_kelley import benedict_kelley

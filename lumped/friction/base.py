@@ -23,6 +23,14 @@ from lumped.typing import BoolArray, FloatArray
 #: contact band is four orders wider.
 PITCH_RESOLUTION = 1e-8
 
+#: Range of the mean |mu| over the path that fits of lubricated contacts must not leave.
+MEAN_COEFFICIENT = ValidityRange(
+    "mean_coefficient",
+    "1",
+    None,
+    0.1,
+    "steel under boundary lubrication, 0.1 to 0.12; measured means of gears are 0.02 to 0.07",
+)
 _SEARCH_POINTS = 400
 _ROOT_TOLERANCE = 1e-14  # relative, of the distance from the pitch point
 
@@ -35,6 +43,7 @@ class ContactPath:
     ----------
     L_XA, L_XP, L_XD, L_XY : distances from the pinion's tangent point X [m]
     omega_pinion, omega_gear : nominal speeds [rad/s]
+    pitch_line_velocity : v_t on the operating pitch circles [m/s]
     unit_load : w_n, full static load per face width [N/m]
     effective_modulus : E' [Pa]
     viscosity : eta at the inlet, dynamic [Pa s]
@@ -50,6 +59,7 @@ class ContactPath:
     L_XY: float
     omega_pinion: float
     omega_gear: float
+    pitch_line_velocity: float
     unit_load: float
     effective_modulus: float
     viscosity: float
@@ -89,7 +99,14 @@ class ContactPath:
 
     def film_thickness(self, xi: FloatArray) -> FloatArray:
         """Central film thickness h_c [m], equation (21)."""
-        return 1e-6 * film.film_thickness(
+        return self._film(film.film_thickness, xi)
+
+    def film_thickness_hamrock_dowson(self, xi: FloatArray) -> FloatArray:
+        """The film thickness that another published formula gives [m], for comparison."""
+        return self._film(film.film_thickness_hamrock_dowson, xi)
+
+    def _film(self, formula: Callable[..., FloatArray], xi: FloatArray) -> FloatArray:
+        return 1e-6 * formula(
             self.unit_load * 1e-3,
             self.radius(xi) * 1e3,
             self.viscosity * 1e3,

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array
 from lumped.errors import refuse, shown
 from lumped.friction.base import (
+    MEAN_COEFFICIENT,
     PITCH_RESOLUTION,
     ContactPath,
     FrictionLaw,
@@ -27,10 +28,17 @@ ROUGHNESS_LIMIT = 1.13
 DEFAULT_MAXIMUM = 0.2
 
 RANGES = (
-    ValidityRange("roughness", "um", 0.0, ROUGHNESS_LIMIT, "pole of the factor 1.13/(1.13 - S)"),
+    ValidityRange(
+        "roughness",
+        "um",
+        0.0,
+        0.75,
+        "AGMA 925-A03 holds 1.13/(1.13 - S) at 3; from memory, not from the print",
+    ),
     ValidityRange(
         "friction_number", "1", 1.0, None, "below 1 the logarithm is negative; the law is held at 0"
     ),
+    MEAN_COEFFICIENT,
     ValidityRange("unit_load", "N/mm", None, None, NOT_STATED),
     ValidityRange("viscosity", "mPa s", None, None, NOT_STATED),
     ValidityRange("sliding_velocity", "m/s", None, None, NOT_STATED),

@@ -1,6 +1,6 @@
 """Law I: Coulomb friction with one coefficient, equation (10).
 
-Sources: Abbas Al-Zubaidi 2008, eq. 10 (docs/theory/friction.md, "The five laws").
+Sources: Abbas Al-Zubaidi 2008, eq. 10 (docs/theory/friction.md, "The laws").
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from lumped.friction.base import FrictionLaw
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.composite import LAW as COMPOSITE
 from lumped.friction.coulomb import LAW as COULOMB
+from lumped.friction.iso_14179 import LAW as ISO_14179
 from lumped.friction.smoothed_coulomb import LAW as SMOOTHED_COULOMB
 from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 
@@ -24,9 +25,20 @@ _NONE = FrictionLaw(
     varies=False,
 )
 
-#: Every law that ``friction.law`` may name, in the order of the paper.
+#: Every law that ``friction.law`` may name, in the order of the paper, then those that it does not have.
 LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
-    {law.name: law for law in (_NONE, COULOMB, BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB, COMPOSITE)}
+    {
+        law.name: law
+        for law in (
+            _NONE,
+            COULOMB,
+            BENEDICT_KELLEY,
+            XU_KAHRAMAN,
+            SMOOTHED_COULOMB,
+            COMPOSITE,
+            ISO_14179,
+        )
+    }
 )
 
 

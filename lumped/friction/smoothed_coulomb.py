@@ -1,6 +1,6 @@
 """Law IV: Coulomb friction smoothed through the pitch point, equation (19).
 
-Sources: Abbas Al-Zubaidi 2008, eq. 19 (docs/theory/friction.md, "The five laws").
+Sources: Abbas Al-Zubaidi 2008, eq. 19 (docs/theory/friction.md, "The laws").
 """
 
 from __future__ import annotations

@@ -6,18 +6,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
-from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.base import MEAN_COEFFICIENT, ContactPath, FrictionLaw, FrictionSettings
 from lumped.ranges import NOT_STATED, ValidityRange, checked
 from lumped.typing import FloatArray
 
 #: Regression coefficients b1..b9.
 B = (-8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305)
 
+_RECALLED = "solutions behind the regression, Xu 2005; from memory, not from the print"
 RANGES = (
     ValidityRange("slide_to_roll", "1", 0.0, 2.0, "2 v_s/v_e with both surfaces rolling the same way"),
     ValidityRange("viscosity", "mPa s", 1.0, None, "log10(eta) enters as a positive factor"),
-    ValidityRange("pressure", "GPa", None, None, NOT_STATED),
-    ValidityRange("entraining_velocity", "m/s", None, None, NOT_STATED),
+    ValidityRange("pressure", "GPa", 0.5, 2.5, _RECALLED),
+    ValidityRange("mean_rolling_velocity", "m/s", 1.0, 20.0, _RECALLED),
+    MEAN_COEFFICIENT,
     ValidityRange("roughness", "um", None, None, NOT_STATED),
     ValidityRange("radius", "m", None, None, NOT_STATED),
 )

@@ -1,5 +1,6 @@
 """Losses of the mesh: loss factor, mean friction, sliding loss and efficiency, quasi-static and dynamic."""
 
+from lumped.friction.iso_14179 import iso_14179_mean_coefficient
 from lumped.losses.efficiency import (
     dynamic_losses,
     losses_of_laws,
@@ -10,7 +11,6 @@ from lumped.losses.loss_factor import Sharing, addendum_contact_ratios, loss_fac
 from lumped.losses.published import (
     anderson_loewenthal_coefficient,
     anderson_loewenthal_sliding_loss,
-    iso_14179_mean_coefficient,
     iso_14179_mesh_loss,
     iso_14179_of,
 )

@@ -53,6 +53,7 @@ def contact_path(pair: AnyPair) -> ContactPath:
         L_XY=g.L_XY,
         omega_pinion=g.omega_pinion,
         omega_gear=g.omega_gear,
+        pitch_line_velocity=g.pitch_line_velocity,
         unit_load=pair.operating.pinion_torque / (g.face_width * g.base_radius_pinion),
         effective_modulus=film.effective_modulus(
             pinion.youngs_modulus, pinion.poisson_ratio, gear.youngs_modulus, gear.poisson_ratio
@@ -163,13 +164,26 @@ def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> t
     law = LAWS[name]
     xi = _positions(path)
     if law.parts is None:
-        return range_violations(law.title, law.ranges, _arguments(path, xi))
+        return _left(law.title, law, path, settings, xi)
     found: list[RangeViolation] = []
     for part, inside in law.parts(xi, path, settings):
         if inside.any():
             title = f"{law.title} ({part.title})"
-            found += range_violations(title, part.ranges, _arguments(path, xi[inside]))
+            found += _left(title, part, path, settings, xi[inside])
     return tuple(found)
+
+
+def _left(
+    title: str, law: FrictionLaw, path: ContactPath, settings: FrictionSettings, xi: FloatArray
+) -> tuple[RangeViolation, ...]:
+    """Ranges of a law that are left at positions, with the coefficient that it gives there."""
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            mu = np.abs(law.signed(xi, path, settings))
+    except ParameterError:  # law II refuses rough flanks
+        mu = np.full_like(xi, np.nan)
+    values = _arguments(path, xi) | {"mean_coefficient": np.array(mu.mean())}
+    return range_violations(title, law.ranges, values, mu)
 
 
 def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
@@ -180,12 +194,22 @@ def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
         "viscosity": np.array(path.viscosity * 1e3),
         "sliding_velocity": velocities[0],
         "entraining_velocity": velocities[1],
+        "mean_rolling_velocity": 0.5 * velocities[1],
+        "pitch_line_velocity": np.array(path.pitch_line_velocity),
         "slide_to_roll": path.slide_to_roll(xi),
         "roughness": np.array(path.roughness * 1e6),
         "pressure": path.hertz_pressure(xi) * 1e-9,
         "radius": path.radius(xi),
         "friction_number": friction_number(path.unit_load * 1e-3, path.viscosity * 1e3, *velocities),
     }
+
+
+def film_note(low: float, high: float) -> str:
+    """Which formula the film thickness has, and what another one gives, as shares of it from low to high."""
+    return (
+        "central, Dowson and Toyoda (1978); "
+        f"the formula of Hamrock and Dowson (1977) gives {low:.2f} to {high:.2f} times as much"
+    )
 
 
 def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
@@ -252,5 +276,7 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
         },
         {"range_warnings": warnings, "left_out": left_out},
     )
+    other = path.film_thickness_hamrock_dowson(xi) / result["film_thickness"].to_numpy()
+    result["film_thickness"].attrs["note"] = film_note(float(other.min()), float(other.max()))
     result["regime"].attrs |= {"flag_values": [0, 1, 2, 3], "flag_meanings": ", ".join(film.REGIMES)}
     return result.assign_coords(law_title=("law", [LAWS[name].title for name in functions]))

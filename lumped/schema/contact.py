@@ -157,7 +157,7 @@ class Friction(Section):
     """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
 
     law: Annotated[str, OneOf(tuple(LAWS), file_name)] = Field(
-        description=", ".join(f"{law.numeral} {law.name}" for law in LAWS.values() if law.numeral)
+        description=", ".join(f"{law.numeral or law.label} {law.name}" for law in LAWS.values())
     )
     coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(
         None, description="mean coefficient of laws I and IV; default the mean of law II over the path"

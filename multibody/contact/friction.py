@@ -1,4 +1,4 @@
-r"""The published friction laws I to V, evaluated at the multibody model's own contact.
+r"""The published friction laws, evaluated at the multibody model's own contact.
 
 Written from the printed laws (docs/theory/friction.md), with conversions of its own from SI to the units in
 which each law was fitted, and without a line or a table of ``lumped.friction``: a wrong unit or factor on
@@ -20,7 +20,7 @@ from multibody.contact.kinematics import compiled
 # Places in the vector of friction parameters, all SI.
 (
     LAW,  # one of the codes below
-    MEAN,  # mu_avg of laws I and IV [-]
+    MEAN,  # mu_avg of laws I and IV, or the mean coefficient of ISO/TR 14179-2 [-]
     SHARPNESS,  # Phi of law IV [1/m]
     MAXIMUM,  # upper bound of law II [-]
     BOUNDARY, MIXED,  # film parameters below which law V takes IV, and II [-]
@@ -46,6 +46,7 @@ LAWS = {
     "xu_kahraman": 3.0,
     "smoothed_coulomb": 4.0,
     "composite": 5.0,
+    "iso_14179": 1.0,  # one coefficient over the path, as law I
 }
 #: Code of every other law.
 TABLE = 6.0

@@ -28,12 +28,13 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "friction.benedict_kelley": "benedict_kelley friction_number",
         "friction.composite": "composite",
         "friction.coulomb": "coulomb",
+        "friction.iso_14179": "iso_14179_mean_coefficient",
         "friction.smoothed_coulomb": "smoothed_coulomb",
         "friction.xu_kahraman": "xu_kahraman",
         "gear_geometry.tooth_profile": "involute inverse_involute",
         "losses.loss_factor": "ohlendorf",
-        "losses.published": "anderson_loewenthal_coefficient iso_14179_mean_coefficient",
-        "lubrication.film": "film_thickness effective_modulus hertz_half_width hertz_pressure "
+        "losses.published": "anderson_loewenthal_coefficient",
+        "lubrication.film": "film_thickness film_thickness_hamrock_dowson effective_modulus hertz_half_width hertz_pressure "
         "pressure_viscosity film_parameter regime",
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density "
         "viscosity_index viscosity_at_100 grade_viscosity",

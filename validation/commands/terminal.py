@@ -104,8 +104,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
         def show(message: Warning | str, *_: object, **__: object) -> None:
             text = str(message)
-            if text not in told:
-                told.add(text)
+            subject = getattr(message, "subject", text)  # a law outside its range at every speed of a sweep
+            if subject not in told:
+                told.add(subject)
                 note(text)
 
         try:

@@ -147,7 +147,7 @@ def test_a_law_outside_its_range_is_told_on_the_page_and_nowhere_else(tmp_path, 
     written = build.report(small_load, tmp_path / "report", quick=True)
     assert not [w for w in recwarn if issubclass(w.category, lumped.LawRangeWarning)]
     text = (written.folder / "index.html").read_text(encoding="utf-8")
-    assert "friction_number" in text
+    assert "friction number" in text
 
 
 @pytest.mark.parametrize(("model", "advised"), [("rectangular", 2), ("energy", 1), ("finite_elements", 0)])

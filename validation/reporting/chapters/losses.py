@@ -35,7 +35,8 @@ def write(results: Results) -> Content:
             "own": names.index(pair.friction.law) if pair.friction.law in names else -1,
         },
     )
-    film = path.film_thickness(np.linspace(path.L_XA, path.L_XD, 201))
+    places = np.linspace(path.L_XA, path.L_XD, 201)
+    film, other = path.film_thickness(places), path.film_thickness_hamrock_dowson(places)
     parameter = profile["film_parameter"].to_numpy()
     linear = results.linear
     parts = (
@@ -62,8 +63,9 @@ def write(results: Results) -> Content:
             "smallest film thickness",
             float(film.min()),
             "m",
-            "AGMA 925, central; other formulas differ by a quarter",
+            str(profile["film_thickness"].attrs["note"]),
         ),
+        ("the same by another formula", float(other.min()), "m", "central, Hamrock and Dowson (1977)"),
         ("smallest film parameter", float(parameter.min()), "1", "below 1 boundary, above 4 full film"),
     )
     blocks: list[Block] = [
