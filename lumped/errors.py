@@ -107,12 +107,13 @@ class StorageError(SpurcheckError, OSError):
 class LawRangeWarning(UserWarning):
     """A friction or film law was evaluated outside the range in which it was fitted.
 
-    ``subject``: the law and the quantity, the same for every value of it.
+    ``subject``: the law and the quantity, the same for every value of it; ``largest``: the largest friction
+    coefficient outside.
     """
 
-    def __init__(self, text: str, subject: str = "") -> None:
+    def __init__(self, text: str, subject: str = "", largest: float = 0.0) -> None:
         super().__init__(text)
-        self.subject = subject
+        self.subject, self.largest = subject, largest
 
 
 class ResolutionWarning(UserWarning):

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -118,7 +119,23 @@ def warn_violations(violations: Iterable[RangeViolation]) -> None:
     """Issue one ``LawRangeWarning`` per violation."""
     for violation in violations:
         subject = f"{violation.law}: {violation.range.quantity}"
-        warnings.warn(LawRangeWarning(str(violation), subject), stacklevel=3)
+        warnings.warn(LawRangeWarning(str(violation), subject, violation.largest), stacklevel=3)
+
+
+@contextlib.contextmanager
+def told_once() -> Iterator[None]:
+    """Issue one ``LawRangeWarning`` per law and quantity at the end, that with the largest coefficient."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", LawRangeWarning)
+        yield
+    worst: dict[str, warnings.WarningMessage] = {}
+    for one in found:
+        subject = str(getattr(one.message, "subject", one.message))
+        known = worst.setdefault(subject, one)
+        if getattr(one.message, "largest", 0.0) > getattr(known.message, "largest", 0.0):
+            worst[subject] = one
+    for one in worst.values():
+        warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
 
 def checked(field: str, value: ArrayLike, unit: str, *, allow_zero: bool = False) -> FloatArray:

@@ -31,6 +31,7 @@ from floquet.orbits.response import Branch, Member, Response, find_response
 from lumped.arguments import whole_number
 from lumped.labelling import Variable, labelled_dataset
 from lumped.quasi_static.contacts import mesh_elements
+from lumped.ranges import told_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress
@@ -250,6 +251,7 @@ class ResponseBranches:
         )
 
 
+@told_once()
 def response_branches(
     pair: AnyPair,
     speeds: tuple[float, float] | None = None,

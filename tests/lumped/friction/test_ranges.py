@@ -80,6 +80,23 @@ def test_ordinary_pairs_are_inside(name):
             friction_path_function(name, law)
 
 
+def test_a_sweep_warns_once_and_of_its_worst_speed(slow):
+    speeds = [10.0, 20.0, 30.0]
+    with pytest.warns(LawRangeWarning) as told:
+        lumped.speed_sweep(slow, speeds, samples_per_cycle=32)
+    subjects = [w.message.subject for w in told]
+    assert len(subjects) == len(set(subjects)) >= 2
+    (one,) = (w.message for w in told if w.message.subject.endswith("mean_rolling_velocity"))
+    each = [slow.with_(operating__pinion_speed=rpm) for rpm in speeds]
+    largest = [
+        v.largest
+        for pair in each
+        for v in law_range_violations(pair)
+        if v.range.quantity == "mean_rolling_velocity"
+    ]
+    assert one.largest == max(largest) > min(largest)
+
+
 def test_only_positions_outside_give_the_largest_coefficient():
     limits = ValidityRange("speed", "m/s", None, 2.0, "test")
     (found,) = range_violations("law", (limits,), {"speed": [1.0, 3.0, 4.0]}, [-0.9, 0.1, -0.3])
