@@ -142,36 +142,22 @@ def written_out():
             sum_f += force
             sum_pf += xi * force
             sum_gf += (geometry.L_XY - xi) * force
-        b_p, b_g = pair.bearings.pinion, pair.bearings.gear
         m_p, m_g, j_p, j_g = masses
+
+        def held(gear, way, mass, x, rate):
+            """Force of a bearing on its gear."""
+            b = getattr(pair.bearings, gear)
+            stiffness, ratio = getattr(b, f"{way}_stiffness"), getattr(b, f"{way}_damping_ratio")
+            return -2 * ratio * math.sqrt(stiffness * mass) * rate - stiffness * x
+
         return np.array(
             [
                 (torque - r_bp * sum_n - sum_pf) / j_p,
                 (-brake + r_bg * sum_n + sum_gf) / j_g,
-                (
-                    -2 * b_p.loa_damping_ratio * math.sqrt(b_p.loa_stiffness * m_p) * dx_p
-                    - b_p.loa_stiffness * x_p
-                    - sum_n
-                )
-                / m_p,
-                (
-                    -2 * b_g.loa_damping_ratio * math.sqrt(b_g.loa_stiffness * m_g) * dx_g
-                    - b_g.loa_stiffness * x_g
-                    + sum_n
-                )
-                / m_g,
-                (
-                    -2 * b_p.oloa_damping_ratio * math.sqrt(b_p.oloa_stiffness * m_p) * dy_p
-                    - b_p.oloa_stiffness * y_p
-                    + sum_f
-                )
-                / m_p,
-                (
-                    -2 * b_g.oloa_damping_ratio * math.sqrt(b_g.oloa_stiffness * m_g) * dy_g
-                    - b_g.oloa_stiffness * y_g
-                    - sum_f
-                )
-                / m_g,
+                (held("pinion", "loa", m_p, x_p, dx_p) - sum_n) / m_p,
+                (held("gear", "loa", m_g, x_g, dx_g) + sum_n) / m_g,
+                (held("pinion", "oloa", m_p, y_p, dy_p) + sum_f) / m_p,
+                (held("gear", "oloa", m_g, y_g, dy_g) - sum_f) / m_g,
             ]
         )
 

@@ -9,79 +9,48 @@ from hypothesis import strategies as st
 
 from lumped.errors import ParameterError
 from lumped.fields.units import UNITS, Quantity, to_file, to_si, to_stated
-from lumped.schema.pair import stated_unit
 
 # A correctly rounded conversion is exact to half a unit in the last place of the float it gives.
 ULP = 2.0**-52
 
 
-@pytest.mark.parametrize(
-    ("value", "unit", "si"),
-    [
-        ("200 lbf*in", "N*m", 200 * 4.4482216152605 * 0.0254),  # pound-force and inch by definition
-        ("1000 rpm", "rpm", 1000 * 2 * math.pi / 60),
-        (1000, "rpm", 1000 * 2 * math.pi / 60),
-        ("104.7 rad/s", "rpm", 104.7),
-        ("50 turn/s", "rpm", 50 * 2 * math.pi),
-        (3.175, "mm", 3.175e-3),
-        ("3.175 mm", "mm", 3.175e-3),
-        ("0.125 inch", "mm", 3.175e-3),
-        (23.0, "um", 23e-6),
-        ("16 microinch", "um", 16 * 25.4e-9),
-        (20, "deg", math.pi / 9),
-        ("0.349 rad", "deg", 0.349),
-        (206, "GPa", 206e9),
-        ("30e6 psi", "GPa", 30e6 * 4.4482216152605 / 0.0254**2),
-        ("10 cP", "mPa*s", 0.01),
-        ("32 cSt", "mm**2/s", 32e-6),
-        ("0.7 lb", "kg", 0.7 * 0.45359237),
-        ("7.85 g/cm**3", "kg/m**3", 7850.0),
-        (60, "degC", 333.15),
-        ("140 degF", "degC", 333.15),
-        ("-40 degF", "degC", 233.15),
-        ("-40 degC", "degC", 233.15),
-        ("300 K", "degC", 300.0),
-        ("0.05", "1", 0.05),
-        ("1e-3", "1", 1e-3),
-    ],
-)
-def test_value_in_si(value, unit, si):
-    assert to_si(value, unit) == pytest.approx(si, rel=2 * ULP)
-
-
 LBF = 4.4482216152605
 TURN = 2 * math.pi
-#: One quantity as people write it, all with the same value.
-SPELLINGS = {
-    (
-        "N*m",
-        80.0,
-    ): "80 Nm|80Nm|80N*m|80 N m|80 N·m|0.08 kNm|8000 Ncm|80000 Nmm|80 Newton meters|80 newton-meters",
-    ("N*m", 59 * LBF * 0.3048): "59 ft-lbf|59 ft-lb|59 lb-ft|59 lbf ft|59 foot-pounds|59 ft.lbf|59 lbf·ft",
-    ("N*m", 700 * LBF * 0.0254): "700 in-lb|700 lb-in|700 in-lbf|700 lbs in|700 inch-pound",
-    ("N*m", 8 * 9.80665): "8 kpm|8 kp m|8 kgf m|8 kgf*m",
-    ("rpm", 1450 / 60 * TURN): "1450 rpm|1450rpm|1450 1/min|1450 /min|1450/min|1450 U/min|1450 u/min"
-    "|1450 min-1|1450 min^-1|1450 min⁻¹|1450 RPM|1450 Upm|1450 rev/min|1450 r/min"
-    "|1450 turns/minute|1450 tr/min",
-    ("rpm", 24 * TURN): "24 Hz|0.024 kHz|24 rps|24 rev/s|24 U/s|24 turn/s",
-    ("N/m", 5e8): "5e8 N/m|500 N/um|500 N/µm|500 N/μm|0.5 GN/m|5e5 N/mm|500 MN/m",
-    ("N/m", 1e6 * LBF / 0.0254): "1e6 lb/in|1e6 lbf/inch|1e6 lbs/in",
-    ("N", 5 * LBF): "5 lbf|5 lb|5 lbs|5 pounds",
-    ("GPa", 206e9): "206000 MPa|206000 N/mm2|206000 N/mm²|206000 N/mm^2|206 kN/mm2",
-    ("kg*m**2", 1.5e-3): "1.5e-3 kg m2|1.5e-3 kgm²|1.5e-3 kgm2|15 kg cm2|15 kgcm²|1500 kg*mm^2",
-    ("kg*m**2", 5 * 0.45359237 * 0.0254**2): "5 lb-in²|5 lb in2|5 lbm in^2",
-    ("kg/m**3", 7850.0): "7.85 g/cm3|7.85 kg/dm³|7850 kg/m3|7850 kg m-3",
-    ("mm**2/s", 220e-6): "220 mm2/s|220 mm²/s|220 cSt",
-    ("mPa*s", 0.01): "10 mPas|10 mPa s|10 mPa·s|10 cP",
-    ("degC", 333.15): "60 °C|60°C|60 C|60 degC|140 F|140 °F|333.15 K",
-    ("deg", math.pi / 9): "20°|20 °|20 deg|20 degrees",
-    ("1", 0.05): "5 %|5%|0.05|5 percent",
-}
+#: One quantity as people write it, all with the same value: unit of the field, SI value, texts.
+SPELLINGS = [
+    ("N*m", 80.0, "80 Nm|80Nm|80N*m|80 N m|80 N·m|0.08 kNm|8000 Ncm|80000 Nmm|80 Newton meters"),
+    ("N*m", 59 * LBF * 0.3048, "59 ft-lbf|59 ft-lb|59 lb-ft|59 lbf ft|59 foot-pounds|59 ft.lbf|59 lbf·ft"),
+    ("N*m", 700 * LBF * 0.0254, "700 in-lb|700 lb-in|700 in-lbf|700 lbs in|700 inch-pound|700 lbf*in"),
+    ("N*m", 80.0, "80 newton-meters"),
+    ("N*m", 8 * 9.80665, "8 kpm|8 kp m|8 kgf m|8 kgf*m"),
+    ("rpm", 1450 / 60 * TURN, "1450 rpm|1450rpm|1450 1/min|1450 /min|1450/min|1450 U/min|1450 u/min|1450 Upm"
+     "|1450 min-1|1450 min^-1|1450 min⁻¹|1450 RPM|1450 rev/min|1450 r/min|1450 turns/minute|1450 tr/min"),
+    ("rpm", 24 * TURN, "24 Hz|0.024 kHz|24 rps|24 rev/s|24 U/s|24 turn/s"),
+    ("rpm", 104.7, "104.7 rad/s"),
+    ("N/m", 5e8, "5e8 N/m|500 N/um|500 N/µm|500 N/μm|0.5 GN/m|5e5 N/mm|500 MN/m"),
+    ("N/m", 1e6 * LBF / 0.0254, "1e6 lb/in|1e6 lbf/inch|1e6 lbs/in"),
+    ("N", 5 * LBF, "5 lbf|5 lb|5 lbs|5 pounds"),
+    ("mm", 3.175e-3, "3.175 mm|0.125 inch"),
+    ("um", 16 * 25.4e-9, "16 microinch"),
+    ("GPa", 206e9, "206000 MPa|206000 N/mm2|206000 N/mm²|206000 N/mm^2|206 kN/mm2"),
+    ("GPa", 30e6 * LBF / 0.0254**2, "30e6 psi"),
+    ("kg", 0.7 * 0.45359237, "0.7 lb"),
+    ("kg*m**2", 1.5e-3, "1.5e-3 kg m2|1.5e-3 kgm²|1.5e-3 kgm2|15 kg cm2|15 kgcm²|1500 kg*mm^2"),
+    ("kg*m**2", 5 * 0.45359237 * 0.0254**2, "5 lb-in²|5 lb in2|5 lbm in^2"),
+    ("kg/m**3", 7850.0, "7.85 g/cm3|7.85 kg/dm³|7850 kg/m3|7850 kg m-3"),
+    ("mm**2/s", 220e-6, "220 mm2/s|220 mm²/s|220 cSt"),
+    ("mPa*s", 0.01, "10 mPas|10 mPa s|10 mPa·s|10 cP"),
+    ("degC", 333.15, "60 °C|60°C|60 C|60 degC|140 F|140 °F|333.15 K"),
+    ("degC", 233.15, "-40 degF|-40 degC"),
+    ("deg", math.pi / 9, "20°|20 °|20 deg|20 degrees"),
+    ("deg", 0.349, "0.349 rad"),
+    ("1", 0.05, "5 %|5%|0.05|5 percent"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("text", "unit", "si"),
-    [(text, unit, si) for (unit, si), texts in SPELLINGS.items() for text in texts.split("|")],
+    [(text, unit, si) for unit, si, texts in SPELLINGS for text in texts.split("|")],
 )
 def test_a_quantity_as_people_write_it(text, unit, si):
     assert to_si(text, unit) == pytest.approx(si, rel=2 * ULP)
@@ -200,9 +169,3 @@ def test_stated_value_is_shown_as_it_was_given(unit, stated):
 def test_a_number_of_few_digits_reads_back_in_its_own_digits(stated):
     """Not 2999.9999999999998 rpm for 3000, nor its rad/s in a file."""
     assert to_stated(to_si(stated, "rpm"), "rpm") == to_file(to_si(stated, "rpm"), "rpm") == stated
-
-
-def test_a_field_that_may_be_a_word_has_its_unit_too():
-    assert stated_unit("operating.brake_torque") == "N*m"
-    assert stated_unit("mesh.damping_ratio") == "1"
-    assert stated_unit("friction.law") is None

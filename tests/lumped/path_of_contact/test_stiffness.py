@@ -34,13 +34,6 @@ def test_total_is_the_sum_of_the_pairs_and_has_the_stated_mean(name):
     assert float(loaded) == pytest.approx(geometry(pair).contact_ratio, abs=1 / 4000)
 
 
-def test_parabola_of_the_default_end_ratio_has_isos_mean():
-    pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "parabolic"})
-    data = mesh_stiffness(pair)
-    assert data.attrs["mean"] == pytest.approx(data.attrs["iso_mean"], rel=1e-12)
-    assert np.ptp(data.mesh_stiffness.values) > 0.0
-
-
 @pytest.mark.parametrize("name", preset_names())
 def test_difference_from_iso_splits_into_size_and_shape(name):
     pair = load_gear_pair(name)

@@ -85,15 +85,6 @@ def test_pairs_add_up_to_the_total_at_any_sampling(phase, ramp):
     assert k(single) == pytest.approx(periodic(single, g), rel=2e-5)
 
 
-def test_total_curve_shares_equally_between_equal_positions():
-    # 28/28: the two pairs in double contact are mirror images half way through it.
-    pair = total_pair(np.arange(60) / 60, interpolation="cubic")
-    g = geometry(pair)
-    first = 0.5 * (g.L_XA + g.L_XB)
-    k = pair_stiffness(pair)
-    assert k(first) == pytest.approx(float(k(first + g.base_pitch)), rel=1e-9)
-
-
 def write(tmp_path, text):
     (tmp_path / "curve.csv").write_text(text, encoding="utf-8")
     return tmp_path / "curve.csv"
