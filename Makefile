@@ -4,6 +4,7 @@
 # make reproduce   compute figures, claims and errata of the published model again, in build/reproductions/
 # make evidence   compute the evidence about the program again (two minutes) and store it in validation/evidence.json
 # make package-check   build sdist and wheel, install and try the wheel on every Python 3.11 or later found here
+# make lowest   try the oldest releases that pyproject.toml allows with a quick report (four minutes of processor time)
 # make docs     set up .venv if needed and build the documentation to build/docs; warnings are errors
 # PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
 
@@ -15,7 +16,7 @@ OUT ?= report
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report reproduce evidence test lint docs package-check clean
+.PHONY: report reproduce evidence test lint docs package-check lowest clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force
@@ -60,6 +61,12 @@ $(VENV)/.ready-docs: $(VENV)/.ready
 
 package-check:
 	.ci/package-check
+
+lowest:
+	@$(PYTHON) -m venv --clear build/lowest
+	@build/lowest/bin/python -m pip install --quiet --disable-pip-version-check uv
+	@build/lowest/bin/uv pip install --quiet --python build/lowest/bin/python --resolution lowest-direct .
+	MPLBACKEND=Agg build/lowest/bin/spurcheck report --quick --output build/lowest/report --force
 
 clean:
 	rm -rf .venv build dist docs/_generated docs/gallery *.egg-info .pytest_cache .mypy_cache .ruff_cache

@@ -32,7 +32,7 @@ def cached(
     that cannot be written is done without.
     """
     key = hashlib.sha256(_made_by(tuple(sources)) + blas_threads().encode() + b"\0" + inputs).hexdigest()
-    path = user_cache_path("spurcheck", appauthor=False) / folder / f"{key}.npz"
+    path = cache_folder() / folder / f"{key}.npz"
     if (content := read_whole(path)) is not None:
         with np.load(io.BytesIO(content)) as file:
             return {name: file[name] for name in file.files}
@@ -42,6 +42,15 @@ def cached(
     with contextlib.suppress(OSError):
         write_whole(path, stream.getvalue())
     return result
+
+
+def cache_folder() -> Path:
+    """The user's cache folder; for a user without a home one that cannot be made."""
+    try:
+        folder = user_cache_path("spurcheck", appauthor=False)
+    except RuntimeError:
+        folder = Path()
+    return folder if folder.is_absolute() else Path(os.devnull, "no-home-folder")
 
 
 def read_whole(path: Path) -> bytes | None:

@@ -25,9 +25,8 @@ import numba
 from numba.core.caching import FunctionCache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
-from platformdirs import user_cache_path
 
-from lumped.cache import read_whole, write_whole
+from lumped.cache import cache_folder, read_whole, write_whole
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -68,7 +67,7 @@ class Compiler:
 def kernel_folder() -> Path:
     """Folder of all compiled kernels: in ``NUMBA_CACHE_DIR`` if set, else in the user's cache folder."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
-    return Path(chosen, "spurcheck") if chosen else user_cache_path("spurcheck", appauthor=False) / "kernels"
+    return Path(chosen, "spurcheck") if chosen else cache_folder() / "kernels"
 
 
 class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types

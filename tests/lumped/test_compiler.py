@@ -121,8 +121,15 @@ def test_a_damaged_file_is_compiled_again(run: Run, tmp_path: Path) -> None:
     assert run() == (2.0, 0)
 
 
-def test_without_a_place_to_write_it_says_so_once_and_goes_on(run: Run, tmp_path: Path) -> None:
-    (tmp_path / "cache").write_text("a file where the folder should be", encoding="utf-8")
+@pytest.mark.parametrize("home", [True, False])
+def test_without_a_place_to_write_it_says_so_once_and_goes_on(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, home: bool
+) -> None:
+    if home:
+        (tmp_path / "cache").write_text("a file where the folder should be", encoding="utf-8")
+    else:  # what platformdirs answers a user without one
+        monkeypatch.delenv("NUMBA_CACHE_DIR")
+        monkeypatch.setattr("lumped.cache.user_cache_path", lambda *_, **__: Path("~", ".cache"))
     with pytest.warns(UserWarning, match="Set NUMBA_CACHE_DIR") as warned:
         assert run() == (2.0, 0)
     assert len(warned) == 1

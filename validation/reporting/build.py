@@ -32,6 +32,7 @@ from validation.reporting.page import render
 from validation.reporting.page_one import Number, PageOne, first_numbers, page_one, title
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import FULL, QUICK, Results
+from validation.reporting.stored_evidence import source_hash
 from validation.reporting.tables import write_tables
 
 
@@ -93,6 +94,7 @@ def report(
     NumericalError : a model fails; the text says what to try
     """
     started = time.perf_counter()
+    source_hash()  # of the source that runs: an edit of it meanwhile makes no other one of it
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     gear_pair = load_gear_pair(pair)
     named = name or (str(pair) if isinstance(pair, (str, Path)) else gear_pair.name)
