@@ -1,14 +1,26 @@
-"""The main verbs of the four packages under one name, and the command as ``python -m spurcheck``.
+"""Can your lumped gear model be trusted? The main verbs of spurcheck under one name.
 
     import spurcheck
 
-    pair = spurcheck.load_gear_pair("nasa_28_28")
-    spurcheck.steady_state(pair).attrs["mesh_efficiency"]
+    pair = spurcheck.new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80)
+    found = spurcheck.predict(pair)
+    found.dynamic_factor, found.efficiency
+    spurcheck.plot(found.cycle).savefig("motion.png")
 
-The packages are attributes too: ``spurcheck.lumped``, ``spurcheck.multibody``, ``spurcheck.floquet``,
-``spurcheck.validation``. Where two packages have a function of the same name, the plain name is that of
-`lumped` or `floquet`: `simulate`, `steady_state` and `speed_sweep` solve the lumped model, `monodromy` takes
-a `PeriodicSystem`. Those of the multibody model are ``spurcheck.multibody.simulate`` and so on.
+Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.with_(speed=2000) varies one
+Motion     predict, dynamic_factor, steady_state, simulate, speed_sweep, response_branches, periodic_orbit
+Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
+Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance
+Stability  stability_chart, stability_margins, stability_boundaries, campbell
+Any system PeriodicSystem, periodic_system, from_second_order, monodromy
+Studies    load_study, run_sweep, read_results
+Files      plot, write_results, write_rexs, write_interactive_page
+Errors     SpurcheckError: ParameterError (an input), NumericalError (a computation); LawRangeWarning
+
+``help(spurcheck.predict)`` explains one of them. The packages are attributes too: ``spurcheck.lumped``,
+``spurcheck.multibody``, ``spurcheck.floquet``, ``spurcheck.validation``. Where two packages have a function
+of the same name, the plain name is that of `lumped` or `floquet`; the multibody model's is
+``spurcheck.multibody.simulate``. ``python -m spurcheck`` is the command.
 
 Everything is imported when it is first asked for: ``import spurcheck`` itself loads no package.
 """
@@ -28,6 +40,8 @@ if TYPE_CHECKING:
         campbell,
         from_second_order,
         monodromy,
+        periodic_orbit,
+        response_branches,
         stability_boundaries,
         stability_chart,
         stability_margins,
@@ -42,6 +56,7 @@ if TYPE_CHECKING:
         geometry,
         load_gear_pair,
         mesh_stiffness,
+        natural_frequencies,
         optimal_relief,
         periodic_system,
         preset_names,
@@ -51,8 +66,17 @@ if TYPE_CHECKING:
         steady_state,
     )
     from multibody import attribution, power_balance
-    from validation import crosscheck, plot, report, uncertainty, validity_flags, write_interactive_page
-    from validation.exchange import gear_pair_from_rexs, write_results, write_rexs
+    from validation import (
+        crosscheck,
+        dynamic_factor,
+        plot,
+        predict,
+        report,
+        uncertainty,
+        validity_flags,
+        write_interactive_page,
+    )
+    from validation.exchange import gear_pair_from_rexs, new_pair, write_results, write_rexs
     from validation.studies import load_study, read_results, run_sweep
 
     __version__: str
@@ -73,6 +97,7 @@ __all__ = [
     "bodies",
     "campbell",
     "crosscheck",
+    "dynamic_factor",
     "floquet",
     "from_second_order",
     "gear_pair_from_rexs",
@@ -83,13 +108,18 @@ __all__ = [
     "mesh_stiffness",
     "monodromy",
     "multibody",
+    "natural_frequencies",
+    "new_pair",
     "optimal_relief",
+    "periodic_orbit",
     "periodic_system",
     "plot",
     "power_balance",
+    "predict",
     "preset_names",
     "read_results",
     "report",
+    "response_branches",
     "run_sweep",
     "simulate",
     "speed_sweep",
@@ -106,6 +136,9 @@ __all__ = [
     "write_rexs",
 ]
 
+_NAMES = tuple(__all__)
+del __all__  # help() would print all that it names, 1,500 lines
+
 
 def _find(name: str) -> object:
     if name == "__version__":
@@ -120,14 +153,14 @@ def _find(name: str) -> object:
 
 
 def __getattr__(name: str) -> object:
-    if name not in __all__:
+    if name not in _NAMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = globals()[name] = _find(name)
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted(_NAMES)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
 from lumped.gear_geometry.geometry import Geometry
+from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.solution import simulate, steady_state
@@ -38,6 +39,7 @@ __all__ = [
     "mesh_cycle",
     "mesh_elements",
     "mesh_stiffness",
+    "natural_frequencies",
     "optimal_relief",
     "periodic_system",
     "plane_compliance",

@@ -19,6 +19,13 @@ class Section(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse: a pair does not change."""
+        if name in type(self).model_fields:
+            action = "Parameters do not change. Make a variation: pair.with_(speed=2000)."
+            raise refuse(name, value, "a value of pair.with_(...)", action)
+        super().__setattr__(name, value)
+
     def to_mapping(self) -> dict[str, Any]:
         """Return nested plain data in file units; None is left out, as a file cannot say it."""
         result: dict[str, Any] = {}

@@ -12,6 +12,7 @@ from lumped.arguments import one_of
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.supports import Form
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -84,6 +85,23 @@ class Mode:
     damping_ratio: float
     resonant_speed: float
     shape: dict[str, float]
+
+
+def natural_frequencies(pair: AnyPair) -> FloatArray:
+    """Return the natural frequencies of the pair with its mean mesh stiffness, increasing [Hz].
+
+    Parameters
+    ----------
+    pair : gear pair, preset name or parameter file
+
+    Raises
+    ------
+    ParameterError : a refused parameter
+    NumericalError : a mode is overdamped, so it has no natural frequency
+
+    Sources: docs/theory/equations.md, the state matrix averaged over one mesh cycle.
+    """
+    return np.array([mode.natural_frequency for mode in modes(load_gear_pair(pair))])
 
 
 def modes(pair: GearPair) -> tuple[Mode, ...]:

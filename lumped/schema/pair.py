@@ -78,6 +78,15 @@ def _sources_in(value: object) -> object:
 
 #: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
 _STIFFNESS = "mesh.stiffness.model"
+#: Short names that ``with_`` takes beside field paths, as the options of the command.
+SHORT_NAMES = {
+    "speed": "operating.pinion_speed",
+    "torque": "operating.pinion_torque",
+    "range": "operating.speed_range",
+    "law": "friction.law",
+    "module": "basic_rack.module",
+    "viscosity": "lubricant.viscosity",
+}
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
     ("pinion.addendum", "pinion.tip_diameter"),
@@ -108,7 +117,16 @@ Spreads = Annotated[
 ]
 
 
-class GearPair(Section):
+class _InOurWords(type(Section)):  # type: ignore[misc]  # pydantic's metaclass
+    """A call of the class refuses as a parameter file does: with the field, the value and what to do."""
+
+    def __call__(cls, *args: Any, **fields: Any) -> Any:
+        if args:
+            raise refuse("pair", args[0], "field=value", "Use load_gear_pair(...) or new_pair(...).")
+        return validated(fields, "GearPair")
+
+
+class GearPair(Section, metaclass=_InOurWords):
     """A spur gear pair with everything that spurcheck needs to know about it."""
 
     name: Text = Field(min_length=1, max_length=80, description="short name")
@@ -285,9 +303,15 @@ class GearPair(Section):
         changes : dotted field paths -> values, e.g. ``{"operating.pinion_speed": "2000 rpm"}``
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
-            A dict replaces a whole section; ``None`` restores the default.
+            A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
+            ``torque``, ``range``, ``law``, ``module`` and ``viscosity``: ``pair.with_(speed=2000)``.
+
+        Raises
+        ------
+        ParameterError : a value that is refused, or a name that is no field; it names the nearest
         """
-        return _varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
+        request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
+        return _varied(self, {SHORT_NAMES.get(path, path): value for path, value in request.items()})
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:

@@ -105,7 +105,7 @@ def test_what_can_be_no_argument_is_refused_by_name(within, function, argument):
 
 REQUIRED = [
     (function, name)
-    for function in (getattr(spurcheck, name) for name in spurcheck.__all__)
+    for function in (getattr(spurcheck, name) for name in dir(spurcheck))
     if inspect.isfunction(function)
     for name, argument in inspect.signature(function).parameters.items()
     if argument.default is argument.empty and argument.kind is argument.POSITIONAL_OR_KEYWORD

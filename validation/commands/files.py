@@ -156,7 +156,7 @@ def _text_of_own(
     name = stem or f"pair_{re.sub('[^0-9]+', '_', teeth)}"
     given = {path: opt.value_of(text) for path, text in own.values() if text is not None}
     options = {field: option for option, (path, _) in own.items() for field in fields_of(path)}
-    options |= dict.fromkeys(("pinion.teeth", "gear.teeth"), "--teeth")
+    options |= dict.fromkeys(("pinion.teeth", "gear.teeth", "teeth"), "--teeth") | {"oil": "--oil"}
     try:
         return new_pair_text(name, {"teeth": teeth} | given), name
     except ParameterError as error:

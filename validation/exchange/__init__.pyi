@@ -1,6 +1,7 @@
 from .matrices import FILE_AXES as FILE_AXES
 from .matrices import SecondOrderModel as SecondOrderModel
 from .matrices import read_second_order as read_second_order
+from .new_pair_file import new_pair as new_pair
 from .new_pair_file import parameter_text as parameter_text
 from .results import read_netcdf as read_netcdf
 from .results import write_results as write_results
@@ -12,6 +13,7 @@ __all__ = [
     "FILE_AXES",
     "SecondOrderModel",
     "gear_pair_from_rexs",
+    "new_pair",
     "parameter_text",
     "read_netcdf",
     "read_second_order",

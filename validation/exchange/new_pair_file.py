@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import textwrap
+import tomllib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -14,7 +15,7 @@ import tomli_w
 from lumped.errors import ParameterError, refuse
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
-from lumped.schema.pair import GearPair, leaf_paths, stated_unit
+from lumped.schema.pair import SHORT_NAMES, GearPair, leaf_paths, stated_unit
 from validation.exchange.rexs.draft import DOUBTFUL, completed
 
 GIVEN = "given by the user"
@@ -51,6 +52,46 @@ _ENTRY = re.compile(r"(\w+) = ")
 _COLUMN = 40
 _TEETH = re.compile(r"\s*(\d{1,4})\s*[/:x]\s*(\d{1,4})\s*")
 _OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
+
+
+def new_pair(
+    teeth: str,
+    module: float | str,
+    face_width: float | str,
+    speed: float | str,
+    torque: float | str,
+    changes: Mapping[str, Any] | None = None,
+    name: str = "",
+) -> GearPair:
+    """Return a pair from what is on its drawing; what is not given is assumed, and ``pair.sources`` says so.
+
+    Parameters
+    ----------
+    teeth : of pinion and gear, "19/41"
+    module : [mm]
+    face_width : of both gears [mm]
+    speed : of the pinion [rpm]
+    torque : on the pinion [N m]
+    changes : what else is known: ``oil`` ("vg220"), ``law``, and field paths -> values,
+        ``{"pinion.profile_shift": 0.4}``; ``gears.`` in front means both gears, ``bearings.stiffness`` and
+        ``bearings.damping_ratio`` all four bearing directions
+    name : of the pair; default from the numbers of teeth
+
+    Raises
+    ------
+    ParameterError : what is malformed, or a pair that cannot exist
+    """
+    request = {
+        "teeth": teeth,
+        "gears.face_width": face_width,
+        "module": module,
+        "speed": speed,
+        "torque": torque,
+        **(changes or {}),
+    }
+    named = name or f"pair_{re.sub('[^0-9]+', '_', str(teeth))}"
+    text = new_pair_text(named, {SHORT_NAMES.get(path, path): value for path, value in request.items()})
+    return load_gear_pair(tomllib.loads(text))
 
 
 def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
@@ -124,11 +165,11 @@ def _values(request: Mapping[str, Any]) -> dict[str, Any]:
     for path, value in request.items():
         if path == "teeth":
             if (teeth := _TEETH.fullmatch(str(value))) is None:
-                raise refuse("--teeth", value, "PINION/GEAR", "For example --teeth 19/41.")
+                raise refuse("teeth", value, "PINION/GEAR", "For example 19/41.")
             values |= {"pinion.teeth": int(teeth[1]), "gear.teeth": int(teeth[2])}
         elif path == "oil":
             if (grade := _OIL.fullmatch(str(value))) is None:
-                raise refuse("--oil", value, "an ISO viscosity grade", "For example --oil vg220.")
+                raise refuse("oil", value, "an ISO viscosity grade", "For example vg220.")
             values |= dict.fromkeys(fields_of(path), int(grade[1]))
         elif isinstance(value, dict):  # a section: mesh.stiffness = {model = "energy"}
             values |= _values({f"{path}.{key}": part for key, part in value.items()})

@@ -23,6 +23,7 @@ from floquet.gear.unilateral import contact_cycle
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
 from lumped.model.results import cycle_peak_to_peak
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -143,6 +144,33 @@ QUANTITIES = {
     "bearing_rms": ("N", "force on the pinion bearings, rms about its mean"),
     "efficiency": ("1", "mesh efficiency"),
 }
+
+
+def predict(pair: AnyPair) -> Prediction:
+    """Return the best motion that the program has for a pair at its operating point, and its numbers.
+
+    The linear motion while every tooth pair pushes, else the motion with unilateral contact; on the shafts
+    where the pair has them. ``uncertainty`` says how far the inputs move it.
+
+    Parameters
+    ----------
+    pair : gear pair, preset name or parameter file
+
+    Returns
+    -------
+    Prediction: ``numbers``, ``dynamic_factor``, ``peak_to_peak`` [m], ``efficiency``; ``cycle`` is the motion
+
+    Raises
+    ------
+    ParameterError : a refused parameter
+    NumericalError : no motion was found, or it does not stay bounded
+    """
+    return predicted(load_gear_pair(pair))
+
+
+def dynamic_factor(pair: AnyPair) -> float:
+    """Return the largest mesh force of ``predict`` over the static one [-]; the same errors."""
+    return predict(pair).dynamic_factor
 
 
 def predicted(pair: GearPair) -> Prediction:

@@ -95,7 +95,7 @@ def test_an_option_of_the_pair_needs_teeth():
 
 def test_teeth_are_two_numbers():
     for text in ("19", "19-41", "a/b", ""):
-        with pytest.raises(ParameterError, match="--teeth 19/41"):
+        with pytest.raises(ParameterError, match="For example 19/41"):
             new_pair_text("x", {"teeth": text})
 
 

@@ -1,0 +1,88 @@
+"""Does what a newcomer types in Python work, or say what to type instead?"""
+
+from __future__ import annotations
+
+import pydoc
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import spurcheck
+
+DRAWING = {"module": 2.5, "face_width": 20, "speed": 1450, "torque": 80}
+
+
+@pytest.fixture(scope="module")
+def pair() -> spurcheck.GearPair:
+    return spurcheck.new_pair("19/41", **DRAWING)
+
+
+def test_a_new_pair_is_what_the_drawing_says(pair: spurcheck.GearPair) -> None:
+    assert (pair.pinion.teeth, pair.gear.teeth) == (19, 41)
+    assert pair.basic_rack.module == pytest.approx(2.5e-3)
+    assert pair.pinion.face_width == pair.gear.face_width == pytest.approx(0.02)
+    assert pair.operating.pinion_speed == pytest.approx(1450 * 2 * np.pi / 60)
+    assert dict(pair.sources)["pinion.teeth"] == "given by the user"
+    assert dict(pair.sources)["mesh.damping_ratio"].startswith("assumed")
+    shifted = spurcheck.new_pair(
+        "13/41", **DRAWING, changes={"oil": "vg220", "law": "coulomb", "pinion.profile_shift": 0.4}
+    )
+    assert (shifted.pinion.profile_shift, shifted.friction.law) == (0.4, "coulomb")
+
+
+def test_short_names_are_the_fields_of_the_options(pair: spurcheck.GearPair) -> None:
+    varied = pair.with_(speed=2000, torque="40 N m", law="coulomb")
+    fields = {"operating.pinion_speed": 2000, "operating.pinion_torque": 40, "friction.law": "coulomb"}
+    assert varied.to_mapping() | {"sources": 0} == pair.with_(fields).to_mapping() | {"sources": 0}
+
+
+def test_numbers_of_a_pair_by_their_names(pair: spurcheck.GearPair) -> None:
+    found = spurcheck.predict(pair)
+    assert found.dynamic_factor == spurcheck.dynamic_factor(pair)
+    load = found.cycle["normal_load"].sum("pair").max() / (80 / pair.geometry.base_radius_pinion)
+    assert found.dynamic_factor == pytest.approx(float(load))
+    # The trace of M^-1 K is the sum of the squared natural frequencies.
+    frequencies = spurcheck.natural_frequencies(pair)
+    system = spurcheck.periodic_system(pair, "elastic")
+    m = len(system.coordinates)
+    mean = system.matrices(np.linspace(0.0, system.period, 20001)[:-1] + system.period / 40000).mean(axis=0)
+    assert np.sum((2 * np.pi * frequencies) ** 2) == pytest.approx(-np.trace(mean[m:, :m]), rel=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda p: setattr(p.operating, "pinion_speed", 3), r"pair\.with_\(speed=2000\)"),
+        (lambda p: setattr(p, "name", "x"), r"pair\.with_"),
+        (lambda p: spurcheck.GearPair(name="x"), "pinion = missing"),
+        (lambda p: spurcheck.GearPair("nasa_28_28"), "load_gear_pair"),
+        (lambda p: spurcheck.new_pair("19", **DRAWING), "19/41"),
+        (lambda p: spurcheck.plot([spurcheck.steady_state(p), spurcheck.speed_sweep(p, [900])]), "one kind"),
+        (lambda p: spurcheck.plot([spurcheck.steady_state(p)], labels=["a", "b"]), "labels"),
+    ],
+)
+def test_a_wrong_guess_is_told_the_right_one(wrong, message: str, pair: spurcheck.GearPair) -> None:
+    with pytest.raises(spurcheck.ParameterError, match=message):
+        wrong(pair)
+
+
+def test_several_results_share_one_axes(pair: spurcheck.GearPair) -> None:
+    runs = [
+        spurcheck.steady_state(pair, samples_per_cycle=16).assign_attrs(),
+        spurcheck.steady_state(pair.with_(torque=40), samples_per_cycle=16),
+    ]
+    figure, ax = plt.subplots()
+    assert spurcheck.plot(runs, ax=ax, labels=["80 N m", "40 N m"]) is figure
+    drawn = [line.get_ydata() for line in ax.lines]
+    for line, run in zip(drawn, runs, strict=True):
+        np.testing.assert_allclose(line, 1e6 * run["dte"])
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["80 N m", "40 N m"]
+    plt.close(figure)
+
+
+def test_help_is_short_and_dir_has_only_names_for_users() -> None:
+    text = pydoc.render_doc(spurcheck)
+    assert len(text.splitlines()) < 200
+    assert not [name for name in dir(spurcheck) if name.startswith("_") and name != "__version__"]
+    assert all(name in text for name in dir(spurcheck) if name not in ("__version__", "GearPair"))
