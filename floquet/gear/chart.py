@@ -115,6 +115,8 @@ def stability_chart(
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
     dataset = dataset.assign_attrs(title=title, friction_law=law, supports=supports, rtol=rtol)
+    rpm, teeth = operating_rpm(variation.pair), variation.pair.pinion.teeth
+    dataset = dataset.assign_attrs(operating_speed_rpm=rpm, mesh_cycles_per_revolution=teeth)
     return with_regions(variation, dataset)
 
 

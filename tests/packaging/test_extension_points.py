@@ -120,7 +120,7 @@ from pathlib import Path
 from validation.reporting import build, report
 
 build.QUICK = dataclasses.replace(
-    build.QUICK, sweep_speeds=8, line_speeds=11, chart_speeds=5, chart_dampings=3, orders_speeds=5
+    build.QUICK, sweep_speeds=8, chart_speeds=5, chart_dampings=3, orders_speeds=5
 )
 build.CHAPTERS = build.CHAPTERS[-1:]  # the others are computed by other tests
 made = report("nasa_28_28", "out", quick=True)

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from validation.plots.axes import label_axis, scale_of
-from validation.plots.style import BLACK, GREY, RED, one_panel
+from validation.plots.style import RED, one_panel
 
 #: Perceived alike with every colour vision deficiency, and in print.
 COLOURS = "cividis"
@@ -72,29 +72,4 @@ def orders_map_figure(data: xr.Dataset, operating_rpm: float, resonances: list[f
         ax.plot(place[inside], orders[inside], color=RED, linewidth=0.8, marker="o", markersize=2.5)
     ax.axvline(operating_rpm, color="white", linewidth=1.0, linestyle="--")
     ax.set_yticks(orders)
-    return figure
-
-
-def stability_map_figure(data: xr.Dataset, point: tuple[float, float]) -> Figure:
-    """Growth of a disturbance in a mesh cycle over speed and damping; the edges of instability as lines.
-
-    Parameters
-    ----------
-    data : ``growth`` over ``speed_rpm`` and ``damping_ratio``, negative where disturbances decay
-    point : operating speed [rpm] and damping ratio
-    """
-    growth = data["growth"]
-    figure, ax = map_figure(growth, "speed_rpm", "damping_ratio")
-    values = growth.transpose("damping_ratio", "speed_rpm").to_numpy()
-    if min(values.shape) > 1 and values.min() < 0.0 < values.max():
-        ax.contour(
-            data["speed_rpm"], data["damping_ratio"], values, levels=[0.0], colors=[RED], linewidths=1.4
-        )
-    if (data["verdict"].to_numpy() == 0).any():
-        undecided = data["verdict"].transpose("damping_ratio", "speed_rpm").to_numpy() == 0
-        rows, columns = np.nonzero(undecided)
-        ax.plot(
-            data["speed_rpm"].to_numpy()[columns], data["damping_ratio"].to_numpy()[rows], ",", color=GREY
-        )
-    ax.plot(*point, marker="o", markersize=7, markerfacecolor="white", markeredgecolor=BLACK, clip_on=False)
     return figure

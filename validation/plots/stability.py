@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
@@ -21,6 +21,7 @@ from scipy.optimize import isotonic_regression
 from floquet.gear.regions import LabelledRegion
 from floquet.gear.tongues import StabilityMargins, TongueMargin
 from lumped.typing import FloatArray
+from validation.plots.maps import COLOURS
 from validation.plots.style import (
     BLACK,
     GREY,
@@ -37,10 +38,8 @@ from validation.plots.style import (
 
 Speeds = tuple[float, float] | None
 
-#: Blue for fast decay to white at the boundary.
-_STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
 UNSTABLE = "#f2a26b"
-"""Fill of what is unstable: orange, of a grey between the blues of what is stable."""
+"""Fill of what is unstable."""
 #: Behind text that lies on a picture.
 WHITE_BOX: dict[str, Any] = {
     "boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85,
@@ -59,7 +58,10 @@ def stability_figure(
     lines: Mapping[str, float] | None = None,
     operating_range: Speeds = None,
 ) -> Figure:
-    """Spectral radius over the one or two axes of a chart; unstable regions hatched, undecided ones dotted.
+    """How fast disturbances decay over the two axes of a chart, edges of instability as lines; or over one.
+
+    Unstable regions are hatched, undecided nodes dotted; a cross marks a region that is at most two nodes
+    wide, beside which thinner ones may exist.
 
     Parameters
     ----------
@@ -77,34 +79,58 @@ def stability_figure(
         return _line_figure(chart, x, (at or {}).get(x), operating_range)
     y = rest[0]
     figure, ax = one_panel(3.4)
-    radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
-    undecided = (chart["verdict"] == 0).transpose(y, x).sortby([x, y]).to_numpy()
-    xs, ys, values = radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy()
-    norm = Normalize(min(float(values.min()), 0.999), 1.0)
-    bar = figure.colorbar(_field(ax, xs, ys, values.clip(max=1.0), norm), ax=ax, pad=0.01)
-    words = "spectral radius [-]; unstable above 1 (hatched)" + undecided.any().item() * "\nundecided: dotted"
+    chart = chart.sortby([x, y])
+    growth, unit = _growth(chart)
+    undecided = (chart["verdict"] == 0).transpose(y, x).to_numpy()
+    xs, ys, values = chart[x].to_numpy(), chart[y].to_numpy(), growth.transpose(y, x).to_numpy()
+    norm = Normalize(min(float(values.min()), -1e-3), 0.0)
+    bar = figure.colorbar(_field(ax, xs, ys, values.clip(max=0.0), norm), ax=ax, pad=0.01)
+    words = f"growth of a disturbance [{unit}]; hatched: unstable"
+    words += undecided.any().item() * "\ndotted: undecided"
     # Not above the axes: the names of tongues stand there.
-    bar.set_label(f"{words}\n{_certificate(chart)}", fontsize=8.5)
+    bar.set_label(f"{words}\n{_certificate(chart)}", fontsize=8.0)
     bar.outline.set_linewidth(0.5)
     ax.set(
         xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]), xlabel=axis_label(chart, x), ylabel=axis_label(chart, y)
     )
     ax.grid(False)
     if xs.size > 1 and ys.size > 1:
-        # What is undecided counts as far below 1 as its neighbours are above: the edge lies between.
-        excess = np.where(undecided, 0.0, np.maximum(values - 1.0, 0.0))
-        decided = np.where(undecided, 1.0 - 1e-9 - maximum_filter(excess, size=3), values)
-        if (decided > 1.0).any():
-            _hatch(ax, xs, ys, decided, [1.0, np.inf], UNSTABLE, "////", RED)
-            ax.contour(xs, ys, decided, levels=[1.0], colors=[BLACK], linewidths=1.0)
+        # What is undecided counts as far below 0 as its neighbours are above: the edge lies between.
+        excess = np.where(undecided, 0.0, np.maximum(values, 0.0))
+        decided = np.where(undecided, -1e-9 - maximum_filter(excess, size=3), values)
+        if (decided > 0.0).any():
+            _hatch(ax, xs, ys, decided, [0.0, np.inf], UNSTABLE, "////", RED)
+            ax.contour(xs, ys, decided, levels=[0.0], colors=[BLACK], linewidths=1.0)
         if undecided.any():
             _hatch(ax, xs, ys, undecided.astype(float), [0.5, 1.5], "none", "...", GREY)
+        _mark_thin(ax, chart, x, y)
     if at is not None:
         mark_operating_point(ax, (at[x], at[y]))
     if x == "speed_rpm":
         _name_regions(ax, regions, lines or {})
         mark_operating_range(ax, operating_range)
     return figure
+
+
+def _growth(chart: xr.Dataset) -> tuple[xr.DataArray, str]:
+    """Growth rate of the worst disturbance and its unit: 1/s of a gear pair, else of one period."""
+    radius = chart["spectral_radius"].clip(min=1e-12)
+    each = radius.copy(data=np.log(radius.to_numpy()))
+    if "mesh_cycles_per_revolution" not in chart.attrs:
+        return each, "1/period"
+    speed = chart["speed_rpm"] if "speed_rpm" in chart else chart.attrs["operating_speed_rpm"]
+    return each * (speed * chart.attrs["mesh_cycles_per_revolution"] / 60.0), "1/s"
+
+
+def _mark_thin(ax: Axes, chart: xr.Dataset, x: str, y: str) -> None:
+    """Mark unstable regions of at most two nodes, over speed or else the first axis."""
+    if "region_width" not in chart:
+        return
+    along = "speed_rpm" if x == "speed_rpm" else str(chart["spectral_radius"].dims[0])
+    cell = float(np.diff(chart[along].to_numpy()).max())
+    thin = chart["region_width"].to_numpy() <= 2.01 * cell
+    places = (chart[f"region_{name}"].to_numpy()[thin] for name in (x, y))
+    ax.plot(*places, "x", color=RED, markersize=5, markeredgewidth=1.0, zorder=3)
 
 
 def _line_figure(chart: xr.Dataset, x: str, value: float | None, operating_range: Speeds) -> Figure:
@@ -131,17 +157,25 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None, operating_range
 def _certificate(chart: xr.Dataset) -> str:
     """What the errors behind a chart are, in words."""
     kind = str(chart.attrs["certificate"])
-    return f"error bounds: {'partly proven' if kind == 'mixed' else kind}"
+    words = f"error bounds: {'partly proven' if kind == 'mixed' else kind}"
+    share = float(chart["known"].mean()) if "known" in chart else 1.0
+    return words if share == 1.0 else f"{words}; {100.0 * share:.2g} % of nodes evaluated"
 
 
 def _field(
     ax: Axes, xs: FloatArray, ys: FloatArray, values: FloatArray, norm: Normalize
 ) -> AxesImage | QuadMesh:
     """Draw values (y, x) at their nodes: an image on an even grid, however large, or else a mesh of cells."""
-    style: dict[str, Any] = {"cmap": _STABLE, "norm": norm}
-    if not all(v.size > 1 and np.allclose(np.diff(v), (v[-1] - v[0]) / (v.size - 1)) for v in (xs, ys)):
+    style: dict[str, Any] = {"cmap": COLOURS, "norm": norm}
+    # A node that was moved onto the operating point by less than half a step leaves a grid even enough.
+    steps = [np.abs(v - np.linspace(v[0], v[-1], v.size)) for v in (xs, ys)]
+    even = (
+        v.size > 1 and off.max() <= 0.5 * (v[-1] - v[0]) / (v.size - 1)
+        for v, off in zip((xs, ys), steps, strict=True)
+    )  # fmt: skip
+    if not all(even):
         return ax.pcolormesh(xs, ys, values, **style, shading="nearest", rasterized=True, zorder=0)
-    dx, dy = 0.5 * (xs[1] - xs[0]), 0.5 * (ys[1] - ys[0])
+    dx, dy = 0.5 * (xs[-1] - xs[0]) / (xs.size - 1), 0.5 * (ys[-1] - ys[0]) / (ys.size - 1)
     extent = (xs[0] - dx, xs[-1] + dx, ys[0] - dy, ys[-1] + dy)
     return ax.imshow(values, **style, extent=extent, origin="lower", aspect="auto")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,7 +12,7 @@ import xarray as xr
 import floquet
 import lumped
 import multibody
-from floquet.gear.axes import operating_rpm, speed_range
+from floquet.gear.axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.response import ResponseBranches
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
@@ -19,7 +20,7 @@ from lumped.model.averaged import Mode, modes
 from lumped.model.sweep import resolved_sweep
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
 from validation.prediction.budget import error_budget
@@ -44,7 +45,6 @@ class Effort:
     samples : of the uncertain inputs; 0: they are not varied
     band_samples, band_speeds : of the range over speed
     sweep_speeds : of the response over speed, at most
-    line_speeds : at which stability is looked at, at the given damping
     chart_speeds, chart_dampings : nodes of the stability chart
     orders_speeds : of the map of orders over speed
     full : whether the budget has finite elements, and motions beyond contact loss are followed over speed
@@ -54,15 +54,14 @@ class Effort:
     band_samples: int
     band_speeds: int
     sweep_speeds: int
-    line_speeds: int
     chart_speeds: int
     chart_dampings: int
     orders_speeds: int
     full: bool
 
 
-FULL = Effort(128, 32, 61, 160, 2001, 161, 25, 61, full=True)
-QUICK = Effort(0, 0, 0, 48, 401, 61, 9, 25, full=False)
+FULL = Effort(128, 32, 61, 160, 1601, 101, 61, full=True)
+QUICK = Effort(0, 0, 0, 48, 401, 41, 25, full=False)
 
 
 class Results:
@@ -205,21 +204,16 @@ class Results:
         """Floquet multipliers of the linear motion at the operating point."""
         return floquet.gear_pair_multipliers(self.pair)
 
-    @cached_property
-    def stability_line(self) -> xr.Dataset:
-        """Spectral radius over speed at the given damping."""
-        self.stage("stability over speed")
-        speeds = np.union1d(np.linspace(*self.speeds, self.effort.line_speeds), self.operating_rpm)
-        return floquet.stability_chart(self.pair, {"speed_rpm": speeds})
+    @property
+    def stability_line(self) -> IntArray:
+        """Verdicts over speed at the given damping."""
+        at = int(np.abs(self.chart["damping_ratio"].to_numpy() - self.pair.mesh.damping_ratio).argmin())
+        return np.asarray(self.chart["verdict"].isel(damping_ratio=at).to_numpy(), dtype=np.int64)
 
     @cached_property
     def chart(self) -> xr.Dataset:
         """Stability over speed and mesh damping."""
-        top = max(0.1, 1.2 * self.pair.mesh.damping_ratio)
-        axes = {
-            "speed_rpm": np.linspace(*self.speeds, self.effort.chart_speeds),
-            "damping_ratio": np.linspace(0.0, top, self.effort.chart_dampings),
-        }
+        axes = chart_axes(self.pair, self.effort.chart_speeds, self.effort.chart_dampings)
         return floquet.stability_chart(self.pair, axes, progress=self.stage("stability chart"))
 
     @cached_property
@@ -303,16 +297,13 @@ class Results:
         self.stage("error budget")
         return error_budget(self)
 
-    @cached_property
-    def unstable_speeds(self) -> FloatArray:
-        """Speeds of ``stability_line`` that are unstable [rpm]."""
-        verdict = self.stability_line["verdict"].to_numpy()
-        return np.asarray(self.stability_line["speed_rpm"].to_numpy()[verdict < 0], dtype=np.float64)
-
     @property
     def nearest_hazard(self) -> tuple[float, str] | None:
         """Speed [rpm] and kind of the unstable speed or jump that is nearest to the operating speed."""
-        found = [(float(rpm), "unstable speed") for rpm in self.unstable_speeds]
+        edge = float(self.chart.attrs["nearest_edge_speed_rpm"])
+        found = [] if math.isnan(edge) else [(edge, "unstable speed")]
+        if self.multipliers.verdict == "unstable":
+            found = [(self.operating_rpm, "unstable speed")]
         if isinstance(self.branches, ResponseBranches):
             found += [
                 (jump.speed_rpm, f"jump, running {'up' if jump.rising else 'down'}")

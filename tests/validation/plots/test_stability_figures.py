@@ -149,7 +149,7 @@ def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     ax = stability_figure(over_speed_and_damping(x, y, values)).axes[0]
     assert ax.figure.axes[1].get_ylabel().endswith("\nerror bounds: partly proven")
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
-    assert np.allclose(mesh.get_array()[0], [0.1, 0.2, 0.3])
+    assert np.allclose(mesh.get_array()[0], np.log([0.1, 0.2, 0.3]))  # growth of one period
     assert ax.get_xlim() == (1000.0, 3000.0)
 
 
@@ -161,6 +161,22 @@ def test_an_operating_point_outside_the_chart_is_left_out(pair) -> None:
     )
     assert "operating point" in inside
     assert "operating point" not in outside
+
+
+def test_a_stable_chart_shows_how_fast_disturbances_decay_and_thin_regions_are_marked(pair) -> None:
+    """28 mesh cycles a revolution: at 6000 rpm 2800 a second, each times ln(radius)."""
+    axes = {"speed_rpm": np.linspace(6000.0, 6500.0, 6), "damping_ratio": np.linspace(0.03, 0.05, 5)}
+    chart = stability_chart(pair, axes)
+    figure = stability_figure(chart)
+    (image,) = figure.axes[0].images
+    expected = 2800.0 * np.log(chart.spectral_radius.isel(speed_rpm=0).to_numpy())
+    assert np.allclose(image.get_array()[:, 0], expected)
+    assert "[1/s]" in figure.axes[1].get_ylabel()
+    thin = {"width": [101.0, 500.0], "speed_rpm": [6100.0, 6300.0], "damping_ratio": [0.04, 0.04]}
+    regions = {f"region_{name}": ("region", np.array(values)) for name, values in thin.items()}
+    marked = stability_figure(chart.drop_dims("region").assign(regions))
+    (cross,) = [line for line in marked.axes[0].lines if line.get_marker() == "x"]
+    assert cross.get_xydata().tolist() == [[6100.0, 0.04]]
 
 
 def test_campbell_diagram_marks_lines_and_range(pair) -> None:

@@ -14,7 +14,7 @@ from validation.reporting import build
 from validation.reporting.results import Effort
 
 #: Few samples and speeds: what is tested is what is done with them.
-SMALL = Effort(16, 4, 9, 32, 101, 21, 5, 9, full=False)
+SMALL = Effort(16, 4, 9, 32, 101, 21, 9, full=False)
 
 
 @dataclass(frozen=True)

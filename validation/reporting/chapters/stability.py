@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
+import math
 
 import numpy as np
 
 from lumped.labelling import labelled_dataset
 from validation.files.formatting import number
-from validation.plots.maps import stability_map_figure
+from validation.plots.stability import stability_figure
 from validation.reporting.blocks import Content, Picture, quantities
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -17,35 +17,15 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     chart, here = results.chart, results.multipliers
-    dims = ("speed_rpm", "damping_ratio")
-    radius = chart["spectral_radius"].transpose(*dims).to_numpy()
-    data = labelled_dataset(
-        {
-            "growth": (
-                dims,
-                np.log(np.maximum(radius, 1e-12)),
-                "1",
-                "growth of a disturbance per mesh cycle",
-            ),
-            "verdict": (dims, chart["verdict"].transpose(*dims).to_numpy(), "1", "1 stable, -1 unstable"),
-        },
-        {
-            name: (chart[name].to_numpy(), chart[name].attrs["units"], chart[name].attrs["long_name"])
-            for name in dims
-        },
-    )
-    unstable = float((chart["verdict"] < 0).mean())
-    line = results.stability_line["verdict"].to_numpy()
     low, high = (number(speed, 5) for speed in results.speeds)
-    damping = results.pair.mesh.damping_ratio
-    none = (
-        "no speed" if not results.unstable_speeds.size else f"{100 * np.mean(line < 0):.2g} % of the speeds"
-    )
+    share = float(np.mean(results.stability_line < 0))
+    some = "no speed" if share == 0.0 else f"{100 * share:.2g} % of the speeds"
     result = (
-        f"At the operating point the linear motion is {here.verdict}; at the given damping {none} from {low} "
-        f"to {high} rpm {'is' if none == 'no speed' else 'are'} unstable."
+        f"At the operating point the linear motion is {here.verdict}; at the given damping {some} from {low} "
+        f"to {high} rpm {'is' if some == 'no speed' else 'are'} unstable."
     )
-    margin = results.nearest_hazard
+    margin, damping = results.nearest_hazard, results.pair.mesh.damping_ratio
+    edge, thinnest = chart.attrs["nearest_edge_damping_ratio"], chart.attrs["thinnest_width"]
     table = quantities(
         "stability",
         "Stability of the linear motion.",
@@ -57,21 +37,38 @@ def write(results: Results) -> Content:
         ),
         ("a disturbance is halved in", np.log(0.5) / np.log(here.spectral_radius), "1", "mesh cycles"),
         ("mesh damping ratio", damping, "1"),
+        *(
+            []
+            if math.isnan(edge)
+            else [("stability changes at", edge, "1", "mesh damping ratio, this speed")]
+        ),
         *([("nearest hazard", margin[0], "rpm", margin[1])] if margin is not None else []),
-        ("unstable share of the chart", unstable, "1", "of speeds and dampings shown"),
+        ("unstable share of the chart", float((chart["verdict"] < 0).mean()), "1", "of speeds and dampings"),
+        *([] if math.isnan(thinnest) else [("thinnest tongue", thinnest, "rpm", "at its widest")]),
+    )
+    words = (
+        "How fast a disturbance grows or decays over speed and mesh damping. Black line: edge of "
+        f"instability. {100 * float(chart['known'].mean()):.2g} % of the nodes are evaluated: the lowest "
+        "damping and both sides of every edge. A region can only be missed that lies between evaluated nodes "
+        "and does not reach the lowest damping. All nodes are in stability.nc."
+    )
+    at = {"speed_rpm": results.operating_rpm, "damping_ratio": damping}
+    regions = labelled_dataset(
+        {
+            str(name).removeprefix("region_"): (
+                "region",
+                values.to_numpy(),
+                values.attrs["units"],
+                values.attrs["long_name"],
+            )
+            for name, values in chart.data_vars.items()
+            if values.dims == ("region",)
+        },
+        {"region": (chart["region_label"].to_numpy(), "1", "label, w: natural frequencies")},
     )
     return Content(
         result,
-        (
-            table,
-            Picture(
-                "stability_chart",
-                "How fast a disturbance decays over speed and mesh damping. Red line: edge of instability. "
-                "Circle: the operating point.",
-                data,
-                partial(stability_map_figure, point=(results.operating_rpm, damping)),
-            ),
-        ),
+        (table, Picture("stability_chart", words, regions, lambda _: stability_figure(chart, at))),
     )
 
 
