@@ -55,22 +55,19 @@ def test_fields_of_a_docstring():
     ]
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("Ω_p r_bp", "Ω[p] r[bp]"),
-        ("4 M^k x", "4 M{k} x"),
-        ("V_s^b6", "V[s]{b6}"),
-        ("r_bg/r_bp", "r[bg]/r[bp]"),
-        ("r_{k+1}", "r[k+1]"),
-        ("θ̇_p", "θ̇[p]"),
-        ("mesh_efficiency", "mesh_efficiency"),
-        ("2w_i/k", "2w[i]/k"),
-        ("e^{−ct} y", "e{−ct} y"),
-        ("r_b²(r_i⁻²", "r[b]²(r[i]⁻²"),
-        ("10^-16 m", "10{-16} m"),
-    ],
-)
+@pytest.mark.parametrize(("text", "expected"), [
+    ("Ω_p r_bp", "Ω[p] r[bp]"),
+    ("4 M^k x", "4 M{k} x"),
+    ("V_s^b6", "V[s]{b6}"),
+    ("r_bg/r_bp", "r[bg]/r[bp]"),
+    ("r_{k+1}", "r[k+1]"),
+    ("θ̇_p", "θ̇[p]"),
+    ("mesh_efficiency", "mesh_efficiency"),
+    ("2w_i/k", "2w[i]/k"),
+    ("e^{−ct} y", "e{−ct} y"),
+    ("r_b²(r_i⁻²", "r[b]²(r[i]⁻²"),
+    ("10^-16 m", "10{-16} m"),
+])  # fmt: skip
 def test_symbols_in_text(text, expected):
     marks = {nodes.subscript: "[{}]", nodes.superscript: "{{{}}}"}
     shown = "".join(marks.get(type(n), "{}").format(n.astext()) for n in pieces(text))

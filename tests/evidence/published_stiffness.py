@@ -90,13 +90,9 @@ def published_stiffness() -> Iterator[Beside]:
         yield Beside(gears, "c_γ", "N/(mm µm)", "ISO 6336-1, from measurements", mean, total)
         yield Beside(gears, "c_γ", "N/(mm µm)", "DIN 3990-11, one for all gears", ONE_FOR_ALL, total)
     pair = plain(
-        basic_rack__module=3.0,
-        pinion__teeth=27,
-        gear__teeth=35,
-        pinion__face_width=25.0,
-        gear__face_width=25.0,
-        operating__pinion_torque=80e3 / (2000.0 * np.pi / 30.0),
-    )
+        basic_rack__module=3.0, pinion__teeth=27, gear__teeth=35, pinion__face_width=25.0,
+        gear__face_width=25.0, operating__pinion_torque=80e3 / (2000.0 * np.pi / 30.0),
+    )  # fmt: skip
     g = pair.geometry
     force = pair.operating.pinion_torque / g.base_radius_pinion
     single_contact = np.linspace(g.L_XD - g.base_pitch, g.L_XA + g.base_pitch, 101)

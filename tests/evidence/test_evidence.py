@@ -26,15 +26,12 @@ def test_loaded_contact_has_checks_of_its_own():
     assert {"softening of a pair by load, Hertz", "motion by the load of a neighbour"} <= subjects
 
 
-@pytest.mark.parametrize(
-    ("place", "name", "factor"),
-    [
-        (elasticity.iso6336, "mean_of", 1.01),
-        (elasticity.iso6336, "single_of", 1.01),
-        (elasticity, "cross_compliance", 1.1),
-        (elasticity, "hertz_half_width", 1.1),
-    ],
-)
+@pytest.mark.parametrize(("place", "name", "factor"), [
+    (elasticity.iso6336, "mean_of", 1.01),
+    (elasticity.iso6336, "single_of", 1.01),
+    (elasticity, "cross_compliance", 1.1),
+    (elasticity, "hertz_half_width", 1.1),
+])  # fmt: skip
 def test_a_wrong_elasticity_is_seen(pair, monkeypatch, place, name, factor):
     true = getattr(place, name)
     monkeypatch.setattr(place, name, lambda *arguments: factor * true(*arguments))

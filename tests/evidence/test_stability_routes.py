@@ -40,12 +40,10 @@ def of_block(name, place):
 
 
 COEFFICIENTS = {
-    "bearing stiffness": of_block("stiffness", 1),
-    "bearing damping": of_block("damping", 2),
-    "lever of the transmission error": of_block("v", 0),
-    "mesh stiffness over mass": of_gains("w"),
+    "bearing stiffness": of_block("stiffness", 1), "bearing damping": of_block("damping", 2),
+    "lever of the transmission error": of_block("v", 0), "mesh stiffness over mass": of_gains("w"),
     "mesh damping over mass": of_gains("wd"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", COEFFICIENTS)

@@ -58,24 +58,15 @@ def _geometry(pair: GearPair) -> Check:
     omega = pair.operating.pinion_speed
     start, end = c.tangent - c.reach_gear, c.reach_pinion
     both_ways = [
-        (g.base_radius_pinion, c.base_pinion),
-        (g.base_radius_gear, c.base_gear),
-        (g.tip_radius_pinion, c.tip_pinion),
-        (g.tip_radius_gear, c.tip_gear),
-        (g.base_pitch, c.pitch),
-        (g.centre_distance, c.centre_distance),
-        (g.L_XY, c.tangent),
-        (g.L_XA, start),
-        (g.L_XB, end - c.pitch),
-        (g.L_XP, c.tangent * c.base_pinion / both),
-        (g.L_XC, start + c.pitch),
-        (g.L_XD, end),
-        (g.contact_ratio, (end - start) / c.pitch),
-        (g.pairs, math.floor((end - start) / c.pitch) + 1),
+        (g.base_radius_pinion, c.base_pinion), (g.base_radius_gear, c.base_gear),
+        (g.tip_radius_pinion, c.tip_pinion), (g.tip_radius_gear, c.tip_gear), (g.base_pitch, c.pitch),
+        (g.centre_distance, c.centre_distance), (g.L_XY, c.tangent), (g.L_XA, start), (g.L_XB, end - c.pitch),
+        (g.L_XP, c.tangent * c.base_pinion / both), (g.L_XC, start + c.pitch), (g.L_XD, end),
+        (g.contact_ratio, (end - start) / c.pitch), (g.pairs, math.floor((end - start) / c.pitch) + 1),
         (g.omega_gear, omega * pair.pinion.teeth / pair.gear.teeth),
         (g.mesh_period, 2.0 * math.pi / (omega * pair.pinion.teeth)),
         (g.face_width, min(pair.pinion.face_width, pair.gear.face_width)),
-    ]
+    ]  # fmt: skip
     return rows("circles, path of contact, speeds", _OWN, 1e-9, both_ways)
 
 

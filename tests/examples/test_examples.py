@@ -343,11 +343,9 @@ def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(example)
 def test_25_rigid_shafts_are_the_lumped_pair(example):
     module = example(25)
     pair = lumped.load_gear_pair("nasa_28_28").with_(
-        friction__law="none",
-        mesh__relief="ignored",
-        mesh__damping_ratio=0.01,
+        friction__law="none", mesh__relief="ignored", mesh__damping_ratio=0.01,
         operating__pinion_speed="16500 rpm",
-    )
+    )  # fmt: skip
     body, structure = lumped.bodies(pair), lumped.periodic_system(pair, "full").structure
     M = np.diag([*[body.mass_pinion] * 2, body.inertia_pinion, *[body.mass_gear] * 2, body.inertia_gear])
     c_p, c_g, k_p, k_g = (*structure.damping[2:4], *structure.stiffness[2:4])

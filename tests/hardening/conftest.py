@@ -91,14 +91,12 @@ def gear_pairs(draw: Callable[..., Any]) -> GearPair:
     }
     gears = [
         {
-            "teeth": draw(st.integers(20, 90)),
-            "face_width": module * draw(st.floats(2.0, 15.0)),
-            "profile_shift": draw(st.floats(0.0, 0.3)),
-            "roughness": draw(st.floats(0.05, 0.8)),
+            "teeth": draw(st.integers(20, 90)), "face_width": module * draw(st.floats(2.0, 15.0)),
+            "profile_shift": draw(st.floats(0.0, 0.3)), "roughness": draw(st.floats(0.05, 0.8)),
             "bore": module * draw(st.floats(0.0, 8.0)),
         }
         for _ in range(2)
-    ]
+    ]  # fmt: skip
     return load_gear_pair(
         {
             "name": "drawn",
@@ -107,10 +105,8 @@ def gear_pairs(draw: Callable[..., Any]) -> GearPair:
             "gear": gears[1],
             "bearings": {"pinion": bearing, "gear": bearing},
             "mesh": {
-                "stiffness": draw(STIFFNESS),
-                "damping_ratio": draw(st.floats(0.0, 0.3)),
-                "backlash": 0.02 * module,
-                "contact": draw(st.sampled_from(["prescribed", "loaded"])),
+                "stiffness": draw(STIFFNESS), "damping_ratio": draw(st.floats(0.0, 0.3)),
+                "backlash": 0.02 * module, "contact": draw(st.sampled_from(["prescribed", "loaded"])),
             },
             "lubricant": {"viscosity": draw(st.floats(4.0, 50.0))},
             "friction": draw(FRICTION),
@@ -119,7 +115,7 @@ def gear_pairs(draw: Callable[..., Any]) -> GearPair:
                 "pinion_torque": module**3 * draw(st.floats(0.2, 5.0)),
             },
         }
-    )
+    )  # fmt: skip
 
 
 def existing(draw_pair: st.SearchStrategy[GearPair]) -> st.SearchStrategy[GearPair]:
@@ -148,60 +144,19 @@ def pairs() -> st.SearchStrategy[GearPair]:
 HOSTILE = st.one_of(
     st.sampled_from(
         [
-            None,
-            True,
-            0,
-            -1,
-            -0.0,
-            1e-320,
-            5e-324,
-            1e308,
-            -1e308,
-            math.nan,
-            math.inf,
-            -math.inf,
-            10**400,
-            2**63,
-            "",
-            " ",
-            "nan",
-            "inf mm",
-            "1e400 mm",
-            "1e999999999 mm",
-            "9**9**9**9 mm",
-            "10**(10**10) m",
-            "mm",
-            "1 mm/0",
-            "1 furlong",
-            "3 mm; import os",
-            "__import__('os').system('touch owned')",
-            "{{7*7}}",
-            "%s%n",
-            "<script>alert(1)</script>",
-            "../../etc/passwd",
-            "/dev/zero",
-            "\x00",
-            "\ud800",
-            "١ mm",
-            "1" * 5000,
-            "(" * 2000,
-            b"bytes",
-            object(),
-            [],
-            {},
-            [[]],
-            [1] * 1000,
-            {"a": {"b": {"c": 1}}},
-            {"model": "table", "file": "/dev/zero"},
-            {"model": "table", "file": "../../../etc/passwd"},
-            {"model": "nonsense"},
-            ["loa", None],
+            None, True, 0, -1, -0.0, 1e-320, 5e-324, 1e308, -1e308, math.nan, math.inf, -math.inf, 10**400,
+            2**63, "", " ", "nan", "inf mm", "1e400 mm", "1e999999999 mm", "9**9**9**9 mm", "10**(10**10) m",
+            "mm", "1 mm/0", "1 furlong", "3 mm; import os", "__import__('os').system('touch owned')",
+            "{{7*7}}", "%s%n", "<script>alert(1)</script>", "../../etc/passwd", "/dev/zero", "\x00", "\ud800",
+            "١ mm", "1" * 5000, "(" * 2000, b"bytes", object(), [], {}, [[]], [1] * 1000,
+            {"a": {"b": {"c": 1}}}, {"model": "table", "file": "/dev/zero"},
+            {"model": "table", "file": "../../../etc/passwd"}, {"model": "nonsense"}, ["loa", None],
         ]
     ),
     st.floats(),
     st.integers(),
     st.text(max_size=30),
-)
+)  # fmt: skip
 
 
 @pytest.fixture(scope="session")

@@ -29,14 +29,11 @@ def bearings(what, value):
 
 
 VARIATIONS = {
-    "100 rpm": {"operating.pinion_speed": 100},
-    "1e-6 rpm": {"operating.pinion_speed": 1e-6},
-    "1e5 rpm": {"operating.pinion_speed": 1e5},
-    "2e5 rpm": {"operating.pinion_speed": 2e5},
+    "100 rpm": {"operating.pinion_speed": 100}, "1e-6 rpm": {"operating.pinion_speed": 1e-6},
+    "1e5 rpm": {"operating.pinion_speed": 1e5}, "2e5 rpm": {"operating.pinion_speed": 2e5},
     "mesh damping 0": {"mesh.damping_ratio": 0},
     "all damping 0": {"mesh.damping_ratio": 0, **bearings("damping_ratio", 0)},
-    "mesh damping 1": {"mesh.damping_ratio": 1},
-    "bearing damping 2": bearings("damping_ratio", 2),
+    "mesh damping 1": {"mesh.damping_ratio": 1}, "bearing damping 2": bearings("damping_ratio", 2),
     "mu 0": {"friction.law": "coulomb", "friction.coefficient": 0},
     "mu 1": {"friction.law": "coulomb", "friction.coefficient": 1},
     "no friction law": {"friction.law": "none"},
@@ -44,34 +41,24 @@ VARIATIONS = {
     "sharpness 1e9": {"friction.law": "smoothed_coulomb", "friction.sharpness": 1e9},
     "no film": {"friction.law": "composite", "friction.film_length": 1e-9},
     "full film": {"friction.law": "composite", "friction.film_length": 1e9},
-    "viscosity 1e-9": {"lubricant.viscosity": 1e-9},
-    "viscosity 1e5": {"lubricant.viscosity": 1e5},
-    "roughness 0": both("roughness", 0),
-    "roughness 50": both("roughness", 50),
+    "viscosity 1e-9": {"lubricant.viscosity": 1e-9}, "viscosity 1e5": {"lubricant.viscosity": 1e5},
+    "roughness 0": both("roughness", 0), "roughness 50": both("roughness", 50),
     "pair stiffness 1e-6": {"mesh.stiffness.pair_stiffness": 1e-6},
     "pair stiffness 1": {"mesh.stiffness.pair_stiffness": 1},
     "pair stiffness 1e11": {"mesh.stiffness.pair_stiffness": 1e11},
     "pair stiffness to nothing": {"mesh.stiffness": {"model": "parabolic", "end_ratio": 1e-9}},
-    "bearings 1e-6": bearings("stiffness", 1e-6),
-    "bearings 1": bearings("stiffness", 1),
-    "bearings 1e12": bearings("stiffness", 1e12),
-    "bearings 1e30": bearings("stiffness", 1e30),
-    "inertia 1e-15": both("inertia", 1e-15),
-    "inertia 1e9": both("inertia", 1e9),
-    "mass 1e-15": both("mass", 1e-15),
-    "mass 1e7": both("mass", 1e7),
-    "torque 1e-9": {"operating.pinion_torque": 1e-9},
-    "torque 1e6": {"operating.pinion_torque": 1e6},
-    "torque 1e9": {"operating.pinion_torque": 1e9},
-    "brake 1e-9": {"operating.brake_torque": 1e-9},
-    "brake 1e9": {"operating.brake_torque": 1e9},
-    "width 1e-9": both("face_width", 1e-9),
-    "width 2000": both("face_width", 2000),
-    "modulus 1e-6": both("youngs_modulus", 1e-6),
+    "bearings 1e-6": bearings("stiffness", 1e-6), "bearings 1": bearings("stiffness", 1),
+    "bearings 1e12": bearings("stiffness", 1e12), "bearings 1e30": bearings("stiffness", 1e30),
+    "inertia 1e-15": both("inertia", 1e-15), "inertia 1e9": both("inertia", 1e9),
+    "mass 1e-15": both("mass", 1e-15), "mass 1e7": both("mass", 1e7),
+    "torque 1e-9": {"operating.pinion_torque": 1e-9}, "torque 1e6": {"operating.pinion_torque": 1e6},
+    "torque 1e9": {"operating.pinion_torque": 1e9}, "brake 1e-9": {"operating.brake_torque": 1e-9},
+    "brake 1e9": {"operating.brake_torque": 1e9}, "width 1e-9": both("face_width", 1e-9),
+    "width 2000": both("face_width", 2000), "modulus 1e-6": both("youngs_modulus", 1e-6),
     "modulus 2000": both("youngs_modulus", 2000),
     "relief 1 mm": {"pinion.tip_relief": {"amount": 1000, "start_roll_angle": 24}},
     "backlash 10 mm": {"mesh.backlash": 10},
-}
+}  # fmt: skip
 if LONG:  # a refusal of the transient at 1 rpm comes after its 200000 steps
     VARIATIONS |= {"10 rpm": {"operating.pinion_speed": 10}, "1 rpm": {"operating.pinion_speed": 1}}
 
@@ -82,11 +69,9 @@ def form(pressure_angle, addendum, dedendum, fillet, pinion, gear):
     for key in ("sources", "centre_distance"):
         data.pop(key)
     data["basic_rack"] |= {
-        "pressure_angle": pressure_angle,
-        "addendum_coefficient": addendum,
-        "dedendum_coefficient": dedendum,
+        "pressure_angle": pressure_angle, "addendum_coefficient": addendum, "dedendum_coefficient": dedendum,
         "fillet_radius_coefficient": fillet,
-    }
+    }  # fmt: skip
     for name, (teeth, shift) in (("pinion", pinion), ("gear", gear)):
         data[name].pop("tip_relief")
         data[name] |= {"teeth": teeth, "profile_shift": shift}

@@ -23,17 +23,10 @@ SYSTEM = floquet.PeriodicSystem(lambda t: np.array([[0.0, 1.0], [-1.0 - np.cos(t
 
 #: What no argument of any public function may be, whatever it means: from a form, a file or a slip.
 NOTHING = {
-    "text": "abc",
-    "empty text": "",
-    "nan": math.nan,
-    "infinite": -math.inf,
-    "imaginary": 1j,
-    "bytes": b"x",
-    "too large": 10**400,
-    "no numbers": [None, "x"],
-    "a solid": np.ones((2, 2, 2)),
+    "text": "abc", "empty text": "", "nan": math.nan, "infinite": -math.inf, "imaginary": 1j, "bytes": b"x",
+    "too large": 10**400, "no numbers": [None, "x"], "a solid": np.ones((2, 2, 2)),
     "objects": np.array([None, "x"], dtype=object),
-}
+}  # fmt: skip
 _RUN = "cycles samples_per_cycle initial effects fidelity rtol friction_velocity"
 #: Function -> (arguments that it needs besides, arguments that are tried).
 CALLS = {
@@ -53,23 +46,17 @@ CALLS = {
     losses.loss_factor: ({"pair": PAIR}, "sharing"),
     multibody.simulate: ({"pair": PAIR}, _RUN),
     multibody.power_balance: ({"pair": PAIR}, "cycles initial effects fidelity rtol friction_velocity"),
-    multibody.steady_state: (
-        {"pair": PAIR, "fidelity": "linear"},
-        "samples_per_cycle fidelity effects rtol friction_velocity",
-    ),
+    multibody.steady_state: ({"pair": PAIR, "fidelity": "linear"},
+     "samples_per_cycle fidelity effects rtol friction_velocity"),
     multibody.monodromy: ({"pair": PAIR}, "fidelity effects rtol"),
-    multibody.speed_sweep: (
-        {"pair": PAIR, "speeds_rpm": [4000.0]},
-        "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol",
-    ),
+    multibody.speed_sweep: ({"pair": PAIR, "speeds_rpm": [4000.0]},
+     "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol"),
     floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints"),
     floquet.monodromy: ({"system": SYSTEM}, "rtol method max_substeps"),
     floquet.gear_pair_system: ({"source": PAIR}, "form"),
     floquet.gear_pair_multipliers: ({"source": PAIR}, "rtol method"),
-    floquet.stability_chart: (
-        {"pair": PAIR, "axes": {"speed_rpm": [4000.0]}},
-        "axes friction_law refine rtol store",
-    ),
+    floquet.stability_chart: ({"pair": PAIR, "axes": {"speed_rpm": [4000.0]}},
+     "axes friction_law refine rtol store"),
     floquet.stability_boundaries: ({"pair": PAIR}, "speed_rpm axes nodes orders xtol rtol"),
     floquet.predicted_lines: ({"pair": PAIR}, "orders"),
     floquet.stability_margins: ({"pair": PAIR}, "speed_rpm"),
@@ -77,14 +64,12 @@ CALLS = {
     floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
     crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities limit"),
     predict: ({"pair": PAIR}, "speed torque recurrence"),
-}
+}  # fmt: skip
 #: Names that a refusal gives where a pair's own field takes the argument in.
 OWN = {
-    "friction_law": "friction.law",
-    "law": "friction.law",
-    "name": "axes",
+    "friction_law": "friction.law", "law": "friction.law", "name": "axes",
     "thresholds": "friction.thresholds",
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -117,15 +102,11 @@ REQUIRED = [
 )
 def test_a_wrong_type_is_refused_by_every_main_function(function, argument, tmp_path):
     good = {
-        "pair": PAIR,
-        "source": PAIR,
-        "speeds_rpm": [4000.0],
-        "axes": {"speed_rpm": [3000.0, 4000.0]},
-        "path": tmp_path / "new.nc",
-        "folder": tmp_path / "new",
+        "pair": PAIR, "source": PAIR, "speeds_rpm": [4000.0], "axes": {"speed_rpm": [3000.0, 4000.0]},
+        "path": tmp_path / "new.nc", "folder": tmp_path / "new",
         "motion": lumped.steady_state(PAIR, samples_per_cycle=8),
         "result": lumped.steady_state(PAIR, samples_per_cycle=8),
-    }
+    }  # fmt: skip
     names = [name for one, name in REQUIRED if one is function]
     for value in (1j, object(), [object()]):
         with pytest.raises(SpurcheckError):

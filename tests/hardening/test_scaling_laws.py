@@ -15,32 +15,16 @@ from lumped.schema.pair import leaf_paths, stated_unit
 
 #: SI unit -> exponents of length, time and force (a mass is force time^2 / length).
 EXPONENTS = {
-    "1": (0, 0, 0),
-    "rad": (0, 0, 0),
-    "m": (1, 0, 0),
-    "1/m": (-1, 0, 0),
-    "rad/s": (0, -1, 0),
-    "N*m": (1, 0, 1),
-    "kg": (-1, 2, 1),
-    "kg*m**2": (1, 2, 1),
-    "kg/m**3": (-4, 2, 1),
-    "Pa": (-2, 0, 1),
-    "N/m": (-1, 0, 1),
-    "Pa*s": (-2, 1, 1),
-    "m/s": (1, -1, 0),
-}
+    "1": (0, 0, 0), "rad": (0, 0, 0), "m": (1, 0, 0), "1/m": (-1, 0, 0), "rad/s": (0, -1, 0),
+    "N*m": (1, 0, 1), "kg": (-1, 2, 1), "kg*m**2": (1, 2, 1), "kg/m**3": (-4, 2, 1), "Pa": (-2, 0, 1),
+    "N/m": (-1, 0, 1), "Pa*s": (-2, 1, 1), "m/s": (1, -1, 0),
+}  # fmt: skip
 #: Variable -> exponents of its result.
 RESULTS = {
-    "theta_p": (0, 0, 0),
-    "x_p": (1, 0, 0),
-    "y_g": (1, 0, 0),
-    "dte": (1, 0, 0),
-    "dte_dot": (1, -1, 0),
-    "normal_load": (0, 0, 1),
-    "friction_power": (1, -1, 1),
-    "mesh_stiffness": (-1, 0, 1),
+    "theta_p": (0, 0, 0), "x_p": (1, 0, 0), "y_g": (1, 0, 0), "dte": (1, 0, 0), "dte_dot": (1, -1, 0),
+    "normal_load": (0, 0, 1), "friction_power": (1, -1, 1), "mesh_stiffness": (-1, 0, 1),
     "bearing_force_x_p": (0, 0, 1),
-}
+}  # fmt: skip
 
 
 def factor(exponents, scales):

@@ -41,23 +41,14 @@ def unequal(nasa):
     """25/31 on the same centre distance with different inertias, masses and bearings everywhere."""
     return nasa.with_(
         {
-            "pinion.teeth": 25,
-            "gear.teeth": 31,
-            "pinion.mass": 0.25,
-            "gear.mass": 0.41,
-            "pinion.inertia": 2.1e-4,
-            "gear.inertia": 4.9e-4,
-            "bearings.pinion.loa_stiffness": 0.8e8,
-            "bearings.pinion.oloa_stiffness": 1.3e8,
-            "bearings.gear.loa_stiffness": 1.1e8,
-            "bearings.gear.oloa_stiffness": 0.6e8,
-            "bearings.gear.loa_damping_ratio": 0.03,
-            "bearings.pinion.oloa_damping_ratio": 0.07,
-            "friction.law": "coulomb",
-            "friction.coefficient": 0.08,
-            "mesh.stiffness": {"model": "parabolic"},
+            "pinion.teeth": 25, "gear.teeth": 31, "pinion.mass": 0.25, "gear.mass": 0.41,
+            "pinion.inertia": 2.1e-4, "gear.inertia": 4.9e-4, "bearings.pinion.loa_stiffness": 0.8e8,
+            "bearings.pinion.oloa_stiffness": 1.3e8, "bearings.gear.loa_stiffness": 1.1e8,
+            "bearings.gear.oloa_stiffness": 0.6e8, "bearings.gear.loa_damping_ratio": 0.03,
+            "bearings.pinion.oloa_damping_ratio": 0.07, "friction.law": "coulomb",
+            "friction.coefficient": 0.08, "mesh.stiffness": {"model": "parabolic"},
         }
-    )
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -65,16 +56,12 @@ def high_contact(nasa):
     """Contact ratio between 2 and 3: long addenda on many teeth."""
     return nasa.with_(
         {
-            "pinion.teeth": 50,
-            "gear.teeth": 50,
-            "centre_distance": None,
-            "basic_rack.addendum_coefficient": 1.35,
-            "basic_rack.dedendum_coefficient": 1.6,
-            "basic_rack.fillet_radius_coefficient": 0.25,
-            "friction.law": "coulomb",
+            "pinion.teeth": 50, "gear.teeth": 50, "centre_distance": None,
+            "basic_rack.addendum_coefficient": 1.35, "basic_rack.dedendum_coefficient": 1.6,
+            "basic_rack.fillet_radius_coefficient": 0.25, "friction.law": "coulomb",
             "friction.coefficient": 0.05,
         }
-    )
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -83,11 +70,9 @@ def shaft_tables():
     pinion = {
         "segments": [{"length": 40.3, "diameter": 30, "bore": 10}, {"length": 230, "diameter": 28.3}],
         "gear_position": 90.1,
-        "bearings": [
-            {"position": 30.1, "loa_stiffness": 2e8, "oloa_stiffness": 1.7e8, "loa_damping": 50.3},
-            {"position": "15.1 cm", "loa_stiffness": 3e8, "oloa_stiffness": 2.3e8, "oloa_damping": 30},
-        ],
-    }
+        "bearings": [{"position": 30.1, "loa_stiffness": 2e8, "oloa_stiffness": 1.7e8, "loa_damping": 50.3},
+         {"position": "15.1 cm", "loa_stiffness": 3e8, "oloa_stiffness": 2.3e8, "oloa_damping": 30}],
+    }  # fmt: skip
     one = {"position": 7.3, "loa_stiffness": 1e8, "oloa_stiffness": "100 N/um", "tilt_stiffness": 2e4}
     steel = {"youngs_modulus": 210, "poisson_ratio": 0.29, "density": 7800.1}
     gear = {"segments": [{"length": 150, "diameter": 50.3}], "gear_position": 77, "bearings": [one]} | steel

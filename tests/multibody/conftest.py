@@ -32,15 +32,10 @@ def make_teeth(zp, zg, module, alpha_deg, centre_distance, tip_p, tip_g, shifts=
     ]
     back = (math.pi + thick[0] / rp, math.pi + thick[1] / rg)
     return Teeth(
-        radius_p=rp,
-        radius_g=rg,
-        pitch=math.pi * module * math.cos(alpha),
-        tip_p=math.sqrt(tip_p**2 - rp**2),
-        tip_g=math.sqrt(tip_g**2 - rg**2),
-        chi={1.0: (0.0, 0.0), -1.0: back},
-        centre_distance=centre_distance,
+        radius_p=rp, radius_g=rg, pitch=math.pi * module * math.cos(alpha), tip_p=math.sqrt(tip_p**2 - rp**2),
+        tip_g=math.sqrt(tip_g**2 - rg**2), chi={1.0: (0.0, 0.0), -1.0: back}, centre_distance=centre_distance,
         backlash=thinning,
-    )
+    )  # fmt: skip
 
 
 PAIRS = {

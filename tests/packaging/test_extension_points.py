@@ -185,12 +185,9 @@ assert {"three_eighths", "gauss"} <= {check.subject.split()[-1] for check in che
 #: Part -> its changes, how many files they are, and a program that uses it. The command comes first, for its
 #: program looks what is imported; the chapter last, for its program leaves only some chapters.
 PARTS = {
-    "command": (COMMAND, 2, COUNT),
-    "friction law": (LAW, 2, USE),
-    "stiffness model": (MODEL, 2, USE_MODEL),
-    "propagator": (PROPAGATOR, 2, USE_PROPAGATOR),
-    "chapter of the report": (CHAPTER, 3, WRITE),
-}
+    "command": (COMMAND, 2, COUNT), "friction law": (LAW, 2, USE), "stiffness model": (MODEL, 2, USE_MODEL),
+    "propagator": (PROPAGATOR, 2, USE_PROPAGATOR), "chapter of the report": (CHAPTER, 3, WRITE),
+}  # fmt: skip
 #: Runs the programs, each with names of its own, and prints how each ended.
 RUN = """
 import json, sys, traceback

@@ -179,11 +179,9 @@ def test_a_motion_that_no_pair_follows_proves_nothing(stated, key, value, word):
 def test_samples_that_prove_nothing_are_left_out_of_the_share(stated):
     rule = next(r for r in RULES if r.name == "OLOA motion")
     rows = [
-        {**stated, "rms_y_p": 0.01, "min_load_4": 0.5},
-        {**stated, "rms_y_p": 0.30, "min_load_4": 0.5},
-        {**stated, "rms_y_p": 0.01, "min_load_4": -0.5},
-        {**stated, "rms_y_p": 0.01, "radius_4": 1.2},
-    ]
+        {**stated, "rms_y_p": 0.01, "min_load_4": 0.5}, {**stated, "rms_y_p": 0.30, "min_load_4": 0.5},
+        {**stated, "rms_y_p": 0.01, "min_load_4": -0.5}, {**stated, "rms_y_p": 0.01, "radius_4": 1.2},
+    ]  # fmt: skip
     claim = judged(rule, stated, Sensitivity(rows, np.zeros((4, 1)), 0), {})
     assert (claim.usable, claim.share) == (2, 0.5)
     assert 1.0 <= claim.low <= claim.high <= 30.0
@@ -230,25 +228,11 @@ def test_percentiles_and_the_accuracy_claim(stated):
 
 #: Numbers that meet every criterion, well inside.
 MET = {
-    "mean_ratio": 5.0,
-    "iii_at_pitch": 0.1,
-    "ii_at_pitch": 1.5,
-    "switch_width": 0.1,
-    "switch_drop": 2.0,
-    "switch_speed": 2500.0,
-    "jump_coulomb": 1.0,
-    "jump_benedict_kelley": 1.0,
-    "jump_xu_kahraman": 0.0,
-    "jump_smoothed_coulomb": 0.0,
-    "load_spread": 0.01,
-    "rms_x_p": 0.01,
-    "rms_dte": 0.01,
-    "rms_y_p": 0.01,
-    "order_y_p": 2.0,
-    "mean_absolute_x_p": 0.08,
-    "mean_absolute_y_p": 0.08,
-    "mean_iii_slow": 0.004,
-}
+    "mean_ratio": 5.0, "iii_at_pitch": 0.1, "ii_at_pitch": 1.5, "switch_width": 0.1, "switch_drop": 2.0,
+    "switch_speed": 2500.0, "jump_coulomb": 1.0, "jump_benedict_kelley": 1.0, "jump_xu_kahraman": 0.0,
+    "jump_smoothed_coulomb": 0.0, "load_spread": 0.01, "rms_x_p": 0.01, "rms_dte": 0.01, "rms_y_p": 0.01,
+    "order_y_p": 2.0, "mean_absolute_x_p": 0.08, "mean_absolute_y_p": 0.08, "mean_iii_slow": 0.004,
+}  # fmt: skip
 #: Claim, number, last value that meets the criterion as it is written, first that does not.
 EDGES = [
     ("mean of II above III", "mean_ratio", 2.0, 1.99),
@@ -289,43 +273,21 @@ def test_every_criterion_has_its_edges_pinned():
 
 #: Made-up numbers, all different, and what each claim states with them: value, then its further numbers.
 DIFFERENT = {
-    **MET,
-    "switch_drop": 2.8,
-    "jump_benedict_kelley": 0.9,
-    "jump_xu_kahraman": 0.001,
-    "jump_smoothed_coulomb": 0.002,
-    "load_spread": 0.036,
-    "load_spread_rms": 0.019,
-    "rms_x_p": 0.029,
-    "rms_dte": 0.016,
-    "rms_y_p": 0.385,
-    "order_x_p": 3.0,
-    "order_dte": 4.0,
-    "relative_order_y_p": 5.0,
-    "relative_order_x_p": 6.0,
-    "relative_order_dte": 7.0,
-    "mean_absolute_x_p": 0.013,
-    "mean_absolute_y_p": 0.163,
-    "mean_iii_fast": 0.003,
-    "peak_normal": 2628.0,
-    "peak_friction": 33.0,
-}
+    **MET, "switch_drop": 2.8, "jump_benedict_kelley": 0.9, "jump_xu_kahraman": 0.001,
+    "jump_smoothed_coulomb": 0.002, "load_spread": 0.036, "load_spread_rms": 0.019, "rms_x_p": 0.029,
+    "rms_dte": 0.016, "rms_y_p": 0.385, "order_x_p": 3.0, "order_dte": 4.0, "relative_order_y_p": 5.0,
+    "relative_order_x_p": 6.0, "relative_order_dte": 7.0, "mean_absolute_x_p": 0.013,
+    "mean_absolute_y_p": 0.163, "mean_iii_fast": 0.003, "peak_normal": 2628.0, "peak_friction": 33.0,
+}  # fmt: skip
 #: Law III with R in millimetres over that in metres, at its check value.
 _MM_FOR_M = float(xu_kahraman(1.0, 0.1, 10.0, 10.0, 0.3, 8.0) / xu_kahraman(1.0, 0.1, 10.0, 10.0, 0.3, 8e-3))
 STATED = {
-    "mean of II above III": [5.0],
-    "pitch point": [0.1, 1.5],
-    "abrupt regime change": [10.0, 2.8],
-    "speed of the regime change": [2500.0],
-    "jumps": [0.9, 0.001, 0.002],
-    "normal load": [3.6, 1.9],
-    "LOA motion and DTE": [2.9, 2.9, 1.6],
-    "OLOA motion": [38.5],
-    "second harmonic": [2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
-    "8 % discrepancy": [8.8, 1.3, 16.3],
-    "identified mu": [0.004, 0.003, 0.004 * _MM_FOR_M],
-    "3 % error": [33.0, 2628.0],
-}
+    "mean of II above III": [5.0], "pitch point": [0.1, 1.5], "abrupt regime change": [10.0, 2.8],
+    "speed of the regime change": [2500.0], "jumps": [0.9, 0.001, 0.002], "normal load": [3.6, 1.9],
+    "LOA motion and DTE": [2.9, 2.9, 1.6], "OLOA motion": [38.5],
+    "second harmonic": [2.0, 3.0, 4.0, 5.0, 6.0, 7.0], "8 % discrepancy": [8.8, 1.3, 16.3],
+    "identified mu": [0.004, 0.003, 0.004 * _MM_FOR_M], "3 % error": [33.0, 2628.0],
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)

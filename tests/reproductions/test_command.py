@@ -13,12 +13,10 @@ from reproductions.he_cho_singh_2008.records import ClaimsTable, ErrataChapter, 
 def test_everything_is_written(tmp_path, monkeypatch, capsys):
     records = [FigureRecord(n, "t", "", {}, {"a": xr.Dataset({"x": ("t", [1.0])})}) for n in DRAW]
     made = {
-        "law_runs": None,
-        "figure_records": records,
-        "errata_chapter": ErrataChapter("", {}, (), xr.Dataset()),
-        "claims": ClaimsTable("", {}, 0, 0, 0, ()),
+        "law_runs": None, "figure_records": records,
+        "errata_chapter": ErrataChapter("", {}, (), xr.Dataset()), "claims": ClaimsTable("", {}, 0, 0, 0, ()),
         "draw_errata": Figure(),
-    }
+    }  # fmt: skip
     for name, value in made.items():
         monkeypatch.setattr(command, name, lambda *_, value=value, **__: value)
     monkeypatch.setattr(command, "DRAW", {n: lambda _: Figure() for n in DRAW})

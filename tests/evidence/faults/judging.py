@@ -136,8 +136,5 @@ def _evidence(pair: GearPair) -> list[str]:
 
 #: Part of the program or of its tests -> names of the checks that fail.
 _CHECKS: Mapping[str, Callable[[GearPair], list[str]]] = {
-    "cross-check": _crossed,
-    "report": _reported,
-    "full report": _refined,
-    "tests": _evidence,
-}
+    "cross-check": _crossed, "report": _reported, "full report": _refined, "tests": _evidence,
+}  # fmt: skip

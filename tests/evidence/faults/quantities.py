@@ -158,13 +158,6 @@ def _stability(pair: GearPair) -> dict[str, FloatArray]:
 def _multibody(fidelity: str, pair: GearPair) -> dict[str, FloatArray]:
     motion = multibody.steady_state(pair, fidelity=fidelity, samples_per_cycle=SAMPLES, rtol=1e-8)  # type: ignore[arg-type]
     names = [
-        "dte",
-        "x_p",
-        "y_p",
-        "y_g",
-        "normal_load",
-        "friction_force",
-        "sliding_velocity",
-        "bearing_force_y_g",
-    ]
+        "dte", "x_p", "y_p", "y_g", "normal_load", "friction_force", "sliding_velocity", "bearing_force_y_g",
+    ]  # fmt: skip
     return _numbers(motion[names], f"multibody {fidelity}")

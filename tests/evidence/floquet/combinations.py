@@ -54,13 +54,10 @@ def check_hsu() -> Iterator[Check]:
 def _chain(contact_ratio: float) -> GearChain:
     """Idler chain of three gears."""
     return GearChain(
-        mass=np.array([1.0, 1.6, 1.2]),
-        ground=np.diag([0.4, 0.0, 0.15]),
-        meshes=np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]),
-        stiffness=np.array([2.0, 3.0]),
-        contact_ratio=np.full(2, contact_ratio),
-        phase=np.array([0.0, 0.3]),
-    )
+        mass=np.array([1.0, 1.6, 1.2]), ground=np.diag([0.4, 0.0, 0.15]),
+        meshes=np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]), stiffness=np.array([2.0, 3.0]),
+        contact_ratio=np.full(2, contact_ratio), phase=np.array([0.0, 0.3]),
+    )  # fmt: skip
 
 
 def check_gear_chain() -> Iterator[Check]:

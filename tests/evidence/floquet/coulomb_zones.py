@@ -157,12 +157,10 @@ def _transition() -> float:
 def _gear() -> GearPair:
     return load_gear_pair("nasa_28_28").with_(
         {
-            "friction.law": "coulomb",
-            "friction.coefficient": MU,
-            "mesh.damping_ratio": 0.0,
+            "friction.law": "coulomb", "friction.coefficient": MU, "mesh.damping_ratio": 0.0,
             "mesh.relief": "ignored",
         }
-    )
+    )  # fmt: skip
 
 
 def _factor() -> float:

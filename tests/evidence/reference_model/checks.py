@@ -16,10 +16,7 @@ UNLIKE = lumped.load_gear_pair("fzg_c").with_(
     mesh__damping_ratio=0.07,
     mesh__stiffness={"model": "parabolic"},
     bearings__pinion={
-        "loa_stiffness": 2e8,
-        "oloa_stiffness": 5e7,
-        "loa_damping_ratio": 0.02,
-        "oloa_damping_ratio": 0.4,
+        "loa_stiffness": 2e8, "oloa_stiffness": 5e7, "loa_damping_ratio": 0.02, "oloa_damping_ratio": 0.4,
     },
     bearings__gear={
         "loa_stiffness": 3e8,
@@ -27,7 +24,7 @@ UNLIKE = lumped.load_gear_pair("fzg_c").with_(
         "loa_damping_ratio": 1.2,
         "oloa_damping_ratio": 0.03,
     },
-)
+)  # fmt: skip
 
 
 def reference_model() -> Iterator[Check]:

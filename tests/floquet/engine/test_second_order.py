@@ -1,7 +1,5 @@
 """Are M, C and K of any kind made into the system that they are, with bounds that hold?"""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
@@ -14,7 +12,6 @@ from floquet import (
     monodromy,
     scan,
 )
-from floquet.engine.second_order import _Solution
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 
@@ -29,23 +26,6 @@ def matrices(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray,
     M = np.tril(L) @ np.tril(L).T + np.eye(4)
     C, C1, K1 = 0.3 * np.eye(4) + 0.1 * rest[0], 0.05 * rest[1], rest[2]
     return tuple(UNITS @ B @ UNITS for B in (M, C, C1, 20.0 * np.eye(4) + S + S.T, K1))
-
-
-def rational(B: np.ndarray) -> np.ndarray:
-    return np.array([[Fraction(float(x)) for x in row] for row in B])
-
-
-def exactly_solved(P: np.ndarray, Q: np.ndarray) -> np.ndarray:
-    """P^-1 Q in rational numbers, by elimination."""
-    A = np.hstack([P, Q])
-    for c in range(len(P)):
-        pivot = next(r for r in range(c, len(P)) if A[r, c] != 0)
-        A[[c, pivot]] = A[[pivot, c]]
-        A[c] = A[c] / A[c, c]
-        for r in range(len(P)):
-            if r != c:
-                A[r] = A[r] - A[r, c] * A[c]
-    return A[:, len(P) :]
 
 
 def test_meissners_trace_is_exact_within_a_proven_bound():
@@ -81,21 +61,6 @@ def test_matrices_in_all_forms_give_the_same_multipliers():
     for other in map(monodromy, others):
         assert other.certificate == "estimate"
         assert abs(other.spectral_radius - known.spectral_radius) <= other.error + known.error < 1e-8
-
-
-def test_the_rounding_of_the_matrices_is_in_their_bounds():
-    M, _, _, K, K1 = matrices(2)
-    T = from_second_order(M, 0.0 * M, K, PERIOD).coordinates
-    solve = _Solution(M, T)
-    for B in (K, K1):
-        X, bound = solve(B)
-        exact = exactly_solved(rational(M) @ rational(T), rational(B) @ rational(T))
-        error = np.abs(rational(X) - exact).astype(float)
-        assert (error <= bound).all()
-        # And from there they go into the polynomials of A.
-        _, off = PeriodicMatrix(X, errors=bound[None]).taylor(np.zeros(1), np.ones(1), 2, np.ones(4))
-        assert off[0] >= np.linalg.norm(bound)
-        assert (bound <= 8.0 * np.finfo(float).eps * np.abs(X).max()).all()
 
 
 def test_free_vibrations_keep_their_norm():

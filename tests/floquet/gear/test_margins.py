@@ -11,7 +11,6 @@ from floquet.gear.tongues import stability_margins
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.schema.bodies import bodies
 from tests.evidence.floquet.coulomb_zones import CoulombGearPair
-from validation.plots.stability import tongues_figure
 
 MU = 0.2
 
@@ -114,11 +113,6 @@ def test_damping_at_the_operating_speed_is_a_root(pair) -> None:
     assert inside.speed_margin == 0.0
 
 
-def test_tongues_are_drawn_to_their_tips(margins) -> None:
-    figure = tongues_figure(margins)
-    assert {t.get_text() for t in figure.axes[0].texts} >= {"2ω₃/5", "2ω₃/4"}
-
-
 @pytest.mark.parametrize(
     ("rpm", "nearest"),
     [(5000.0, 6500.0), (6600.0, 6600.0), (7400.0, 6800.0), (7800.0, 8300.0), (9e3, 8400.0)],
@@ -165,10 +159,8 @@ def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() 
 
 def test_the_search_above_stays_within_the_speeds_of_the_schema() -> None:
     pair = load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored",
-        operating__pinion_speed=150_000.0,
-        bearings__pinion__loa_stiffness=1e12,
+        mesh__relief="ignored", operating__pinion_speed=150_000.0, bearings__pinion__loa_stiffness=1e12,
         mesh__damping_ratio=0.0,
-    )
+    )  # fmt: skip
     margins = stability_margins(pair, (100_000.0, 190_000.0))
     assert margins.above is None or margins.above.upper <= 200_000.0

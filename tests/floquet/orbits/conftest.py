@@ -12,13 +12,9 @@ def bouncer():
 
     def make(gravity=9.0, stiffness=400.0, damping=0.0):
         return ContactSystem(
-            stiffness=[[0.0]],
-            damping=[[0.0]],
-            force=[gravity],
-            contacts=(Contact([1.0], [-1.0], stiffness, damping),),
-            phases=[0.0, 1.0],
-            output=[1.0],
-        )
+            stiffness=[[0.0]], damping=[[0.0]], force=[gravity],
+            contacts=(Contact([1.0], [-1.0], stiffness, damping),), phases=[0.0, 1.0], output=[1.0],
+        )  # fmt: skip
 
     return make
 
@@ -29,13 +25,10 @@ def meissner():
 
     def make(e=0.4, damping=0.1, force=1.0):
         return ContactSystem(
-            stiffness=[[0.0]],
-            damping=[[0.0]],
-            force=[force],
-            contacts=(Contact([1.0], [-1.0], [[1.0 + e], [1.0 - e]], damping),),
-            phases=[0.0, 0.5, 1.0],
+            stiffness=[[0.0]], damping=[[0.0]], force=[force],
+            contacts=(Contact([1.0], [-1.0], [[1.0 + e], [1.0 - e]], damping),), phases=[0.0, 0.5, 1.0],
             output=[1.0],
-        )
+        )  # fmt: skip
 
     return make
 

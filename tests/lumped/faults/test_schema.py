@@ -7,37 +7,20 @@ from lumped import ParameterError, load_gear_pair
 INDEX = [round(0.1 * j, 1) for j in range(28)]
 
 
-@pytest.mark.parametrize(
-    ("changes", "field", "allowed"),
-    [
-        ({"pinion.deviations": {"index": INDEX[:27]}}, "pinion.deviations.index", "one a tooth, 28"),
-        ({"gear.deviations": {"tolerance_class": 12}}, "gear.deviations.tolerance_class", "11"),
-        ({"gear.deviations": {}}, "gear.deviations.tolerance_class", "index or file"),
-        (
-            {"gear.deviations": {"tolerance_class": 6, "index": INDEX}},
-            "gear.deviations.index",
-            "tolerance_class",
-        ),
-        (
-            {"gear.deviations": {"tolerance_class": 6}, "gear.mounting": {"eccentricity": 9}},
-            "gear.mounting.eccentricity",
-            "one source",
-        ),
-        ({"pinion.faults": [{"kind": "crak", "tooth": 3}]}, "pinion.faults.0.kind", "crack, spall, chip"),
-        ({"pinion.faults": [{"kind": "crack", "tooth": 29, "depth": 1}]}, "pinion.faults.0.tooth", "1 to 28"),
-        (
-            {
-                "pinion.faults": [
-                    {"kind": "spall", "tooth": 1, "start_roll_angle": 20, "end_roll_angle": 19, "width": 1}
-                ]
-            },
-            "pinion.faults.0.end_roll_angle",
-            "> start_roll_angle",
-        ),
-        ({"mesh.first_teeth": [1, 29]}, "mesh.first_teeth", "from 1 to 28"),
-        ({"operating.torque_ripple": [{"shaft": "pinion", "order": 0, "amplitude": 1}]}, None, "1 to 1000"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "field", "allowed"), [
+    ({"pinion.deviations": {"index": INDEX[:27]}}, "pinion.deviations.index", "one a tooth, 28"),
+    ({"gear.deviations": {"tolerance_class": 12}}, "gear.deviations.tolerance_class", "11"),
+    ({"gear.deviations": {}}, "gear.deviations.tolerance_class", "index or file"),
+    ({"gear.deviations": {"tolerance_class": 6, "index": INDEX}}, "gear.deviations.index", "tolerance_class"),
+    ({"gear.deviations": {"tolerance_class": 6}, "gear.mounting": {"eccentricity": 9}},
+     "gear.mounting.eccentricity", "one source"),
+    ({"pinion.faults": [{"kind": "crak", "tooth": 3}]}, "pinion.faults.0.kind", "crack, spall, chip"),
+    ({"pinion.faults": [{"kind": "crack", "tooth": 29, "depth": 1}]}, "pinion.faults.0.tooth", "1 to 28"),
+    ({"pinion.faults": [{"kind": "spall", "tooth": 1, "start_roll_angle": 20, "end_roll_angle": 19,
+     "width": 1}]}, "pinion.faults.0.end_roll_angle", "> start_roll_angle"),
+    ({"mesh.first_teeth": [1, 29]}, "mesh.first_teeth", "from 1 to 28"),
+    ({"operating.torque_ripple": [{"shaft": "pinion", "order": 0, "amplitude": 1}]}, None, "1 to 1000"),
+])  # fmt: skip
 def test_refused_with_field_and_range(nasa, changes, field, allowed):
     with pytest.raises(ParameterError) as caught:
         nasa.with_(changes)

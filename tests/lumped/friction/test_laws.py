@@ -25,16 +25,13 @@ def test_benedict_kelley_refuses_its_pole_in_roughness(roughness):
         benedict_kelley(100, 10, 2, 10, roughness)
 
 
-@pytest.mark.parametrize(
-    ("field", "arguments"),
-    [
-        ("unit_load", (-1, 10, 2, 10, 0.4)),
-        ("viscosity", (100, 0, 2, 10, 0.4)),
-        ("sliding_velocity", (100, 10, -2, 10, 0.4)),
-        ("entraining_velocity", (100, 10, 2, math.nan, 0.4)),
-        ("roughness", (100, 10, 2, 10, -0.1)),
-    ],
-)
+@pytest.mark.parametrize(("field", "arguments"), [
+    ("unit_load", (-1, 10, 2, 10, 0.4)),
+    ("viscosity", (100, 0, 2, 10, 0.4)),
+    ("sliding_velocity", (100, 10, -2, 10, 0.4)),
+    ("entraining_velocity", (100, 10, 2, math.nan, 0.4)),
+    ("roughness", (100, 10, 2, 10, -0.1)),
+])  # fmt: skip
 def test_benedict_kelley_names_a_bad_argument(field, arguments):
     with pytest.raises(ParameterError, match=field):
         benedict_kelley(*arguments)

@@ -23,14 +23,11 @@ def decades(low, high):
 @st.composite
 def operating_points(draw):
     return PAIRS[draw(st.sampled_from(sorted(PAIRS)))].with_(
-        operating__pinion_speed=draw(decades(10, 1e5)),
-        operating__pinion_torque=draw(decades(0.1, 3e3)),
-        lubricant__viscosity=draw(decades(1, 1e3)),
-        pinion__roughness=draw(decades(0.02, 1.1)),
-        gear__roughness=draw(decades(0.02, 1.1)),
-        friction__maximum=draw(decades(0.01, 1)),
+        operating__pinion_speed=draw(decades(10, 1e5)), operating__pinion_torque=draw(decades(0.1, 3e3)),
+        lubricant__viscosity=draw(decades(1, 1e3)), pinion__roughness=draw(decades(0.02, 1.1)),
+        gear__roughness=draw(decades(0.02, 1.1)), friction__maximum=draw(decades(0.01, 1)),
         friction__sharpness=draw(decades(1, 1e3)),
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("law", [name for name in LAWS if name != "none"])

@@ -26,14 +26,9 @@ from lumped.ranges import ValidityRange, range_violations
 def slow():
     """A small slow pair: 48/48, m 1, 50 rpm; law II gives a mean mu of a dry contact."""
     return load_gear_pair("kahraman_blankenship_50_50").with_(
-        pinion__teeth=48,
-        gear__teeth=48,
-        basic_rack__module=1.0,
-        centre_distance=48.0,
-        mesh__backlash=0.1,
-        operating__pinion_speed=50.0,
-        operating__pinion_torque=5.0,
-    )
+        pinion__teeth=48, gear__teeth=48, basic_rack__module=1.0, centre_distance=48.0, mesh__backlash=0.1,
+        operating__pinion_speed=50.0, operating__pinion_torque=5.0,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

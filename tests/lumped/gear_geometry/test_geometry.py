@@ -17,15 +17,9 @@ ROUNDING = 1e-13  # relative, of lengths from a handful of operations in double 
 def test_28_28_is_the_table_of_the_model_page(nasa):
     g = geometry(nasa)
     printed = {
-        "base_radius_pinion": 41.7693,
-        "base_pitch": 9.3730,
-        "L_XY": 30.4056,
-        "L_XA": 7.5263,
-        "L_XB": 13.5063,
-        "L_XP": 15.2028,
-        "L_XC": 16.8993,
-        "L_XD": 22.8793,
-    }
+        "base_radius_pinion": 41.7693, "base_pitch": 9.3730, "L_XY": 30.4056, "L_XA": 7.5263,
+        "L_XB": 13.5063, "L_XP": 15.2028, "L_XC": 16.8993, "L_XD": 22.8793,
+    }  # fmt: skip
     for name, value in printed.items():
         assert getattr(g, name) * 1e3 == pytest.approx(value, abs=0.51e-4), name  # printed to 0.1 um
     assert g.contact_ratio == pytest.approx(1.6380, abs=0.51e-4)

@@ -149,12 +149,9 @@ def test_iso_mean_coefficient_on_fzg_c():
     # GEARpie's report of the FZG C14 gears: 200 N m, 1500 rpm, eta 13.28 mPa s, Ra 0.4/0.31 um, X_L 0.846
     # prints mu_mZ (Schlenk, the formula of ISO/TR 14179-2) = 0.0449; half its last place
     pair = load_gear_pair("fzg_c").with_(
-        operating__pinion_speed=1500,
-        operating__pinion_torque=200,
-        lubricant__viscosity=13.28,
-        pinion__roughness=0.4,
-        gear__roughness=0.31,
-    )
+        operating__pinion_speed=1500, operating__pinion_torque=200, lubricant__viscosity=13.28,
+        pinion__roughness=0.4, gear__roughness=0.31,
+    )  # fmt: skip
     assert 0.846 * iso_14179_of(pair) == pytest.approx(0.0449, abs=5e-5)
     # The report's loss, 274.37 W, stands on its numerical factor 0.1946 instead of the closed form 0.1986;
     # three more digits of mu follow from it: 274.37/(31415.9 * 0.1946), good to 5e-5/0.1946
@@ -230,11 +227,9 @@ def brute_force(pair, relative=lambda xi: 1.0):
 def high_contact_ratio():
     # A tall tooth: contact ratio above 2, where the closed form does not apply
     pair = load_gear_pair("kahraman_blankenship_50_50").with_(
-        pinion__addendum=4.2,
-        gear__addendum=4.2,
-        basic_rack__dedendum_coefficient=1.6,
+        pinion__addendum=4.2, gear__addendum=4.2, basic_rack__dedendum_coefficient=1.6,
         basic_rack__fillet_radius_coefficient=0.2,
-    )
+    )  # fmt: skip
     assert geometry(pair).contact_ratio > 2.0
     return pair
 
@@ -252,11 +247,8 @@ def test_sharing_by_stiffness():
     points = list(np.linspace(0.0, g.contact_ratio, 201))
     t = np.array(points) / g.contact_ratio
     table = {
-        "model": "table",
-        "axis": "phase",
-        "points": points,
-        "stiffness": list(1e8 * (1 + 2 * t * (1 - t))),
-    }
+        "model": "table", "axis": "phase", "points": points, "stiffness": list(1e8 * (1 + 2 * t * (1 - t))),
+    }  # fmt: skip
     pair = pair.with_(mesh__stiffness=table)
     curve = pair_stiffness(pair)
     expected = brute_force(pair, lambda xi: float(curve(min(xi, math.nextafter(g.L_XD, 0.0)))))

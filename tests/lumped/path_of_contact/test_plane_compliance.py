@@ -44,12 +44,9 @@ def test_the_matrix_is_symmetric_and_makes_the_mesh_stiffness(nasa, free):
 
 def test_the_transmission_error_takes_the_whole_matrix(nasa, free):
     pair = nasa.with_(
-        mesh__stiffness={"model": "finite_elements"},
-        mesh__contact="loaded",
-        mesh__relief="ignored",
-        pinion__tip_relief=None,
-        gear__tip_relief=None,
-    )
+        mesh__stiffness={"model": "finite_elements"}, mesh__contact="loaded", mesh__relief="ignored",
+        pinion__tip_relief=None, gear__tip_relief=None,
+    )  # fmt: skip
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     phases = 2 * free.sizes["phase"]
     found = static_transmission_error(pair, extended=False, phases=phases).transmission_error.values[0, 1::2]

@@ -64,17 +64,14 @@ def test_load_stiffens_the_contact_by_the_logarithm(name):
 _FEET = ["fillet foundation of the gear"]
 
 
-@pytest.mark.parametrize(
-    ("stiffness", "laws"),
-    [
-        ({"model": "energy"}, _FEET),
-        ({"model": "rectangular"}, ["ISO 6336-1 tooth stiffness"]),
-        ({"model": "parabolic", "peak": 3e8}, ["ISO 6336-1 tooth stiffness"]),
-        ({"model": "parabolic", "peak": 3e8, "end_ratio": 0.6}, []),
-        ({"model": "rectangular", "pair_stiffness": 3e8}, []),
-        ({"model": "energy", "scale": "iso6336"}, [*_FEET, "ISO 6336-1 tooth stiffness"]),
-    ],
-)
+@pytest.mark.parametrize(("stiffness", "laws"), [
+    ({"model": "energy"}, _FEET),
+    ({"model": "rectangular"}, ["ISO 6336-1 tooth stiffness"]),
+    ({"model": "parabolic", "peak": 3e8}, ["ISO 6336-1 tooth stiffness"]),
+    ({"model": "parabolic", "peak": 3e8, "end_ratio": 0.6}, []),
+    ({"model": "rectangular", "pair_stiffness": 3e8}, []),
+    ({"model": "energy", "scale": "iso6336"}, [*_FEET, "ISO 6336-1 tooth stiffness"]),
+])  # fmt: skip
 def test_only_the_ranges_of_the_model_in_use_are_reported(stiffness, laws):
     # 340 teeth are too narrow for the foundation's fit, 20 N m too little for the standard's load range.
     pair = load_gear_pair("nasa_28_28").with_(
@@ -83,15 +80,12 @@ def test_only_the_ranges_of_the_model_in_use_are_reported(stiffness, laws):
     assert [v.law for v in pair.mesh.stiffness.violations(pair)] == laws
 
 
-@pytest.mark.parametrize(
-    "stiffness",
-    [
-        {"model": "energy"},
-        {"model": "energy", "scale": "iso6336"},
-        {"model": "rectangular"},
-        {"model": "parabolic"},
-    ],
-)
+@pytest.mark.parametrize("stiffness", [
+    {"model": "energy"},
+    {"model": "energy", "scale": "iso6336"},
+    {"model": "rectangular"},
+    {"model": "parabolic"},
+])  # fmt: skip
 def test_a_thin_rim_is_flagged_once_by_every_computed_stiffness(stiffness):
     # Root circle of 50 teeth of 3 mm: 142.5 mm.
     pair = load_gear_pair("kahraman_blankenship_50_50").with_(mesh__stiffness=stiffness, gear__bore=71.0)

@@ -10,13 +10,10 @@ from lumped.quasi_static import static_transmission_error
 def relieved(**changes):
     return load_gear_pair("nasa_28_28").with_(
         {
-            "mesh.relief": "static",
-            "mesh.stiffness": {"model": "energy"},
-            "operating.pinion_torque": 56.5,
-            "friction.law": "none",
-            **changes,
+            "mesh.relief": "static", "mesh.stiffness": {"model": "energy"}, "operating.pinion_torque": 56.5,
+            "friction.law": "none", **changes,
         }
-    )
+    )  # fmt: skip
 
 
 def test_elements_carry_the_error_and_the_loaded_contact():

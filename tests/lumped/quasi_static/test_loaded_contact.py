@@ -129,11 +129,9 @@ def test_corner_contact_grows_with_the_root_of_the_load():
 def damper_power(torque, rpm):
     """Of a linear pair with corners, and the pair; so damped that one corner's swing ends by the next."""
     pair = FORMS["rectangular"].with_(
-        friction__law="none",
-        mesh__damping_ratio=0.2,
-        operating__pinion_torque=torque,
+        friction__law="none", mesh__damping_ratio=0.2, operating__pinion_torque=torque,
         operating__pinion_speed=rpm,
-    )
+    )  # fmt: skip
     return mean_powers(solution(pair)).tooth_dampers, pair
 
 

@@ -97,15 +97,12 @@ class TestVariations:
         assert sources["pinion.teeth"] == dict(nasa.sources)["pinion.teeth"]
 
     @pytest.mark.parametrize("value", [None, 3])
-    @pytest.mark.parametrize(
-        ("path", "near"),
-        [
-            ("operating.pinon_speed", "pinion_speed"),
-            ("pinion.tip_reief", "tip_relief"),
-            ("frictin.law", "friction"),
-            ("pinion.tip_relief.amont", "amount"),
-        ],
-    )
+    @pytest.mark.parametrize(("path", "near"), [
+        ("operating.pinon_speed", "pinion_speed"),
+        ("pinion.tip_reief", "tip_relief"),
+        ("frictin.law", "friction"),
+        ("pinion.tip_relief.amont", "amount"),
+    ])  # fmt: skip
     def test_an_unknown_path_suggests_the_nearest(self, nasa, path, near, value):
         with pytest.raises(ParameterError, match=f"Did you mean '{near}'"):
             nasa.with_({path: value})

@@ -34,11 +34,9 @@ FAULTS = [
     {"kind": "chip", "tooth": 1, "roll_angle": 27},
 ]
 STIFFNESS = {
-    "pair_stiffness": {"model": "rectangular"},
-    "peak": {"model": "parabolic"},
-    "end_ratio": {"model": "parabolic"},
-    "ramp_length": {"model": "parabolic"},
-}
+    "pair_stiffness": {"model": "rectangular"}, "peak": {"model": "parabolic"},
+    "end_ratio": {"model": "parabolic"}, "ramp_length": {"model": "parabolic"},
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -161,30 +159,24 @@ class TestOtherFields:
         one = problem(edited("pinion.teeth", value), "pinion.teeth", allowed="5")
         assert ("without a point" in one.action) == isinstance(value, float)
 
-    @pytest.mark.parametrize(
-        ("path", "value", "near"),
-        [
-            ("friction.law", "colomb", "coulomb"),
-            ("friction.law", "Xu-Kaharman", "xu_kahraman"),
-            ("mesh.stiffness", {"model": "parabolc"}, "parabolic"),
-            ("pinion.tip_relief.shape", "liner", "linear"),
-        ],
-    )
+    @pytest.mark.parametrize(("path", "value", "near"), [
+        ("friction.law", "colomb", "coulomb"),
+        ("friction.law", "Xu-Kaharman", "xu_kahraman"),
+        ("mesh.stiffness", {"model": "parabolc"}, "parabolic"),
+        ("pinion.tip_relief.shape", "liner", "linear"),
+    ])  # fmt: skip
     def test_a_misspelt_choice_suggests_the_nearest(self, edited, path, value, near):
         one = problem(edited(path, value), path if path != "mesh.stiffness" else "mesh.stiffness.model")
         assert f"'{near}'" in one.action
 
-    @pytest.mark.parametrize(
-        ("path", "near"),
-        [
-            ("pinion.teth", "teeth"),
-            ("operating.pinion_sped", "pinion_speed"),
-            ("mesh.stifness", "stiffness"),
-            ("lubrication", "lubricant"),
-            ("pinion.tip_relief.amout", "amount"),
-            ("bearings.pinion.loa_stifness", "loa_stiffness"),
-        ],
-    )
+    @pytest.mark.parametrize(("path", "near"), [
+        ("pinion.teth", "teeth"),
+        ("operating.pinion_sped", "pinion_speed"),
+        ("mesh.stifness", "stiffness"),
+        ("lubrication", "lubricant"),
+        ("pinion.tip_relief.amout", "amount"),
+        ("bearings.pinion.loa_stifness", "loa_stiffness"),
+    ])  # fmt: skip
     def test_an_unknown_key_suggests_the_nearest(self, edited, path, near):
         problem(edited(path, 1.0), path, value="unknown key", action=f"Did you mean '{near}'?")
 
@@ -267,15 +259,12 @@ class TestFiles:
         problem(source, "pair", allowed="preset")
 
 
-@pytest.mark.parametrize(
-    ("path", "suggestion"),
-    [
-        ("mesh.dampin_ratio", "damping_ratio"),
-        ("bearings.pinon", "pinion"),
-        ("operating.pinion_speed.rpm", "Remove"),
-        ("", "Remove"),
-    ],
-)
+@pytest.mark.parametrize(("path", "suggestion"), [
+    ("mesh.dampin_ratio", "damping_ratio"),
+    ("bearings.pinon", "pinion"),
+    ("operating.pinion_speed.rpm", "Remove"),
+    ("", "Remove"),
+])  # fmt: skip
 def test_a_source_of_a_field_that_does_not_exist_is_refused(nasa, path, suggestion):
     data = nasa.to_mapping()
     data["sources"] = {**data["sources"], path: "measured"}

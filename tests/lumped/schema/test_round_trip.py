@@ -18,22 +18,12 @@ from lumped.labelling import parameters_hash
 
 #: Sections that no preset has, so that their fields are tried too.
 FAULTS = [
-    [
-        {"kind": "crack", "tooth": 4, "depth": 0.7, "angle": 71.3},
-        {"kind": "spall", "tooth": 1, "start_roll_angle": 18.3, "end_roll_angle": 21.7, "width": 2.3},
-    ],
-    [
-        {
-            "kind": "spall",
-            "tooth": 2,
-            "start_roll_angle": 18.3,
-            "end_roll_angle": 21.7,
-            "width": 3.1,
-            "pit_depth": 33.3,
-        }
-    ],
+    [{"kind": "crack", "tooth": 4, "depth": 0.7, "angle": 71.3}, {"kind": "spall", "tooth": 1,
+     "start_roll_angle": 18.3, "end_roll_angle": 21.7, "width": 2.3}],
+    [{"kind": "spall", "tooth": 2, "start_roll_angle": 18.3, "end_roll_angle": 21.7, "width": 3.1,
+     "pit_depth": 33.3}],
     [{"kind": "chip", "tooth": 28, "roll_angle": 27.3}],
-]
+]  # fmt: skip
 MORE = {
     "mesh.stiffness": [
         {"model": "energy", "ramp_length": 0.3},
@@ -140,18 +130,15 @@ def test_numbers_of_numpy_are_numbers(nasa, kind):
 
 
 class TestValue:
-    @pytest.mark.parametrize(
-        ("path", "unit", "number"),
-        [
-            ("operating.pinion_speed", "rpm", 4875.0),
-            ("operating.pinion_speed", "Hz", 81.25),
-            ("operating.pinion_speed", "1/min", 4875.0),
-            ("pinion.face_width", "mm", 6.35),
-            ("pinion.face_width", "inch", 0.25),
-            ("gear.youngs_modulus", "N/mm2", 206e3),
-            ("operating.pinion_torque", "in-lb", 56.5 / 0.0254 / 4.4482216152605),
-        ],
-    )
+    @pytest.mark.parametrize(("path", "unit", "number"), [
+        ("operating.pinion_speed", "rpm", 4875.0),
+        ("operating.pinion_speed", "Hz", 81.25),
+        ("operating.pinion_speed", "1/min", 4875.0),
+        ("pinion.face_width", "mm", 6.35),
+        ("pinion.face_width", "inch", 0.25),
+        ("gear.youngs_modulus", "N/mm2", 206e3),
+        ("operating.pinion_torque", "in-lb", 56.5 / 0.0254 / 4.4482216152605),
+    ])  # fmt: skip
     def test_in_another_unit(self, nasa, path, unit, number):
         assert dict(fields(nasa))[path].to(unit) == pytest.approx(number, rel=1e-14)
 

@@ -54,11 +54,9 @@ def determinant(omega, ends):
 
 LAST = 2 * MESH.stations.size - 2
 ENDS = {
-    ("clamped", "free"): [0, 1],
-    ("supported", "supported"): [0, LAST],
-    ("free", "free"): [],
+    ("clamped", "free"): [0, 1], ("supported", "supported"): [0, LAST], ("free", "free"): [],
     ("clamped", "clamped"): [0, 1, LAST, LAST + 1],
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("ends", ENDS, ids="-".join)

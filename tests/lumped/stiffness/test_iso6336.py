@@ -40,12 +40,9 @@ def test_the_standards_gear_one_is_the_smaller_whichever_drives():
         centre_distance=None, pinion__profile_shift=0.1, gear__teeth=40, gear__tip_relief=None
     )
     swapped = pair.with_(
-        pinion__teeth=40,
-        pinion__profile_shift=0.0,
-        pinion__tip_relief=None,
-        gear__teeth=28,
+        pinion__teeth=40, pinion__profile_shift=0.0, pinion__tip_relief=None, gear__teeth=28,
         gear__profile_shift=0.1,
-    )
+    )  # fmt: skip
     assert iso6336.pair_single_stiffness(pair) == iso6336.pair_single_stiffness(swapped)
 
 

@@ -110,20 +110,17 @@ def test_csv_beside_the_parameter_file(tmp_path):
     assert hash(again) == hash(pair)
 
 
-@pytest.mark.parametrize(
-    ("text", "match"),
-    [
-        ("", "two columns"),
-        ("a,b\n1,2\n", "header"),
-        ("position [mm], stiffness [kg]\n1,2\n3,4\n", "stiffness with its unit"),
-        ("position [N], stiffness [N/m]\n1,2\n3,4\n", "position with its unit"),
-        ("phase [mm], stiffness [N/m]\n1,2\n3,4\n", "phase without a unit"),
-        ("position [mm], stiffness [N/m]\n1,two\n", "pair of numbers"),
-        ("position [mm], stiffness [N/m]\n1,2,3\n1,2\n", "pair of numbers"),
-        ("position [mm], stiffness [N/m]\n1,2,3\n1,2,3\n", "pair of numbers"),
-        ("position [mm], stiffness [N/m]\n", "two columns"),
-    ],
-)
+@pytest.mark.parametrize(("text", "match"), [
+    ("", "two columns"),
+    ("a,b\n1,2\n", "header"),
+    ("position [mm], stiffness [kg]\n1,2\n3,4\n", "stiffness with its unit"),
+    ("position [N], stiffness [N/m]\n1,2\n3,4\n", "position with its unit"),
+    ("phase [mm], stiffness [N/m]\n1,2\n3,4\n", "phase without a unit"),
+    ("position [mm], stiffness [N/m]\n1,two\n", "pair of numbers"),
+    ("position [mm], stiffness [N/m]\n1,2,3\n1,2\n", "pair of numbers"),
+    ("position [mm], stiffness [N/m]\n1,2,3\n1,2,3\n", "pair of numbers"),
+    ("position [mm], stiffness [N/m]\n", "two columns"),
+])  # fmt: skip
 def test_wrong_files_are_refused(tmp_path, text, match):
     with pytest.raises(ParameterError, match=match):
         read_stiffness_table(write(tmp_path, text).name, tmp_path)

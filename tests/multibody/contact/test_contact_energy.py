@@ -18,8 +18,6 @@ from multibody.contact import kinematics as kin
 from multibody.contact.elements import elastic_load, shared_loads, stored_energy
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
-from multibody.run.flow_map import find_orbit
-from multibody.run.setup import prepare
 
 ALL = effect_flags(None, "loaded")
 #: Neither friction nor dampers, so that all forces come from the energy.
@@ -108,26 +106,6 @@ def test_action_is_reaction_in_force_and_moment(name, flank):
         assert abs(moment) < 1e-12 * scale * p[kn.RADIUS_P]
 
 
-def test_stiffness_of_the_mesh_is_symmetric_only_with_path_work():
-    """A force without a potential has a circulatory part: k' delta grad(delta) grad(xi)^T."""
-    numbers = machine(PAIRS["linear"], ALL)
-    length = np.array([1.0, 1.0, numbers.parameters[kn.RADIUS_P]] * 2)
-    length[5] = numbers.parameters[kn.RADIUS_G]
-
-    def skew(flags, t, q):
-        step = np.diag(2e-8 / length)
-        rows = [contact(numbers, t, q + one, flags=flags)[0] for one in step]
-        rows = np.array(rows) - [contact(numbers, t, q - one, flags=flags)[0] for one in step]
-        k = rows / 4e-8 / length
-        return np.abs(k - k.T).max() / np.abs(k).max()
-
-    inside = [(t, q) for t, q in states(numbers, 40) if 0.2 < t / numbers.period < 0.5]
-    found = np.array([(skew(ALL, t, q), skew(ALL & ~kn.PATH_WORK, t, q)) for t, q in inside])
-    assert found[:, 0].max() < 1e-7
-    assert found[:, 1].min() > 1e-6
-    assert found[:, 1].max() > 1e-4
-
-
 @pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
 def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond):
     pair = PAIRS["parabolic, unequal"]
@@ -168,22 +146,6 @@ def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(
         assert np.hypot(fx, fy) == pytest.approx(1.0, rel=1e-12)
         assert moment == pytest.approx(x * fy - y * fx, rel=1e-10)
     assert wrench[5 - 3 * own] == pytest.approx(radii[1 - own], rel=1e-12)
-
-
-def test_beyond_the_path_relief_stays_what_it_is_at_the_tip():
-    pair = bare({"model": "energy"}, **{"mesh.relief": "static", "gear.tip_relief.amount": 2.0})
-    numbers, seen = machine(pair, ALL), 0
-    p = numbers.parameters
-    for t, q in states(numbers, 200):
-        line, delta, _, _ = kn.mesh_position(t, q, p, ALL, kin.DRIVE)
-        length = line.length
-        for record in contact(numbers, t, q)[1]:
-            beyond = 0.5 * (length + delta + p[kn.L_XY]) - record[kn.XI] - p[kn.TIP_G]  # of the gear's tip
-            if record[kn.XI] < p[kn.L_XA] and beyond > 0.0:
-                gap = kin.corner_gap(beyond, p[kn.TIP_G], length, p[kn.RADIUS_G], p[kn.RADIUS_P])[0]
-                assert record[kn.OVERLAP] == pytest.approx(delta - 2e-6 - gap, abs=1e-15)
-                seen += 1
-    assert seen > 5
 
 
 def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alone():
@@ -268,14 +230,6 @@ def test_the_stiffness_of_the_table_holds_at_the_mean_load():
     assert record[kn.LOAD] == pytest.approx(load, rel=1e-6)
 
 
-def test_a_cantilever_pushes_along_itself_with_its_load_times_the_slope_of_its_end():
-    """k = 3 EI/x^3: the end turns by N x^2/(2 EI), towards the tip."""
-    bending, x, load = 7.0, 0.04, 900.0
-    k = 3.0 * bending / x**3
-    along = stored_energy(load, k, -3.0 * k / x, 0.0, load)[1]
-    assert -along == pytest.approx(load * load * x**2 / (2.0 * bending), rel=1e-14)
-
-
 @pytest.mark.parametrize("path_work", [True, False])
 def test_a_slow_change_of_stiffness_is_paid_by_the_shafts(path_work):
     """A free pair vibrates on while k grows: its energy over its frequency stays, and path work is who pays.
@@ -336,18 +290,6 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
     assert np.ptp(ripple[False]) < 1e-9 * np.ptp(expected)
 
 
-def test_what_dampers_and_bearings_take_grows_with_the_square_of_the_torque():
-    """And the brake that holds the exact model's speed is that of the linear model's mean powers."""
-    lost = []
-    for torque in (56.5, 28.25):
-        pair = bare(RAMP, **{"mesh.damping_ratio": 0.1, "operating.pinion_torque": torque})
-        setup = prepare(pair.with_(operating__pinion_speed=2000.0))
-        brakes = find_orbit(setup).machine.torque_gear, setup.machine.torque_gear
-        lost.append(torque - np.array(brakes))  # equal gears
-        assert lost[-1][0] == pytest.approx(lost[-1][1], rel=2e-4)
-    assert np.log2(lost[0] / lost[1]) == pytest.approx(2.0, abs=1e-3)
-
-
 @pytest.mark.parametrize("softening", [0.0, 4.4e-10])
 def test_neighbours_share_the_load_in_both_models(softening):
     """Newton's steps here, relaxation there; and the conditions of contact themselves."""
@@ -374,44 +316,9 @@ def test_neighbours_share_the_load_in_both_models(softening):
     assert {(4, 1), (4, 3), (4, 4), (2, 1)} <= seen
 
 
-def test_each_pair_is_moved_by_what_the_lumped_model_says_of_the_pair_behind():
-    pair = bare({"model": "energy", "hertz": "linear"}, **UNEQUAL)
-    numbers, together = machine(pair, ALL), 0
-    moved = pair.mesh.stiffness.neighbours(pair)[0]
-    for t, q in states(numbers, 60):
-        found = contact(numbers, t, q)[1]
-        if len(found) == 2 and found[:, kn.LOAD].min() > 0.0:
-            behind, together = found[:, kn.XI].min(), together + 1
-            left = found[:, kn.OVERLAP] - moved(behind) * found[::-1, kn.ELASTIC]
-            assert found[:, kn.ELASTIC] == pytest.approx(found[:, kn.K] * left, rel=1e-9)
-            alone = contact(numbers, t, q, flags=ALL & ~kn.NEIGHBOURS)[1]
-            assert alone[:, kn.LOAD].sum() > 1.05 * found[:, kn.LOAD].sum()
-    assert together > 10
-
-
 def test_a_pair_that_cannot_part_pulls_and_still_moves_its_neighbour():
     loads, w = np.empty(2), np.array([[0.0, 2e-9], [2e-9, 0.0]])
     k, pressed = np.array([8e7, 6e7]), np.array([1e-5, -4e-6])
     shared_loads(2, pressed, k, 0b11, w, 0.0, 1353.0, loads)
     assert loads == pytest.approx(np.linalg.solve(np.diag(1.0 / k) + w, pressed), rel=1e-12)
     assert loads[1] < 0.0
-
-
-def test_a_loss_that_falls_with_speed_lets_the_free_train_run_away():
-    """Sommerfeld's effect above a peak of the loss: of the double multiplier one is 1 - (dtau/dOm) T_m/J.
-
-    The two are split by little, so their sum is what differences tell.
-    """
-    pair = bare({"model": "energy"}, **{"mesh.damping_ratio": 0.05, "operating.pinion_speed": 8500.0})
-    step = 0.002
-    low, high = (
-        find_orbit(prepare(pair.with_(operating__pinion_speed=8500.0 * f), rtol=1e-10)).machine.torque_gear
-        for f in (1.0 - step, 1.0 + step)
-    )
-    gains = (high - low) / (2.0 * step * pair.operating.pinion_speed)  # equal gears: -dtau/dOm
-    numbers = machine(pair)
-    multipliers = np.linalg.eigvals(multibody.monodromy(pair).full)
-    two = multipliers[np.argsort(np.abs(multipliers - 1.0))[:2]]
-    runaway = gains * numbers.period / numbers.inertia.sum()
-    assert runaway > 5e-5
-    assert two.sum().real - 2.0 == pytest.approx(runaway, rel=0.02)

@@ -9,7 +9,6 @@ from multibody.contact import kinematics as kin
 from multibody.contact.kernels import linear_forces, tooth_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
-from multibody.run.model import from_lumped_state, to_lumped_state
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.1)
 UNEQUAL = PAIR.with_(
@@ -53,21 +52,6 @@ def test_wrench_power_is_what_the_contacts_take(pair, flags, rng):
         taken = c[:, kn.LOAD] @ c[:, kn.CLOSING] + c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
         # Powers of single forces are some 20 kW here and cancel to watts.
         assert wrench @ total == pytest.approx(-taken, abs=1e-9 * np.abs(wrench * total).sum())
-
-
-@pytest.mark.parametrize("pair", [PAIR, UNEQUAL], ids=["equal", "unequal, shifted"])
-def test_third_law_holds_about_any_point(pair, rng):
-    """Forces cancel, and moments about the origin cancel with the bodies at their actual places."""
-    numbers = make(pair)
-    p = numbers.parameters
-    for t in np.linspace(0, numbers.period, 7):
-        q, v = pressed_state(numbers, rng)
-        w, _ = forces(numbers, t, q, v)
-        px, py = p[kn.CENTRE_PX] + q[0], p[kn.CENTRE_PY] + q[1]
-        gx, gy = p[kn.CENTRE_GX] + q[3], p[kn.CENTRE_GY] + q[4]
-        np.testing.assert_allclose(w[:2], -w[3:5], rtol=1e-14)
-        moment = w[2] + w[5] + px * w[1] - py * w[0] + gx * w[4] - gy * w[3]
-        assert abs(moment) < 1e-14 * np.abs(w).max()  # an arm wrong by 1 um would give 1e-6
 
 
 @pytest.mark.parametrize(
@@ -134,21 +118,6 @@ def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
     step = p[kn.PITCH] * 0.01 / 2000
     assert entered[0] == pytest.approx(delta / 2, abs=step)
     assert entered[1] == pytest.approx(0.0, abs=step)
-
-
-def test_states_convert_back():
-    state = np.arange(12.0)
-    np.testing.assert_array_equal(to_lumped_state(*from_lumped_state(state)), state)
-
-
-def test_unequal_pair_has_lumped_geometry():
-    """Path of contact, pitch point and backlash derived here equal those of lumped."""
-    g, numbers = lumped.geometry(UNEQUAL), make(UNEQUAL)
-    p = numbers.parameters
-    for place, value in ((kn.L_XA, g.L_XA), (kn.L_XP, g.L_XP), (kn.L_XD, g.L_XD), (kn.L_XY, g.L_XY)):
-        assert p[place] == pytest.approx(value, rel=1e-13)
-    both = sum(kn.mesh_position(0.0, np.zeros(6), p, 0, flank)[1] for flank in (kin.DRIVE, kin.COAST))
-    assert -kin.wrap(both, p[kn.PITCH]) == pytest.approx(g.normal_backlash, abs=1e-16 * 50)
 
 
 def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):

@@ -13,20 +13,6 @@ from multibody.run.effects import effect_flags
 FIT = 1e-10
 
 
-@pytest.mark.parametrize("name", lumped.preset_names())
-@pytest.mark.parametrize("law", [name for name in fr.LAWS if name != "none"])
-@pytest.mark.parametrize("rpm", [800.0, None], ids=["800 rpm", "own speed"])
-def test_the_nominal_motion_has_the_lumped_coefficient(name, law, rpm):
-    """Laws, units, film, mean of law II and regimes of law V, each written twice."""
-    pair = lumped.load_gear_pair(name).with_(friction__law=law)
-    if rpm is not None:
-        pair = pair.with_(operating__pinion_speed=rpm)
-    p, table = machine(pair).parameters, lumped.mesh_elements(pair).friction
-    xi = np.random.default_rng(15).uniform(p[kn.L_XA], p[kn.L_XD], 400)
-    own = [kn.nominal_friction(p, x) for x in xi]
-    np.testing.assert_allclose(own, table(xi), rtol=0.0, atol=FIT)
-
-
 @pytest.mark.parametrize(
     "oil",
     [

@@ -27,27 +27,17 @@ def bearing(position, loa, oloa, **damping):
 SHAFTS = {
     "damping_ratio": 0.02,
     "max_frequency": 12e3,
-    "pinion": {
-        "segments": [{"length": 100, "diameter": 30}, {"length": 60, "diameter": 25, "bore": 8}],
-        "gear_position": 145,
-        "bearings": [bearing(20, 2e8, 1.6e8, loa_damping=300.0), bearing(90, 3e8, 2e8)],
-    },
-    "gear": {
-        "segments": [{"length": 120, "diameter": 35}],
-        "gear_position": 30,
-        "bearings": [bearing(10, 1.5e8, 2.5e8), bearing(105, 2e8, 1e8, oloa_damping=200.0)],
-    },
+    "pinion": {"segments": [{"length": 100, "diameter": 30}, {"length": 60, "diameter": 25, "bore": 8}],
+     "gear_position": 145, "bearings": [bearing(20, 2e8, 1.6e8, loa_damping=300.0), bearing(90, 3e8, 2e8)]},
+    "gear": {"segments": [{"length": 120, "diameter": 35}], "gear_position": 30, "bearings": [bearing(10,
+     1.5e8, 2.5e8), bearing(105, 2e8, 1e8, oloa_damping=200.0)]},
     "motor": {"position": 0, "inertia": 0.004, "coupling_stiffness": 4e4, "coupling_damping": 0.2},
     "load": {"position": 120, "inertia": 0.02, "coupling_stiffness": 2e4},
-}
+}  # fmt: skip
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
-    mesh__relief="ignored",
-    friction__law="coulomb",
-    friction__coefficient=0.06,
-    shafts=SHAFTS,
-    gear__bore=40,
+    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.06, shafts=SHAFTS, gear__bore=40,
     mesh__stiffness={"model": "finite_elements"},
-)
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -107,25 +107,18 @@ def test_twist_frequencies_of_inertias_on_an_elastic_shaft():
 
 def bearing(position, stiffness, damping=0.0):
     return ShaftBearing.model_construct(
-        position=position,
-        loa_stiffness=stiffness,
-        oloa_stiffness=stiffness,
-        loa_damping=damping,
-        oloa_damping=damping,
-        tilt_stiffness=0.0,
-    )
+        position=position, loa_stiffness=stiffness, oloa_stiffness=stiffness, loa_damping=damping,
+        oloa_damping=damping, tilt_stiffness=0.0,
+    )  # fmt: skip
 
 
 def symmetric(density, **changes):
     """A gear in the middle of 200 mm between two bearings."""
     fields = {
         "segments": (ShaftSegment.model_construct(length=0.2, diameter=0.03, bore=0.0),),
-        "gear_position": 0.1,
-        "bearings": (bearing(0.0, 3e8, 20.0), bearing(0.2, 3e8, 20.0)),
-        "youngs_modulus": 206e9,
-        "poisson_ratio": 0.3,
-        "density": density,
-    }
+        "gear_position": 0.1, "bearings": (bearing(0.0, 3e8, 20.0), bearing(0.2, 3e8, 20.0)),
+        "youngs_modulus": 206e9, "poisson_ratio": 0.3, "density": density,
+    }  # fmt: skip
     return Shaft.model_construct(**(fields | changes))
 
 

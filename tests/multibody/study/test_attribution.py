@@ -40,53 +40,12 @@ def test_causes_of_the_difference():
     assert np.isnan(still.sel(cause="all", quantity="y_p"))
 
 
-@pytest.mark.slow
-def test_bearings_multiply_the_shift_of_entry():
-    """Teeth enter late by half the wind-up q = delta + x_g - x_p; only both causes together see all of it.
-
-    The entering gear tip meets the pinion where rho_g = L + delta - rho_p. With the contact's mean place
-    held that is (L - L_XY + delta)/2 after A, and the line of action has grown by L - L_XY = x_g - x_p. With
-    the nominal line (entry shift alone) only delta/2 is left; without entry shift, next to nothing.
-    """
-    pair = lumped.load_gear_pair("fzg_c").with_(
-        mesh__stiffness={"model": "parabolic"}, operating__pinion_speed=0.3 * 2170
-    )
-    motion = lumped.steady_state(pair)
-
-    def dte(effects):
-        return multibody.steady_state(pair, effects=effects, samples_per_cycle=128)["dte"].to_numpy()
-
-    without = dte(())
-
-    def change(effects):
-        """Largest change of the transmission error by some effects, over its span: as in ``attribution``."""
-        return float(np.abs(dte(effects) - without).max() / np.ptp(without))
-
-    delta = float(motion["dte"].mean())
-    spread = float((motion["x_g"] - motion["x_p"]).mean())
-    # The difference is the rate of the transmission error just after entry, held for the delay.
-    speed = pair.operating.pinion_speed * lumped.geometry(pair).base_radius_pinion
-    rate = float(np.abs(motion["dte_dot"]).max() / np.ptp(motion["dte"].to_numpy()))
-    for effects, shift in ((("entry_shift",), 0.5 * delta), (None, 0.5 * (delta + spread))):
-        # First order in the delay, a twentieth of the period of ringing: the next term is half of 2 pi/20.
-        assert change(effects) == pytest.approx(rate * shift / speed, rel=0.16), effects
-    assert change(("rotation_phase", "moving_line")) < 0.05
-
-
 #: What each effect adds to every quantity of a made-up motion of span 10: all sums differ.
 MADE_UP = {
-    "rotation_phase": 1.0,
-    "moving_line": 2.0,
-    "sliding_velocity": -4.0,
-    "entry_shift": 0.5,
-    "contact_loss": 0.25,
-    "friction_load": 30.0,
-    "path_work": 40.0,
-    "tip_contact": 50.0,
-    "clearance": 60.0,
-    "neighbours": 0.5,
-    "contact_law": 70.0,
-}
+    "rotation_phase": 1.0, "moving_line": 2.0, "sliding_velocity": -4.0, "entry_shift": 0.5,
+    "contact_loss": 0.25, "friction_load": 30.0, "path_work": 40.0, "tip_contact": 50.0, "clearance": 60.0,
+    "neighbours": 0.5, "contact_law": 70.0,
+}  # fmt: skip
 
 
 def test_changes_alone_and_without_are_told_apart(monkeypatch):

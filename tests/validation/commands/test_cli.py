@@ -6,35 +6,20 @@ import re
 
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import lumped
 from lumped import NumericalError
-from validation.cli import app
 from validation.commands import options
+from validation.cross_check import comparison
 from validation.cross_check.verdict import Verdict
 from validation.reporting import Report
 from validation.reporting.gate import Change, Comparison
 from validation.reporting.page_one import PageOne
 from validation.reporting.page_one import Verdict as VERDICT
 
+from .conftest import refused, run
+
 COMMANDS = ("report", "presets", "init", "simulate", "crosscheck", "stability")
-
-
-def run(*arguments):
-    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
-    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
-    return result
-
-
-def refused(*arguments):
-    """Message of a refused call: one line on stderr, nothing on stdout, exit code 2."""
-    result = run(*arguments)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert "Traceback" not in result.stderr
-    assert result.stderr.count("error:") == 1
-    return result.stderr
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -191,16 +176,13 @@ def test_a_report_with_a_failing_check_exits_1_and_names_it(asked, tmp_path, bad
     assert ("fails: conservation: efficiency" in result.stdout) == bool(bad)
 
 
-@pytest.mark.parametrize(
-    ("require", "found", "code"),
-    [
-        ((), {"contact", "holds"}, 0),
-        (("contact",), {"contact", "holds"}, 4),
-        (("stable",), {"contact"}, 0),
-        (("stable", "holds"), {"holds"}, 4),
-        (("contact",), set(), 0),
-    ],
-)
+@pytest.mark.parametrize(("require", "found", "code"), [
+    ((), {"contact", "holds"}, 0),
+    (("contact",), {"contact", "holds"}, 4),
+    (("stable",), {"contact"}, 0),
+    (("stable", "holds"), {"holds"}, 4),
+    (("contact",), set(), 0),
+])  # fmt: skip
 def test_findings_about_the_machine_exit_4_where_a_gate_forbids_them(asked, tmp_path, require, found, code):
     asked["findings"] = frozenset(found)
     result = run("report", "-o", tmp_path / "out", *(word for one in require for word in ("--require", one)))
@@ -226,3 +208,45 @@ def test_overrides_reach_the_pair():
     assert changed.operating.pinion_torque == pytest.approx(200 * 0.1129848290276167)  # lbf in -> N m
     assert changed.friction.law == "coulomb"
     assert changed.mesh.damping_ratio == 0.03
+
+
+def test_simulate_prints_its_numbers():
+    result = run("simulate", "--json", "--cycles", 3, "--samples", 64)
+    numbers = json.loads(result.stdout)
+    # Extremes between samples are computed: the range of a far finer history, not of the 64 samples.
+    last = lumped.simulate("nasa_28_28", 3, samples_per_cycle=4096).isel(time=slice(-4096, None))
+    assert numbers["dte_peak_to_peak"] == pytest.approx(float(last.dte.max() - last.dte.min()), rel=1e-4)
+    assert (result.exit_code, numbers["gear_pair"], numbers["model"]) == (0, "nasa_28_28", "lumped")
+
+
+def test_loads_are_those_of_the_response_over_speed():
+    """With loaded contact pairs begin their contact gradually: what must press is all of them together."""
+    speed = lumped.load_gear_pair("fzg_c").operating.pinion_speed.to("rpm")
+    for form in ("prescribed", "loaded"):
+        pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact=form)
+        result = run("simulate", "fzg_c", "--set", f"mesh.contact={form}", "--json", "--steady")
+        numbers, sweep = json.loads(result.stdout), lumped.speed_sweep(pair, [speed], samples_per_cycle=256)
+        for name in ("normal_load_max", "normal_load_min"):
+            assert numbers[name] == pytest.approx(float(sweep[name][0]), rel=1e-6)
+
+
+def test_stability_and_crosscheck_print_their_verdicts(monkeypatch):
+    # The variant is judged in tests/validation/cross_check.
+    monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "variant", False)
+    stable = json.loads(run("stability", "--json").stdout)
+    assert (stable["verdict"], stable["margin"]) == ("stable", 1.0 - stable["spectral_radius"])
+    check = run("crosscheck", "--json", "--cycles", 6, "--samples", 64)
+    data = json.loads(check.stdout)
+    assert (data["verdict"], check.exit_code) == ("agrees", 0)
+    assert data["agreements"]
+
+
+@pytest.mark.parametrize("command", [("simulate", "--cycles", 2), ("stability",)])
+def test_quiet_is_silent(command):
+    result = run(*command, "--quiet")
+    assert (result.exit_code, result.output) == (0, "")
+    assert json.loads(run(*command, "-q", "--json").output)
+    refused = run(*command, "-q", "--speed", -5)
+    assert refused.exit_code == 2
+    assert refused.stderr.startswith("error:")
+    assert run(*command).stdout, "silence ends with the command"

@@ -3,23 +3,8 @@
 import json
 
 import pytest
-from typer.testing import CliRunner
 
-from validation.cli import app
-
-
-def run(*arguments):
-    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
-    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
-    return result
-
-
-def refused(*arguments):
-    result = run(*arguments)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert result.stderr.count("error:") == 1
-    return result.stderr
+from .conftest import refused, run
 
 
 @pytest.fixture(scope="module")

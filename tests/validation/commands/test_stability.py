@@ -3,31 +3,24 @@
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import lumped
 from floquet import gear_pair_multipliers
-from validation.cli import app
 from validation.commands.stability import _range
+
+from .conftest import refused as refused_command
+from .conftest import run as command
 
 SPEEDS = ("--axis", "speed_rpm=15000:18500:12")
 TONGUE = ("--law", "none", "--set", "mesh.damping_ratio=0.01", "--set", "mesh.relief=ignored")
 
 
 def run(*arguments):
-    result = CliRunner().invoke(
-        app, ["stability", *map(str, arguments)], env={"COLUMNS": "200", "NO_COLOR": "1"}
-    )
-    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
-    return result
+    return command("stability", *arguments)
 
 
 def refused(*arguments):
-    result = run(*arguments)
-    assert result.exit_code == 2, result.output
-    assert result.stdout == ""
-    assert result.stderr.count("error:") == 1
-    return result.stderr
+    return refused_command("stability", *arguments)
 
 
 def opened(path) -> xr.Dataset:
@@ -35,17 +28,10 @@ def opened(path) -> xr.Dataset:
         return data.load()
 
 
-@pytest.mark.parametrize(
-    "axis",
-    [
-        "damping_ratio=0:0.05:3",
-        "friction_coefficient=0:0.1:3",
-        "torque=20:80:3",
-        "stiffness_variation=0.5:1.5:3",
-        "contact_ratio=1.3:1.9:3",
-        "bearing_stiffness=5e7:2e8:3",
-    ],
-)
+@pytest.mark.parametrize("axis", [
+    "damping_ratio=0:0.05:3", "friction_coefficient=0:0.1:3", "torque=20:80:3",
+    "stiffness_variation=0.5:1.5:3", "contact_ratio=1.3:1.9:3", "bearing_stiffness=5e7:2e8:3",
+])  # fmt: skip
 def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
     data, picture = tmp_path / "chart.nc", tmp_path / "chart.png"
     drawn = ("-o", picture) if axis.startswith("torque") else ()
@@ -119,20 +105,17 @@ def test_campbell_diagram(tmp_path):
     assert np.isfinite(opened(path)["frequency"]).all()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (("--view", "moon"), "--view = moon"),
-        (("--axis", "speed_rpm=0:1000:5"), "--axis speed_rpm = 0 rpm: allowed > 0"),
-        (("--axis", "damping_ratio=0:2:5"), "--axis damping_ratio = 1.5: allowed >= 0 and <= 1"),
-        (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),
-        ((*SPEEDS, *SPEEDS), "speed_rpm is given twice"),
-        (("--operating-range", "5000"), "FROM:TO"),
-        (("--operating-range", "8000:3000"), "0 < FROM < TO"),
-        (("--view", "campbell", "--axis", "torque=1:2:3"), "speed_rpm"),
-        (("--axis", "torque=1:2:3", "--view", "boundaries", "--axis", "damping_ratio=0:0.1:2"), "speed_rpm"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "expected"), [
+    (("--view", "moon"), "--view = moon"),
+    (("--axis", "speed_rpm=0:1000:5"), "--axis speed_rpm = 0 rpm: allowed > 0"),
+    (("--axis", "damping_ratio=0:2:5"), "--axis damping_ratio = 1.5: allowed >= 0 and <= 1"),
+    (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),
+    ((*SPEEDS, *SPEEDS), "speed_rpm is given twice"),
+    (("--operating-range", "5000"), "FROM:TO"),
+    (("--operating-range", "8000:3000"), "0 < FROM < TO"),
+    (("--view", "campbell", "--axis", "torque=1:2:3"), "speed_rpm"),
+    (("--axis", "torque=1:2:3", "--view", "boundaries", "--axis", "damping_ratio=0:0.1:2"), "speed_rpm"),
+])  # fmt: skip
 def test_what_cannot_be_shown_is_refused(arguments, expected):
     assert expected in refused(*arguments)
 

@@ -58,13 +58,10 @@ def damping_doubled(m):
 
 
 FAULTS = {
-    "friction reversed": friction(-1.0),
-    "friction doubled": friction(2.0),
-    "bearings swapped": structure(_swapped),
-    "wrong moment arm": structure(_wrong_arm),
-    "masses over pi": structure(_light),
-    "damping doubled": damping_doubled,
-}
+    "friction reversed": friction(-1.0), "friction doubled": friction(2.0),
+    "bearings swapped": structure(_swapped), "wrong moment arm": structure(_wrong_arm),
+    "masses over pi": structure(_light), "damping doubled": damping_doubled,
+}  # fmt: skip
 #: The conservation law that must see each fault without any help of the comparison of histories.
 BY_LAW = {
     "friction reversed": "conservation: friction takes power, lumped",

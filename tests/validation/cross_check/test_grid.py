@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-import xarray as xr
 from typer.testing import CliRunner
 
 import multibody
@@ -22,7 +21,6 @@ from validation.cross_check.grid import (
     compare_point,
     crosscheck_grid,
 )
-from validation.files.output import write_dataset
 
 SMALL = Grid(
     presets=("nasa_28_28",), laws=("coulomb", "xu_kahraman"), stiffness=("smooth",), speeds=(0.3, 1.0, 1.7)
@@ -96,13 +94,6 @@ def test_a_failed_model_is_recorded_with_its_reason(monkeypatch):
 def test_a_grid_without_sense_is_refused(wrong):
     with pytest.raises(ParameterError, match="grid"):
         Grid(**wrong)
-
-
-def test_the_dataset_survives_a_file(result, tmp_path):
-    path = tmp_path / "grid.nc"
-    write_dataset(result, path)
-    with xr.open_dataset(path, engine="h5netcdf") as again:
-        assert broken_rules(again.load()) == broken_rules(result)
 
 
 def test_an_interrupted_grid_goes_on_where_it_was(monkeypatch, tmp_path):

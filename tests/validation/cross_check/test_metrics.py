@@ -38,15 +38,6 @@ def test_phase_error_resolves_shifts_far_below_the_root_of_rounding():
     assert result.phase == pytest.approx(shift / np.pi, rel=1e-3)  # 1e-16/1e-12 of rounding in the input
 
 
-def test_sign_reversal_is_a_phase_error_of_one():
-    assert metrics.sprague_geers(-np.sin(PHASE), np.sin(PHASE)).phase == pytest.approx(1.0)
-
-
-def test_magnitude_and_phase_combine():
-    result = metrics.sprague_geers(1.3 * np.sin(PHASE + 0.4 * np.pi), np.sin(PHASE))
-    assert result.comprehensive == pytest.approx(0.5)  # 3-4-5 triangle of 0.3 and 0.4
-
-
 @given(
     mean=st.floats(-10, 10),
     amplitude=st.floats(0.1, 10),

@@ -12,13 +12,9 @@ from validation.exchange.new_pair_file import new_pair_text
 
 def own(teeth, module, width, speed, torque, **more):
     given = {
-        "teeth": teeth,
-        "mesh.stiffness.model": "rectangular",
-        "basic_rack.module": module,
-        "gears.face_width": width,
-        "operating.pinion_speed": speed,
-        "operating.pinion_torque": torque,
-    }
+        "teeth": teeth, "mesh.stiffness.model": "rectangular", "basic_rack.module": module,
+        "gears.face_width": width, "operating.pinion_speed": speed, "operating.pinion_torque": torque,
+    }  # fmt: skip
     pair = lumped.load_gear_pair(tomllib.loads(new_pair_text("own", given)))
     return pair.with_({name.replace("__", "."): value for name, value in more.items()})
 

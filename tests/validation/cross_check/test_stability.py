@@ -27,18 +27,6 @@ def floquet_matrix(pair):
     return floquet.monodromy(floquet.gear_pair_system(pair, "elastic"), 1e-11).matrix
 
 
-@pytest.mark.parametrize("pair", [BASE, SMOOTH], ids=["jumps", "smooth"])
-def test_linear_flow_map_is_the_floquet_matrix(pair):
-    result = multibody.monodromy(pair, fidelity="linear")
-    period = lumped.geometry(pair).mesh_period
-    assert balanced_difference(result.matrix, floquet_matrix(pair), period) < 1e-8
-    expected = floquet.gear_pair_multipliers(pair)
-    assert result.spectral_radius == pytest.approx(expected.spectral_radius, rel=1e-8)
-    # Its own Newton iteration finds the lumped periodic motion and the lumped balance again.
-    steady = lumped.steady_state(pair, samples_per_cycle=8)
-    assert result.brake_torque == pytest.approx(steady.attrs["brake_torque"], rel=1e-8)
-
-
 def test_rigid_rotation_is_a_double_one_and_left_out():
     """The 12-state map has a defective double +1, split by the square root of the integration error."""
     result = multibody.monodromy(BASE, fidelity="linear")
@@ -108,26 +96,3 @@ def test_inside_the_main_tongue_a_perturbation_grows_at_the_floquet_rate_and_the
     ]
     assert swing[1] < 1.3 * swing[0]
     assert swing[1] > 5.0 * float(np.ptp(periodic["dte"].to_numpy()))
-
-
-@pytest.mark.slow
-def test_growth_comes_closer_to_floquet_with_falling_torque():
-    """The 1.5 % are finite motion: a quarter of the torque, a quarter of the difference."""
-    off = []
-    for part in (1.0, 0.25):
-        pair = TONGUE.with_(operating__pinion_torque=56.5 * part)
-        predicted = np.log(floquet.gear_pair_multipliers(pair).spectral_radius)
-        off.append(np.log(multibody.monodromy(pair).spectral_radius) / predicted - 1.0)
-    # In proportion to the torque but for its square, a few times 1.5 % here.
-    assert off[0] / off[1] == pytest.approx(4.0, rel=0.04)
-
-
-@pytest.mark.slow
-def test_outside_the_tongue_it_decays_at_the_floquet_rate():
-    """Measured: -0.046514 per cycle, predicted -0.046506."""
-    pair = TONGUE.with_(operating__pinion_speed=24000)
-    predicted = np.log(floquet.gear_pair_multipliers(pair).spectral_radius)
-    assert predicted < 0
-    rate, own, _ = growth(pair, 20, 1e-2)
-    assert rate == pytest.approx(predicted, rel=1e-3)
-    assert rate == pytest.approx(own, rel=1e-3)

@@ -76,18 +76,10 @@ _FLANK = (
     '<attribute id="addendum_modification_coefficient" unit="none">{shift}</attribute>'
 )
 DEFAULTS = {
-    "version": "1.4",
-    "helix": "0",
-    "relations": "",
-    "stage": "",
-    "gear_1": "",
-    "gear_2": "",
-    "flank_1": _FLANK.format(shift="0.1"),
-    "flank_2": _FLANK.format(shift="0"),
-    "modulus_unit": "N / mm^2",
-    "components": "",
-    "spectrum": "",
-}
+    "version": "1.4", "helix": "0", "relations": "", "stage": "", "gear_1": "", "gear_2": "",
+    "flank_1": _FLANK.format(shift="0.1"), "flank_2": _FLANK.format(shift="0"), "modulus_unit": "N / mm^2",
+    "components": "", "spectrum": "",
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -142,33 +134,14 @@ def json_model():
         "applicationId": "by hand",
         "applicationVersion": "1",
         "date": "2024-01-01T00:00:00+00:00",
-        "relations": [
-            relation(1, "stage", stage=10, gear_1=21, gear_2=22),
-            relation(2, "stage_gear_data", stage=10, gear=22, stage_gear_data=61),
-            relation(3, "assembly", assembly=32, part=22),
-        ],
-        "components": [
-            component(10, "cylindrical_stage", number("center_distance", "mm", 50.0)),
-            gear(21, 20, 15.0),
-            gear(22, 30, 14.0),
-            component(32, "shaft"),
-            component(
-                61,
-                "cylindrical_stage_gear_data",
-                {"id": "is_driving_gear", "unit": "none", "boolean": True},
-                number("torque", "N m", -12.0),
-            ),
-        ],
-        "load_spectrum": {
-            "id": 1,
-            "load_cases": [
-                {
-                    "id": 7,
-                    "components": [{"id": 32, "attributes": [number("rotational_speed", "1 / min", 900.0)]}],
-                }
-            ],
-        },
-    }
+        "relations": [relation(1, "stage", stage=10, gear_1=21, gear_2=22), relation(2, "stage_gear_data",
+         stage=10, gear=22, stage_gear_data=61), relation(3, "assembly", assembly=32, part=22)],
+        "components": [component(10, "cylindrical_stage", number("center_distance", "mm", 50.0)), gear(21,
+         20, 15.0), gear(22, 30, 14.0), component(32, "shaft"), component(61, "cylindrical_stage_gear_data",
+         {"id": "is_driving_gear", "unit": "none", "boolean": True}, number("torque", "N m", -12.0))],
+        "load_spectrum": {"id": 1, "load_cases": [{"id": 7, "components": [{"id": 32,
+         "attributes": [number("rotational_speed", "1 / min", 900.0)]}]}]},
+    }  # fmt: skip
     return {"model": model}
 
 

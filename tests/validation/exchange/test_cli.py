@@ -116,24 +116,21 @@ def test_a_sweep_becomes_one_table_with_its_axes_and_says_what_is_left_out(comma
     assert "wedge" in str(np.atleast_1d(everything["failure_message"])[0])
 
 
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        (["nasa_28_28", "-o", "pair.xlsx"], ".rexs, .rexs.xml"),
-        (["nasa_28_28", "-o", "pair"], ".rexs, .rexs.xml"),
-        (["nasa_28_28", "-o", "missing/pair.rexs"], "Make the folder"),
-        (["nasa_28_28", "-o", "old.rexs"], "--force"),
-        (["nasa_28_28", "-o", "old.npz"], "--force"),
-        (["nasa_28_28", "-o", "p.rexs", "--rexs-version", "2.0"], "1.4, 1.5, 1.6, 1.7"),
-        (["nasa_28_28", "-o", "p.rexs", "--form", "mesh"], "--form"),
-        (["nasa_28_28", "-o", "p.mat", "--rexs-version", "1.7"], "--rexs-version"),
-        (["nonsense", "-o", "p.rexs"], "nonsense"),
-        (["none.nc", "-o", "run.csv"], "exists"),
-        (["old.nc", "-o", "run.csv"], "cannot be read"),
-        (["old.nc", "-o", "run.rexs"], ".nc, .csv, .mat"),
-        (["old.nc", "--speed", "4000", "-o", "run.csv"], "--speed"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "reason"), [
+    (["nasa_28_28", "-o", "pair.xlsx"], ".rexs, .rexs.xml"),
+    (["nasa_28_28", "-o", "pair"], ".rexs, .rexs.xml"),
+    (["nasa_28_28", "-o", "missing/pair.rexs"], "Make the folder"),
+    (["nasa_28_28", "-o", "old.rexs"], "--force"),
+    (["nasa_28_28", "-o", "old.npz"], "--force"),
+    (["nasa_28_28", "-o", "p.rexs", "--rexs-version", "2.0"], "1.4, 1.5, 1.6, 1.7"),
+    (["nasa_28_28", "-o", "p.rexs", "--form", "mesh"], "--form"),
+    (["nasa_28_28", "-o", "p.mat", "--rexs-version", "1.7"], "--rexs-version"),
+    (["nonsense", "-o", "p.rexs"], "nonsense"),
+    (["none.nc", "-o", "run.csv"], "exists"),
+    (["old.nc", "-o", "run.csv"], "cannot be read"),
+    (["old.nc", "-o", "run.rexs"], ".nc, .csv, .mat"),
+    (["old.nc", "--speed", "4000", "-o", "run.csv"], "--speed"),
+])  # fmt: skip
 def test_what_cannot_be_written_is_refused_and_nothing_is_left_behind(command, tmp_path, arguments, reason):
     for name in ("old.rexs", "old.npz", "old.nc"):
         (tmp_path / name).write_text("precious")

@@ -96,21 +96,18 @@ def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
         read_second_order(tmp_path / "rotor.npz")
 
 
-@pytest.mark.parametrize(
-    ("change", "field", "word"),
-    [
-        ({"K_cos1": WAVE}, "K_cos1", "K_cos_1"),
-        ({"K": None}, "K", "missing"),
-        ({"C": np.eye(3)}, "C", "(2, 2)"),
-        ({"K_times": None}, "K_times", "Save both"),
-        ({"K_times": [0.0, 0.3, 0.1, T]}, "K_times", "increasing"),
-        ({"K_times": [0.0, 0.1, 0.3, 0.5]}, "K_times", "0.4 s"),
-        ({"K_values": STEPS[:2]}, "K_values", "(3, 2, 2)"),
-        ({"period": -1.0}, "period", "> 0"),
-        ({"period": [1.0, 2.0]}, "period", "number"),
-        ({"M": np.array(["1"])}, "M", "numbers"),
-    ],
-)
+@pytest.mark.parametrize(("change", "field", "word"), [
+    ({"K_cos1": WAVE}, "K_cos1", "K_cos_1"),
+    ({"K": None}, "K", "missing"),
+    ({"C": np.eye(3)}, "C", "(2, 2)"),
+    ({"K_times": None}, "K_times", "Save both"),
+    ({"K_times": [0.0, 0.3, 0.1, T]}, "K_times", "increasing"),
+    ({"K_times": [0.0, 0.1, 0.3, 0.5]}, "K_times", "0.4 s"),
+    ({"K_values": STEPS[:2]}, "K_values", "(3, 2, 2)"),
+    ({"period": -1.0}, "period", "> 0"),
+    ({"period": [1.0, 2.0]}, "period", "number"),
+    ({"M": np.array(["1"])}, "M", "numbers"),
+])  # fmt: skip
 def test_a_wrong_field_is_refused_by_its_name(tmp_path, change, field, word):
     np.savez(tmp_path / "bad.npz", **{k: v for k, v in (FIELDS | change).items() if v is not None})
     with pytest.raises(ParameterError, match=r"bad\.npz") as refused:
@@ -135,18 +132,15 @@ def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
         assert chart["spectral_radius"].shape == (3, 2)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "word"),
-    [
-        (["none.npz"], "a file that exists"),
-        (["text.npz"], "a .npz of arrays"),
-        (["text.mat"], "a .npz of arrays"),
-        (["text.csv"], "a name ending in .npz, .mat"),
-        (["text.npz", "-o", "chart.png"], "Give --axis"),
-        (["text.npz", "--axis", "speed_rpm=1:2:3"], "one of period, frequency"),
-        (["text.npz", "--axis", "period=1:2:3", "--axis", "frequency=1:2:3"], "of period and frequency one"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "word"), [
+    (["none.npz"], "a file that exists"),
+    (["text.npz"], "a .npz of arrays"),
+    (["text.mat"], "a .npz of arrays"),
+    (["text.csv"], "a name ending in .npz, .mat"),
+    (["text.npz", "-o", "chart.png"], "Give --axis"),
+    (["text.npz", "--axis", "speed_rpm=1:2:3"], "one of period, frequency"),
+    (["text.npz", "--axis", "period=1:2:3", "--axis", "frequency=1:2:3"], "of period and frequency one"),
+])  # fmt: skip
 def test_the_command_refuses_before_it_computes(tmp_path, monkeypatch, arguments, word):
     monkeypatch.chdir(tmp_path)
     for name in ("text.npz", "text.mat", "text.csv"):

@@ -73,15 +73,12 @@ def test_a_missing_number_is_asked_for_by_its_option(missing):
     assert result.stderr.startswith(f"error: {missing} = missing")
 
 
-@pytest.mark.parametrize(
-    ("more", "named"),
-    [
-        (["nasa_28_28"], None),
-        (["fzg_c"], "--teeth"),
-        (["--oil", "olive"], "--oil"),
-        (["--oil", "vg219"], "--oil = 219"),
-    ],
-)
+@pytest.mark.parametrize(("more", "named"), [
+    (["nasa_28_28"], None),
+    (["fzg_c"], "--teeth"),
+    (["--oil", "olive"], "--oil"),
+    (["--oil", "vg219"], "--oil = 219"),
+])  # fmt: skip
 def test_what_does_not_go_together_is_refused(more, named, tmp_path):
     result = init(*more, "-o", str(tmp_path / "x.toml"))
     assert result.exit_code == (0 if named is None else 2)
@@ -99,20 +96,17 @@ def test_teeth_are_two_numbers():
             new_pair_text("x", {"teeth": text})
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "advice"),
-    [
-        ("--module", "2,5", "this is a decimal comma: write '2.5'"),
-        ("--face-width", "-3", ">= 0.01 mm"),
-        ("--speed", "0", "> 0 rpm"),
-        ("--torque", "80 nm", "is not a torque"),
-        ("--teeth", "2/41", "a whole number from 5 to 1000"),
-        ("--bearing-stiffness", "hard", "has no number"),
-        ("--bearing-damping", "-1", ">= 0"),
-        ("--law", "VI", "xu_kahraman"),
-        ("--oil", "vg219", "220"),
-    ],
-)
+@pytest.mark.parametrize(("option", "value", "advice"), [
+    ("--module", "2,5", "this is a decimal comma: write '2.5'"),
+    ("--face-width", "-3", ">= 0.01 mm"),
+    ("--speed", "0", "> 0 rpm"),
+    ("--torque", "80 nm", "is not a torque"),
+    ("--teeth", "2/41", "a whole number from 5 to 1000"),
+    ("--bearing-stiffness", "hard", "has no number"),
+    ("--bearing-damping", "-1", ">= 0"),
+    ("--law", "VI", "xu_kahraman"),
+    ("--oil", "vg219", "220"),
+])  # fmt: skip
 def test_a_refused_value_is_named_once_by_its_option(option, value, advice):
     result = init(option, value)
     assert result.exit_code == 2

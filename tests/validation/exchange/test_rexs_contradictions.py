@@ -31,38 +31,30 @@ def test_files_without_a_contradiction_have_no_doubtful_line(xml, save, preset, 
 # reference 40 and 60 mm, base 37.588 and 56.382 mm, base pitch 5.9043 mm, ratio 1.5, sum of shifts 0.1,
 # pitch circles 2 a z/(z1 + z2) = 40.16 and 60.24 mm, contact ratio 1.54.
 _RIGHT = {
-    "stage": attribute("radial_contact_ratio", 1.53)
-    + attribute("overlap_contact_ratio", 0)
-    + attribute("gear_ratio", -1.5)
-    + attribute("sum_of_addendum_modification_coefficients", 0.1)
-    + attribute("normal_base_pitch", 5.9043, "mm"),
-    "gear_1": attribute("reference_circle_diameter", 40, "mm")
-    + attribute("base_circle_diameter", 37.588, "mm"),
-    "gear_2": attribute("reference_circle_diameter", 60, "mm")
-    + attribute("base_circle_diameter", 56.382, "mm"),
-}
+    "stage": attribute("radial_contact_ratio", 1.53) + attribute("overlap_contact_ratio",
+     0) + attribute("gear_ratio", -1.5) + attribute("sum_of_addendum_modification_coefficients",
+     0.1) + attribute("normal_base_pitch", 5.9043, "mm"),
+    "gear_1": attribute("reference_circle_diameter", 40, "mm") + attribute("base_circle_diameter", 37.588,
+     "mm"),
+    "gear_2": attribute("reference_circle_diameter", 60, "mm") + attribute("base_circle_diameter", 56.382,
+     "mm"),
+}  # fmt: skip
 
 
 def test_right_derived_values_raise_no_doubt(xml, save):
     assert doubtful(save(xml(**_RIGHT))) == set()
 
 
-@pytest.mark.parametrize(
-    ("right", "wrong", "fields"),
-    [
-        (">1.53<", ">1.8<", {"centre_distance", "pinion.tip_diameter", "basic_rack.addendum_coefficient"}),
-        ('ratio" unit="none">0<', 'ratio" unit="none">1.1<', {"pinion.face_width", "gear.face_width"}),
-        (">-1.5<", ">-1.6<", {"pinion.teeth", "gear.teeth"}),
-        (
-            'coefficients" unit="none">0.1<',
-            'coefficients" unit="none">0.2<',
-            {"pinion.profile_shift", "gear.profile_shift"},
-        ),
-        (">5.9043<", ">6.2832<", {"basic_rack.module", "basic_rack.pressure_angle"}),
-        (">60<", ">62<", {"basic_rack.module", "gear.teeth"}),
-        (">37.588<", ">38.5<", {"basic_rack.module", "basic_rack.pressure_angle", "pinion.teeth"}),
-    ],
-)
+@pytest.mark.parametrize(("right", "wrong", "fields"), [
+    (">1.53<", ">1.8<", {"centre_distance", "pinion.tip_diameter", "basic_rack.addendum_coefficient"}),
+    ('ratio" unit="none">0<', 'ratio" unit="none">1.1<', {"pinion.face_width", "gear.face_width"}),
+    (">-1.5<", ">-1.6<", {"pinion.teeth", "gear.teeth"}),
+    ('coefficients" unit="none">0.1<', 'coefficients" unit="none">0.2<', {"pinion.profile_shift",
+     "gear.profile_shift"}),
+    (">5.9043<", ">6.2832<", {"basic_rack.module", "basic_rack.pressure_angle"}),
+    (">60<", ">62<", {"basic_rack.module", "gear.teeth"}),
+    (">37.588<", ">38.5<", {"basic_rack.module", "basic_rack.pressure_angle", "pinion.teeth"}),
+])  # fmt: skip
 def test_a_wrong_derived_value_marks_the_lines_it_contradicts(xml, save, right, wrong, fields):
     text = xml(**_RIGHT)
     assert text.count(right) == 1

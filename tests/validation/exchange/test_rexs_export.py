@@ -15,13 +15,8 @@ from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN
 
 #: Ending -> first letter of the file after its byte order mark: XML, JSON, and ZIP, which packs XML.
 ENDINGS = {
-    ".rexs": b"<",
-    ".rexs.xml": b"<",
-    ".rexsj": b"{",
-    ".rexs.json": b"{",
-    ".rexsz": b"P",
-    ".rexs.zip": b"P",
-}
+    ".rexs": b"<", ".rexs.xml": b"<", ".rexsj": b"{", ".rexs.json": b"{", ".rexsz": b"P", ".rexs.zip": b"P",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("suffix", ENDINGS)
@@ -38,13 +33,9 @@ def test_everything_that_rexs_can_say_comes_back(preset, tmp_path, leaves):
     sent, got = leaves(preset.to_mapping()), leaves(back.to_mapping())
     lost = {path for path in sent if got.get(path) != sent[path]}
     beyond = (
-        "bearings.",
-        "mesh.damping_ratio",
-        "mesh.contact",
-        "mesh.stiffness.",
-        "lubricant.viscosity",
+        "bearings.", "mesh.damping_ratio", "mesh.contact", "mesh.stiffness.", "lubricant.viscosity",
         "friction.composite_roughness",
-    )
+    )  # fmt: skip
     assert all(path.startswith(beyond) for path in lost), lost
     # A tip diameter says what a default addendum said; the geometry is the same to the fifteenth digit.
     # REXS has no stiffness model: what stands in has parameters of its own.

@@ -225,16 +225,13 @@ def test_a_refused_value_is_named_with_its_place(xml, save):
         gear_pair_from_rexs(save(text))
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        (">50.2<", ">fifty<", "a finite number"),
-        (">50.2<", ">NaN<", "a finite number"),
-        (">50.2<", ">1e999<", "a finite number"),
-        ('unit="mm">50.2<', 'unit="kg">50.2<', "a number in mm"),
-        ('unit="mm">2<', 'unit="mm">3<', "Gears that mesh have one module"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "message"), [
+    (">50.2<", ">fifty<", "a finite number"),
+    (">50.2<", ">NaN<", "a finite number"),
+    (">50.2<", ">1e999<", "a finite number"),
+    ('unit="mm">50.2<', 'unit="kg">50.2<', "a number in mm"),
+    ('unit="mm">2<', 'unit="mm">3<', "Gears that mesh have one module"),
+])  # fmt: skip
 def test_broken_values_are_refused(xml, save, old, new, message):
     text = xml()
     assert old in text

@@ -27,23 +27,17 @@ def test_a_helical_stage_is_refused_with_its_helix_angle(xml, save, helix):
     assert "axial forces" in message
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "reason"),
-    [
-        ('id="22" type="cylindrical_gear"', 'id="22" type="ring_gear"', "a stage with an internal gear"),
-        (">30</attribute>", ">-30</attribute>", "a stage with an internal gear"),
-        (
-            'id="22" type="cylindrical_gear"',
-            'id="22" type="worm_gear"',
-            "a stage of cylindrical gear and worm gear",
-        ),
-        ('type="cylindrical_stage"', 'type="bevel_stage"', "a bevel stage"),
-        ('type="cylindrical_stage"', 'type="worm_stage"', "a worm stage"),
-        ('type="cylindrical_stage"', 'type="general_stage"', "a general stage"),
-        ('type="cylindrical_stage"', 'type="planetary_stage"', "a planetary stage"),
-        ('type="gear_unit"', 'type="planetary_stage"', "a mesh of a planetary stage"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "reason"), [
+    ('id="22" type="cylindrical_gear"', 'id="22" type="ring_gear"', "a stage with an internal gear"),
+    (">30</attribute>", ">-30</attribute>", "a stage with an internal gear"),
+    ('id="22" type="cylindrical_gear"', 'id="22" type="worm_gear"',
+     "a stage of cylindrical gear and worm gear"),
+    ('type="cylindrical_stage"', 'type="bevel_stage"', "a bevel stage"),
+    ('type="cylindrical_stage"', 'type="worm_stage"', "a worm stage"),
+    ('type="cylindrical_stage"', 'type="general_stage"', "a general stage"),
+    ('type="cylindrical_stage"', 'type="planetary_stage"', "a planetary stage"),
+    ('type="gear_unit"', 'type="planetary_stage"', "a mesh of a planetary stage"),
+])  # fmt: skip
 def test_other_kinds_of_stages_are_refused_with_the_reason(xml, save, old, new, reason):
     text = xml()
     assert old in text

@@ -70,26 +70,15 @@ def test_shafts_are_read_with_sections_in_order_and_bearings_at_their_places(wit
     lumped.load_gear_pair(mapping)
 
 
-@pytest.mark.parametrize(
-    ("there", "instead", "reason"),
-    [
-        (
-            '"radial_stiffness" unit="N / m">300000000.0',
-            '"custom_c">1',
-            "geometry 103 states no radial_stiff",
-        ),
-        ('"radial_stiffness" unit="N / m">300000000.0', '"radial_stiffness" unit="N / m">1e23', "1e+23 N/m"),
-        (
-            '"outer_diameter_end" unit="mm">24',
-            '"outer_diameter_end" unit="mm">23',
-            "shaft_section 100 is con",
-        ),
-        ('"length" unit="mm">40', '"length" unit="mm">39', "shaft_section 100 does not begin"),
-        ('id="103" role="assembly"', 'id="80" role="assembly"', "shaft 31 has fewer than two bearings"),
-        ('id="111" role="part"', 'id="21" role="part"', "cylindrical_gear 21 is on no shaft, or on several"),
-        ('"u_coordinate_on_shaft" unit="mm">50', '"custom_u">1', "cylindrical_gear 21 states no u_coord"),
-    ],
-)
+@pytest.mark.parametrize(("there", "instead", "reason"), [
+    ('"radial_stiffness" unit="N / m">300000000.0', '"custom_c">1', "geometry 103 states no radial_stiff"),
+    ('"radial_stiffness" unit="N / m">300000000.0', '"radial_stiffness" unit="N / m">1e23', "1e+23 N/m"),
+    ('"outer_diameter_end" unit="mm">24', '"outer_diameter_end" unit="mm">23', "shaft_section 100 is con"),
+    ('"length" unit="mm">40', '"length" unit="mm">39', "shaft_section 100 does not begin"),
+    ('id="103" role="assembly"', 'id="80" role="assembly"', "shaft 31 has fewer than two bearings"),
+    ('id="111" role="part"', 'id="21" role="part"', "cylindrical_gear 21 is on no shaft, or on several"),
+    ('"u_coordinate_on_shaft" unit="mm">50', '"custom_u">1', "cylindrical_gear 21 states no u_coord"),
+])  # fmt: skip
 def test_shafts_that_are_not_whole_are_left_out_with_the_reason(with_shafts, save, there, instead, reason):
     assert there in with_shafts
     mapping, notes = gear_pair_from_rexs(save(with_shafts.replace(there, instead, 1)))

@@ -78,7 +78,7 @@ class Browser:
         self.run = driver.execute_script
         self.shown = None
 
-    def open(self, path, size=WIDE, *, dark=False, scripts=True):
+    def open(self, path, size=(1280, 900), *, dark=False, scripts=True):
         """Open a page in a window of this size, and wait until its charts are drawn."""
         self.shown = None
         command = self.driver.execute_cdp_cmd

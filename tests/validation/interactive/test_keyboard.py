@@ -1,7 +1,5 @@
 """Can the page be used by keyboard alone, and without a mouse, colours or scripts?"""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -18,12 +16,6 @@ ORDER = [
 @pytest.fixture
 def page(browser, written):
     return browser.open(written)
-
-
-@pytest.fixture
-def kept(browser, written):
-    """For tests that set what they look at: loaded once."""
-    return browser.keep(written)
 
 
 def six_digits(values):
@@ -153,27 +145,6 @@ def luminance(colour):
 def contrast(one, other):
     high, low = sorted((luminance(one), luminance(other)), reverse=True)
     return (high + 0.05) / (low + 0.05)
-
-
-def test_without_scripts_the_page_says_where_the_numbers_are(browser, written):
-    from selenium.common.exceptions import WebDriverException
-
-    command = browser.open(written, scripts=False).driver.execute_cdp_cmd
-
-    def nodes(selector):
-        """Elements; Chromium may take in the rest of a document, and forget its nodes, between two calls."""
-        for _ in range(20):
-            root = command("DOM.getDocument", {"depth": -1})["root"]["nodeId"]
-            try:
-                return command("DOM.querySelectorAll", {"nodeId": root, "selector": selector})["nodeIds"]
-            except WebDriverException:
-                time.sleep(0.1)
-        raise AssertionError("the document is read for ever")
-
-    assert len(nodes("noscript .note")) == 1
-    for selector in ("#stability", "#law"):
-        with pytest.raises(WebDriverException, match="box model"):  # not displayed, so it has none
-            command("DOM.getBoxModel", {"nodeId": nodes(selector)[0]})
 
 
 def test_a_hostile_name_is_only_text(browser, hostile, attack):

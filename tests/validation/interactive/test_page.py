@@ -167,22 +167,13 @@ def test_the_page_is_small_closed_and_names_its_scripts_by_hash(written, text):
     digests = [hashlib.sha256(script.encode()).digest() for script in found.scripts[1:]]
     assert rules["script-src"].split() == [f"'sha256-{base64.b64encode(d).decode()}'" for d in digests]
     assert json.loads(found.scripts[0])["point"] == {"speed": 4875.0, "damping": 0.016}
+    assert "noscript" in {tag for tag, _ in found.tags}  # says where the numbers are
 
 
 def test_a_script_that_could_end_its_element_is_not_written(results, monkeypatch):
     monkeypatch.setattr(page, "plotly", lambda: "'</SCRIPT>'")
     with pytest.raises(ValueError, match="end its element"):
         page.render(results, "x.nc")
-
-
-def test_a_hostile_name_stays_text(hostile, attack):
-    found = _Page(hostile.read_text(encoding="utf-8"))
-    tags = [tag for tag, _ in found.tags]
-    assert tags.count("script") == 3
-    assert "img" not in tags
-    assert tags.count("style") == tags.count("title") == 1
-    assert not any(name.startswith("on") for _, attrs in found.tags for name in attrs)
-    assert attack[0] not in hostile.read_text(encoding="utf-8")
 
 
 @given(st.recursive(st.text(), lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner)))

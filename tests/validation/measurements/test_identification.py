@@ -240,12 +240,6 @@ def test_interval_covers_the_truth(pair, law, noise):
     assert errors.mean() == pytest.approx(spread, rel=0.35)
 
 
-def test_noise_that_is_not_stated_spoils_the_interval(pair):
-    estimates, _, holds = coverage(pair, "coulomb", TEN_PERCENT | {"stated_noise": False}, seeds=20)
-    assert estimates.mean() < 0.99
-    assert holds.mean() < 0.7
-
-
 def test_a_written_record_is_read_back(truth, tmp_path):
     original = record(truth, start=0.4, noise_normal=0.02, noise_friction=0.02)
     again = load_measurement(write_measurement(original, tmp_path))

@@ -32,16 +32,11 @@ def description(data, **changes):
         "channel": [
             {"name": "normal", "column": "N A", "quantity": "normal_load", "pair": "A", "noise": 5.0},
             {
-                "name": "friction",
-                "column": "F A",
-                "quantity": "friction_force",
-                "pair": "A",
-                "gain": -1.0,
-                "zero": 0.05,
-                "noise": 0.002,
+                "name": "friction", "column": "F A", "quantity": "friction_force", "pair": "A", "gain": -1.0,
+                "zero": 0.05, "noise": 0.002,
             },
         ],
-    } | changes
+    } | changes  # fmt: skip
 
 
 @pytest.fixture
@@ -72,41 +67,35 @@ def changed_channel(place, **changes):
     return {"channel": channels}
 
 
-@pytest.mark.parametrize(
-    ("changes", "named"),
-    [
-        ({"pinion_speed": -5}, "pinion_speed"),
-        ({"abscissa": {"kind": "time"}}, "abscissa"),
-        ({"abscissa": {"kind": "sampled", "sampling_rate": "20 kg"}}, "sampling_rate"),
-        (changed_channel(0, column="missing"), "missing"),
-        (changed_channel(0, unit="m"), "channel.normal.unit"),
-        (changed_channel(0, unit="kN"), "heading's unit N"),
-        (changed_channel(0, pair=None), "pair"),
-        (changed_channel(0, gain=0.0), "gain"),
-        (changed_channel(0, gain=1e308), "channel.normal"),
-        (changed_channel(0, zero=-1e200), "channel.normal"),
-        ({"recurrence": 10**400}, "recurrence"),
-        (changed_channel(1, name="normal"), "channel.name"),
-        ({"delimeter": ";"}, "Did you mean 'delimiter'"),
-        (changed_channel(0, colunm="N A"), r"channel\.0\.colunm .* Did you mean 'column'"),
-        ({"abscissa": None}, "abscissa = None"),
-        ({"decimal": ";"}, "decimal"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "named"), [
+    ({"pinion_speed": -5}, "pinion_speed"),
+    ({"abscissa": {"kind": "time"}}, "abscissa"),
+    ({"abscissa": {"kind": "sampled", "sampling_rate": "20 kg"}}, "sampling_rate"),
+    (changed_channel(0, column="missing"), "missing"),
+    (changed_channel(0, unit="m"), "channel.normal.unit"),
+    (changed_channel(0, unit="kN"), "heading's unit N"),
+    (changed_channel(0, pair=None), "pair"),
+    (changed_channel(0, gain=0.0), "gain"),
+    (changed_channel(0, gain=1e308), "channel.normal"),
+    (changed_channel(0, zero=-1e200), "channel.normal"),
+    ({"recurrence": 10**400}, "recurrence"),
+    (changed_channel(1, name="normal"), "channel.name"),
+    ({"delimeter": ";"}, "Did you mean 'delimiter'"),
+    (changed_channel(0, colunm="N A"), r"channel\.0\.colunm .* Did you mean 'column'"),
+    ({"abscissa": None}, "abscissa = None"),
+    ({"decimal": ";"}, "decimal"),
+])  # fmt: skip
 def test_a_wrong_description_is_refused_by_field(csv, changes, named):
     with pytest.raises(ParameterError, match=named):
         load_measurement(description(csv, **changes))
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "named"),
-    [
-        ("11,5;1530,0", "11,5;", "number"),
-        ("11,5;1530,0", "11,5;nan", "row 4"),
-        ("11,5;1530,0", "11,0;1530,0", "row 4"),
-        ("13,5;1570,0;0,057\n", "", "8 rows"),
-    ],
-)
+@pytest.mark.parametrize(("old", "new", "named"), [
+    ("11,5;1530,0", "11,5;", "number"),
+    ("11,5;1530,0", "11,5;nan", "row 4"),
+    ("11,5;1530,0", "11,0;1530,0", "row 4"),
+    ("13,5;1570,0;0,057\n", "", "8 rows"),
+])  # fmt: skip
 def test_a_bad_cell_is_refused_with_its_row(csv, old, new, named):
     csv.write_text(TEXT.replace(old, new))
     with pytest.raises(ParameterError, match=named):

@@ -18,20 +18,17 @@ def input_of(pair: lumped.GearPair, field: str):
     return next(one for one in uncertain_inputs(pair) if one.field == field)
 
 
-@pytest.mark.parametrize(
-    ("field", "spread", "low", "high"),
-    [
-        ("mesh.damping_ratio", "0.02 .. 0.10", 0.02, 0.10),
-        ("pinion.tip_relief.amount", "+- 2 um", 21.0, 25.0),
-        ("pinion.tip_relief.amount", "+- 0.002 mm", 21.0, 25.0),
-        ("pinion.tip_relief.amount", "+- 2", 21.0, 25.0),
-        ("operating.pinion_torque", "+- 10 %", 50.85, 62.15),
-        ("bearings.pinion.loa_stiffness", "/ 2 .. * 2", 5e7, 2e8),
-        ("bearings.pinion.loa_stiffness", "50 N/um .. 200 N/um", 5e7, 2e8),
-        ("lubricant.viscosity", "* 0.7 .. * 1.4", 7.0, 14.0),
-        ("mesh.stiffness_factor", "+- 8 %", 0.92, 1.08),
-    ],
-)
+@pytest.mark.parametrize(("field", "spread", "low", "high"), [
+    ("mesh.damping_ratio", "0.02 .. 0.10", 0.02, 0.10),
+    ("pinion.tip_relief.amount", "+- 2 um", 21.0, 25.0),
+    ("pinion.tip_relief.amount", "+- 0.002 mm", 21.0, 25.0),
+    ("pinion.tip_relief.amount", "+- 2", 21.0, 25.0),
+    ("operating.pinion_torque", "+- 10 %", 50.85, 62.15),
+    ("bearings.pinion.loa_stiffness", "/ 2 .. * 2", 5e7, 2e8),
+    ("bearings.pinion.loa_stiffness", "50 N/um .. 200 N/um", 5e7, 2e8),
+    ("lubricant.viscosity", "* 0.7 .. * 1.4", 7.0, 14.0),
+    ("mesh.stiffness_factor", "+- 8 %", 0.92, 1.08),
+])  # fmt: skip
 def test_ranges_are_read_in_the_units_of_the_field(field, spread, low, high):
     found = input_of(stated(field, spread), field)
     assert (found.low, found.high) == pytest.approx((low, high), rel=1e-12)
@@ -68,18 +65,15 @@ def test_what_the_file_states_takes_the_place_of_a_default():
     assert (found.written, found.reason) == ("0.04 .. 0.06", "stated in the file")
 
 
-@pytest.mark.parametrize(
-    ("field", "spread", "words"),
-    [
-        ("mesh.damping_ratio", "0.1 .. 0.02", "lower end below"),
-        ("mesh.damping_ratio", "0.5 .. 1.5", "Narrow the range"),
-        ("mesh.damping_ratio", "about 0.05", "0.02 .. 0.10"),
-        ("mesh.stiffness", ["energy", "magic"], "rectangular"),
-        ("mesh.damping_ratio", ["a", "b"], "a range"),
-        ("friction.coefficient", "+- 30 %", "has a number"),
-        ("operating.pinion_torque", "+- 2 um", "torque"),
-    ],
-)
+@pytest.mark.parametrize(("field", "spread", "words"), [
+    ("mesh.damping_ratio", "0.1 .. 0.02", "lower end below"),
+    ("mesh.damping_ratio", "0.5 .. 1.5", "Narrow the range"),
+    ("mesh.damping_ratio", "about 0.05", "0.02 .. 0.10"),
+    ("mesh.stiffness", ["energy", "magic"], "rectangular"),
+    ("mesh.damping_ratio", ["a", "b"], "a range"),
+    ("friction.coefficient", "+- 30 %", "has a number"),
+    ("operating.pinion_torque", "+- 2 um", "torque"),
+])  # fmt: skip
 def test_a_range_that_cannot_be_is_refused(field, spread, words):
     with pytest.raises(ParameterError, match=f"uncertainty.{field}") as caught:
         uncertain_inputs(stated(field, spread))

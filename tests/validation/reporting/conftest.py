@@ -39,14 +39,10 @@ class Written:
 def pair(name: str, teeth: str, speed: float, torque: float, **more: object) -> lumped.GearPair:
     """A pair whose gears, speed and torque all differ."""
     request = {
-        "teeth": teeth,
-        "basic_rack.module": 3.0,
-        "pinion.face_width": 26.0,
-        "gear.face_width": 25.0,
-        "operating.pinion_speed": speed,
-        "operating.pinion_torque": torque,
+        "teeth": teeth, "basic_rack.module": 3.0, "pinion.face_width": 26.0, "gear.face_width": 25.0,
+        "operating.pinion_speed": speed, "operating.pinion_torque": torque,
         "mesh.stiffness.model": "rectangular",
-    }
+    }  # fmt: skip
     return lumped.load_gear_pair(tomllib.loads(new_pair_text(name, request | more)))
 
 

@@ -59,15 +59,12 @@ def test_failed_cases_are_recorded_and_the_others_go_on(study, tmp_path):
     assert summary.exit_code == 1
 
 
-@pytest.mark.parametrize(
-    ("raised", "status"),
-    [
-        (NumericalError("raise rtol"), Status.NUMERICAL),
-        (ZeroDivisionError("a defect"), Status.UNEXPECTED),
-        (MemoryError("too large"), Status.UNEXPECTED),
-        (RecursionError("too deep"), Status.UNEXPECTED),
-    ],
-)
+@pytest.mark.parametrize(("raised", "status"), [
+    (NumericalError("raise rtol"), Status.NUMERICAL),
+    (ZeroDivisionError("a defect"), Status.UNEXPECTED),
+    (MemoryError("too large"), Status.UNEXPECTED),
+    (RecursionError("too deep"), Status.UNEXPECTED),
+])  # fmt: skip
 def test_any_error_of_a_case_is_its_own(study, tmp_path, replace_analysis, raised, status):
     def analysis(variation, settings):
         if speed_of(variation) == 500.0:
@@ -212,12 +209,6 @@ def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
         run_sweep(study, tmp_path / "out", resume=True)
 
 
-@pytest.mark.parametrize("options", [{"workers": -1}, {"workers": 5000}, {"case_seconds": 0.0}])
-def test_options_out_of_range_are_refused(study, tmp_path, options):
-    with pytest.raises(ParameterError, match=next(iter(options))):
-        run_sweep(study, tmp_path / "out", **options)
-
-
 def test_results_can_be_read_while_the_sweep_runs(study, tmp_path):
     seen = []
 
@@ -254,12 +245,9 @@ def test_the_multibody_analysis_is_the_end_of_the_transient(make_study, tmp_path
     from multibody import simulate
 
     names = [
-        "dte_rms",
-        "x_p_peak_to_peak",
-        "normal_load_max",
-        "friction_force_peak_to_peak",
+        "dte_rms", "x_p_peak_to_peak", "normal_load_max", "friction_force_peak_to_peak",
         "friction_power_mean",
-    ]
+    ]  # fmt: skip
     study = make_study(
         analysis="multibody",
         outputs=names,
@@ -306,12 +294,9 @@ def test_the_floquet_analysis_is_the_stability_chart(make_study, tmp_path):
 
 
 HOSTILE_NAMES = [
-    "../../outside",
-    "$(touch outside)",
-    "{{ cycler.__init__.__globals__.os.system('touch outside') }}",
-    "[/bold][link=file:///etc/passwd]x",
-    "=cmd|' /C calc'!A0",
-]
+    "../../outside", "$(touch outside)", "{{ cycler.__init__.__globals__.os.system('touch outside') }}",
+    "[/bold][link=file:///etc/passwd]x", "=cmd|' /C calc'!A0",
+]  # fmt: skip
 
 
 def test_text_in_a_study_is_only_text(make_study, tmp_path, monkeypatch):

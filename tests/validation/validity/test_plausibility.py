@@ -16,21 +16,18 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
     assert doubts(pair.with_(operating__pinion_speed=rpm)) == ()
 
 
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"bearings.gear.loa_stiffness": 300}, "Given in N/um? Then write '300 N/um'."),
-        ({"pinion.youngs_modulus": "206 MPa"}, "pinion.youngs_modulus = 0.206 GPa is no material"),
-        ({"gear.youngs_modulus": 2000}, "gear.youngs_modulus = 2000 GPa is no material"),
-        ({"operating.pinion_torque": 56500}, "beyond any steel"),
-        ({"operating.pinion_torque": 4875, "operating.pinion_speed": 56.5}, "Speed and torque swapped?"),
-        ({"operating.pinion_torque": 56500}, "more than a tenth of the module"),
-        ({"mesh.backlash": "0.5 um"}, "the backs of the teeth would touch"),
-        ({"operating.pinion_speed": 1.45}, "Then write 1450."),
-        ({"friction.composite_roughness": 0.8}, "Delete it if the roughnesses are meant"),
-        ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"bearings.gear.loa_stiffness": 300}, "Given in N/um? Then write '300 N/um'."),
+    ({"pinion.youngs_modulus": "206 MPa"}, "pinion.youngs_modulus = 0.206 GPa is no material"),
+    ({"gear.youngs_modulus": 2000}, "gear.youngs_modulus = 2000 GPa is no material"),
+    ({"operating.pinion_torque": 56500}, "beyond any steel"),
+    ({"operating.pinion_torque": 4875, "operating.pinion_speed": 56.5}, "Speed and torque swapped?"),
+    ({"operating.pinion_torque": 56500}, "more than a tenth of the module"),
+    ({"mesh.backlash": "0.5 um"}, "the backs of the teeth would touch"),
+    ({"operating.pinion_speed": 1.45}, "Then write 1450."),
+    ({"friction.composite_roughness": 0.8}, "Delete it if the roughnesses are meant"),
+    ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
+])  # fmt: skip
 def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, said):
     found = doubts(nasa_pair.with_(changes))
     assert any(said in one for one in found), found

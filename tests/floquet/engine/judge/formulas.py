@@ -21,8 +21,6 @@ from floquet import (
 )
 from lumped.errors import ResolutionWarning
 
-Entry = Callable[[arb_series], arb_series]
-
 
 def _analytic(entry: Callable[..., object]) -> Callable[[arb, arb, int], list[arb]]:
     """Taylor coefficients of an entire function of the time, by arithmetic of power series."""
