@@ -95,6 +95,16 @@ def test_rolling_at_the_pitch_point(unequal):
     )
 
 
+def test_the_pitch_line_is_that_of_the_operating_circles():
+    # FZG A/8.3/90: 8.3 m/s at 2170 rpm of the pinion with 16 teeth to 24 and 91.5 mm between the centres; the
+    # reference circle of the pinion has 72 mm and 8.18 m/s.
+    pair = load_gear_pair("fzg_c").with_(operating__pinion_speed=2170)
+    g = geometry(pair)
+    expected = 2170 * 2.0 * math.pi / 60.0 * 91.5e-3 * 16 / 40
+    assert round(expected, 1) == 8.3
+    assert g.pitch_line_velocity == pytest.approx(expected, rel=ROUNDING)
+
+
 def test_fzg_c_shifts_and_centre_distance_belong_together():
     given = load_gear_pair("fzg_c")
     free = geometry(given.with_(centre_distance=None, mesh__backlash=0))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
 from lumped import ParameterError, bodies, condensed_bearings, mesh_cycle, shaft_modes
 from lumped.shafts.beam import Piece, beam
@@ -24,16 +25,22 @@ def test_shafts_under_springs_are_the_springs(unequal, on_short_shafts):
 
 
 def resistance(pair, omega, direction="loa"):
-    """Dynamic stiffness of the pinion in a direction and of its rim, from all matrices of the shaft."""
+    """Dynamic stiffness of the pinion in a direction and of its rim, from all matrices of the shaft.
+
+    Damping is M Phi diag(2 zeta omega_i) Phi^T M, with all modes Phi of unit modal mass, and the dashpots.
+    """
     shaft, disc, motor = pair.shafts.pinion, discs(pair)[0], pair.shafts.motor
     pieces = [Piece(s.length, s.diameter, s.bore, 206e9, 0.3, 7850.0) for s in shaft.segments]
     mesh = beam(pieces, [shaft.gear_position, *(b.position for b in shaft.bearings)], 1e5, 0.5)
     gear, n = mesh.node(shaft.gear_position), mesh.twist_mass.shape[0]
-    bending = mesh.stiffness - omega**2 * mesh.mass
-    bending[2 * gear, 2 * gear] -= omega**2 * disc.mass
-    bending[2 * gear + 1, 2 * gear + 1] -= omega**2 * disc.tilting
-    for b in shaft.bearings:
-        bending[2 * mesh.node(b.position), 2 * mesh.node(b.position)] += getattr(b, f"{direction}_stiffness")
+    stiffness, mass = mesh.stiffness.copy(), mesh.mass.copy()
+    mass[[2 * gear, 2 * gear + 1], [2 * gear, 2 * gear + 1]] += disc.mass, disc.tilting
+    at = [2 * mesh.node(b.position) for b in shaft.bearings]
+    stiffness[at, at] += [getattr(b, f"{direction}_stiffness") for b in shaft.bearings]
+    squares, modes = eigh(stiffness, mass)
+    damping = mass @ modes * (2.0 * pair.shafts.damping_ratio * np.sqrt(squares)) @ modes.T @ mass
+    damping[at, at] += [getattr(b, f"{direction}_damping") for b in shaft.bearings]
+    bending = stiffness - omega**2 * mass + 1j * omega * damping
     twist = np.zeros((n + 1, n + 1))
     twist[:n, :n] = mesh.twist_stiffness - omega**2 * mesh.twist_mass
     twist[gear, gear] -= omega**2 * disc.inertia
@@ -47,17 +54,19 @@ def resistance(pair, omega, direction="loa"):
 def test_condensed_gears_feel_their_shafts(shafted, frequency):
     shafted = shafted.with_({"shafts.max_frequency": 50_000})
     pair, omega = condensed_bearings(shafted, frequency), 2 * math.pi * frequency
-    along, turning = resistance(shafted, omega or 1.0)
-    found = pair.bearings.pinion.loa_stiffness - omega**2 * pair.pinion.mass
-    assert found == pytest.approx(along, rel=2e-3)
-    assert -((omega or 1.0) ** 2) * pair.pinion.inertia == pytest.approx(turning, rel=2e-3)
-    off = pair.bearings.pinion.oloa_stiffness - omega**2 * pair.pinion.mass
-    assert off == pytest.approx(resistance(shafted, omega or 1.0, "oloa")[0], rel=2e-3)
-    step = 1e-3 * omega or 10.0
-    slope = resistance(shafted, omega + step)[0] - resistance(shafted, abs(omega - step))[0]
-    slope /= 4 * omega * step or 1.0
-    if omega:
-        assert pair.pinion.mass == pytest.approx(-slope, rel=1e-3)
+    at = omega or 10.0
+    turning = resistance(shafted, at)[1]
+    assert -(at**2) * pair.pinion.inertia == pytest.approx(turning, rel=2e-3)
+    for direction in ("loa", "oloa"):
+        bearing = resistance(shafted, at, direction)[0]
+        stiffness = getattr(pair.bearings.pinion, f"{direction}_stiffness")
+        assert stiffness - omega**2 * pair.pinion.mass == pytest.approx(bearing.real, rel=2e-3)
+        ratio = getattr(pair.bearings.pinion, f"{direction}_damping_ratio")
+        damping = 2.0 * ratio * math.sqrt(stiffness * pair.pinion.mass)
+        assert damping == pytest.approx(bearing.imag / at, rel=2e-3)
+    near, far = (0.999 * omega, 1.001 * omega) if omega else (10.0, 100.0)
+    slope = (resistance(shafted, far)[0] - resistance(shafted, near)[0]).real / (far**2 - near**2)
+    assert pair.pinion.mass == pytest.approx(-slope, rel=1e-3)
 
 
 def test_a_gear_tilts_as_a_disc_of_its_mass_inertia_and_width(shafted):
