@@ -3,6 +3,7 @@
 import html
 import json
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -111,6 +112,11 @@ class TestRelations:
         assert results.uncertainty is not None  # computed before the fault
         monkeypatch.setattr(type(prediction), "numbers", property(lambda self: numbers))
         assert any(word in text for text in broken_relations(results))
+
+    def test_a_peak_to_peak_that_the_motion_does_not_have_is_seen(self, results, monkeypatch):
+        wrong = replace(results.prediction, peak_to_peak=1.36 * results.prediction.peak_to_peak)
+        monkeypatch.setitem(vars(results), "prediction", wrong)
+        assert any("not that of the motion" in text for text in broken_relations(results))
 
     def test_a_curve_that_misses_the_operating_point_is_seen(self, results):
         results.sweep["dte_peak_to_peak"][:] = 2.0 * results.sweep["dte_peak_to_peak"]
