@@ -5,7 +5,7 @@ from lumped.gear_geometry.geometry import Geometry
 from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
-from lumped.model.solution import simulate, steady_state
+from lumped.model.solution import simulate
 from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.plane_compliance import plane_compliance
@@ -17,6 +17,10 @@ from lumped.schema.bodies import Bodies, bodies
 from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
 from lumped.schema.pair import GearPair
 from lumped.shafts.equivalents import condensed_bearings, shaft_modes
+from lumped.teeth.pairs import meeting_teeth, revolution, tooth_gaps
+from lumped.teeth.static import static_sharing
+from lumped.teeth.steady_state import steady_state
+from lumped.teeth.tolerances import flank_tolerances
 
 __all__ = [
     "Bodies",
@@ -33,9 +37,11 @@ __all__ = [
     "SpurcheckError",
     "bodies",
     "condensed_bearings",
+    "flank_tolerances",
     "geometry",
     "json_schema",
     "load_gear_pair",
+    "meeting_teeth",
     "mesh_cycle",
     "mesh_elements",
     "mesh_stiffness",
@@ -44,10 +50,13 @@ __all__ = [
     "periodic_system",
     "plane_compliance",
     "preset_names",
+    "revolution",
     "shaft_modes",
     "simulate",
     "speed_sweep",
+    "static_sharing",
     "static_transmission_error",
     "steady_state",
     "stiffness_components",
+    "tooth_gaps",
 ]

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from lumped.faults.base import ToothFault
+from lumped.errors import FieldProblem
+from lumped.faults.base import Flank, ToothFault
 from lumped.fields.units import Quantity
 
 
@@ -17,3 +20,15 @@ class Chip(ToothFault):
     roll_angle: Annotated[float, Quantity("deg", at_least=0, at_most=180)] = Field(
         description="roll angle at which the flank ends"
     )
+
+    def problems(self, flank: Flank) -> Iterator[FieldProblem]:
+        """A chip that leaves nothing of the flank in contact, or begins beyond the tip."""
+        radius = flank.wheel.tooth.base_radius
+        low, high = (math.degrees(place / radius) for place in (flank.start, flank.tip))
+        if not low < math.degrees(self.roll_angle) <= high:
+            value = f"{math.degrees(self.roll_angle):g} deg"
+            yield FieldProblem("roll_angle", value, f"{low:.4f} to {high:.4f} deg", "End it on the flank.")
+
+    def end(self, flank: Flank) -> float:
+        """Its edge."""
+        return min(flank.tip, flank.length(self.roll_angle))

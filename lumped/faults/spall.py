@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
-from lumped.errors import refuse
-from lumped.faults.base import ToothFault
+from lumped.errors import FieldProblem, refuse
+from lumped.faults.base import Flank, ToothFault
 from lumped.fields.units import Quantity
+from lumped.typing import BoolArray, FloatArray
 
 _ROLL = Quantity("deg", at_least=0, at_most=180)
 
@@ -32,3 +35,33 @@ class Spall(ToothFault):
             value = f"{self.end_roll_angle.to('deg'):g} deg"  # type: ignore[attr-defined]
             raise refuse("end_roll_angle", value, "> start_roll_angle", "Exchange the two.")
         return self
+
+    def problems(self, flank: Flank) -> Iterator[FieldProblem]:
+        """A pit wider than the flank."""
+        if self.width is not None and self.width > flank.face_width:
+            allowed = f"<= {flank.face_width * 1e3:g} mm, the face width in contact"
+            yield FieldProblem("width", f"{self.width * 1e3:g} mm", allowed, "Lower the width.")
+
+    def compliance(self, flank: Flank, length: FloatArray) -> FloatArray:
+        """Of the Hertzian contact, which is less wide by the pit; the tooth behind it stays whole."""
+        if self._whole(flank):
+            return np.zeros(np.shape(length))
+        assert self.width is not None  # it is not the whole width
+        more = flank.hertz * self.width / (flank.face_width - self.width)
+        return np.asarray(more * self._inside(flank, length), dtype=np.float64)
+
+    def gap(self, flank: Flank, length: FloatArray) -> FloatArray:
+        """The depth, where no flank is left beside the pit."""
+        depth = self.pit_depth if self._whole(flank) else 0.0
+        return np.asarray(depth * self._inside(flank, length), dtype=np.float64)
+
+    def kinks(self, flank: Flank) -> tuple[float, ...]:
+        """Its ends."""
+        return flank.length(self.start_roll_angle), flank.length(self.end_roll_angle)
+
+    def _whole(self, flank: Flank) -> bool:
+        return self.width is None or self.width >= flank.face_width
+
+    def _inside(self, flank: Flank, length: FloatArray) -> BoolArray:
+        low, high = self.kinks(flank)
+        return np.asarray((length >= low) & (length < high))

@@ -9,6 +9,7 @@ import numpy as np
 
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.equations import COORDINATES
+from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
 from lumped.quasi_static.contacts import CONTACTS
 from lumped.typing import BoolArray, FloatArray
@@ -101,16 +102,21 @@ def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArr
 
 
 def response(
-    system: LTVSystem, time: FloatArray, states: FloatArray, normal_load: FloatArray | None = None
+    system: LTVSystem,
+    time: FloatArray,
+    states: FloatArray,
+    normal_load: FloatArray | None = None,
+    pairs: PairState | None = None,
 ) -> dict[str, FloatArray]:
     """Return the arrays of ``dataset`` by name, without labels.
 
-    ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where contact may be lost.
+    ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where contact may be lost,
+    and ``pairs`` their coefficients, where teeth differ.
     """
     g, s = system.pair.geometry, system.structure
     z, rates = system.gear_motion(states)
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
-    pairs = system.cycle.sample(time)
+    pairs = system.cycle.sample(time) if pairs is None else pairs
     if (normal := normal_load) is None:
         normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
     friction = pairs.friction * normal

@@ -20,6 +20,7 @@ from lumped.model.propagation import step_maps
 from lumped.model.results import dataset
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
@@ -131,39 +132,13 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
     return np.concatenate([z, np.zeros(m)])
 
 
-def steady_state(
-    pair: AnyPair,
-    *,
+def steady_cycle(
+    pair: GearPair,
     samples_per_cycle: int = 512,
     as_printed: Collection[int] = (),
     supports: Supports = "springs",
 ) -> xr.Dataset:
-    """Periodic motion over one mesh cycle, without settling.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    samples_per_cycle : output times in [0, T_m)
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
-    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; then
-        ``bearing_force`` over ``bearing`` and ``direction`` is the force of each bearing on its shaft, and
-        ``power_shafts`` what the shafts' damping takes [W]
-
-    Returns
-    -------
-    xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
-    ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
-    the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W],
-    ``power_energy_residual``, what of them no torque balances with prescribed contact [W],
-    ``error_estimate``, the relative error of the dynamic transmission error, ``dte_peak_to_peak`` [m], its
-    peak to peak whatever the sampling (and so for the translations), and ``spectral_radius``, the
-    largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it
-
-    Raises
-    ------
-    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
-    """
-    pair = load_gear_pair(pair)
+    """The result of ``lumped.steady_state`` of like teeth, over one mesh cycle."""
     system = periodic_system(pair, "full", as_printed=as_printed, supports=supports)
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from lumped import geometry, load_gear_pair, preset_names
+from lumped import geometry, load_gear_pair, preset_names, steady_state
 from lumped.errors import ParameterError
 from lumped.friction import LAWS
 from lumped.losses import (
@@ -23,7 +23,6 @@ from lumped.losses import (
     quasi_static_losses,
     sliding_power_along_path,
 )
-from lumped.model.solution import steady_state
 from lumped.path_of_contact import contact_path, pair_stiffness
 
 

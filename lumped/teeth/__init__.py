@@ -1,0 +1,1 @@
+"""Teeth that differ: which pairs meet, their gaps, statics and motion over a revolution or hunting period."""

@@ -1,0 +1,283 @@
+"""Tables of the contact over a mesh cycle: what each place of a tooth pair has, for every kind of pair.
+
+A step of the integration has three nodes: its start, its middle and its end, the ends as limits from inside.
+All laws of a tooth pair repeat with every cycle, except for numbers that its own teeth bring: a constant
+error, the amounts of a profile slope and of more tip relief, and its kind, which is that of its faults.
+
+Sources: docs/theory/teeth.md, "Tables".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.faults.base import ToothFault
+from lumped.path_of_contact import friction_path_function
+from lumped.quasi_static.contacts import contact_of
+from lumped.quasi_static.elements import MeshElements
+from lumped.quasi_static.load_sharing import coupled
+from lumped.quasi_static.loaded import FULL_DAMPING, StaticMesh
+from lumped.quasi_static.tooth_error import flank_relief, relief_starts
+from lumped.schema.bodies import bodies_of
+from lumped.schema.pair import GearPair
+from lumped.teeth.pairs import first_teeth, own_teeth, period_of
+from lumped.typing import FloatArray, IntArray
+
+#: Nodes at the ends of a step lie this fraction of a cycle inside it, and phases closer than this are one.
+_INSIDE = 1e-11
+#: Columns of ``Tables.shape``: a gear's constant error, profile slope and tip relief, pinion's then gear's.
+_SHAPES = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """Contact of every kind of pair (v) at the nodes of a mesh cycle; SI.
+
+    Attributes
+    ----------
+    edges : (steps + 1,) phases of the ends of the steps, 0 and 1 included
+    outputs : (steps,) whether a step starts at an output
+    ahead : (pairs,) whole pitches by which a place is ahead of the pair at A at the cycle's start; falling
+    place : (steps, 3, pairs) xi [m]
+    stiffness, damping : (v, steps, 3, pairs) k [N/m], zero where a pair is not followed, and c [N s/m]
+    friction : (steps, 3, pairs) mu
+    gap, gap_slope : (v, steps, 3, pairs) without corners and errors of single teeth [m], and over xi
+    shape, shape_slope : (steps, 3, pairs, 6) gap per unit of each number of a pair, and over xi
+    ends : (v, 5) L_XA, L_XD, L_XY, base radii, as in ``gap_at`` [m]
+    coupling : (1 or steps, 3, pairs, pairs) w_ij [m/N]
+    kinds : (z1, z2) kind of the pair of two teeth
+    numbers : ((z1, 3), (z2, 3)) error, profile slope, tip relief of the teeth [m]
+    constants : force F, lengthening, softening D, least load N_1, load of the full damper; see ``ContactLaw``
+    eccentric : (2, 5) amplitude, phase at t = 0, teeth, L and cot(alpha_w) of pinion and gear
+    period : mesh cycles until all repeats
+    first : teeth at A at t = 0, from 0
+    """
+
+    edges: FloatArray
+    outputs: IntArray
+    ahead: IntArray
+    place: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    friction: FloatArray
+    gap: FloatArray
+    gap_slope: FloatArray
+    shape: FloatArray
+    shape_slope: FloatArray
+    ends: FloatArray
+    coupling: FloatArray
+    kinds: IntArray
+    numbers: tuple[FloatArray, FloatArray]
+    constants: FloatArray
+    eccentric: FloatArray
+    period: int
+    first: IntArray
+
+
+class Laws:
+    """Laws of a pair's tooth pairs over xi, of each kind; the tables sample them."""
+
+    def __init__(self, pair: GearPair) -> None:
+        self.pair, self.healthy = pair, pair.healthy
+        g = self.geometry = pair.geometry
+        self.flanks = (pair.flank(0), pair.flank(1))
+        self.mesh = StaticMesh(self.healthy)
+        self.loaded = contact_of(pair).name == "loaded"
+        self.elements: MeshElements | None = None
+        if not self.loaded:
+            self.elements = contact_of(pair).elements(self.healthy)
+        self.friction = friction_path_function(self.healthy)
+        self.kinds, self.faults = self._kinds()
+        reach = 0.4 if self.loaded else 0.0  # as of the loaded contact of like teeth
+        self.low, self.high = g.L_XA - reach * g.base_pitch, g.L_XD + reach * g.base_pitch
+
+    def _kinds(self) -> tuple[IntArray, list[tuple[tuple[ToothFault, ...], ...]]]:
+        """Kind of each pair of teeth, and the faults of pinion and gear of each kind."""
+        of_teeth: list[list[tuple[ToothFault, ...]]] = []
+        for gear in (self.pair.pinion, self.pair.gear):
+            every: list[list[ToothFault]] = [[] for _ in range(gear.teeth)]
+            for fault in gear.faults:
+                every[fault.tooth - 1].append(fault)
+            of_teeth.append([tuple(one) for one in every])
+        found: dict[tuple[tuple[ToothFault, ...], ...], int] = {((), ()): 0}
+        kinds = np.zeros((len(of_teeth[0]), len(of_teeth[1])), dtype=np.int64)
+        for i, of_pinion in enumerate(of_teeth[0]):
+            for j, of_gear in enumerate(of_teeth[1]):
+                if of_pinion or of_gear:
+                    kinds[i, j] = found.setdefault((of_pinion, of_gear), len(found))
+        return kinds, list(found)
+
+    def lengths(self, xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Lengths on the base tangents of pinion and gear [m]."""
+        return xi, self.geometry.L_XY - xi
+
+    def switches(self) -> FloatArray:
+        """Positions at which a law of any kind jumps or has a kink [m]."""
+        g = self.geometry
+        found = [g.L_XA, g.L_XD, g.L_XP, self.low, self.high, *self.friction.switches]
+        if self.elements is None:
+            found += [*self.mesh.law.stiffness.switches, *relief_starts(self.healthy)]
+        else:
+            for law in (self.elements.stiffness, self.elements.damping, self.elements.error):
+                found += [*law.switches, *law.interval]
+        for of_gears in self.faults:
+            for which, faults in enumerate(of_gears):
+                for fault in faults:
+                    for place in fault.kinks(self.flanks[which]):
+                        found.append(place if which == 0 else g.L_XY - place)
+        for which, starts in enumerate(self._relief_starts()):
+            found += [start if which == 0 else g.L_XY - start for start in starts]
+        return np.asarray(found, dtype=np.float64)
+
+    def _relief_starts(self) -> list[list[float]]:
+        gears = (self.pair.pinion, self.pair.gear)
+        return [
+            [flank.length(gear.tip_relief.start_roll_angle)] if gear.tip_relief is not None else []
+            for gear, flank in zip(gears, self.flanks, strict=True)
+        ]
+
+    def of_kind(self, kind: int, xi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Stiffness k [N/m], c [N s/m] and gap without corners [m] of a kind at positions of any shape."""
+        g, inside = self.geometry, (xi >= self.low) & (xi <= self.high)
+        if self.elements is None:
+            k = np.where(inside, self.mesh.law.held(xi), 0.0)
+            gap = self.mesh.relief(xi)
+            c = self._dampers(k)
+        else:
+            k, c, gap = self.elements.stiffness(xi), self.elements.damping(xi), self.elements.error(xi)
+        held = np.clip(xi, g.L_XA, g.L_XD)
+        more = np.zeros(xi.shape)
+        for which, length in enumerate(self.lengths(held)):
+            for fault in self.faults[kind][which]:
+                more = more + fault.compliance(self.flanks[which], length)
+                gap = gap + fault.gap(self.flanks[which], length)
+        if more.any():
+            whole, k = k, k / (1.0 + more * k)
+            c = c * np.sqrt(k / np.where(whole > 0.0, whole, 1.0))
+        return k, c, gap
+
+    def _dampers(self, k: FloatArray) -> FloatArray:
+        ratio, mass = self.pair.mesh.damping_ratio, bodies_of(self.pair).effective_mass
+        return np.asarray(2.0 * ratio * np.sqrt(k * mass), dtype=np.float64)
+
+    def shapes(self, xi: FloatArray) -> FloatArray:
+        """Gap per unit of each number of a pair, (..., 6), see ``Tables.numbers``."""
+        g = self.geometry
+        found = np.zeros((*xi.shape, _SHAPES))
+        pitch = (g.L_XP, g.L_XY - g.L_XP)
+        for which, length in enumerate(self.lengths(np.clip(xi, g.L_XA, g.L_XD))):
+            flank, gear = self.flanks[which], (self.pair.pinion, self.pair.gear)[which]
+            found[..., 3 * which] = 1.0
+            # Material at the tip, none at the pitch point, where the index is taken.
+            found[..., 3 * which + 1] = -(length - pitch[which]) / (flank.tip - flank.start)
+            if gear.tip_relief is not None:
+                unit = gear.tip_relief.model_copy(update={"amount": 1.0})
+                radius = flank.wheel.tooth.base_radius
+                found[..., 3 * which + 2] = flank_relief(unit, flank.tip / radius, length / radius)
+        return found
+
+    def ends(self, kind: int) -> FloatArray:
+        """Where the flanks of a kind end, see ``Tables.ends``."""
+        g = self.geometry
+        tips = [
+            min([fault.end(flank) for fault in faults], default=flank.tip)
+            for flank, faults in zip(self.flanks, self.faults[kind], strict=True)
+        ]
+        return np.array([g.L_XY - tips[1], tips[0], g.L_XY, g.base_radius_pinion, g.base_radius_gear])
+
+    def constants(self) -> FloatArray:
+        """See ``Tables.constants``."""
+        law, force = self.mesh.law, self.mesh.force
+        return np.array([force, self.mesh.lengthening, law.softening, law.least, FULL_DAMPING * force])
+
+    def eccentric(self) -> FloatArray:
+        """See ``Tables.eccentric``."""
+        g, first = self.geometry, first_teeth(self.pair)
+        rows = []
+        for which, one in enumerate(own_teeth(self.pair)):
+            z = one.error.size
+            start = one.phase + 2.0 * np.pi * first[which] / z
+            rows.append([one.eccentricity, start, z, g.L_XY, 1.0 / np.tan(g.operating_pressure_angle)])
+        return np.array(rows)
+
+
+def tables(laws: Laws, largest_step: float, outputs: int) -> Tables:
+    """Tables on steps that end at outputs and wherever a law jumps or has a kink.
+
+    Parameters
+    ----------
+    laws : of the pair
+    largest_step : in mesh cycles
+    outputs : evenly spaced in a cycle, the first at its start
+    """
+    g, pair = laws.geometry, laws.pair
+    phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
+    even = np.arange(outputs + 1) / outputs
+    marks = np.unique(np.concatenate([even, phases]))
+    nearest = even[np.clip(np.round(marks * outputs).astype(np.int64), 0, outputs)]
+    marks = np.where(np.abs(marks - nearest) < _INSIDE, nearest, marks)
+    marks = marks[np.diff(marks, prepend=-1.0) > _INSIDE]
+    parts = np.maximum(1, np.ceil(np.diff(marks) / largest_step - 1e-9)).astype(np.int64)
+    edges = np.append(
+        np.concatenate(
+            [
+                low + (high - low) * np.arange(n) / n
+                for low, high, n in zip(marks, marks[1:], parts, strict=False)
+            ]
+        ),
+        1.0,
+    )
+    starts = np.zeros(edges.size - 1, dtype=np.int64)
+    starts[np.searchsorted(edges, even[:-1] - _INSIDE)] = 1
+    low, high = edges[:-1], edges[1:]
+    tau = np.stack([low + _INSIDE, 0.5 * (low + high), high - _INSIDE], axis=1)
+    ahead = np.arange(
+        int(np.ceil((laws.high - g.L_XA) / g.base_pitch)) - 1,
+        int(np.floor((laws.low - g.L_XA) / g.base_pitch)) - 1,
+        -1,
+    )
+    place = np.asarray(g.L_XA + (tau[..., None] + ahead) * g.base_pitch, dtype=np.float64)
+    moved = 1e-7 * g.base_pitch
+
+    def slope(function: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Over xi, one-sided at the ends of a step."""
+        before = np.array([0.0, -1.0, -1.0])[:, None] * moved
+        after = np.array([1.0, 1.0, 0.0])[:, None] * moved
+        rise = function(place + after) - function(place + before)
+        return rise / (after - before).reshape((1, 3, 1) + (1,) * (rise.ndim - 3))
+
+    kinds = range(len(laws.faults))
+    k, c, gap = (np.stack(part) for part in zip(*(laws.of_kind(v, place) for v in kinds), strict=True))
+    near = (place >= laws.low) & (place <= laws.high)
+    neighbours = laws.mesh.neighbours if laws.loaded else ()
+    flat = place.reshape(-1, ahead.size)[:, ::-1], near.reshape(-1, ahead.size)[:, ::-1]
+    coupling = np.zeros((1, 3, ahead.size, ahead.size))
+    if neighbours:
+        found = coupled(neighbours, *flat)[:, ::-1, ::-1]
+        coupling = np.ascontiguousarray(found.reshape(edges.size - 1, 3, ahead.size, ahead.size))
+    teeth = own_teeth(pair)
+    inside = np.clip(place, g.L_XA + _INSIDE * g.base_pitch, g.L_XD - _INSIDE * g.base_pitch)
+    return Tables(
+        edges=edges,
+        outputs=starts,
+        ahead=ahead,
+        place=place,
+        stiffness=k,
+        damping=c,
+        friction=laws.friction(inside),
+        gap=gap,
+        gap_slope=np.stack([slope(lambda xi, v=v: laws.of_kind(v, xi)[2]) for v in kinds]),  # type: ignore[misc]
+        shape=laws.shapes(place),
+        shape_slope=slope(laws.shapes),
+        ends=np.stack([laws.ends(v) for v in kinds]),
+        coupling=coupling,
+        kinds=laws.kinds,
+        numbers=tuple(np.stack([one.error, one.slope, one.relief], axis=1) for one in teeth),  # type: ignore[arg-type]
+        constants=laws.constants(),
+        eccentric=laws.eccentric(),
+        period=period_of(pair),
+        first=np.array(first_teeth(pair), dtype=np.int64),
+    )

@@ -1,0 +1,354 @@
+"""Periodic motion of a pair whose teeth differ, over a revolution or the hunting period.
+
+Sources: docs/theory/teeth.md, "Motion", "Brake torque".
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from lumped.errors import NumericalError, refuse
+from lumped.labelling import Variable, provenance
+from lumped.model.mesh_cycle import PairState
+from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.propagation import fastest_frequency
+from lumped.model.results import labelled, peak_to_peak, response
+from lumped.model.steady import periodic_solution
+from lumped.quasi_static.contacts import contact_of
+from lumped.schema.pair import GearPair
+from lumped.teeth import kernels
+from lumped.teeth.contact import Laws, Tables, tables
+from lumped.teeth.pairs import first_teeth, numbers, period_of
+from lumped.typing import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: How the teeth touch in the motion over a period of teeth that differ.
+Touch = Literal["push_only", "linear"]
+
+#: Form of the kernels -> how a result says it.
+FORMS = (
+    "fixed windows of contact, teeth tied (linear)",
+    "fixed windows of contact, teeth push only",
+    "own gaps and tip corners, teeth push only",
+    "linear about the own static state of every pair",
+)
+#: Most and least outputs of a mesh cycle by default, and how many all cycles together are to have.
+_MOST_SAMPLES, _LEAST_SAMPLES, _ALL_SAMPLES = 512, 32, 65536
+#: Steps in a period of the fastest vibration, and least steps in a mesh cycle.
+_STEPS, _LEAST_STEPS = 40, 128
+#: What a start is to have faded to before it is recorded, and most cycles for that.
+_FADED, _MOST_SETTLING = 1e-11, 20_000
+#: Largest mismatch after the period, over the largest displacement, that is called periodic.
+_CLOSED = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class OwnMotion:
+    """Periodic motion over ``period`` mesh cycles.
+
+    Attributes
+    ----------
+    system : the "full" system of the healthy twin
+    tables : the contact that was integrated
+    form : of ``kernels``
+    time : (k,) [s]
+    states : (k, n)
+    load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
+    brake_torque : mean torque that holds the mean speed against moments [N m]
+    powers : mean power of sliding, tooth dampers, supports, and of the gap that closes as the teeth roll [W]
+    closure : mismatch of the state after the period, over the largest displacement
+    error : difference of the dynamic transmission error to that of steps four times longer, over its
+        largest value
+    spectral_radius : of the healthy twin
+    """
+
+    pair: GearPair
+    system: LTVSystem
+    tables: Tables
+    form: int
+    time: FloatArray
+    states: FloatArray
+    load: FloatArray
+    brake_torque: float
+    powers: dict[str, float]
+    closure: float
+    error: float
+    spectral_radius: float
+
+    @property
+    def period(self) -> int:
+        """Mesh cycles."""
+        return self.tables.period
+
+    @cached_property
+    def number(self) -> IntArray:
+        """Number of the pair in each place at each output, (pairs, k)."""
+        cycle = np.repeat(np.arange(self.period), self.tables.outputs.sum())
+        return np.asarray(cycle - self.tables.ahead[:, None], dtype=np.int64)
+
+    @cached_property
+    def teeth(self) -> tuple[IntArray, IntArray]:
+        """Teeth of pinion and gear in each place at each output, from 0, (pairs, k)."""
+        return numbers(self.pair, self.number)
+
+    @cached_property
+    def pairs(self) -> PairState:
+        """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
+        own, starts = self.tables, np.flatnonzero(self.tables.outputs)
+
+        def repeated(values: FloatArray) -> FloatArray:
+            return np.tile(values[starts, 0].T, self.period)
+
+        touches = self.load != 0.0
+        kind = own.kinds[self.teeth]
+        step, place = np.tile(starts, self.period), np.arange(own.ahead.size)[:, None]
+        k, c, gap = (
+            np.where(touches, v[kind, step, 0, place], 0.0) for v in (own.stiffness, own.damping, own.gap)
+        )
+        mu = np.where(touches, repeated(own.friction), 0.0)
+        return PairState(repeated(own.place), touches, k, c, mu, gap, np.zeros(gap.shape))
+
+
+def form_of(pair: GearPair, touch: Touch) -> int:
+    """Form of the kernels: by the pair's form of contact, and whether teeth only push."""
+    if touch not in ("push_only", "linear"):
+        raise refuse("touch", touch, "'push_only' or 'linear'", "Choose one of them.")
+    push = touch == "push_only"
+    if pair.mesh.contact == "loaded":
+        return kernels.PUSH if push else kernels.LINEAR
+    return kernels.FIXED_PUSH if push else kernels.FIXED
+
+
+def own_motion(
+    pair: GearPair, samples: int, touch: Touch, supports: Supports = "springs", steps: int | None = None
+) -> OwnMotion:
+    """Periodic motion of a pair whose teeth differ.
+
+    Started from the motion of the healthy twin, it is followed until the start has faded, then recorded
+    over one period. A first run with coarser steps gives the brake torque, which the common rotation alone
+    feels.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples : outputs a mesh cycle
+    touch : whether teeth push only, or are tied to a linear law
+    supports : as of ``periodic_system``
+    steps : least number of steps in a mesh cycle; by default by the fastest vibration
+    """
+    form = form_of(pair, touch)
+    system = periodic_system(pair.healthy, "full", supports=supports)
+    twin = periodic_solution(system, np.zeros(1), estimate_error=False)
+    laws = Laws(pair)
+    if steps is None:
+        swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
+        steps = max(_LEAST_STEPS, math.ceil(_STEPS * swings))
+    settling = _settling(twin.spectral_radius)
+    state, brake = twin.states[0].copy(), twin.brake_torque
+    weights = system.held.common_weights
+    m = weights.size
+    coarse = np.zeros(0)
+    for part in (4, 1):
+        own = tables(laws, part / steps, samples)
+        torques = system.pinion_torque * system.torque_pinion + brake * system.torque_gear
+        states, load, end, work = run(
+            pair, own, system, form, -settling, settling + own.period, own.period, state, torques
+        )
+        if not np.isfinite(end).all():
+            raise NumericalError(
+                "The motion grows beyond all numbers: take smaller deviations or more damping."
+            )
+        duration = own.period * system.period
+        drift = float(weights @ (end - states[0])[m:]) / duration
+        brake -= drift / float(weights @ system.torque_gear[m:])
+        # The common rotation has no mean rate of its own: nominal speed is mean speed.
+        common = system.held.common / float(weights @ system.held.common)
+        until = (settling + 0.5 * own.period) * system.period  # to the middle of the record
+        state[m:] -= (float(weights @ (end - states[0])[:m]) / duration - drift * until) * common
+        dte = states[:, :m] @ system.deflection
+        error, coarse = float(np.abs(dte - coarse).max() if coarse.size else np.inf), dte
+    time = (np.arange(states.shape[0]) / samples) * system.period
+    relative = system.held.relative
+    closure = relative @ (end - states[0])[:m]
+    largest = float(np.abs(states[:, :m] @ relative.T).max())
+    closed = float(np.abs(closure).max()) / largest
+    if closed > _CLOSED:
+        raise NumericalError(
+            f"After {own.period} mesh cycles the motion has not closed ({closed:.1e} of its size): it is "
+            "unstable, not periodic over the period of the teeth, or damped too little."
+        )
+    work /= duration
+    # Sliding at nominal speed: without what a rate of the common rotation that is left adds.
+    rates = system.gears[:2] @ (end - states[0])[:m] / duration
+    work[0] -= system.pinion_torque * rates[0] - brake * rates[1]
+    states = without_drift(system, time, states, drift)
+    powers = {"sliding": work[0], "tooth_dampers": work[1], "supports": work[2], "rolling": work[1] - work[3]}
+    named = {name: float(value) for name, value in powers.items()}
+    error /= float(np.abs(coarse).max())
+    return OwnMotion(
+        pair, system, own, form, time, states, load, brake, named, closed, error, twin.spectral_radius
+    )
+
+
+def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift: float) -> FloatArray:
+    """States without the acceleration of the common rotation that steps leave, and without its mean rate."""
+    held, m = system.held, len(system.coordinates)
+    scale = float(held.common_weights @ held.common)
+    common = states[:, :m] @ held.common_weights / scale
+    rate = states[:, m:] @ held.common_weights / scale
+    acceleration = drift / scale
+    slope = rate.mean() - acceleration * time.mean()
+    states = states.copy()
+    states[:, :m] -= np.outer(common[0] + slope * time + 0.5 * acceleration * time**2, held.common)
+    states[:, m:] -= np.outer(slope + acceleration * time, held.common)
+    return states
+
+
+def run(
+    pair: GearPair,
+    own: Tables,
+    system: LTVSystem,
+    form: int,
+    start: int,
+    cycles: int,
+    recorded: int,
+    state: FloatArray,
+    torques: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """``kernels.motion_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
+    g, s, m = system.pair.geometry, system.structure, len(system.coordinates)
+    moments = (system.reduction[:, :2] / s.mass[:2]).T
+    rates = system.gears
+    sliding = np.zeros((3, m + 1))
+    sliding[0, :m], sliding[1, :m], sliding[2, :m] = rates[0], rates[1], rates[4] - rates[5]
+    sliding[:, m] = g.omega_pinion, g.omega_gear, g.L_XY
+    supports = _power_matrix(system)
+    return kernels.motion_cycles(
+        form,
+        start,
+        cycles,
+        recorded,
+        np.ascontiguousarray(state),
+        np.ascontiguousarray(system.constant[m:]),
+        np.ascontiguousarray(system.deflection),
+        np.ascontiguousarray(system.per_load),
+        np.ascontiguousarray(moments),
+        np.ascontiguousarray(torques[m:]),
+        ripples(pair),
+        np.stack([system.torque_pinion[m:], system.torque_gear[m:]]),
+        supports,
+        sliding,
+        system.period,
+        own.edges,
+        own.outputs,
+        own.damping,
+        own.friction,
+        g.omega_pinion * g.base_radius_pinion,
+        *arguments(own),
+    )
+
+
+def arguments(own: Tables) -> tuple[Any, ...]:
+    """What statics and motion read of the tables, in the order of their arguments."""
+    return (
+        own.eccentric, own.constants, own.coupling, own.ahead, own.place, own.stiffness, own.gap,
+        own.gap_slope, own.shape, own.shape_slope, own.ends, own.kinds, *own.numbers, own.first,
+    )  # fmt: skip
+
+
+def ripples(pair: GearPair) -> FloatArray:
+    """Rows of shaft, angle a mesh cycle, phase at t = 0, amplitude and cycles a turn of each harmonic."""
+    rows = []
+    for one in pair.operating.torque_ripple:
+        which = ("pinion", "gear").index(one.shaft)
+        teeth = (pair.pinion.teeth, pair.gear.teeth)[which]
+        angle = 2.0 * math.pi * one.order / teeth
+        start = one.phase + angle * first_teeth(pair)[which]
+        rows.append([which, angle, start, one.amplitude, teeth])
+    return np.reshape(np.array(rows, dtype=float), (-1, 5))
+
+
+def _power_matrix(system: LTVSystem) -> FloatArray:
+    """Matrix (m, m) whose form of the rates is the power that the supports take."""
+    m = len(system.coordinates)
+    unit = np.eye(m)
+    single = sum(system.held.powers(unit).values())
+    both = sum(system.held.powers((unit[:, None] + unit).reshape(-1, m)).values())
+    return np.asarray(0.5 * (np.reshape(both, (m, m)) - np.add.outer(single, single)), dtype=np.float64)
+
+
+def _settling(radius: float) -> int:
+    """Mesh cycles until a start has faded."""
+    if radius >= 1.0:
+        raise NumericalError(
+            f"The motion of the healthy twin is not stable (multiplier {radius:.6f}), so none settles: raise "
+            "the damping or leave the speed."
+        )
+    found = math.ceil(math.log(_FADED) / math.log(radius)) + 2
+    if found > _MOST_SETTLING:
+        raise NumericalError(f"A start fades in {found} mesh cycles, too slowly: raise mesh.damping_ratio.")
+    return found
+
+
+def static_loads(own: Tables, start: int, cycles: int) -> tuple[FloatArray, FloatArray]:
+    """Static approach (cycles, steps) [m] and loads (pairs, cycles, steps) [N], as the kernel's."""
+    approach, loads = kernels.static_cycles(start, cycles, own.edges, *arguments(own))
+    if not np.isfinite(approach).all():
+        raise NumericalError(
+            "At some position no tooth pair can carry the load: check stiffness and deviations."
+        )
+    return approach, loads
+
+
+def default_samples(period: int) -> int:
+    """Outputs a mesh cycle: fewer, the more cycles a period has; a power of two."""
+    found: int = 2 ** int(math.log2(_ALL_SAMPLES / period))
+    return min(max(found, _LEAST_SAMPLES), _MOST_SAMPLES)
+
+
+def own_steady_state(pair: GearPair, samples: int | None, touch: Touch, supports: Supports) -> xr.Dataset:
+    """The result of ``lumped.steady_state`` of a pair whose teeth differ."""
+    count = default_samples(period_of(pair)) if samples is None else samples
+    motion = own_motion(pair, count, touch, supports)
+    return labelled_motion(motion, provenance(pair, samples_per_cycle=count, touch=touch))
+
+
+def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset:
+    """A motion under the names of ``lumped.model.results.VARIABLES``, with the teeth of each pair."""
+    system, g = motion.system, motion.pair.geometry
+    values = response(system, motion.time, motion.states, motion.load, motion.pairs)
+    further: dict[str, Variable] = {
+        f"{name}_tooth": (("pair", "time"), teeth + 1, "1", f"tooth of the {name}, counted from 1")
+        for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
+    }
+    brake = motion.brake_torque
+    if contact_of(motion.pair).conservative:
+        brake -= motion.powers["rolling"] / g.omega_gear
+    attributes = attributes | {
+        "model": "lumped",
+        "period_cycles": motion.period,
+        "touch": FORMS[motion.form],
+        "brake_torque": brake,
+        "pinion_torque": system.pinion_torque,
+        "mesh_efficiency": brake * g.omega_gear / (system.pinion_torque * g.omega_pinion),
+        "power_sliding": motion.powers["sliding"],
+        "power_tooth_dampers": motion.powers["tooth_dampers"],
+        "power_bearings": motion.powers["supports"],
+        "power_energy_residual": 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"],
+        "closure": motion.closure,
+        "error_estimate": motion.error,
+        "spectral_radius": motion.spectral_radius,
+    }
+    closed = np.append(motion.time, motion.period * system.period)
+    for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
+        one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
+        attributes[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
+    run = labelled(motion.time, values, attributes, further)
+    return system.held.labelled(run, motion.states)

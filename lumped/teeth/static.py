@@ -1,0 +1,85 @@
+"""Load sharing and static transmission error of teeth that differ, over their whole period.
+
+Sources: docs/theory/teeth.md, "Statics".
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lumped.arguments import whole_number
+from lumped.labelling import labelled_dataset
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.teeth.contact import Laws, tables
+from lumped.teeth.motion import default_samples, static_loads
+from lumped.teeth.pairs import numbers, period_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr.Dataset:
+    """Static equilibrium of every meeting pair over a revolution or hunting period: docs/theory/teeth.md.
+
+    At each position the approach delta and the loads N_n = k_n max(delta - e_n - sum_m w_nm N_m, 0) satisfy
+    sum N_n = T/r_bp, where e_n is the pair's own gap with its tip corners.
+
+    Parameters
+    ----------
+    pair : a validated gear pair, its teeth alike or not
+    samples_per_cycle : positions in each mesh cycle; default 512, fewer where the period has many cycles
+
+    Returns
+    -------
+    xarray.Dataset over ``phase`` [mesh cycles] and ``pair``: ``transmission_error`` [m], ``normal_load`` [N],
+    ``pinion_tooth``, ``gear_tooth`` counted from 1; and over both teeth ``largest_load`` [N] of each pair
+    of teeth that meets, NaN of others
+
+    Raises
+    ------
+    NumericalError : at some position no tooth pair can carry the load
+    """
+    pair = load_gear_pair(pair)
+    laws = Laws(pair)
+    period = period_of(pair)
+    count = default_samples(period) if samples_per_cycle is None else samples_per_cycle
+    count = whole_number("samples_per_cycle", count, 1, 65536)
+    own = tables(laws, 1.0, count)
+    approach, loads = static_loads(own, 0, period)
+    kept = np.flatnonzero(own.outputs)
+    places = own.ahead.size
+    load = loads[:, :, kept].reshape(places, -1)
+    pinion, gear = numbers(pair, np.repeat(np.arange(period), count) - own.ahead[:, None])
+    largest = np.full((pair.pinion.teeth, pair.gear.teeth), np.nan)
+    every = numbers(pair, np.arange(period) - own.ahead[:, None])
+    largest[every] = 0.0
+    np.maximum.at(largest, every, loads.max(axis=2))
+    phase = (np.arange(period)[:, None] + np.arange(count) / count).ravel()
+    return labelled_dataset(
+        {
+            "transmission_error": (
+                "phase",
+                approach[:, kept].ravel(),
+                "m",
+                "static transmission error, driven gear late",
+            ),
+            "normal_load": (("pair", "phase"), load, "N", "normal load of a tooth pair"),
+            "pinion_tooth": (("pair", "phase"), pinion + 1, "1", "tooth of the pinion"),
+            "gear_tooth": (("pair", "phase"), gear + 1, "1", "tooth of the gear"),
+            "largest_load": (
+                ("tooth_of_pinion", "tooth_of_gear"),
+                largest,
+                "N",
+                "largest load of a pair of teeth",
+            ),
+        },
+        {
+            "phase": (phase, "1", "mesh cycles after pair 0 was at A"),
+            "pair": (np.arange(places), "1", "tooth pair, 0 is ahead"),
+            "tooth_of_pinion": (np.arange(pair.pinion.teeth) + 1, "1", "tooth of the pinion"),
+            "tooth_of_gear": (np.arange(pair.gear.teeth) + 1, "1", "tooth of the gear"),
+        },
+        {"pair": pair.name, "period_cycles": period},
+    )

@@ -1,0 +1,66 @@
+"""Flank tolerances of ISO 1328-1 and index deviations drawn within them.
+
+Sources: ISO 1328-1:2013, eqs. of clause 5 (formulas from memory, see docs/theory/teeth.md).
+"""
+
+from __future__ import annotations
+
+import math
+import random
+
+import numpy as np
+
+from lumped.errors import refuse
+from lumped.typing import FloatArray
+
+
+def flank_tolerances(teeth: int, module: float, tolerance_class: int) -> dict[str, float]:
+    """Tolerances of a spur gear's flanks by ISO 1328-1:2013 [m].
+
+    Parameters
+    ----------
+    teeth : number of teeth
+    module : [m]
+    tolerance_class : 1 to 11
+
+    Returns
+    -------
+    "f_p", "F_p" single pitch and total cumulative pitch, "f_Ha", "f_fa", "F_a" profile slope, form and total,
+    "F_r" runout
+
+    Raises
+    ------
+    ParameterError : a class that the standard does not have
+    """
+    if not 1 <= tolerance_class <= 11:
+        raise refuse("tolerance_class", tolerance_class, "1 to 11", "Choose a class of ISO 1328-1:2013.")
+    m = module * 1e3
+    d = m * teeth
+    step = 1e-6 * math.sqrt(2.0) ** (tolerance_class - 5)
+    slope, form = 0.4 * m + 0.001 * d + 4.0, 0.55 * m + 5.0
+    cumulative = 0.002 * d + 0.55 * math.sqrt(d) + 0.7 * m + 12.0
+    found = {"f_p": 0.001 * d + 0.4 * m + 5.0, "F_p": cumulative, "f_Ha": slope, "f_fa": form}
+    found |= {"F_a": math.hypot(slope, form), "F_r": 0.9 * cumulative}
+    return {name: value * step for name, value in found.items()}
+
+
+def drawn_index(teeth: int, module: float, tolerance_class: int, seed: int) -> FloatArray:
+    """Index deviations (teeth,) of a random gear of a class [m], the same for each seed.
+
+    Pitch deviations are white, of zero sum; a first harmonic of as large a range as the tolerance F_p is
+    added to their sum. The whole is scaled until the largest pitch deviation or the range meets its
+    tolerance.
+    """
+    tolerance = flank_tolerances(teeth, module, tolerance_class)
+    draw = random.Random(seed).random
+
+    def normal() -> float:  # Box and Muller
+        return math.sqrt(-2.0 * math.log(1.0 - draw())) * math.cos(2.0 * math.pi * draw())
+
+    pitch = np.array([normal() for _ in range(teeth)])
+    index = np.cumsum(0.5 * tolerance["f_p"] * (pitch - pitch.mean()))
+    turn = 2.0 * math.pi * (np.arange(teeth) / teeth + draw())
+    index += 0.5 * tolerance["F_p"] * np.cos(turn)
+    largest = np.abs(np.diff(index, prepend=index[-1])).max()
+    index *= min(tolerance["f_p"] / largest, tolerance["F_p"] / np.ptp(index))
+    return np.asarray(index - index.mean(), dtype=np.float64)

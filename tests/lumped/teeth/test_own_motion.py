@@ -1,0 +1,270 @@
+"""Is the motion of teeth that differ right: shifts, sums, like teeth, first law, eccentric gears, statics?"""
+
+import functools
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.quasi_static.loaded import StaticMesh
+from lumped.teeth import kernels, motion
+
+COS = np.cos(np.radians(20.0))
+ERRORS = np.random.default_rng(5).normal(size=28) * 5.0
+ERRORS -= ERRORS.mean()
+SAMPLES = 16
+
+
+@pytest.fixture(scope="module")
+def loaded(nasa):
+    changes = {"friction.law": "coulomb", "friction.coefficient": 0.06, "operating.pinion_speed": 1500}
+    return nasa.with_({**changes, "mesh.contact": "loaded"})
+
+
+def steps(values):
+    return {"index": list(values), "first_order": "steps"}
+
+
+@pytest.fixture(scope="module")
+def dte(loaded):
+    """Function: DTE over the period of lists on pinion and gear [um], in a form of contact."""
+
+    @functools.cache
+    def of(form, pinion=None, gear=None, torque=56.5):
+        contact, touch = form.split()
+        changes = {"mesh.contact": contact, "operating.pinion_torque": torque}
+        for name, values in (("pinion", pinion), ("gear", gear)):
+            if values is not None:
+                changes[f"{name}.deviations"] = steps(values)
+        run = motion.own_motion(loaded.with_(changes), SAMPLES, touch, steps=160)
+        return run.states[:, :6] @ run.system.structure.deflection * 1e6
+
+    return of
+
+
+FORMS = ["prescribed linear", "prescribed push_only", "loaded push_only", "loaded linear"]
+LIST, NONE = tuple(ERRORS), (0.0,) * 28
+
+
+@pytest.mark.parametrize("form", FORMS)
+class TestEveryForm:
+    def test_equal_lists_on_like_gears_cancel(self, dte, form):
+        found = dte(form, LIST, LIST)
+        assert found == pytest.approx(dte(form, NONE), abs=1e-10)
+        orders = np.abs(np.fft.rfft(found)) / found.size
+        orders[::28] = 0.0
+        assert orders.max() < 1e-9  # um
+
+    def test_a_list_that_begins_a_tooth_later_is_a_shift_in_time(self, dte, form):
+        later = dte(form, tuple(np.roll(ERRORS, 1)))
+        assert later == pytest.approx(np.roll(dte(form, LIST), SAMPLES), abs=1e-9)
+        assert np.ptp(later) > 1.2 * np.ptp(dte(form, NONE))
+
+
+class TestFixedContacts:
+    """N = k (delta - e) on A to D is linear: sums hold, and a common error moves nothing else."""
+
+    FORM = "prescribed linear"
+
+    def test_a_common_error_is_a_shift_of_delta(self, dte):
+        more = dte(self.FORM, tuple(ERRORS + 3.0))
+        assert more - dte(self.FORM, LIST) == pytest.approx(3.0 * COS, abs=1e-9)
+
+    def test_parts_of_both_gears_add_up(self, dte):
+        mirrored = tuple(ERRORS[::-1])
+        parts = dte(self.FORM, LIST) + dte(self.FORM, None, mirrored) - dte(self.FORM, NONE)
+        assert dte(self.FORM, LIST, mirrored) == pytest.approx(parts, abs=1e-9)
+
+    def test_errors_of_zero_mean_leave_mesh_harmonics_and_own_gaps_do_not(self, dte):
+        def moved(form):
+            one, healthy = (np.abs(np.fft.rfft(dte(form, values))[28:85:28]) for values in (LIST, NONE))
+            return np.abs(one / healthy - 1.0).max()
+
+        assert moved(self.FORM) < 1e-10
+        assert moved("loaded push_only") > 0.01
+
+    def test_torque_and_errors_times_two_double_the_motion_unless_corners_touch(self, dte):
+        def off(form):
+            single = dte(form, LIST)
+            return np.abs(dte(form, tuple(2.0 * ERRORS), None, 113.0) - 2.0 * single).max() / np.ptp(single)
+
+        assert off(self.FORM) < 1e-9
+        assert off("prescribed push_only") < 1e-9
+        assert off("loaded push_only") > 0.1
+
+
+def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):
+    # Steps are not cut where a pair touches first, so the error falls with their length alone.
+    expected = lumped.steady_state(loaded, samples_per_cycle=SAMPLES).dte.values * 1e6
+    assert np.tile(expected, 28) == pytest.approx(dte("loaded linear", NONE), abs=0.02 * np.ptp(expected))
+    pair = loaded.with_({"pinion.deviations": steps(NONE)})
+    fine = motion.own_motion(pair, SAMPLES, "linear", steps=640)
+    found = fine.states[:SAMPLES, :6] @ fine.system.structure.deflection * 1e6
+    assert found == pytest.approx(expected, abs=2e-3 * np.ptp(expected))
+    assert fine.brake_torque - fine.powers["rolling"] / pair.geometry.omega_gear == pytest.approx(
+        lumped.steady_state(loaded).attrs["brake_torque"], rel=1e-6
+    )
+
+
+ECCENTRIC = {
+    "pinion.deviations": steps(ERRORS),
+    "pinion.mounting": {"eccentricity": 11, "phase": 40},
+    "gear.mounting": {"eccentricity": 20},
+}
+
+
+def test_first_law_holds_over_a_revolution_with_the_moment_of_eccentric_gears(loaded):
+    pair = loaded.with_(ECCENTRIC)
+    found = lumped.steady_state(pair, samples_per_cycle=8).attrs
+    g = pair.geometry
+    driving, braking = 56.5 * g.omega_pinion, found["brake_torque"] * g.omega_gear
+    lost = found["power_sliding"] + found["power_tooth_dampers"] + found["power_bearings"]
+    assert driving - braking - lost == pytest.approx(0.0, abs=1e-8 * driving)
+
+
+class TestEccentricGears:
+    def test_line_of_action_of_base_circles_off_their_axes(self, unequal):
+        # Exact: both base circles and their inner tangent, from the distance of the centres.
+        g = unequal.geometry
+        radius, eps, turn = g.base_radius_pinion + g.base_radius_gear, 2e-9, 0.83
+
+        def line(u):
+            """Length of the line of action [m] and its angle [rad]; u along and off it."""
+            along, off = g.L_XY - u[0], radius - u[1]
+            length = np.sqrt(along**2 + off**2 - radius**2)
+            return length, np.arctan2(off, along) - np.arctan2(radius, length)
+
+        for which, u in enumerate(
+            (eps * np.array([-np.cos(turn), np.sin(turn)]), -eps * np.array([np.cos(turn), np.sin(turn)]))
+        ):
+            rows = np.zeros((2, 5))
+            rows[:, 2] = 25, 31
+            rows[which] = eps, turn, rows[which, 2], g.L_XY, 1.0 / np.tan(g.operating_pressure_angle)
+            found = np.zeros(7)
+            kernels.eccentric_at(0.0, rows, found)
+            length, angle = line(u)
+            assert found[2] == pytest.approx(length - g.L_XY, rel=1e-5)
+            assert found[3] == pytest.approx(angle, rel=1e-5)
+            assert found[0] == pytest.approx(length - g.L_XY - radius * angle, rel=1e-5)
+
+    def test_exact_transmission_error_of_a_rigid_pair(self):
+        # 25/31, m 3 mm, 20 deg, eps 20 um: order 1 is eps itself, order 2 what the first order leaves out.
+        radius = 0.5 * 3e-3 * 56 * COS
+        a, phi = 0.5 * 3e-3 * 56, 2.0 * np.pi * np.arange(64) / 64
+        across = a + 20e-6 * np.exp(1j * phi)
+        length = np.sqrt(np.abs(across) ** 2 - radius**2)
+        te = length - radius * (np.angle(across) - np.arctan2(radius, length))
+        orders = 2.0 * np.abs(np.fft.rfft(te)) / 64
+        assert orders[1] * 1e6 == pytest.approx(20.0, abs=5e-5)
+        assert orders[2] * 1e9 == pytest.approx(3.4807, abs=1e-4)
+
+    def test_an_eccentric_gear_makes_small_sidebands_where_a_list_of_steps_makes_large_ones(self, loaded):
+        staircase = 20.0 / COS * np.cos(2.0 * np.pi * np.arange(28) / 28)
+        changes = {
+            "turning": {"pinion.mounting": {"eccentricity": 20}},
+            "harmonic": {"pinion.deviations": {"index": list(staircase)}},
+            "steps": {"pinion.deviations": steps(staircase)},
+        }
+        side = {}
+        for name, change in changes.items():
+            run = motion.own_motion(loaded.with_(change), SAMPLES, "push_only", steps=160)
+            te = run.states[:, :6] @ run.system.structure.deflection
+            orders = 2.0 * np.abs(np.fft.rfft(te)) / te.size
+            assert orders[1] == pytest.approx(20e-6, rel=0.02)
+            side[name] = orders[[27, 29]].max()
+        assert side["steps"] > 8.0 * side["turning"]
+        assert side["harmonic"] < 1.2 * side["turning"]
+
+
+class TestStatics:
+    def test_like_teeth_are_those_of_the_loaded_mesh(self, loaded):
+        found = lumped.static_sharing(loaded, samples_per_cycle=16)
+        g = loaded.geometry
+        expected = StaticMesh(loaded).approach(g.L_XA + found.phase.values * g.base_pitch)
+        assert found.transmission_error.values == pytest.approx(expected, rel=1e-9)
+
+    def test_loads_carry_the_force_with_every_pair_on_its_own_gap(self, loaded):
+        pair = loaded.with_(
+            {"pinion.deviations": steps(3.0 * ERRORS), "gear.deviations": steps(ERRORS[::-1])}
+        )
+        found = lumped.static_sharing(pair, samples_per_cycle=16)
+        g, force = pair.geometry, 56.5 / pair.geometry.base_radius_pinion
+        assert found.normal_load.sum("pair").values == pytest.approx(force, rel=1e-9)
+        gap = lumped.tooth_gaps(pair).gap.values
+        k = float(lumped.mesh_stiffness(pair).attrs["mean"]) / g.contact_ratio
+        # Away from the tips a pair is a rectangle of stiffness: where two press, both give the same approach.
+        ahead = found.sizes["pair"] - 2 - np.arange(found.sizes["pair"])  # the last one is behind A
+        position = g.L_XA + (found.phase.values % 1.0 + ahead[:, None]) * g.base_pitch
+        teeth = found.pinion_tooth.values - 1, found.gear_tooth.values - 1
+        inner = (position > g.L_XA + 1.5e-4) & (position < g.L_XD - 1.5e-4) & (found.normal_load.values > 0.0)
+        own = found.normal_load.values / k + gap[teeth]
+        approach = np.broadcast_to(found.transmission_error.values, own.shape)
+        assert inner.sum() > 300
+        assert own[inner] == pytest.approx(approach[inner], rel=1e-9)
+        largest = found.largest_load.values
+        assert np.isfinite(largest).sum() == 28
+        assert np.nanmax(largest) >= found.normal_load.values.max()
+
+
+def test_slope_of_a_tip_corner_is_the_rate_of_its_gap(nasa):
+    g = nasa.geometry
+    at = (g.L_XA, g.L_XY, g.base_radius_pinion, g.base_radius_gear)
+    for beyond in (1e-5, 4e-4, 2e-3):
+        gap, slope = kernels.corner(beyond, *at)
+        around = [kernels.corner(beyond + h, *at)[0] for h in (-1e-6, 1e-6)]
+        assert slope == pytest.approx((around[1] - around[0]) / 2e-6, rel=1e-6, abs=1e-9)
+        assert gap > 0.0
+
+
+def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded):
+    # Far below every resonance the load follows the torque: N = (T + A cos)/r_b of order 1 of the pinion,
+    # less what turns both inertias; J_g/(J_p + J_g) = 1/2 of it passes like gears.
+    ripple = [{"shaft": "pinion", "order": 1, "amplitude": 4.0, "phase": 90}]
+    pair = loaded.with_(
+        {"operating.torque_ripple": ripple, "friction.coefficient": 0.0, "operating.pinion_speed": 60}
+    )
+    run = lumped.steady_state(pair, samples_per_cycle=16)
+    load = run.normal_load.sum("pair").values
+    first = 2.0 * np.fft.rfft(load)[1] / load.size * pair.geometry.base_radius_pinion
+    assert abs(first) == pytest.approx(2.0, rel=5e-3)
+    assert np.angle(first) == pytest.approx(np.pi / 2.0, abs=5e-3)
+
+
+class TestFaults:
+    def test_a_crack_softens_one_tooth_and_nothing_as_it_closes(self, loaded):
+        def loss(depth):
+            cracked = loaded.with_({"pinion.faults": [{"kind": "crack", "tooth": 1, "depth": depth}]})
+            healthy, found = (
+                lumped.static_sharing(pair, samples_per_cycle=16).transmission_error.values
+                for pair in (loaded, cracked)
+            )
+            return np.ptp(found - np.tile(healthy, 28))
+
+        losses = np.array([loss(depth) for depth in (0.05, 0.2, 1.0)])
+        assert (np.diff(losses) > 0.0).all()
+        # The compliance of a short edge crack grows as the square of its depth.
+        assert losses[1] / losses[0] == pytest.approx(16.0, rel=0.15)
+
+    def test_spall_of_the_whole_width_is_a_gap_and_a_chip_ends_the_flank_early(self, loaded):
+        g = loaded.geometry
+        roll = np.degrees(np.array([g.L_XP, g.L_XP + 5e-4, g.L_XD - 1.2e-3]) / g.base_radius_pinion)
+        spall = {
+            "kind": "spall",
+            "tooth": 5,
+            "start_roll_angle": roll[0],
+            "end_roll_angle": roll[1],
+            "pit_depth": 9,
+        }
+        chip = {"kind": "chip", "tooth": 5, "roll_angle": roll[2]}
+        healthy = np.tile(lumped.static_sharing(loaded, samples_per_cycle=64).transmission_error.values, 28)
+        for fault, place in (
+            (spall, roll[:2]),
+            (chip, [roll[2] - 0.5, np.degrees(g.L_XD / g.base_radius_pinion)]),
+        ):
+            pair = loaded.with_({"pinion.faults": [fault]})
+            found = lumped.static_sharing(pair, samples_per_cycle=64)
+            moved = found.phase.values[np.abs(found.transmission_error.values - healthy) > 1e-9]
+            at = 4 + (np.radians(place) * g.base_radius_pinion - g.L_XA) / g.base_pitch
+            assert at[0] - 0.02 <= moved.min()
+            assert moved.max() <= at[1] + 0.1  # loaded teeth touch beyond D
+            assert moved.size > 2

@@ -1,0 +1,92 @@
+"""Which teeth meet, and with which errors? Numbers, signs, the first harmonic, tolerances."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lumped import ParameterError, flank_tolerances, meeting_teeth, revolution, tooth_gaps
+from lumped.teeth.tolerances import drawn_index
+
+LIST = [round(math.sin(3.0 * j) + 0.1 * j, 3) for j in range(28)]
+
+
+def steps(values, **more):
+    return {"index": list(values), "first_order": "steps", **more}
+
+
+@pytest.mark.parametrize(
+    ("changes", "cycles"),
+    [
+        ({}, 1),
+        ({"pinion.mounting": {"eccentricity": 1}}, 25),
+        ({"gear.deviations": {"tolerance_class": 5}}, 31),
+        ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, 31),
+        (
+            {
+                "gear.mounting": {"eccentricity": 1},
+                "pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 0.1}],
+            },
+            775,
+        ),
+    ],
+)
+def test_period_is_a_revolution_or_the_hunting_period(unequal, changes, cycles):
+    assert revolution(unequal.with_(changes)) == cycles
+
+
+def test_every_pair_of_coprime_teeth_meets_and_28_of_784_of_like_numbers(nasa, unequal):
+    both = {f"{gear}.deviations": {"tolerance_class": 6} for gear in ("pinion", "gear")}
+    for pair, met in ((unequal.with_(both), 775), (nasa.with_(both), 28)):
+        found = meeting_teeth(pair)
+        assert len({*zip(found.pinion_tooth.values, found.gear_tooth.values, strict=True)}) == met
+        assert (found.pinion_tooth[0], found.gear_tooth[0]) == (1, 1)
+    later = meeting_teeth(nasa.with_({**both, "mesh.first_teeth": [28, 3]}), 2)
+    assert later.pinion_tooth.values.tolist() == [28, 1]
+    assert later.gear_tooth.values.tolist() == [3, 4]
+
+
+def test_a_flank_further_along_the_count_comes_late_on_the_pinion_and_early_on_the_gear(nasa):
+    found = tooth_gaps(nasa.with_({"pinion.deviations": steps(LIST), "gear.deviations": steps(LIST)}))
+    expected = np.cos(np.radians(20.0)) * np.array(LIST) * 1e-6
+    assert found.pinion_error.values == pytest.approx(expected, rel=1e-14)
+    assert found.gear_error.values == pytest.approx(-expected, rel=1e-14)
+    assert np.diag(found.gap.values) == pytest.approx(0.0, abs=1e-21)
+
+
+def test_numbered_against_the_count_the_list_is_reversed_with_its_sign(nasa):
+    against = [-LIST[-j % 28] for j in range(28)]
+    one, other = (
+        tooth_gaps(nasa.with_({"pinion.deviations": deviations})).pinion_error.values
+        for deviations in (steps(LIST, counted="against"), steps(against))
+    )
+    assert one == pytest.approx(other, rel=1e-14)
+
+
+@pytest.mark.parametrize("which", ["pinion", "gear"])
+def test_first_harmonic_of_a_list_turns_as_an_eccentric_gear(nasa, which):
+    # The staircase F[n] = eps/cos(alpha) cos(2 pi n/z + 0.7) is what an eccentric gear shows at the pitch
+    # point.
+    turn = 2.0 * np.pi * np.arange(28) / 28
+    index = 12.0 / np.cos(np.radians(20.0)) * np.cos(turn + 0.7)
+    pair = nasa.with_({f"{which}.deviations": {"index": list(index)}})
+    found, g = tooth_gaps(pair), pair.geometry
+    assert found[f"{which}_error"].values == pytest.approx(0.0, abs=1e-20)
+    assert found.attrs[f"{which}_eccentricity"] == pytest.approx(12e-6, rel=1e-12)
+    at_pitch_point = found.attrs[f"{which}_phase"] + (g.L_XP - g.L_XA) / g.base_radius_pinion
+    assert np.cos(at_pitch_point - 0.7) == pytest.approx(1.0 if which == "pinion" else -1.0, rel=1e-12)
+
+
+def test_tolerances_are_those_of_the_standard_and_a_draw_meets_one(nasa):
+    # ISO 1328-1:2013, class 6 = class 5 times sqrt 2; z 28, m 3.175 mm, by hand.
+    found = flank_tolerances(28, 3.175e-3, 6)
+    by_hand = {"f_p": 8.99, "F_p": 27.70, "f_Ha": 7.58, "f_fa": 9.54, "F_a": 12.18, "F_r": 24.93}
+    assert {name: round(value * 1e6, 2) for name, value in found.items()} == by_hand
+    for seed in range(4):
+        index = drawn_index(28, 3.175e-3, 6, seed)
+        largest = np.abs(np.diff(index, prepend=index[-1])).max()
+        assert max(largest / found["f_p"], np.ptp(index) / found["F_p"]) == pytest.approx(1.0, rel=1e-12)
+        assert index.mean() == pytest.approx(0.0, abs=1e-19)
+        assert (drawn_index(28, 3.175e-3, 6, seed) == index).all()
+    with pytest.raises(ParameterError, match="1 to 11"):
+        flank_tolerances(28, 3.175e-3, 12)
