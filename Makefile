@@ -3,7 +3,7 @@
 # make lint     ruff and mypy --strict
 # make reproduce   compute figures, claims and errata of the published model again, in build/reproductions/
 # make evidence   compute the evidence about the program again (two minutes) and store it in validation/evidence.json
-# make package-check   build sdist and wheel, install and try the wheel on every Python 3.11 or later found here
+# make dist     build sdist and wheel into dist/, check them, try the wheel on every Python 3.11 or later found here
 # make lowest   try the oldest releases that pyproject.toml allows with a quick report (four minutes of processor time)
 # make docs     set up .venv if needed and build the documentation to build/docs; warnings are errors
 # PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
@@ -16,7 +16,7 @@ OUT ?= report
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report reproduce evidence test lint docs package-check lowest clean
+.PHONY: report reproduce evidence test lint docs dist lowest clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force
@@ -59,8 +59,8 @@ $(VENV)/.ready-docs: $(VENV)/.ready
 	@$(PIP) --editable ".[docs]"
 	@touch $@
 
-package-check:
-	.ci/package-check
+dist:
+	.ci/dist
 
 lowest:
 	@$(PYTHON) -m venv --clear build/lowest

@@ -12,7 +12,7 @@ from lumped.errors import refuse, shown
 from lumped.fields.refusals import nearest
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.gear_geometry.geometry import Geometry
-from lumped.schema.pair import GearPair, validated
+from lumped.schema.pair import FORMAT, GearPair, validated
 
 #: What stands for a gear pair: a preset name, the path of a TOML file, parameters in file units, or the pair.
 AnyPair = GearPair | str | Path | Mapping[str, Any]
@@ -83,6 +83,8 @@ def geometry(pair: AnyPair) -> Geometry:
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``."""
     schema = GearPair.model_json_schema()
+    words = "format of the file; a file without it is of format 1"
+    schema["properties"] |= {"format": {"const": FORMAT, "default": FORMAT, "description": words}}
     for section in (schema, *schema["$defs"].values()):
         for field in section["properties"].values():
             if field.get("default") in (None, []):  # held so inside, but nothing that a file can say

@@ -31,6 +31,8 @@ from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.shafts import Bearings, Shafts
 from lumped.schema.teeth import TorqueRipple
 
+#: Format of parameter files; a change that older programs would misread raises it.
+FORMAT = 1
 #: Largest speed of a pinion [rpm].
 LARGEST_SPEED = 200000.0
 
@@ -293,7 +295,7 @@ class GearPair(Section, metaclass=_InOurWords):
         """Return the pair as TOML text; reading it back gives an equal pair."""
         import tomli_w
 
-        return tomli_w.dumps(self.to_mapping())
+        return tomli_w.dumps({"format": FORMAT} | self.to_mapping())
 
     def with_(self, changes: dict[str, Any] | None = None, /, **fields: Any) -> GearPair:
         """Return a validated variation of this pair.
@@ -340,10 +342,15 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
     """Return the gear pair of plain data in file units, or refuse it in the user's words.
 
-    ``source`` says where it comes from; data files that it names are read relative to ``folder``.
+    ``source`` says where it comes from; data files that it names are read relative to ``folder``. A file
+    without ``format`` is of format 1.
     """
+    fields = {key: value for key, value in data.items() if key != "format"}
+    if data.get("format", FORMAT) != FORMAT:
+        action = "Use a later release of spurcheck, or correct the number."
+        raise refuse("format", data["format"], f"{FORMAT}, the format of this release", action)
     try:
-        return GearPair.model_validate(data, context={"folder": folder})
+        return GearPair.model_validate(fields, context={"folder": folder})
     except ValidationError as error:
         raise ParameterError(translated(error, GearPair), source) from None
 

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import pydoc
+import sys
+import tomllib
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 import spurcheck
+from validation.interactive import page
+from validation.reporting.page import limits
 
+ROOT = Path(__file__).parents[2]
 DRAWING = {"module": 2.5, "face_width": 20, "speed": 1450, "torque": 80}
 
 
@@ -86,3 +92,26 @@ def test_help_is_short_and_dir_has_only_names_for_users() -> None:
     assert len(text.splitlines()) < 200
     assert not [name for name in dir(spurcheck) if name.startswith("_") and name != "__version__"]
     assert all(name in text for name in dir(spurcheck) if name not in ("__version__", "GearPair"))
+
+
+def test_a_parameter_file_says_its_format(pair: spurcheck.GearPair) -> None:
+    text = pair.to_toml()
+    assert text.startswith("format = 1\n")
+    data = tomllib.loads(text)
+    old = {key: value for key, value in data.items() if key != "format"}
+    assert spurcheck.load_gear_pair(old) == spurcheck.load_gear_pair(data) == pair
+    with pytest.raises(spurcheck.ParameterError, match=r"format = 2.*later release"):
+        spurcheck.load_gear_pair(data | {"format": 2})
+
+
+def test_the_interactive_page_says_how_to_get_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "plotly", None)
+    with pytest.raises(spurcheck.ParameterError, match=r"spurcheck\[interactive\]"):
+        page.plotly()
+
+
+def test_page_and_documentation_have_the_same_limits() -> None:
+    shown = limits()
+    assert len(shown) > 5
+    assert all(text[0].isupper() and text.endswith(".") and "\n" not in text for text in shown)
+    assert "templates/limits.md" in (ROOT / "docs/limits.md").read_text(encoding="utf-8")

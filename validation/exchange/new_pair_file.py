@@ -15,7 +15,7 @@ import tomli_w
 from lumped.errors import ParameterError, refuse
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
-from lumped.schema.pair import SHORT_NAMES, GearPair, leaf_paths, stated_unit
+from lumped.schema.pair import FORMAT, SHORT_NAMES, GearPair, leaf_paths, stated_unit
 from validation.exchange.rexs.draft import DOUBTFUL, completed
 
 GIVEN = "given by the user"
@@ -204,7 +204,7 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
     section = ""
     entries: Counter[str] = Counter()  # of a list of tables, those above
     lines = []
-    for line in tomli_w.dumps(dict(mapping)).splitlines():
+    for line in tomli_w.dumps({"format": FORMAT} | dict(mapping)).splitlines():
         if found := _SECTION.match(line):
             section = f"{found[2]}."
             if found[1] == "[[":

@@ -15,6 +15,7 @@ from markupsafe import Markup
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import file_path, of_type
+from lumped.errors import refuse
 from lumped.friction import LAWS
 from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
@@ -98,8 +99,13 @@ def render(results: PageResults, data_name: str) -> str:
 
 
 def plotly() -> str:
-    """Plotly's script, out of the installed package."""
-    return (files("plotly") / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
+    """Plotly's script, out of the installed package, which is an optional one."""
+    try:
+        package = files("plotly")
+    except ModuleNotFoundError:
+        action = 'Install it: pip install "spurcheck[interactive]".'
+        raise refuse("plotly", "missing", "the package that draws the page", action) from None
+    return (package / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
 
 
 def _hash(script: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib.resources import files
 from typing import Any
 
 import jinja2
@@ -64,8 +65,15 @@ def render(
             images=images,
             data=data,
             not_modelled=NOT_MODELLED,
+            limits=limits(),
         )
     )
+
+
+def limits() -> list[str]:
+    """What the program does not do, one sentence or two each; docs/limits.md shows the same text."""
+    text = files("validation").joinpath("templates/limits.md").read_text(encoding="utf-8")
+    return [" ".join(entry.split()) for entry in text.removeprefix("- ").split("\n- ")]
 
 
 @lru_cache(maxsize=1)

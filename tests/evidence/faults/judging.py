@@ -73,7 +73,10 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
         with applied(fault):
             made = list(_made(fault, caught))
             for (old, _), pair in zip(sound, made, strict=False):
-                size, quantity = max((size, quantity), change(old, quantities(pair)))
+                try:
+                    size, quantity = max((size, quantity), change(old, quantities(pair)))
+                except Exception as error:  # noqa: BLE001  (whatever stops a program with a fault is seen)
+                    size, caught["refused"] = float("inf"), (_line(error),)
             for part, checks in _CHECKS.items():
                 if not thorough and any(caught.values()):
                     break
