@@ -29,6 +29,8 @@ from .gear.orbit import periodic_orbit as periodic_orbit
 from .gear.regions import label_regions as label_regions
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
+from .gear.revolution import RevolutionMultipliers as RevolutionMultipliers
+from .gear.revolution import revolution_multipliers as revolution_multipliers
 from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
 from .gear.tongues import stability_margins as stability_margins

@@ -418,3 +418,70 @@ def motion_cycles(
             for j in range(2 * m):
                 x[j] += h / 6.0 * (rate[0, j] + 2.0 * rate[1, j] + 2.0 * rate[2, j] + rate[3, j])
     return states, record, x, work
+
+
+@compiled
+def tangents_of_cycle(
+    cycle: int,
+    static: float,
+    loaded: bool,
+    edges: FloatArray,
+    damping: FloatArray,
+    friction: FloatArray,
+    eccentric: FloatArray,
+    constants: FloatArray,
+    coupling: FloatArray,
+    ahead: IntArray,
+    place: FloatArray,
+    stiffness: FloatArray,
+    gap: FloatArray,
+    gap_slope: FloatArray,
+    shape: FloatArray,
+    shape_slope: FloatArray,
+    ends: FloatArray,
+    kinds: IntArray,
+    pinion: FloatArray,
+    gear: FloatArray,
+    first: IntArray,
+) -> tuple[FloatArray, float]:
+    """Mesh of one cycle about its static state, at the nodes of the steps (steps, 3, 8), and the approach.
+
+
+    Columns: d of the sums N, F and F xi over delta and over its rate, then de/dtheta of both gears.
+    ``static`` is an approach near that of the first node.
+    """
+    steps, pairs = edges.size - 1, ahead.size
+    found = np.zeros((steps, 3, 8))
+    loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
+    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 3)), np.zeros(pairs, np.int64), np.zeros(7)
+    for s in range(steps):
+        w = coupling[s if coupling.shape[0] > 1 else 0]
+        for node in range(3):
+            tau = edges[s] + 0.5 * node * (edges[s + 1] - edges[s])
+            eccentric_at(cycle + tau, eccentric, moved)
+            if loaded:
+                static = settled(
+                    static, cycle, s, node, moved, w[node], constants, ahead, place, stiffness, gap,
+                    gap_slope, shape, shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps, loads,
+                    tangents, alone,
+                )  # fmt: skip
+            else:
+                gaps_of(
+                    0.0, cycle, s, node, False, moved, 0.0, ahead, place, stiffness, gap, gap_slope, shape,
+                    shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps,
+                )  # fmt: skip
+            for i in range(pairs):
+                if k[i] <= 0.0 or (loaded and loads[i] <= 0.0):
+                    continue
+                rise, damper = k[i], damping[kind[i], s, node, i]
+                if loaded:
+                    part = min(loads[i] / constants[4], 1.0)
+                    rise = tangents[i]
+                    damper *= part * part * (3.0 - 2.0 * part) * (1.0 - gaps[i, 2])
+                mu = friction[s, node, i]
+                for column, value in ((0, rise), (3, damper)):
+                    found[s, node, column] += value
+                    found[s, node, column + 1] += mu * value
+                    found[s, node, column + 2] += mu * value * place[s, node, i]
+            found[s, node, 6], found[s, node, 7] = moved[5], moved[6]
+    return found, static

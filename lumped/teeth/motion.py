@@ -126,6 +126,12 @@ def form_of(pair: GearPair, touch: Touch) -> int:
     return kernels.FIXED_PUSH if push else kernels.FIXED
 
 
+def steps_of(system: LTVSystem) -> int:
+    """Steps in a mesh cycle that the fastest vibration asks for."""
+    swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
+    return max(_LEAST_STEPS, math.ceil(_STEPS * swings))
+
+
 def own_motion(
     pair: GearPair, samples: int, touch: Touch, supports: Supports = "springs", steps: int | None = None
 ) -> OwnMotion:
@@ -147,9 +153,7 @@ def own_motion(
     system = periodic_system(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     laws = Laws(pair)
-    if steps is None:
-        swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
-        steps = max(_LEAST_STEPS, math.ceil(_STEPS * swings))
+    steps = steps_of(system) if steps is None else steps
     settling = _settling(twin.spectral_radius)
     state, brake = twin.states[0].copy(), twin.brake_torque
     weights = system.held.common_weights
