@@ -23,7 +23,7 @@ from validation.commands.response import response
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
-from validation.commands.terminal import NUMERICAL, unprinted
+from validation.commands.terminal import NUMERICAL, Once, unprinted
 from validation.commands.uncertainty import uncertainty
 from validation.stop_signals import interrupt_once
 
@@ -83,7 +83,7 @@ COMMANDS = (
     measurement,
 )
 for command in COMMANDS:
-    app.command(help=paragraphs(command.__doc__))(command)
+    app.command(cls=Once, help=paragraphs(command.__doc__))(command)
 app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 
 

@@ -18,6 +18,21 @@ from lumped.fields.units import Quantity
 
 #: What pydantic puts into a place for the parts of a union of plain types.
 _UNION_PARTS = {"int", "float", "str"}
+#: Keys of other gear programs -> what to do, for they are no misspelt keys of this one.
+_ELSEWHERE = {
+    ("helix", "helix_angle", "beta"): "Delete it: gears are spur gears; helical ones are not computed.",
+    (
+        "internal",
+        "internal_gear",
+        "ring_gear",
+    ): "Delete it: both gears are external; others are not computed.",
+    ("quality", "accuracy", "accuracy_grade", "quality_class"): "Write deviations.tolerance_class in the "
+    "section of the gear (ISO 1328), or delete it: then all teeth are alike.",
+    ("power", "input_power"): "Write pinion_torque: in N m it is 9549.3 times the power in kW over the "
+    "speed in rpm.",
+    ("module", "normal_module", "pressure_angle"): "Both gears have one rack: write it in basic_rack.",
+}
+_ACTIONS = {key: action for keys, action in _ELSEWHERE.items() for key in keys}
 _NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
 
 
@@ -80,7 +95,7 @@ def unknown_key(path: str, known: list[str], part: str) -> FieldProblem:
         shown(path) or "(empty)",
         "unknown key",
         allowed,
-        nearest(part, names) or "Remove the key, or correct its name.",
+        _ACTIONS.get(part) or nearest(part, names) or "Remove the key, or correct its name.",
     )
 
 

@@ -26,6 +26,13 @@ _OTHER_FILES = {
     "channel": "a measured record: give it to 'spurcheck measurement'",
 }
 
+#: Suffix of a file that is no TOML -> what to do with it.
+_NO_PAIRS = {
+    ".nc": "This is a result: name the parameter file it was computed from; 'spurcheck export' makes tables.",
+    ".csv": "This is a table: name a parameter file; a measured record goes to 'spurcheck measurement'.",
+    ".json": "Name the parameter file; of a report it is data/parameters.toml.",
+} | dict.fromkeys((".rexs", ".rexsj", ".rexsz"), "Make a parameter file of it: 'spurcheck init --from-rexs'.")
+
 
 @cache
 def preset_names() -> tuple[str, ...]:
@@ -66,6 +73,8 @@ def load_gear_pair(source: AnyPair) -> GearPair:
     path = Path(source)
     if isinstance(source, str) and source in preset_names():
         return validated(parse_toml(preset_text(source), f"preset {source}"), f"preset {source}")
+    if action := _NO_PAIRS.get(path.suffix.lower()):
+        raise refuse("file", path, "the parameters of a gear pair, a .toml file", action)
     if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
         preset_text(str(source))
     data = parse_toml(_read(path), str(path))

@@ -136,7 +136,7 @@ from validation.commands import options as opt
 from validation.commands.terminal import guarded, stdout
 
 @guarded
-def count(pair: opt.PairArgument = opt.DEFAULT_PAIR, settings: opt.Settings = None) -> None:
+def count(pair: opt.PairArgument = None, settings: opt.Settings = None) -> None:
     \"\"\"Count the teeth of a pair.
 
     [bold]Example[/bold]

@@ -25,7 +25,7 @@ DIFFERS = 4
 
 @guarded
 def crosscheck(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[
         Path | None,
         opt.output(
@@ -83,7 +83,7 @@ def crosscheck(
     spurcheck crosscheck --grid -o grid.nc --checkpoint grid
     """
     if grid:
-        given = {"PAIR": pair != opt.DEFAULT_PAIR, "--speed": speed, "--torque": torque, "--law": law}
+        given = {"PAIR": pair, "--speed": speed, "--torque": torque, "--law": law}
         _grid(output, checkpoint, [k for k, v in (given | {"--set": settings}).items() if v], force)
         return
     from lumped.errors import refuse

@@ -11,7 +11,7 @@ from validation.commands.terminal import guarded, progress_bar, stderr
 
 @guarded
 def interactive(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[Path, opt.output("Page to write, .html; its numbers go beside it as .nc.")] = Path(
         "interactive.html"
     ),

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @guarded
 def measurement(
     record: Annotated[Path, typer.Argument(metavar="RECORD", help="Description of the record (TOML).")],
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[
         Path | None, opt.output("Folder for overlay, metrics and figure, new or empty.")
     ] = None,

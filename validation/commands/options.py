@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
+import warnings
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -11,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     import numpy as np
     import xarray as xr
@@ -23,10 +26,17 @@ if TYPE_CHECKING:
     from lumped.errors import ParameterError
 
 DEFAULT_PAIR = "nasa_28_28"
+#: Fields that only some friction laws or forms of relief read.
+_READ_BY_LAWS = re.compile(r"^(friction\.(?!law$)|lubricant\.)|\.(roughness$|(tip|root)_relief)")
 _LARGEST_COUNT = 5000
 
 PairArgument = Annotated[
-    str, typer.Argument(metavar="PAIR", help="Preset (see 'spurcheck presets') or parameter file (TOML).")
+    str | None,
+    typer.Argument(
+        metavar="PAIR",
+        help="Preset (see 'spurcheck presets') or parameter file (TOML).",
+        show_default=DEFAULT_PAIR,
+    ),
 ]
 Speed = Annotated[str | None, typer.Option("--speed", help="Pinion speed [rpm], or '200 rad/s'.")]
 Torque = Annotated[str | None, typer.Option("--torque", help="Pinion torque [N m], or '200 lbf*in'.")]
@@ -64,14 +74,14 @@ def output(help: str) -> Any:
 
 
 def gear_pair(
-    source: str,
+    source: str | None,
     speed: str | None,
     torque: str | None,
     law: str | None,
     settings: list[str] | None,
     speed_range: str | None = None,
 ) -> GearPair:
-    """Load a gear pair and apply the options of the command line."""
+    """Load a gear pair and apply the options of the command line; None: the example, which a note says."""
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
     from validation.commands.terminal import note
@@ -87,14 +97,44 @@ def gear_pair(
         if text is not None:
             asked.append((option, path, text))
     options = {path: option for option, path, _ in asked}
-    pair = load_gear_pair(source)
+    if source is None:
+        note(f"no gear pair is named, so this is the example {DEFAULT_PAIR}: name your parameter file.")
+    own = load_gear_pair(source or DEFAULT_PAIR)
+    changes = {path: value_of(text) for _, path, text in asked}
     try:
-        pair = pair.with_({path: value_of(text) for _, path, text in asked})
+        pair = own.with_(changes)
     except ParameterError as error:
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
+    for path in without_effect(own, pair, changes):
+        cause = f"the law is {pair.friction.law}"
+        if "relief" in path:
+            cause = f"mesh.relief is '{pair.mesh.relief}'"
+        elif path.endswith(".roughness") and pair.friction.composite_roughness is not None:
+            cause = "friction.composite_roughness is given"
+        note(f"{options[path]} changes nothing in the motion, for {cause}.")
     for doubt in doubts(pair):
         note(doubt)
     return pair
+
+
+def without_effect(own: GearPair, pair: GearPair, changes: Mapping[str, Any]) -> Iterator[str]:
+    """Return the fields of the changes that made ``pair`` of ``own`` and that no law of it reads."""
+    from lumped import LawRangeWarning, mesh_elements
+    from lumped.errors import ParameterError
+
+    def laws(of: GearPair) -> list[bytes]:
+        elements = mesh_elements(of)
+        functions = (elements.stiffness, elements.friction, elements.error)
+        return [array.tobytes() for law in functions for array in (law.breaks, law.coefficients)]
+
+    for path in changes:
+        if not _READ_BY_LAWS.search(path):
+            continue
+        with warnings.catch_warnings(), suppress(ParameterError):  # of the pair without it
+            warnings.simplefilter("ignore", LawRangeWarning)
+            without = own.with_({other: value for other, value in changes.items() if other != path})
+            if without != pair and laws(without) == laws(pair):
+                yield path
 
 
 def set_fields(settings: list[str] | None) -> dict[str, str]:

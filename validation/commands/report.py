@@ -26,7 +26,7 @@ _REQUIRE = ("holds", "stable", "contact")
 
 @guarded
 def report(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[Path, opt.output("Folder to write, new or empty.")] = Path("spurcheck-report"),
     quick: Annotated[
         bool, typer.Option("--quick", help="Coarser sampling, inputs not varied, for a first look.")
@@ -87,7 +87,7 @@ def report(
             quick=quick,
             compare=compare,
             tolerance=tolerance,
-            name=pair,
+            name=pair or opt.DEFAULT_PAIR,
             progress=tell,
             early=_show_early,
         )

@@ -27,7 +27,7 @@ _VALUES = 26
 
 @guarded
 def response(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[
         Path | None,
         opt.output("Result file: .nc, .csv or .mat for data, .png, .svg or .pdf for the figure."),

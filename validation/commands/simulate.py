@@ -17,7 +17,7 @@ Start = Literal["static", "periodic"]
 
 @guarded
 def simulate(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[
         Path | None,
         opt.output("Result file: .nc (NetCDF), .csv, .mat (MATLAB), .png or .svg; the suffix chooses."),

@@ -36,7 +36,7 @@ _AXES = {
 
 @guarded
 def stability(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     output: Annotated[
         list[Path] | None,
         opt.output(

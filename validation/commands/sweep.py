@@ -10,10 +10,22 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import INTERRUPTED, fail, guarded, progress_bar, stderr, stdout, table
+from validation.commands.terminal import (
+    INTERRUPTED,
+    fail,
+    guarded,
+    note,
+    progress_bar,
+    stderr,
+    stdout,
+    table,
+)
 
 if TYPE_CHECKING:
-    from validation.studies import Summary
+    from validation.studies import Study, Summary
+
+#: Time from which a study is hardly meant [h].
+_LONG = 48.0
 
 
 @guarded
@@ -48,7 +60,9 @@ def sweep(
             help="Longest time of a case in seconds on this machine; a longer one is ended and recorded.",
         ),
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Check the study and count its cases.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Check the study, count its cases, estimate the time.")
+    ] = False,
 ) -> None:
     """Compute every case of a study: a grid or samples of any parameters, one analysis per case.
 
@@ -76,6 +90,7 @@ def sweep(
     where = f"on {scheduler}" if scheduler is not None else f"on {processes} worker(s)"
     stderr().print(f"{wanted.name}: {wanted.count} cases, {wanted.analysis}, {where} -> {folder}")
     if dry_run:
+        _estimate(wanted, processes)
         return
     start = time.monotonic()
     with progress_bar("sweep") as tell:
@@ -100,6 +115,22 @@ def sweep(
             fail(text, INTERRUPTED)
     _print(summary)
     raise typer.Exit(summary.exit_code)
+
+
+def _estimate(study: Study, processes: int) -> None:
+    """Say how long a sweep takes, by three of its cases after one that may compile."""
+    from validation.studies.cases import CaseList, StudyEvaluator
+    from validation.studies.workers import evaluate_chunk
+
+    cases, evaluator = CaseList(study), StudyEvaluator.of(study)
+    numbers = [study.count // 2, 0, study.count // 3, study.count - 1]
+    values = cases.values(numbers)
+    evaluate_chunk(evaluator, numbers[:1], values[:1])
+    seconds = evaluate_chunk(evaluator, numbers[1:], values[1:]).seconds / 3.0
+    hours = seconds * study.count / max(processes, 1) / 3600.0
+    stderr().print(f"about {seconds:.2g} s a case, {hours:.2g} hours in all on {max(processes, 1)} worker(s)")
+    if hours > _LONG:
+        note(f"{study.count} cases are {hours / 24.0:.3g} days: give fewer values of an axis, or samples.")
 
 
 def _print(summary: Summary) -> None:

@@ -10,6 +10,7 @@ import sys
 import traceback
 import unicodedata
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -22,6 +23,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
+from typer.core import TyperCommand
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -84,6 +86,20 @@ def stderr() -> Console:
 def print_json(data: Mapping[str, Any]) -> None:
     """Print numbers for another program, as the only thing on stdout."""
     typer.echo(json.dumps(data, indent=1, allow_nan=False))
+
+
+class Once(TyperCommand):
+    """Command that refuses an option which is given twice where only the last value would count."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse as usual, after a look at the order of the parameters."""
+        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        for parameter, count in Counter(order).items():
+            option = not getattr(parameter, "is_flag", True) and not getattr(parameter, "multiple", False)
+            if option and count > 1:
+                name = max(parameter.opts, key=len)
+                ctx.fail(f"{name} is given {count} times and takes one value: leave the others out.")
+        return super().parse_args(ctx, args)
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:

@@ -15,7 +15,7 @@ _SUFFIXES = (".csv", ".nc", ".mat")
 
 @guarded
 def uncertainty(
-    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    pair: opt.PairArgument = None,
     samples: Annotated[int, typer.Option("--samples", help="Number of predictions.")] = 128,
     seed: Annotated[int, typer.Option("--seed", help="Of the sampled points.")] = 1,
     speed: opt.Speed = None,

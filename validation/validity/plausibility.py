@@ -26,8 +26,11 @@ _GIVES_WAY = 0.1
 _ROUNDING = 1e-9
 #: Oscillations of the fastest mode in a mesh cycle from which on the multibody model takes minutes a cycle.
 _OSCILLATIONS = 1000.0
-#: Speed below which a point that parts thousands is likelier than the speed [rpm].
-_SLOW = 5.0
+#: Speed below which a point that parts thousands is likelier than the speed [rpm], and one below which turns
+#: a second may be meant [rpm]; speeds of the pitch line below and above those of gears in use [m/s].
+_SLOW, _SLOWLY, _CREEPING, _FASTEST = 5.0, 120.0, 0.5, 200.0
+#: Mean roughness below and above that of any flank in use, polished and as cut, and least relief made [m].
+_POLISHED, _AS_CUT, _LEAST_RELIEF = 0.01e-6, 12.5e-6, 0.5e-6
 #: Springs and shafts are not of one machine where their stiffness differs by more than this factor.
 _FAR = 2.0
 
@@ -47,6 +50,7 @@ def doubts(pair: AnyPair) -> tuple[str, ...]:
         *_load(pair),
         *_speed(pair),
         *_roughness(pair),
+        *_flanks(pair),
     )
 
 
@@ -141,6 +145,13 @@ def _speed(pair: GearPair) -> Iterator[str]:
     rpm = pair.operating.pinion_speed * 30.0 / math.pi
     if rpm < _SLOW:
         yield f"operating.pinion_speed = {rpm:g} rpm: does a point part thousands? Then write {1e3 * rpm:g}."
+        return
+    pitch_line = pair.geometry.pitch_line_velocity
+    text = f"operating.pinion_speed = {rpm:g} rpm moves the pitch line at {pitch_line:.3g} m/s"
+    if rpm < _SLOWLY and pitch_line < _CREEPING:
+        yield f"{text}, slower than most gears. Turns a second meant? Then write '{rpm:g} Hz'."
+    elif pitch_line > _FASTEST:
+        yield f"{text}, faster than any gears. Is {rpm / 60.0:g} the speed in rpm? Then write it without Hz."
 
 
 def _roughness(pair: GearPair) -> Iterator[str]:
@@ -151,3 +162,23 @@ def _roughness(pair: GearPair) -> Iterator[str]:
             f"friction.composite_roughness = {given * 1e6:.3g} um is used for the film, not the root sum "
             f"square {both * 1e6:.3g} um of both roughnesses. Delete it if the roughnesses are meant."
         )
+
+
+def _flanks(pair: GearPair) -> Iterator[str]:
+    """Lengths on the flank that were given in another unit."""
+    for name in ("pinion", "gear"):
+        gear = getattr(pair, name)
+        roughness = gear.roughness * 1e6
+        if 0.0 < gear.roughness < _POLISHED or gear.roughness > _AS_CUT:
+            yield (
+                f"{name}.roughness = {roughness:g} um is that of no flank (0.1 to 3 um). Write a number in "
+                "um, or text with its unit: '0.4 um'."
+            )
+        for field in ("tip_relief", "root_relief"):
+            relief = getattr(gear, field)
+            if relief is not None and 0.0 < relief.amount < _LEAST_RELIEF:
+                amount = relief.amount * 1e6
+                yield (
+                    f"{name}.{field}.amount = {amount:g} um is less than can be made. Given in mm? Then "
+                    f"write '{amount:g} mm'."
+                )

@@ -82,7 +82,7 @@ def test_simulate_prints_numbers_and_writes_by_suffix(tmp_path):
 
 def test_simulate_says_where_its_motion_is_not_to_be_relied_on():
     involutes = ("--set", "mesh.relief=ignored")
-    assert run("simulate", "--steady", *involutes).stderr == ""
+    assert run("simulate", "nasa_28_28", "--steady", *involutes).stderr == ""
     assert "contact loss: lowest load -181" in run("simulate", "--steady").stderr
     separated = run("simulate", "--steady", "--speed", 8500, "--torque", 5, *involutes)
     assert "contact loss: lowest load -50" in separated.stderr

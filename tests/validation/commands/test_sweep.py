@@ -40,6 +40,7 @@ def command(tmp_path, monkeypatch):
 def test_a_study_is_counted_computed_and_resumed(command, tmp_path):
     code, text = command(dry_run=True)
     assert (code, "command [red]: 3 cases, geometry" in text) == (OK, True)
+    assert "hours in all on 1 worker" in text
     assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml"]
     code, text = command()
     assert code == OK
@@ -50,6 +51,11 @@ def test_a_study_is_counted_computed_and_resumed(command, tmp_path):
     code, text = command(resume=True)
     assert code == OK
     assert "0 computed, 3 kept from before" in text
+
+
+def test_a_study_of_days_is_doubted(command, monkeypatch):
+    monkeypatch.setattr("validation.commands.sweep._LONG", 0.0)
+    assert "note: 3 cases are" in command(dry_run=True)[1]
 
 
 def test_a_failed_case_is_1_and_listed(command):

@@ -5,6 +5,7 @@ from typer.testing import CliRunner
 
 from lumped import load_gear_pair, preset_names
 from validation.cli import app
+from validation.commands.options import without_effect
 from validation.validity.plausibility import doubts
 
 
@@ -25,6 +26,10 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
     ({"operating.pinion_torque": 56500}, "more than a tenth of the module"),
     ({"mesh.backlash": "0.5 um"}, "the backs of the teeth would touch"),
     ({"operating.pinion_speed": 1.45}, "Then write 1450."),
+    ({"operating.pinion_speed": 24}, "Then write '24 Hz'."),
+    ({"operating.pinion_speed": "1450 Hz"}, "Is 1450 the speed in rpm?"),
+    ({"pinion.roughness": "0.4 pm"}, "pinion.roughness = 4e-07 um is that of no flank"),
+    ({"gear.tip_relief": {"amount": 0.02, "start_roll_angle": 24.0}}, "Then write '0.02 mm'."),
     ({"friction.composite_roughness": 0.8}, "Delete it if the roughnesses are meant"),
     ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
 ])  # fmt: skip
@@ -48,11 +53,24 @@ def nasa_pair():
     return load_gear_pair("nasa_28_28")
 
 
+@pytest.mark.parametrize(("changes", "unread"), [
+    ({"friction.law": "xu_kahraman", "friction.coefficient": 0.1}, ["friction.coefficient"]),
+    ({"friction.law": "none", "lubricant.viscosity": 8}, ["lubricant.viscosity"]),
+    ({"friction.law": "benedict_kelley", "lubricant.viscosity": 8}, []),
+    ({"friction.law": "none", "mesh.relief": "static", "pinion.tip_relief.amount": 12}, []),
+    ({"mesh.relief": "ignored", "pinion.tip_relief.amount": 12}, ["pinion.tip_relief.amount"]),
+])  # fmt: skip
+def test_a_value_that_no_law_of_the_pair_reads_is_found(nasa_pair, changes, unread):
+    assert list(without_effect(nasa_pair, nasa_pair.with_(changes), changes)) == unread
+
+
 def test_commands_say_it_and_go_on():
     result = CliRunner().invoke(
-        app, ["simulate", "--set", "friction.composite_roughness=0.8", "--cycles", "2"]
+        app, ["simulate", "--law", "none", "--set", "friction.composite_roughness=0.8", "--cycles", "2"]
     )
     assert result.exit_code == 0
+    assert "note: no gear pair is named, so this is the example nasa_28_28" in result.stderr
+    assert "--set friction.composite_roughness changes nothing in the motion" in result.stderr
     assert "note: friction.composite_roughness = 0.8 um is used for the film" in result.stderr
 
 
