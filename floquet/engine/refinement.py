@@ -21,7 +21,7 @@ import numpy.typing as npt
 
 from lumped.typing import BoolArray, FloatArray, IntArray, Progress
 
-#: Largest error of the spectral radius at an interpolated node.
+#: Largest error of the spectral radius at an interpolated node, above 1 relative to the radius.
 TOLERANCE = 4e-3
 #: Nodes along the first axis of a box to begin with; the second axis is whole.
 _FIRST = 64
@@ -68,7 +68,8 @@ def refine(
     shape : numbers of nodes N, M along both axes, at least 2 each; axes increase
     cycles : (N,) or (N, M) cycles in a unit of time, by which the logarithm of the radius is smooth
     ask : evaluates nodes by their flat index i M + j
-    tolerance : largest error of the radius at an interpolated node, as far as nodes of its leaf tell
+    tolerance : largest error of the radius (above 1 relative to it) at an interpolated node, as far as nodes
+        of its leaf tell
     rows : rows of the second axis that are evaluated first, at every node
     progress : told the finished share of the area
     """
@@ -154,9 +155,10 @@ class _State:
         verdict = self.verdict[i, j]
         mixed = bool((verdict != verdict[0]).any())
         if not mixed:
-            allowed = np.full(error.size, tolerance)
+            radius = self.radius[i, j]
+            allowed = tolerance * np.maximum(radius, 1.0)
             if verdict[0] != 0:
-                allowed = np.minimum(allowed, 0.5 * np.abs(self.radius[i, j] - 1.0))
+                allowed = np.minimum(allowed, 0.5 * np.abs(radius - 1.0))
             if (error <= allowed).all():
                 return []
         along, up = self._ways(box, i, j, error, mixed=mixed)

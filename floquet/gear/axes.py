@@ -243,6 +243,7 @@ class FrictionFamily:
     level : |mu| of the second function, which only changes sign at the pitch point; None where one is enough
     factors : (k, 1) of mu at the reference speed; or (k, 2) of mu less the level, and of the level
     law : the law at other speeds; None where it is the same at all
+    exact : whether the factors follow from the formula of the law, or else from samples along the path
     """
 
     speed_rpm: float
@@ -250,6 +251,7 @@ class FrictionFamily:
     level: float | None
     factors: FloatArray
     law: _Law | None
+    exact: bool
 
     def factors_at(self, speeds_rpm: FloatArray) -> FloatArray | None:
         """Factors (k, 1 or 2) at further speeds; None where these are not all of the family."""
@@ -269,13 +271,14 @@ def depends_on_speed(pair: GearPair) -> bool:
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
     """Group speeds (k,), all different, over which friction needs but one fit.
 
-    Law III goes with a power of speed, I and IV with their mean coefficient, and law II, a logarithm, rises
-    and falls as a whole. Law V is each of these as long as its regimes do not move. None of this is taken for
-    granted: the law is evaluated along the path at every speed, and its switches are compared.
+    Where speed only scales a law (III by a power, I and IV by their mean coefficient) all speeds share one
+    fit. Law II, a logarithm, rises and falls as a whole, and law V is each of these as long as its regimes do
+    not move. That is not taken for granted: such a law is evaluated along the path at every speed, and its
+    switches are compared.
     """
     pair, rest = variation.pair, np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):
-        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
+        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None, exact=True)]
     law, families = _Law(variation), []
     while rest.size:
         reference = float(speeds_rpm[rest[rest.size // 2]])
@@ -283,7 +286,8 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
         apart = bool(weights[:, 1].any())
         level = (variation.friction_mean or law.mean(reference)) if apart else None
         factors = law.factors(reference, apart, weights)
-        families.append(FrictionFamily(reference, rest[members], level, factors, law))
+        exact = members.size == 1 or law.factor(reference) is not None
+        families.append(FrictionFamily(reference, rest[members], level, factors, law, exact))
         rest = np.delete(rest, members)
     return families
 
@@ -297,8 +301,12 @@ class _Law:
         self.positions, self.values = _positions(self.path), cache(self._values)
 
     def at(self, rpm: float) -> ContactPath:
-        ratio, omega = self.path.omega_gear / self.path.omega_pinion, rpm * np.pi / 30.0
-        return replace(self.path, omega_pinion=omega, omega_gear=omega * ratio)
+        return self.path.at_speed(rpm * np.pi / 30.0)
+
+    def factor(self, rpm: float) -> float | None:
+        """Factor on mu of one fit, where speed only scales mu."""
+        scaled = self.law.over_speed(self.at(rpm), self.settings)
+        return None if scaled is None else scaled[1]
 
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
         """Mu at the positions, and the positions of its switches, at a speed."""
@@ -308,6 +316,10 @@ class _Law:
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
+        unit = self.factor(reference)
+        if unit:
+            ratios = np.array([(self.factor(float(rpm)) or 0.0) / unit for rpm in speeds_rpm])
+            return np.arange(speeds_rpm.size), np.stack([ratios, np.zeros(ratios.size)], axis=1)
         mu, switches = self.values(reference)
         basis = np.stack([mu, np.sign(self.positions - self.path.L_XP)], axis=1)
         near, members, found = _SAME * self.path.L_XY, [], []

@@ -30,8 +30,9 @@ MODES = 12
 """Modes of a pair on shafts that are coupled at most; the others move each by itself."""
 _EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
 _U = 0.5 * float(np.finfo(np.float64).eps)
-#: Roundings on the way to one value: Horner's rule of degree 8 twice, products and sums over pairs.
-_ROUNDINGS = 80.0 * _U
+#: Roundings on the way to one value: Horner's rule of degree 8 twice, products and sums over pairs, and
+#: factors on mu by speed.
+_ROUNDINGS = 90.0 * _U
 #: The same of a position, relative to the largest one: offset, phase, product, sum, difference.
 _PLACE = 16.0 * _U
 #: Breaks closer than this part of a base pitch may be one segment's end.

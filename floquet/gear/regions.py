@@ -5,6 +5,7 @@ Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ from floquet.engine.tongues import Tongue, label_tongue
 from floquet.gear.axes import GEAR_AXES, GearVariation, vary
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_monodromies
+from lumped.errors import LawRangeWarning
 from lumped.labelling import Variable, labelled_dataset
 from lumped.schema.files import AnyPair
 
@@ -85,7 +87,9 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
         }
         width = float((np.moveaxis(inside, along, -1) @ cells[box[along]]).max())
         top = float(values[box][place])
-        label = label_variation(vary(variation, point))
+        with warnings.catch_warnings():  # the chart has told where its law leaves its range
+            warnings.simplefilter("ignore", LawRangeWarning)
+            label = label_variation(vary(variation, point))
         regions.append(LabelledRegion(label, point, top, int(nodes[index]), width))
     return regions
 

@@ -7,7 +7,8 @@ piecewise Chebyshev fits, Trefethen, Approximation Theory and Approximation Prac
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -68,6 +69,19 @@ class ContactPath:
     roughness: float
     composite_roughness: float
     film_length: float
+
+    def at_speed(self, omega_pinion: float) -> ContactPath:
+        """The same contact at another speed of the pinion [rad/s].
+
+        The ratio follows from the pitch point, where both flanks roll alike: it has the same digits whatever
+        the speed.
+        """
+        return replace(
+            self,
+            omega_pinion=omega_pinion,
+            omega_gear=omega_pinion * (self.L_XP / (self.L_XY - self.L_XP)),
+            pitch_line_velocity=self.pitch_line_velocity * (omega_pinion / self.omega_pinion),
+        )
 
     def radius(self, xi: FloatArray) -> FloatArray:
         """Reduced radius of curvature rho_r = rho_p rho_g/(rho_p + rho_g) [m], equations (11) and (15)."""
@@ -185,6 +199,8 @@ class FrictionLaw:
     coefficient : whether |mu| far from the pitch point is one number, ``friction.coefficient``
     varies : whether mu depends on speed, load, oil or flanks (a law with a coefficient: where none is given)
     fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
+    factor : (path, settings) -> number to which mu is proportional over speed, all else equal; None: speed
+        changes the shape of mu too
     """
 
     name: str
@@ -199,6 +215,7 @@ class FrictionLaw:
     coefficient: bool = False
     varies: bool = True
     fluid_film: bool = False
+    factor: Callable[[ContactPath, FrictionSettings], float] | None = None
 
     @property
     def title(self) -> str:
@@ -209,15 +226,34 @@ class FrictionLaw:
         """Whether mu(xi) is the same at every speed and load."""
         return not self.varies or (self.coefficient and settings.coefficient is not None)
 
+    def over_speed(self, path: ContactPath, settings: FrictionSettings) -> tuple[ContactPath, float] | None:
+        """The contact at ``FIT_SPEED`` and the factor from mu there to mu here; None: the shapes differ."""
+        there = path.at_speed(FIT_SPEED)
+        unit = 0.0 if self.factor is None else self.factor(there, settings)
+        return None if self.factor is None or unit == 0.0 else (there, self.factor(path, settings) / unit)
+
 
 #: Absolute error of mu in the piecewise polynomials.
 FIT_TOLERANCE = 1e-10
+#: Pinion speed [rad/s] at which laws are fitted that speed only scales: near 1000 rpm, in the middle of use.
+FIT_SPEED = 100.0
 _FIRST_CUT = 64.0  # a piece that ends at P is cut at this fraction of its length
 _GEOMETRIC_ABOVE = 2.0  # pieces whose ends are further apart than this ratio are cut at the geometric mean
 
 
 def fit_signed(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> PathFunction:
     """Signed mu(xi) of a law on [L_XA, L_XD], within ``FIT_TOLERANCE`` wherever it is smooth.
+
+    Where speed only scales mu, one fit at ``FIT_SPEED`` serves all speeds, so that results at different
+    speeds rest on the same polynomials.
+    """
+    scaled = law.over_speed(path, settings)
+    return _fit(law, path, settings) if scaled is None else _fit(law, scaled[0], settings).scaled(scaled[1])
+
+
+@lru_cache(maxsize=256)
+def _fit(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> PathFunction:
+    """The fit of `fit_signed` at the speed of the path.
 
     Around the pitch point law II has a logarithm, law III the power 1.036 and law IV a width of its own.
     """

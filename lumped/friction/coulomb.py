@@ -47,4 +47,5 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     coefficient=True,
+    factor=average_coefficient,
 )

@@ -88,4 +88,5 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
     fluid_film=True,
+    factor=lambda path, settings: coefficient_of(path),
 )

@@ -52,4 +52,5 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [],
     coefficient=True,
+    factor=average_coefficient,
 )

@@ -97,4 +97,6 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
     fluid_film=True,
+    # Speed enters by V_e alone, since the slide-to-roll ratio has none.
+    factor=lambda path, settings: path.omega_pinion ** B[5],
 )

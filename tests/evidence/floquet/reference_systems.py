@@ -1,15 +1,19 @@
 """Periodic systems whose stability is known exactly or to first order, on which the engine is verified."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq
+from scipy.special import mathieu_a, mathieu_b
 
 from floquet.engine.monodromy import monodromy
 from floquet.engine.system import PeriodicSystem, second_order
-from lumped.typing import FloatArray
+from floquet.rank_one.batch import fast_multipliers
+from floquet.rank_one.system import Gains, RankOneSystem
+from lumped.typing import BoolArray, FloatArray
 
 
 def meissner(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> PeriodicSystem:
@@ -43,6 +47,34 @@ def mathieu(a: float, q: float, c: float = 0.0) -> PeriodicSystem:
         return second_order((a - 2.0 * q * np.cos(2.0 * t))[:, None, None], 2.0 * c)
 
     return PeriodicSystem(A, np.pi, vectorized=True)
+
+
+def mathieu_many(a: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Multipliers (k, 2) of many undamped Mathieu equations, a > 0, and bounds on their errors, at once.
+
+    With time in units of 1/sqrt(a) it is z'' + (1 - 2 (q/a) cos) z = 0 with the period pi sqrt(a): one fit.
+    """
+    pieces, degree = 24, 8
+    phases = np.linspace(0.0, 1.0, pieces + 1)
+    u = np.polynomial.chebyshev.chebpts1(degree + 1)
+    waves = np.zeros((pieces, 1, degree + 1))
+    for k, (low, high) in enumerate(itertools.pairwise(phases)):
+        values = -2.0 * np.cos(2.0 * np.pi * (0.5 * (low + high) + 0.5 * (high - low) * u))
+        waves[k, 0] = np.polynomial.polynomial.polyfit(u, values, degree)
+    one, none = np.ones((pieces, 1, 1)), np.zeros((pieces, 1, 1))
+    errors = np.tile([1e-12, 0.0], (pieces, 1))  # (2 pi/48)^9 2^-7/9! and rounding
+    system = RankOneSystem(
+        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, Gains(one, none, 0.0 * errors), np.pi,
+        np.ones(1), (Gains(waves, none, errors),),
+    )  # fmt: skip
+    found = fast_multipliers(system, np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13)
+    return found.multipliers, found.errors
+
+
+def mathieu_unstable(a: FloatArray, q: float) -> tuple[BoolArray, FloatArray]:
+    """Whether Mathieu equations are unstable up to b_9, a < a_0 or b_m < a < a_m (DLMF 28.17); the edges."""
+    edges = [mathieu_a(0, q)] + [f(m, q) for m in range(1, 10) for f in (mathieu_b, mathieu_a)]
+    return np.searchsorted(edges, a) % 2 == 0, np.array(edges)
 
 
 @dataclass(frozen=True, eq=False)

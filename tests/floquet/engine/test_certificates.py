@@ -96,7 +96,7 @@ def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
 
 
 def test_charts_and_motions_say_what_their_errors_are() -> None:
-    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "xu_kahraman"})
+    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "benedict_kelley"})
     speeds = {"speed_rpm": [3000.0, 3010.0]}
     together, alone = stability_chart(pair, speeds), stability_chart(pair, {"speed_rpm": [3000.0]})
     assert (together.attrs["certificate"], alone.attrs["certificate"]) == ("estimate", "proven")

@@ -5,7 +5,10 @@ import pytest
 from scipy.special import mathieu_a, mathieu_b
 
 from floquet import PeriodicSystem, Spectrum, monodromy, scan
+from floquet.engine.multipliers import radii_with_bounds, verdicts
+from floquet.engine.refinement import refine
 from lumped.errors import NumericalError, ParameterError
+from tests.evidence.floquet.reference_systems import mathieu_many, mathieu_unstable, meissner_trace
 
 
 def mathieu_point(point: dict[str, float]) -> PeriodicSystem:
@@ -42,6 +45,50 @@ def test_chart_equals_single_points() -> None:
     for variable in serial.data_vars.values():
         assert variable.attrs["units"]
         assert variable.attrs["long_name"]
+
+
+def of_trace(trace: float) -> Spectrum:
+    """Multipliers of an undamped equation of second order: their product is 1."""
+    pair = np.array(np.roots([1.0, -trace, 1.0]), dtype=complex)
+    return Spectrum(pair, np.full(2, 1e-7), 1.0)  # the root of the rounding of a double multiplier
+
+
+@pytest.mark.parametrize("shape", [(401, 201), (201, 401)])
+def test_a_refined_scan_finds_the_boundaries_of_meissner(shape) -> None:
+    """|trace| = 2 (Meissner 1918); the stable regions have modulus 1, which is undecided."""
+    delta, epsilon = np.linspace(0.5, 9.0, shape[0]), np.linspace(0.0, 0.45, shape[1])
+    got = scan(
+        lambda at: of_trace(meissner_trace(at["delta"], at["epsilon"])),
+        {"delta": delta, "epsilon": epsilon},
+        refine=True,
+    )
+    trace = np.array([[meissner_trace(d, e) for e in epsilon] for d in delta])
+    sure = np.abs(np.abs(trace) - 2.0) > 1e-6
+    assert ((got.verdict.values < 0) == (np.abs(trace) > 2.0))[sure].all()
+    assert 0.0 < float(got.known.mean()) < 0.4
+    assert "multipliers" not in got
+
+
+def test_refinement_finds_the_tongues_of_mathieu() -> None:
+    """To m = 6: undecided where |multiplier| = 1; a step is wider than some tongues at small q."""
+    a, q = np.linspace(0.5, 42.0, 401), np.linspace(0.0, 12.0, 81)
+
+    def ask(flat):
+        i, j = np.unravel_index(flat, (a.size, q.size))
+        radius, error = radii_with_bounds(*mathieu_many(a[i], q[j]))
+        return radius, verdicts(radius, error).astype(np.intp)
+
+    got = refine((a.size, q.size), np.ones(a.size), ask, rows=(0, -1))
+    assert got.known.mean() < 0.35
+    for j in range(1, q.size):
+        unstable, edges = mathieu_unstable(a, q[j])
+        sure = np.abs(a[:, None] - edges).min(axis=1) > 1e-4
+        assert ((got.verdict[:, j] < 0) == unstable)[sure].all()
+
+
+def test_a_refined_scan_needs_two_axes() -> None:
+    with pytest.raises(ParameterError, match="refine"):
+        scan(mathieu_point, {"a": [1.0, 2.0], "q": [0.1]}, refine=True)
 
 
 def test_failing_point_is_named() -> None:

@@ -6,7 +6,8 @@ import pytest
 from floquet import gear_block, gear_pair_multipliers, scan, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
 from lumped import load_gear_pair, preset_names
-from lumped.path_of_contact.friction import friction_path_function
+from lumped.friction import LAWS
+from lumped.path_of_contact.friction import contact_path, friction_path_function
 
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
 
@@ -78,6 +79,38 @@ def test_moving_regimes_are_fitted_apart() -> None:
             # No family joins speeds on either side of another one's.
             inside = (speeds >= speeds[family.members].min()) & (speeds <= speeds[family.members].max())
             assert inside.sum() == family.members.size
+
+
+@pytest.mark.parametrize("preset", preset_names())
+@pytest.mark.parametrize("contact", ["prescribed", "loaded"])
+def test_charts_of_presets_are_proven_and_share_the_polynomials_of_single_speeds(preset, contact) -> None:
+    """Law III goes with n^-0.100601: a chart has the very polynomials of each speed, times a factor."""
+    pair = load_gear_pair(preset).with_(mesh__contact=contact)
+    chart = stability_chart(pair, {"speed_rpm": SPEEDS[:-1], "damping_ratio": [0.0, 0.03]})
+    assert chart.certificate == "proven"
+    for speed in SPEEDS[[0, 3, 4]]:
+        there = friction_path_function(pair.with_(operating__pinion_speed=float(speed)))
+        (family,) = friction_families(GearVariation(pair), SPEEDS)
+        here = friction_path_function(vary(pair, {"speed_rpm": family.speed_rpm}).pair)
+        factor = family.factors[speed == SPEEDS, 0].item()
+        np.testing.assert_array_equal(there.breaks, here.breaks)
+        np.testing.assert_allclose(there.coefficients, factor * here.coefficients, rtol=2e-15, atol=0.0)
+
+
+@pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # of some of these laws
+@pytest.mark.parametrize("law", sorted(set(LAWS) - {"none"}))
+def test_only_formulas_that_speed_scales_are_proven(law) -> None:
+    """A law whose shape changes has an estimate; the factor of the others is that of mu at any position."""
+    pair = load_gear_pair("fzg_c").with_(friction__law=law)
+    chart = stability_chart(pair, {"speed_rpm": [2000.0, 2100.0]})
+    assert chart.certificate == ("estimate" if law in ("benedict_kelley", "composite") else "proven")
+    path, record = contact_path(pair), LAWS[law]
+    if record.factor is not None:
+        xi = np.linspace(path.L_XA, path.L_XD, 40)
+        slow, fast = (path.at_speed(omega) for omega in (30.0, 900.0))
+        ratio = record.factor(fast, pair.friction) / record.factor(slow, pair.friction)
+        mu = record.signed(xi, fast, pair.friction)
+        np.testing.assert_allclose(mu, ratio * record.signed(xi, slow, pair.friction), rtol=1e-13)
 
 
 @pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"])
