@@ -13,6 +13,7 @@ Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_er
 Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy
+Signals    order_spectrum, time_synchronous_average; more in spurcheck.validation.signals
 Studies    load_study, run_sweep, read_results
 Files      plot, write_results, write_rexs, write_interactive_page
 Errors     SpurcheckError: ParameterError (an input), NumericalError (a computation); LawRangeWarning
@@ -77,13 +78,22 @@ if TYPE_CHECKING:
         write_interactive_page,
     )
     from validation.exchange import gear_pair_from_rexs, new_pair, write_results, write_rexs
+    from validation.signals import order_spectrum, time_synchronous_average
     from validation.studies import load_study, read_results, run_sweep
 
     __version__: str
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Where a name is looked for, in this order; multibody, the slowest to import, comes last.
-_SOURCES = ("lumped", "floquet", "validation", "validation.exchange", "validation.studies", "multibody")
+_SOURCES = (
+    "lumped",
+    "floquet",
+    "validation",
+    "validation.exchange",
+    "validation.signals",
+    "validation.studies",
+    "multibody",
+)
 
 __all__ = [
     "GearPair",
@@ -111,6 +121,7 @@ __all__ = [
     "natural_frequencies",
     "new_pair",
     "optimal_relief",
+    "order_spectrum",
     "periodic_orbit",
     "periodic_system",
     "plot",
@@ -128,6 +139,7 @@ __all__ = [
     "stability_margins",
     "static_transmission_error",
     "steady_state",
+    "time_synchronous_average",
     "uncertainty",
     "validation",
     "validity_flags",

@@ -1,0 +1,240 @@
+"""The time-synchronous average of a shaft, its residual and difference signals, and condition indicators.
+
+The average over all turns keeps the orders that are whole numbers. The residual signal is the average without
+the mesh harmonics m z, the difference signal without their first sidebands m z - 1 and m z + 1 too.
+
+Sources: McFadden, Mech. Syst. Signal Process. 1 (1987) 83-95 (average); Stewart, University of Southampton,
+MHM/R/10/77, 1977 (FM0, FM4); Martin 1989 (M6A); Zakrajsek, Townsend and Decker, NASA TM-105950, 1993 (NA4).
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+import lumped
+from lumped.arguments import of_type, one_of, real_number, whole_number
+from lumped.errors import refuse
+from lumped.labelling import labelled_dataset
+from lumped.typing import BoolArray, FloatArray
+from validation.signals.orders import Harmonics, harmonics
+
+Gear = Literal["pinion", "gear"]
+#: Distance from a whole order that is rounding.
+_WHOLE = 1e-6
+#: Share of the average's root mean square below which a signal is rounding: no indicator divides by it.
+_NOTHING = 1e-9
+
+
+def time_synchronous_average(
+    result: xr.Dataset, shaft: Gear = "pinion", *, variable: str = "x_p", derivative: int = 2
+) -> xr.Dataset:
+    """Return the mean of a motion over the turns of a shaft.
+
+    Parameters
+    ----------
+    result : dataset of ``steady_state`` or ``synthetic_record``
+    shaft : "pinion" or "gear"
+    variable : that depends on time alone
+    derivative : by time; 2 is what an accelerometer feels of a displacement
+
+    Returns
+    -------
+    xarray.Dataset over ``turn``, 0 to 1, of ``average``, with the variable's unit, per s to the power of
+    ``derivative``; the attribute ``teeth`` is the number of teeth of the shaft's gear
+
+    Raises
+    ------
+    ParameterError : as ``order_spectrum``
+    """
+    one_of("shaft", shaft, ("pinion", "gear"))
+    found = harmonics(result, variable, derivative)
+    return labelled_dataset(
+        {"average": ("turn", _average(found, shaft), found.unit, f"average over turns of: {found.words}")},
+        {"turn": (_turn(_count(found, shaft)), "1", f"turn of the {shaft}")},
+        result.attrs | {"shaft": shaft, "teeth": found.teeth(shaft)},
+    )
+
+
+def _count(found: Harmonics, shaft: Gear) -> int:
+    """Samples in a turn: as many a mesh cycle as the result has."""
+    return found.teeth(shaft) * max(2 * (found.values.size - 1) // found.cycles, 2)
+
+
+def _turn(count: int) -> FloatArray:
+    return np.arange(count) / count
+
+
+def _average(found: Harmonics, shaft: Gear) -> FloatArray:
+    orders, count = found.orders(shaft), _count(found, shaft)
+    whole = (np.abs(orders - np.round(orders)) < _WHOLE) & (orders < count / 2 - 0.5)
+    spectrum = np.zeros(count // 2 + 1, dtype=np.complex128)
+    spectrum[np.round(orders[whole]).astype(int)] = 0.5 * count * found.values[whole]
+    spectrum[0] *= 2.0
+    return np.fft.irfft(spectrum, count)
+
+
+def residual(average: xr.Dataset) -> xr.Dataset:
+    """Return a time-synchronous average without its mean and the mesh harmonics m z; the same units."""
+    return _without(average, 0)
+
+
+def difference(average: xr.Dataset) -> xr.Dataset:
+    """Return a time-synchronous average without its mean, m z and m z +- 1; the same units."""
+    return _without(average, 1)
+
+
+def _without(average: xr.Dataset, sidebands: int) -> xr.Dataset:
+    of_type("average", average, xr.Dataset, "a dataset of time_synchronous_average")
+    if "average" not in average or "teeth" not in average.attrs:
+        known = "a dataset of time_synchronous_average"
+        raise refuse("average", ", ".join(map(str, average.data_vars)), known, "Compute it first.")
+    values = average["average"].to_numpy()
+    left = _filtered(values, int(average.attrs["teeth"]), sidebands)
+    return average.assign(average=average["average"].copy(data=left))
+
+
+def _mesh_orders(count: int, teeth: int, sidebands: int) -> BoolArray:
+    orders = np.arange(count // 2 + 1)
+    distance = np.abs(orders - teeth * np.round(orders / teeth))
+    found: BoolArray = np.where(orders < teeth / 2, orders == 0, distance <= sidebands)
+    return found
+
+
+def _filtered(values: FloatArray, teeth: int, sidebands: int) -> FloatArray:
+    spectrum = np.fft.rfft(values)
+    spectrum[_mesh_orders(values.size, teeth, sidebands)] = 0.0
+    return np.fft.irfft(spectrum, values.size)
+
+
+def sidebands(
+    result: xr.Dataset, shaft: Gear = "pinion", *, variable: str = "dte", derivative: int = 0, most: int = 5
+) -> xr.Dataset:
+    """Return the amplitudes beside the mesh harmonics over that of the harmonic, a(m z + k)/a(m z).
+
+    Parameters
+    ----------
+    result, shaft, variable, derivative : as ``time_synchronous_average``
+    most : sidebands on each side
+
+    Returns
+    -------
+    xarray.Dataset over ``mesh_order`` m = 1, 2, 3 and ``sideband`` k from -most to most: ``ratio`` [1]
+
+    Raises
+    ------
+    ParameterError : as ``order_spectrum``
+    """
+    one_of("shaft", shaft, ("pinion", "gear"))
+    found = harmonics(result, variable, derivative)
+    teeth = found.teeth(shaft)
+    number = whole_number("most", most, 1, max(teeth // 2, 1))
+    size = np.abs(found.values)
+    k = np.arange(-number, number + 1)
+    rows = []
+    for m in (1, 2, 3):
+        place = (m * teeth + k) * found.cycles / teeth
+        index = np.minimum(np.round(place).astype(int), size.size - 1)
+        there = np.abs(place - index) < _WHOLE
+        centre = size[min(m * found.cycles, size.size - 1)]
+        rows.append(np.where(there, size[index], 0.0) / centre)
+    return labelled_dataset(
+        {"ratio": (("mesh_order", "sideband"), np.stack(rows), "1", "amplitude over the mesh harmonic's")},
+        {
+            "mesh_order": (np.arange(1, 4), "1", "mesh order"),
+            "sideband": (k, "1", f"orders of the {shaft} from the mesh harmonic"),
+        },
+        result.attrs | {"shaft": shaft, "teeth": teeth},
+    )
+
+
+#: Indicator -> its words.
+_INDICATORS = {
+    "RMS": "root mean square of the average",
+    "Kurtosis": "fourth moment of the average over its squared variance",
+    "CrestFactor": "largest value of the average over its root mean square",
+    "FM0": "peak to peak of the average over the sum of its mesh harmonics",
+    "RMS_residual": "root mean square of the residual signal",
+    "FM4": "fourth moment of the difference signal over its squared variance",
+    "M6A": "sixth moment of the difference signal over its cubed variance",
+    "NA4": "fourth moment of the residual signal over the squared mean variance of both records",
+}
+
+
+def indicators(
+    result: xr.Dataset,
+    shaft: Gear = "pinion",
+    *,
+    variable: str = "x_p",
+    derivative: int = 2,
+    noise_floor: float = 0.0,
+    seed: int = 1,
+) -> xr.Dataset:
+    """Return condition indicators of the time-synchronous average, beside those of the twin with like teeth.
+
+    An indicator alone says little: without noise the twin's residual is zero and its FM4, M6A and NA4 are
+    0/0, which is NaN here. So the noise floor is stated and the twin gets the same noise.
+
+    Parameters
+    ----------
+    result : dataset of ``lumped.steady_state``
+    shaft, variable, derivative : as ``time_synchronous_average``
+    noise_floor : root mean square of white noise in the average, in the unit of the average
+    seed : of the noise
+
+    Returns
+    -------
+    xarray.Dataset over ``indicator`` and ``record``, "pair" and "healthy twin": ``value``; root mean squares
+    in the unit of the average, the others without unit
+
+    Raises
+    ------
+    ParameterError : as ``order_spectrum``
+    NumericalError : the twin has no periodic motion
+    """
+    one_of("shaft", shaft, ("pinion", "gear"))
+    floor = real_number("noise_floor", noise_floor, 0.0, action="Give a root mean square.")
+    draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
+    found = harmonics(result, variable, derivative)
+    samples = max(2 * (found.values.size - 1) // found.cycles, 8)
+    healthy = lumped.steady_state(found.pair.healthy, samples_per_cycle=samples)
+    twin = harmonics(healthy, variable, derivative)
+    averages = [_average(found, shaft), _average(twin, shaft)]
+    averages = [one + floor * draw.standard_normal(one.size) for one in averages]
+    teeth = found.teeth(shaft)
+    spread = [float(np.var(_filtered(one, teeth, 0))) for one in averages]
+    table = [_numbers(one, teeth, 0.5 * (spread[1] + own)) for one, own in zip(averages, spread, strict=True)]
+    return labelled_dataset(
+        {"value": (("indicator", "record"), np.array(table).T, "1", "condition indicator")},
+        {
+            "indicator": (list(_INDICATORS), "1", "name"),
+            "record": (["pair", "healthy twin"], "1", "record"),
+        },
+        result.attrs | {"shaft": shaft, "teeth": teeth, "noise_floor": floor, "unit": found.unit},
+    )
+
+
+def _numbers(values: FloatArray, teeth: int, variance: float) -> list[float]:
+    """Values in the order of ``_INDICATORS``; ``variance`` is the mean of the residual's over the records."""
+    about = values - values.mean()
+    rms = float(np.sqrt(np.mean(values**2)))
+    size = 2.0 * np.abs(np.fft.rfft(values)) / values.size
+    mesh = float(size[teeth::teeth].sum())
+    left, apart = (_filtered(values, teeth, number) for number in (0, 1))
+    noise = _NOTHING * float(about.std())
+
+    def moment(signal: FloatArray, power: int, over: float) -> float:
+        return float(np.mean(signal**power) / over) if np.sqrt(np.mean(signal**2)) > noise else np.nan
+
+    return [
+        rms,
+        moment(about, 4, float(np.var(about)) ** 2),
+        float(np.abs(values).max()) / rms,
+        float(np.ptp(values)) / mesh,
+        float(left.std()),
+        moment(apart, 4, float(np.var(apart)) ** 2),
+        moment(apart, 6, float(np.var(apart)) ** 3),
+        moment(left, 4, variance**2),
+    ]

@@ -1,0 +1,136 @@
+"""Amplitudes of a motion over the orders of a shaft: the mesh harmonics, and the sidebands beside them.
+
+A motion over N mesh cycles has the frequencies j f_m/N. That is the order j z/N of a shaft whose gear has z
+teeth, and j/N of the mesh. Sources: docs/theory/teeth.md, "Signals"; ISO 13373-2:2016, 5.4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import CubicSpline
+
+from lumped.arguments import of_type, one_of, whole_number
+from lumped.errors import refuse
+from lumped.fields.text_file import parse_toml
+from lumped.labelling import labelled_dataset
+from lumped.schema.files import load_gear_pair
+from lumped.schema.pair import GearPair
+from lumped.typing import ComplexArray, FloatArray
+
+Shaft = Literal["pinion", "gear", "mesh"]
+#: Relative error of the duration over whole mesh cycles, from rounded times.
+_WHOLE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Harmonics:
+    """Fourier components of one variable over whole mesh cycles.
+
+    Attributes
+    ----------
+    pair : that made the result
+    cycles : mesh cycles of the result
+    values : complex amplitudes at j/``cycles`` of the mesh frequency, j = 0, 1, ...
+    unit, words : of the values
+    """
+
+    pair: GearPair
+    cycles: int
+    values: ComplexArray
+    unit: str
+    words: str
+
+    def teeth(self, shaft: Shaft) -> int:
+        """Mesh cycles in a turn of the shaft; 1 for the mesh."""
+        return {"pinion": self.pair.pinion.teeth, "gear": self.pair.gear.teeth, "mesh": 1}[shaft]
+
+    def orders(self, shaft: Shaft) -> FloatArray:
+        """Order of each component on a shaft."""
+        return np.arange(self.values.size, dtype=np.float64) * (self.teeth(shaft) / self.cycles)
+
+    def at(self, count: int) -> FloatArray:
+        """The signal at ``count`` even times of the period, at most those of the result."""
+        spectrum = 0.5 * count * self.values[: count // 2 + 1]
+        spectrum[0] *= 2.0
+        if count % 2 == 0:
+            spectrum[-1] *= 2.0
+        return np.fft.irfft(spectrum, count)
+
+
+def harmonics(result: xr.Dataset, variable: str, derivative: int) -> Harmonics:
+    """Components of a variable of a result, or of its derivative by time.
+
+    Raises
+    ------
+    ParameterError : no result, a variable that it lacks or that has more dimensions than time, times that are
+        not even or do not cover whole mesh cycles
+    """
+    of_type("result", result, xr.Dataset, "a dataset, as steady_state returns it")
+    scalars = [str(name) for name, one in result.data_vars.items() if one.dims == ("time",)]
+    one_of("variable", variable, scalars, "Choose a variable that depends on time alone.")
+    whole_number("derivative", derivative, 0, 4)
+    if "parameters" not in result.attrs:
+        raise refuse("result", "no attribute 'parameters'", "a result of spurcheck", "Give it as computed.")
+    pair = load_gear_pair(parse_toml(result.attrs["parameters"], "parameters of the result"))
+    time, signal = result["time"].to_numpy(), result[variable].to_numpy()
+    if "pinion_turns" in result:  # a record whose speed changes: over the angle, not over time
+        even = np.arange(time.size) * (float(result.attrs["turns"]) / time.size)
+        signal = CubicSpline(result["pinion_turns"].to_numpy(), signal)(even)
+        time = even * (2.0 * np.pi / pair.operating.pinion_speed)
+    steps = np.diff(time)
+    if time.size < 8 or np.ptp(steps) > _WHOLE * steps.mean():
+        raise refuse("result", "uneven times", "times at even distances", "Use steady_state.")
+    cycles = time.size * steps.mean() / pair.geometry.mesh_period
+    if abs(cycles - round(cycles)) > _WHOLE * cycles:
+        action = "Use steady_state, or cut the run to whole mesh cycles without its last time."
+        raise refuse("result", f"{cycles:.6g} mesh cycles", "a whole number of mesh cycles", action)
+    values = np.fft.rfft(signal) / time.size
+    values[1:] *= 2.0
+    if time.size % 2 == 0:
+        values[-1] *= 0.5
+    rate = 2.0 * np.pi * np.arange(values.size) / (time.size * steps.mean())
+    attributes: dict[Any, Any] = result[variable].attrs
+    unit = str(attributes.get("units", "1")) + {0: "", 1: "/s"}.get(derivative, f"/s**{derivative}")
+    words = str(attributes.get("long_name", variable))
+    if derivative:
+        words = f"{words}, derivative {derivative} by time"
+    return Harmonics(pair, round(cycles), values * (1j * rate) ** derivative, unit, words)
+
+
+def order_spectrum(
+    result: xr.Dataset, shaft: Shaft = "mesh", *, variable: str = "dte", derivative: int = 0
+) -> xr.Dataset:
+    """Return the amplitudes of a motion over the orders of a shaft.
+
+    Parameters
+    ----------
+    result : dataset of ``steady_state``, over one mesh cycle, or over the period of teeth that differ; or of
+        ``synthetic_record``
+    shaft : "pinion" or "gear", whose order 1 is once a turn; "mesh", whose order 1 is the mesh frequency
+    variable : that depends on time alone
+    derivative : by time: 2 gives the acceleration of a displacement
+
+    Returns
+    -------
+    xarray.Dataset over ``order`` [1]: ``amplitude``, peak not peak to peak, in the variable's unit, per s to
+    the power of ``derivative``; ``frequency`` [Hz]
+
+    Raises
+    ------
+    ParameterError : a variable that is not there, or a result that does not cover whole mesh cycles
+    """
+    one_of("shaft", shaft, get_args(Shaft))
+    found = harmonics(result, variable, derivative)
+    frequency = np.arange(found.values.size) * (found.pair.geometry.mesh_frequency / found.cycles)
+    return labelled_dataset(
+        {
+            "amplitude": ("order", np.abs(found.values), found.unit, f"amplitude of: {found.words}"),
+            "frequency": ("order", frequency, "Hz", "frequency"),
+        },
+        {"order": (found.orders(shaft), "1", f"order of the {shaft}")},
+        result.attrs | {"shaft": shaft},
+    )
