@@ -1,7 +1,9 @@
 """Records as a sensor would make them: a periodic motion over many turns, with noise and a changing speed.
 
 The motion is that of the constant nominal speed, read over the angle: a changing speed stretches the time and
-does not excite anything. So a record tests a user's own signal processing, not the pair's run-up. Source: docs/theory/teeth.md, "Signals".
+does not excite anything. So a record tests a user's own signal processing, not the pair's run-up.
+
+Source: docs/theory/teeth.md, "Signals".
 """
 
 from __future__ import annotations
