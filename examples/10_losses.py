@@ -16,7 +16,7 @@ from lumped.losses import iso_14179_of, losses_of_laws, ohlendorf_of, quasi_stat
 
 def compute() -> xr.Dataset:
     """Efficiencies of all laws, and the loss of constant friction over mu as mu vanishes."""
-    pair = lumped.load_gear_pair("fzg_c")
+    pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
     result = losses_of_laws(pair)
     result = result.assign_coords(mu=[0.1, 0.01, 0.001, 1e-6])
     constant = [pair.with_(friction__law="coulomb", friction__coefficient=mu) for mu in result["mu"].values]

@@ -18,7 +18,11 @@ def compute() -> xr.Dataset:
     """Largest difference of the motions of the smooth 28/28 pair without relief, at falling torques."""
     smooth = {"model": "parabolic", "ramp_length": 2.0}
     pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored", mesh__stiffness=smooth, friction__law="coulomb", friction__coefficient=0.05
+        mesh__contact="prescribed",
+        mesh__relief="ignored",
+        mesh__stiffness=smooth,
+        friction__law="coulomb",
+        friction__coefficient=0.05,
     )
     torques = 56.5 / 4.0 ** np.arange(4)
     names = ("dte", "x_p", "y_p")

@@ -17,7 +17,10 @@ import lumped
 def compute() -> xr.Dataset:
     """Boundaries of the tongues of the 28/28 pair without relief, with constant friction coefficient."""
     pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
+        mesh__contact="prescribed",
+        mesh__relief="ignored",
+        friction__law="coulomb",
+        friction__coefficient=0.05,
     )
     damping = np.geomspace(1e-3, 0.03, 12)
     found = floquet.stability_boundaries(pair, (5000.0, 20000.0), {"damping_ratio": damping}, nodes=150)

@@ -18,7 +18,9 @@ from floquet.gear.axes import vary
 
 def compute() -> xr.Dataset:
     """Mesh damping ratio that closes the tongue of the 28/28 pair without friction and relief."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored", friction__law="none")
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", mesh__relief="ignored", friction__law="none"
+    )
     body, bearings = lumped.bodies(pair), pair.bearings
     v, mass = np.array([1.0, 1.0, -1.0]), np.diag([body.effective_mass, body.mass_pinion, body.mass_gear])
     supports = np.diag([0.0, bearings.pinion.loa_stiffness, bearings.gear.loa_stiffness])

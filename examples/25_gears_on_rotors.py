@@ -16,7 +16,9 @@ from scipy.linalg import block_diag, eigh
 import floquet
 import lumped
 
-PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored", mesh__damping_ratio=0.002)
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__contact="prescribed", mesh__relief="ignored", mesh__damping_ratio=0.002
+)
 
 
 def over_time(cycle, law: str) -> floquet.PiecewisePolynomial:

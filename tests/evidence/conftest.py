@@ -8,4 +8,4 @@ import lumped
 @pytest.fixture(scope="session")
 def pair():
     """With involute flanks: with its relief contact is lost."""
-    return lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    return lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")

@@ -27,7 +27,7 @@ def _quantities(model, prefix=""):
 @pytest.fixture(scope="session")
 def nasa():
     """The default pair with involute flanks: what these tests know of it has no relief."""
-    return load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    return load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
 
 
 @pytest.fixture(scope="session")

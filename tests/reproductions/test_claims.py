@@ -20,7 +20,7 @@ from reproductions.he_cho_singh_2008.operating_points import FIGURE_4, FIGURE_7,
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    return load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
 
 
 @pytest.fixture(scope="module")

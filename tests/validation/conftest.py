@@ -9,7 +9,7 @@ from validation.cross_check.comparison import crosscheck
 @pytest.fixture(scope="session")
 def pair():
     """The default pair with involute flanks; with its relief contact is lost."""
-    return lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    return lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
 
 
 @pytest.fixture(scope="session")

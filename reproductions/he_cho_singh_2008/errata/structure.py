@@ -61,6 +61,7 @@ def high_contact_ratio() -> GearPair:
     """The 28/28 pair with addenda of 1.35 modules: two to three tooth pairs in contact."""
     return load_gear_pair("nasa_28_28").with_(
         {
+            "mesh.contact": "prescribed",
             "basic_rack.addendum_coefficient": 1.35,
             "basic_rack.dedendum_coefficient": 1.55,
             "basic_rack.fillet_radius_coefficient": 0.1,

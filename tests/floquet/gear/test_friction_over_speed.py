@@ -13,7 +13,9 @@ SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
 
 
 def with_law(law: str, preset: str = "nasa_28_28", **changes: object) -> GearVariation:
-    return GearVariation(load_gear_pair(preset).with_(friction__law=law, **changes))
+    return GearVariation(
+        load_gear_pair(preset).with_(mesh__contact="prescribed", friction__law=law, **changes)
+    )
 
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # law II at 20000 rpm
@@ -115,7 +117,7 @@ def test_only_formulas_that_speed_scales_are_proven(law) -> None:
 
 @pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"])
 def test_charts_over_speed_are_those_of_single_speeds(law: str) -> None:
-    pair = load_gear_pair("nasa_28_28").with_(friction__law=law)
+    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", friction__law=law)
     axes = {"damping_ratio": [0.0, 0.03]}
     many = stability_chart(pair, {"speed_rpm": SPEEDS, **axes})
     for speed in SPEEDS:
@@ -128,7 +130,9 @@ def test_charts_over_speed_are_those_of_single_speeds(law: str) -> None:
 
 def test_friction_axis_keeps_its_mean_at_every_speed() -> None:
     # Scaled to a mean of 0.05 at each speed, law II still changes its shape with speed.
-    pair = load_gear_pair("nasa_28_28").with_(friction__law="benedict_kelley", mesh__damping_ratio=0.002)
+    pair = load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", friction__law="benedict_kelley", mesh__damping_ratio=0.002
+    )
     axes = {"speed_rpm": [1500.0, 4000.0, 16000.0], "friction_coefficient": [0.02, 0.05]}
     fast = stability_chart(pair, axes)
     slow = scan(lambda point: gear_pair_multipliers(vary(pair, point), method="gauss"), axes)

@@ -12,7 +12,7 @@ from lumped import NumericalError, ParameterError
 @pytest.fixture(scope="module")
 def frictionless():
     return lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__damping_ratio=0.05, mesh__relief="ignored", friction__law="none"
+        mesh__contact="prescribed", mesh__damping_ratio=0.05, mesh__relief="ignored", friction__law="none"
     )
 
 
@@ -23,7 +23,9 @@ def at(pair, rpm):
 @pytest.mark.parametrize("brake", ["balanced", 56.0])
 def test_where_contact_holds_it_is_the_linear_motion(brake):
     """With friction that depends on speed, and with either torque as the unknown."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored", operating__brake_torque=brake)
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", mesh__relief="ignored", operating__brake_torque=brake
+    )
     pair = at(pair, 12000.0)
     orbit, linear = floquet.periodic_orbit(pair), lumped.steady_state(pair, samples_per_cycle=256)
     assert not orbit.parts
@@ -54,7 +56,9 @@ def test_without_clearance_motions_are_proportional_to_the_torque(frictionless):
 
 def test_slow_motion_with_relief_is_the_static_transmission_error():
     """Clearance decides about contact itself; the static model knows which pairs touch."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="static", friction__law="none")
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", mesh__relief="static", friction__law="none"
+    )
     pair = pair.with_({"operating.pinion_speed": 50.0, "mesh.damping_ratio": 0.05})
     static = lumped.static_transmission_error(pair)
     values = static["static_te"].values if "static_te" in static else static["transmission_error"].values
@@ -109,7 +113,7 @@ def test_between_the_neimark_sacker_points_the_run_beats(branches, frictionless)
     "law", ["coulomb", "smoothed_coulomb", "benedict_kelley", "xu_kahraman", "composite"]
 )
 def test_friction_over_speed_is_that_fitted_at_each_speed(law):
-    pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law=law)
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", friction__law=law)
     family = unilateral_family(pair, 1000.0, 21000.0)
     there = at(pair, 7890.0)
     T = there.geometry.mesh_period
@@ -208,7 +212,9 @@ def test_what_a_jump_map_cannot_vary_is_refused(frictionless):
 
 def test_jumps_are_removed_at_one_ratio_of_torque_to_relief():
     """Lengths and forces in proportion are the same motions: jumps depend on torque over relief alone."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law="none", operating__pinion_torque=200.0)
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", friction__law="none", operating__pinion_torque=200.0
+    )
     found = floquet.response_branches(pair, (13500.0, 16500.0), (1,), seeds=0)
     assert [b.kind for b in found.bifurcations].count("fold") == 1
     (less,) = floquet.jumps_removed_by(found, "torque", (90.0, 200.0))

@@ -95,7 +95,9 @@ def test_tip_of_a_damped_meissner_tongue() -> None:
 def pair():
     """Default pair without friction and with lightly damped bearings: several kinds of tongues."""
     changes = {f"bearings.{g}.loa_damping_ratio": 0.01 for g in ("pinion", "gear")}
-    return load_gear_pair("nasa_28_28").with_({"mesh.relief": "ignored", "friction.law": "none", **changes})
+    return load_gear_pair("nasa_28_28").with_(
+        {"mesh.contact": "prescribed", "mesh.relief": "ignored", "friction.law": "none", **changes}
+    )
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,9 @@ from lumped.model.averaged import averaged_state_space, modes
 @pytest.fixture(scope="module")
 def symmetric():
     """28/28 pair without friction: the averaged system splits in closed form."""
-    return lumped.load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.0)
+    return lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", friction__law="none", mesh__damping_ratio=0.0
+    )
 
 
 def closed_form(pair):

@@ -168,7 +168,7 @@ def test_a_quarter_of_the_torque_at_half_the_speed_makes_a_quarter_of_the_motion
 def test_the_energy_residual_of_prescribed_contact_has_a_closed_form():
     """Where k jumps from 0 at A and to 0 at D, k delta^2/2 comes and goes without work."""
     pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored", friction={"law": "coulomb", "coefficient": 0.0}
+        mesh__contact="prescribed", mesh__relief="ignored", friction={"law": "coulomb", "coefficient": 0.0}
     )
     g, k = lumped.geometry(pair), float(mesh_elements(pair).stiffness(lumped.geometry(pair).L_XP))
     system = periodic_system(pair, "full")
@@ -190,7 +190,7 @@ def test_losses_by_place_are_those_of_an_independent_program(rpm, sliding, dampe
     powers = mean_powers(
         solution(
             lumped.load_gear_pair("nasa_28_28").with_(
-                mesh__relief="ignored", operating__pinion_speed=float(rpm)
+                mesh__contact="prescribed", mesh__relief="ignored", operating__pinion_speed=float(rpm)
             )
         )
     )

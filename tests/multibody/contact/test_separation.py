@@ -12,7 +12,7 @@ from multibody.run.simulation import record
 
 #: The classic 50/50 pair at low torque and light damping, without friction.
 PAIR = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
-    friction__law="none", operating__pinion_torque=50, mesh__damping_ratio=0.02
+    mesh__contact="prescribed", friction__law="none", operating__pinion_torque=50, mesh__damping_ratio=0.02
 )
 
 

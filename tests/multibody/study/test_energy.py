@@ -5,7 +5,9 @@ import pytest
 import lumped
 import multibody
 
-PAIR = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.08)
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__contact="prescribed", friction__law="coulomb", friction__coefficient=0.08
+)
 
 
 @pytest.mark.parametrize("options", [
@@ -50,7 +52,7 @@ def test_the_first_law_holds_without_a_source(preset, changes):
 
 def test_without_path_work_and_tip_contact_the_balance_needs_a_source():
     pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored", mesh__stiffness={"model": "energy"}
+        mesh__contact="prescribed", mesh__relief="ignored", mesh__stiffness={"model": "energy"}
     )
     balance = multibody.power_balance(pair, 3, rtol=1e-10, friction_velocity=0.05)
     assert abs(balance.residual) < 1e-9 * balance.driving

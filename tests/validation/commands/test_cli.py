@@ -42,7 +42,7 @@ def test_presets_are_listed_and_shown():
 
 
 def test_init_writes_a_file_that_loads_and_never_overwrites(tmp_path):
-    path, pair = tmp_path / "mine.toml", lumped.load_gear_pair("nasa_28_28")
+    path, pair = tmp_path / "mine.toml", lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed")
     assert run("init", "-o", path).exit_code == 0
     assert lumped.load_gear_pair(path) == pair
     path.write_text("edited")

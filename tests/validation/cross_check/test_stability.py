@@ -8,7 +8,7 @@ import lumped
 import multibody
 
 BASE = lumped.load_gear_pair("nasa_28_28").with_(
-    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
+    mesh__contact="prescribed", mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
 )
 SMOOTH = BASE.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
 #: Light mesh damping at the speed where the mesh frequency is twice the highest natural frequency: main

@@ -25,7 +25,9 @@ MU = 0.05
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(operating__pinion_speed=800, operating__pinion_torque=79.1)
+    return load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", operating__pinion_speed=800, operating__pinion_torque=79.1
+    )
 
 
 @pytest.fixture(scope="module")
