@@ -11,7 +11,7 @@ from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
-from lumped.model.propagation import STAGES, StepMaps, step_maps
+from lumped.model.propagation import STAGES, STEP_ANGLE, StepMaps, step_maps
 from lumped.model.results import peak_to_peak, response
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -78,7 +78,7 @@ class PeriodicSolution:
 
 
 def periodic_solution(
-    system: LTVSystem, times: FloatArray, *, estimate_error: bool = True
+    system: LTVSystem, times: FloatArray, *, estimate_error: bool = True, step_angle: float = STEP_ANGLE
 ) -> PeriodicSolution:
     """Periodic motion at given times of the mesh cycle.
 
@@ -92,9 +92,10 @@ def periodic_solution(
     system : the "full" system of a gear pair
     times : increasing, within [0, T_m) [s]
     estimate_error : whether to compute ``error``, by a second integration of lower order
+    step_angle : largest angle of the fastest frequency per step [rad]
     """
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-    maps = step_maps(system, torques, outputs=times, every_step=True)
+    maps = step_maps(system, torques, outputs=times, every_step=True, step_angle=step_angle)
     transition, forced = maps.over_all()
     initial, weights = balanced_start(system, transition, forced)
     states = maps.states(initial, weights)

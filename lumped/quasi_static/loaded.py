@@ -45,6 +45,8 @@ LEAST_LOAD = 1e-3
 _LEAST_STIFFNESS = 1e-11
 #: Fit error of c over its largest value.
 _DAMPING_TOLERANCE = 1e-11
+#: Pairs whose contact is kept: the samples of an uncertainty, whose range over speed asks for them again.
+_KEPT = 256
 #: The damper is whole where a pair carries this share of the mean load.
 FULL_DAMPING = 1.0 / 15.0
 
@@ -58,24 +60,10 @@ class Loaded(Contact):
     def elements(self, pair: GearPair) -> MeshElements:
         """The laws about the static loaded motion; the damper takes hold as the load does."""
         contact = loaded_contact(pair)
-        low, high = contact.stiffness.interval
-        scale = 2.0 * pair.mesh.damping_ratio * np.sqrt(bodies_of(pair).effective_mass)
-
-        def damping(xi: FloatArray) -> FloatArray:
-            root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
-            return np.asarray(scale * root * contact.engagement(xi), dtype=np.float64)
-
-        engaged = contact.engagement
-        breaks = np.union1d(engaged.breaks, contact.secant.breaks)
-        largest = float(np.abs(damping(np.linspace(low, high, 401))).max())
         return MeshElements(
             stiffness=contact.stiffness,
-            damping=PathFunction.constant(0.0, low, high)
-            if largest == 0.0
-            else PathFunction.fit(
-                damping, breaks, engaged.switches, tolerance=_DAMPING_TOLERANCE * largest, by_length=True
-            ),
-            friction=friction_path_function(pair, interval=(low, high)),
+            damping=_damping(at_rest(pair), pair.mesh.damping_ratio),
+            friction=friction_path_function(pair, interval=contact.stiffness.interval),
             error=contact.error,
             gap=contact.gap,
         )
@@ -179,7 +167,8 @@ class StaticMesh:
         self.law = ContactLaw(pair_stiffness(pair), contact_softening(pair), self.force)
         compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
         self.lengthening = self.force * compliance  # of the line of action, by the bearings
-        reach = int(np.ceil(g.contact_ratio + 2.0 * _REACH))
+        # Pairs further from one that is followed are not.
+        reach = int(g.contact_ratio + 2.0 * _REACH)
         self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
         self.ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
         self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
@@ -265,7 +254,27 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     return _loaded_contact(at_rest(pair))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=_KEPT)
+def _damping(pair: GearPair, ratio: float) -> PathFunction:
+    """C = 2 zeta sqrt(k m_e) of a pair ``at_rest``, taking hold with the load, with zeta = ``ratio``."""
+    contact = _loaded_contact(pair)
+    low, high = contact.stiffness.interval
+    scale = 2.0 * ratio * np.sqrt(bodies_of(pair).effective_mass)
+
+    def damping(xi: FloatArray) -> FloatArray:
+        root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
+        return np.asarray(scale * root * contact.engagement(xi), dtype=np.float64)
+
+    engaged = contact.engagement
+    breaks = np.union1d(engaged.breaks, contact.secant.breaks)
+    largest = float(np.abs(damping(np.linspace(low, high, 401))).max())
+    if largest == 0.0:
+        return PathFunction.constant(0.0, low, high)
+    tolerance = _DAMPING_TOLERANCE * largest
+    return PathFunction.fit(damping, breaks, engaged.switches, tolerance=tolerance, by_length=True)
+
+
+@lru_cache(maxsize=_KEPT)
 def _loaded_contact(pair: GearPair) -> LoadedContact:
     mesh, g = StaticMesh(pair), pair.geometry
     law, near = mesh.law, _SAME * pair.geometry.base_pitch

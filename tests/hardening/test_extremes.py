@@ -131,11 +131,11 @@ MAY_REFUSE = {
     "1 rpm": (lumped_transient, multibody_transient, floquet_multipliers),
     # The coefficient of friction that the law gives is beyond 1.
     **dict.fromkeys(("viscosity 1e-9", "viscosity 1e5", "roughness 50"), ANALYSES),
-    # Gears that nothing holds have no periodic motion to start from.
-    "bearings 1e-6": ANALYSES[:3],
-    # The static load turns the gears by more than a tooth, or less than the rounding of their positions.
-    **dict.fromkeys(("pair stiffness 1e-6", "pair stiffness 1", "modulus 1e-6"), BODIES),
-    **dict.fromkeys(("torque 1e6", "torque 1e9", "brake 1e9", "torque 1e-9", "brake 1e-9"), BODIES),
+    # The static load turns the gears by more than a tooth, so that no pair carries it where it touches.
+    **dict.fromkeys(("pair stiffness 1e-6", "pair stiffness 1", "modulus 1e-6"), ANALYSES),
+    **dict.fromkeys(("torque 1e6", "torque 1e9", "bearings 1", "bearings 1e-6", "ratio 200 to 1"), ANALYSES),
+    # Or by less than the rounding of their positions.
+    **dict.fromkeys(("brake 1e9", "torque 1e-9", "brake 1e-9"), BODIES),
 }
 
 

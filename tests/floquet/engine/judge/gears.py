@@ -181,7 +181,7 @@ def _over(function: PathFunction, first: fmpq, pitch: fmpq, i: int, middle: fmpq
 
 def random_pair(rng: np.random.Generator, model: str) -> GearPair:
     """A random gear pair with a stiffness model out of `MODELS`."""
-    pair = load_gear_pair(str(rng.choice(PRESETS)))
+    pair = load_gear_pair(str(rng.choice(PRESETS))).with_(mesh__contact="prescribed")
     changes: dict[str, Any] = {
         "operating.pinion_speed": float(np.exp(rng.uniform(np.log(800), np.log(20000)))),
         "operating.pinion_torque": float(rng.uniform(20, 200)),
@@ -193,7 +193,7 @@ def random_pair(rng: np.random.Generator, model: str) -> GearPair:
         changes[f"bearings.{gear}.loa_damping_ratio"] = float(rng.choice([0.0, rng.uniform(0, 0.1)]))
     pair = pair.with_(changes)
     if model == "relief":
-        relieved = load_gear_pair("nasa_28_28").with_(changes)
+        relieved = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed").with_(changes)
         return relieved.with_(
             {"mesh.relief": "static", "mesh.stiffness": {"model": str(rng.choice(MODELS[:3]))}}
         )
