@@ -20,7 +20,11 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
     # closed form: speed and damping of the tip of the tongue at twice the natural frequency follow from them
     # by root finding. There c_i = 2 zeta k_i/omega with omega^2 = sigma k/m_e; here c_i = 2 zeta sqrt(k m_e).
     base = load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored", friction__law="coulomb", friction__coefficient=MU, mesh__damping_ratio=0.004
+        mesh__contact="prescribed",
+        mesh__relief="ignored",
+        friction__law="coulomb",
+        friction__coefficient=MU,
+        mesh__damping_ratio=0.004,
     )
     g, system = geometry(base), periodic_system(base, "mesh")
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
@@ -63,7 +67,11 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
 @pytest.fixture(scope="module")
 def pair():
     return load_gear_pair("nasa_28_28").with_(
-        mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.06, mesh__damping_ratio=0.004
+        mesh__contact="prescribed",
+        mesh__relief="ignored",
+        friction__law="coulomb",
+        friction__coefficient=0.06,
+        mesh__damping_ratio=0.004,
     )
 
 
@@ -134,7 +142,7 @@ def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
 
 
 def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() -> None:
-    pair = load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
     wide = stability_margins(pair, (15000.0, 40000.0))
     tongues = [t for t in wide.tongues if t.upper < 30000.0]
     below, target = tongues[-2:]
@@ -159,6 +167,7 @@ def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() 
 
 def test_the_search_above_stays_within_the_speeds_of_the_schema() -> None:
     pair = load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed",
         mesh__relief="ignored", operating__pinion_speed=150_000.0, bearings__pinion__loa_stiffness=1e12,
         mesh__damping_ratio=0.0,
     )  # fmt: skip

@@ -28,7 +28,11 @@ from lumped.path_of_contact import contact_path, pair_stiffness
 
 def coulomb(name, mu, **changes):
     return load_gear_pair(name).with_(
-        mesh__relief="ignored", friction__law="coulomb", friction__coefficient=mu, **changes
+        mesh__contact="prescribed",
+        mesh__relief="ignored",
+        friction__law="coulomb",
+        friction__coefficient=mu,
+        **changes,
     )
 
 
@@ -58,7 +62,7 @@ def efficiency_of_constant_friction(pair, mu):
 @pytest.mark.parametrize("mu", [0.02, 0.05, 0.1])
 def test_efficiency_of_constant_friction_in_closed_form(name, mu):
     result = quasi_static_losses(coulomb(name, mu), sharing="uniform")
-    exact = efficiency_of_constant_friction(load_gear_pair(name), mu)
+    exact = efficiency_of_constant_friction(load_gear_pair(name).with_(mesh__contact="prescribed"), mu)
     # rounding of the closed form, differences of 1e-16 over mu^2 and the loss: below 1e-10
     assert 1 - result.attrs["mesh_efficiency"] == pytest.approx(1 - exact, rel=1e-10)
 
@@ -66,7 +70,7 @@ def test_efficiency_of_constant_friction_in_closed_form(name, mu):
 @pytest.mark.parametrize("law", [law for law in LAWS if law != "none"])
 def test_torque_balance_and_friction_power_tell_the_same_loss(law):
     # T_p Omega_p - T_g Omega_g = SUM F_i v_s,i at every instant: the normal loads do no work
-    pair = load_gear_pair("nasa_art_25_31")
+    pair = load_gear_pair("nasa_art_25_31").with_(mesh__contact="prescribed")
     g = geometry(pair)
     result = quasi_static_losses(pair, law)
     out = result["brake_torque"].to_numpy() * g.omega_gear
@@ -80,7 +84,7 @@ def test_torque_balance_and_friction_power_tell_the_same_loss(law):
 
 
 def test_no_friction_no_loss():
-    result = quasi_static_losses(load_gear_pair("fzg_c"), "none")
+    result = quasi_static_losses(load_gear_pair("fzg_c").with_(mesh__contact="prescribed"), "none")
     assert result.attrs["mesh_efficiency"] == 1.0
     assert result.attrs["mean_coefficient"] == 0.0
 
@@ -126,7 +130,7 @@ def test_power_along_the_path_is_the_power_over_the_cycle():
 
 
 def test_losses_of_all_laws_side_by_side():
-    pair = load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
     table = losses_of_laws(pair)
     assert list(table.law.values) == [law for law in LAWS if law != "none"]
     for name in ("coulomb", "xu_kahraman"):
@@ -148,6 +152,7 @@ def test_iso_mean_coefficient_on_fzg_c():
     # GEARpie's report of the FZG C14 gears: 200 N m, 1500 rpm, eta 13.28 mPa s, Ra 0.4/0.31 um, X_L 0.846
     # prints mu_mZ (Schlenk, the formula of ISO/TR 14179-2) = 0.0449; half its last place
     pair = load_gear_pair("fzg_c").with_(
+        mesh__contact="prescribed",
         operating__pinion_speed=1500, operating__pinion_torque=200, lubricant__viscosity=13.28,
         pinion__roughness=0.4, gear__roughness=0.31,
     )  # fmt: skip
@@ -160,7 +165,7 @@ def test_iso_mean_coefficient_on_fzg_c():
 
 def test_anderson_loewenthal_loss_is_its_integral():
     # From the definition, by adaptive quadrature over the path: each position once a cycle.
-    pair = load_gear_pair("fzg_c")
+    pair = load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
     g, path = geometry(pair), contact_path(pair)
 
     def power(xi):
@@ -181,13 +186,13 @@ def test_a_dataset_without_friction_power_is_refused():
     import xarray as xr
 
     with pytest.raises(ParameterError, match="friction_power_nominal"):
-        dynamic_losses(load_gear_pair("fzg_c"), xr.Dataset())
+        dynamic_losses(load_gear_pair("fzg_c").with_(mesh__contact="prescribed"), xr.Dataset())
 
 
 @pytest.mark.parametrize("name", UP_TO_TWO_PAIRS)
 def test_closed_form_is_the_integral(name):
     # Derived in ohlendorf's docstring; both are exact, so only rounding may differ.
-    pair = load_gear_pair(name)
+    pair = load_gear_pair(name).with_(mesh__contact="prescribed")
     assert loss_factor(pair) == pytest.approx(ohlendorf_of(pair), rel=1e-13)
 
 
@@ -202,7 +207,9 @@ def test_closed_form_is_the_integral(name):
     ],
 )
 def test_loss_factor_of_known_pairs(name, published, last_place):
-    assert loss_factor(load_gear_pair(name)) == pytest.approx(published, abs=last_place)
+    assert loss_factor(load_gear_pair(name).with_(mesh__contact="prescribed")) == pytest.approx(
+        published, abs=last_place
+    )
 
 
 def brute_force(pair, relative=lambda xi: 1.0):
@@ -226,6 +233,7 @@ def brute_force(pair, relative=lambda xi: 1.0):
 def high_contact_ratio():
     # A tall tooth: contact ratio above 2, where the closed form does not apply
     pair = load_gear_pair("kahraman_blankenship_50_50").with_(
+        mesh__contact="prescribed",
         pinion__addendum=4.2, gear__addendum=4.2, basic_rack__dedendum_coefficient=1.6,
         basic_rack__fillet_radius_coefficient=0.2,
     )  # fmt: skip
@@ -240,7 +248,7 @@ def test_contact_ratio_above_two(high_contact_ratio):
 
 
 def test_sharing_by_stiffness():
-    pair = load_gear_pair("fzg_c")
+    pair = load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
     g = geometry(pair)
     # 1 + 2 t (1 - t) over the path, t = 0 at A and 1 at D: stiffest in the middle
     points = list(np.linspace(0.0, g.contact_ratio, 201))
@@ -259,7 +267,7 @@ def test_sharing_by_stiffness():
 def test_loaded_shares_are_those_of_the_static_transmission_error():
     from lumped.quasi_static import static_transmission_error
 
-    pair = load_gear_pair("nasa_28_28")
+    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed")
     g = geometry(pair)
     static = static_transmission_error(pair, phases=2048, extended=False).isel(torque=0)
     slide = (g.omega_pinion + g.omega_gear) * np.abs(static["position"] - g.L_XP)
@@ -272,10 +280,10 @@ def test_loaded_shares_are_those_of_the_static_transmission_error():
 
 def test_addendum_contact_ratios_add_up():
     for name in preset_names():
-        g = geometry(load_gear_pair(name))
+        g = geometry(load_gear_pair(name).with_(mesh__contact="prescribed"))
         assert sum(addendum_contact_ratios(g)) == pytest.approx(g.contact_ratio, rel=1e-14)
 
 
 def test_unknown_sharing_is_refused():
     with pytest.raises(ParameterError, match="sharing = equal"):
-        loss_factor(load_gear_pair("fzg_c"), "equal")
+        loss_factor(load_gear_pair("fzg_c").with_(mesh__contact="prescribed"), "equal")

@@ -10,6 +10,7 @@ from lumped.quasi_static import static_transmission_error
 def relieved(**changes):
     return load_gear_pair("nasa_28_28").with_(
         {
+            "mesh.contact": "prescribed",
             "mesh.relief": "static", "mesh.stiffness": {"model": "energy"}, "operating.pinion_torque": 56.5,
             "friction.law": "none", **changes,
         }

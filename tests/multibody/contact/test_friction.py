@@ -24,7 +24,7 @@ FIT = 1e-10
 )
 def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
     changes = {"lubricant.viscosity_law": oil, "friction.law": "benedict_kelley"}
-    pair = lumped.load_gear_pair("fzg_c").with_(changes)
+    pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed").with_(changes)
     p, table = machine(pair).parameters, lumped.mesh_elements(pair).friction
     xi = 0.3 * p[kn.L_XA] + 0.7 * p[kn.L_XP]
     assert kn.nominal_friction(p, xi) == pytest.approx(float(table(xi)), abs=FIT)
@@ -32,7 +32,9 @@ def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
 
 def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
     """Law V at a speed where the film makes it mixed near A and fluid near D, and law II at its bounds."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(operating__pinion_torque=22.6)
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__contact="prescribed", operating__pinion_torque=22.6
+    )
     found = 0
     for changes in (
         {"friction__law": "composite", "operating__pinion_speed": 2500},
@@ -49,7 +51,9 @@ def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
 def test_the_momentary_load_is_an_effect_of_its_own():
     """Off: w_n, whatever the load. On: load over face width, which law III feels and law I does not."""
     for law, feels in (("xu_kahraman", True), ("coulomb", False)):
-        pair = lumped.load_gear_pair("fzg_c").with_(friction__law=law, friction__coefficient=0.05)
+        pair = lumped.load_gear_pair("fzg_c").with_(
+            mesh__contact="prescribed", friction__law=law, friction__coefficient=0.05
+        )
         p = machine(pair).parameters
         xi, w = p[kn.L_XP] + 2e-3, p[kn.FRICTION + fr.NOMINAL_LOAD] * pair.gear.face_width
 
@@ -62,7 +66,7 @@ def test_the_momentary_load_is_an_effect_of_its_own():
 
 
 def test_actual_rolling_velocities_belong_to_the_sliding_velocity():
-    pair = lumped.load_gear_pair("fzg_c").with_(friction__law="xu_kahraman")
+    pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed", friction__law="xu_kahraman")
     p = machine(pair).parameters
     xi = p[kn.L_XP] + 2e-3
     rolling = p[kn.OMEGA_P] * xi + p[kn.OMEGA_G] * (p[kn.L_XY] - xi)
@@ -79,7 +83,7 @@ def test_actual_rolling_velocities_belong_to_the_sliding_velocity():
 
 def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     """Both gears turn by a half faster than nominal: in the contact core the law of that speed acts."""
-    pair = lumped.load_gear_pair("fzg_c").with_(friction__law="xu_kahraman")
+    pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed", friction__law="xu_kahraman")
     faster = pair.with_(operating__pinion_speed=1.5 * pair.operating.pinion_speed * 30.0 / np.pi)
     numbers, flags = machine(pair), effect_flags({"sliding_velocity"})
     p = numbers.parameters

@@ -35,6 +35,7 @@ SHAFTS = {
     "load": {"position": 120, "inertia": 0.02, "coupling_stiffness": 2e4},
 }  # fmt: skip
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__contact="prescribed",
     mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.06, shafts=SHAFTS, gear__bore=40,
     mesh__stiffness={"model": "finite_elements"},
 )  # fmt: skip
@@ -147,7 +148,7 @@ def stiff(pair):
 
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
 def test_stiff_shafts_are_the_springs_of_the_6_dof_model(fidelity):
-    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
     on_shafts, on_springs = stiff(pair)
     run = multibody.simulate(on_shafts, 2, fidelity=fidelity, supports="shafts", samples_per_cycle=64)
     other = multibody.simulate(on_springs, 2, fidelity=fidelity, samples_per_cycle=64)
@@ -198,7 +199,7 @@ def test_finite_motions_on_shafts_fall_with_torque():
 
 
 def test_refusals():
-    plain = lumped.load_gear_pair("nasa_28_28")
+    plain = lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed")
     with pytest.raises(ParameterError, match="supports"):
         multibody.simulate(plain, 1, supports="shafts")
     with pytest.raises(ParameterError, match="'static' or 'periodic'"):

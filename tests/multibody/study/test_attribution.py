@@ -17,7 +17,7 @@ from multibody.run.effects import (
 from multibody.study import causes
 
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
-    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
+    mesh__contact="prescribed", mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
 )
 SMOOTH = JUMPS.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
 

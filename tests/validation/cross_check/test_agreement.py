@@ -9,7 +9,7 @@ from multibody.run.setup import prepare
 from multibody.run.simulation import record
 
 BASE = lumped.load_gear_pair("nasa_28_28").with_(
-    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05,
+    mesh__contact="prescribed", mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05,
     operating__pinion_torque=56.5, operating__pinion_speed=4875,
 )  # fmt: skip
 SMOOTH = BASE.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
@@ -76,7 +76,7 @@ def test_periodic_motion_is_found_where_friction_holds_the_teeth(stiffness):
     Corrected along its way it closes the cycle to ten times rtol, in some ten cycles.
     """
     pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
-        friction__law="benedict_kelley", mesh__stiffness={"model": stiffness}
+        mesh__contact="prescribed", friction__law="benedict_kelley", mesh__stiffness={"model": stiffness}
     )
     slow = pair.with_(operating__pinion_speed=0.3 * pair.operating.pinion_speed * 30 / np.pi)
     run = multibody.steady_state(slow, samples_per_cycle=16)
@@ -122,7 +122,9 @@ def runs(pair, **options):
 @pytest.mark.parametrize(("preset", "law", "stiffness"), WITH_LAWS)
 def test_linear_level(preset, law, stiffness):
     """Two assemblies and two integrators of one set of equations."""
-    pair = lumped.load_gear_pair(preset).with_(friction__law=law, mesh__stiffness=STIFFNESS[stiffness])
+    pair = lumped.load_gear_pair(preset).with_(
+        mesh__contact="prescribed", friction__law=law, mesh__stiffness=STIFFNESS[stiffness]
+    )
     run, reference = runs(pair, fidelity="linear")
     for name in ("dte", "x_p", "x_g", "y_p", "y_g", "theta_p", "theta_g", "normal_load", "friction_force"):
         assert difference(run, reference, name) < 1e-6, name
@@ -140,6 +142,7 @@ def steady_difference(pair):
 def test_exact_level_scales_with_torque(preset, stiffness):
     """Coulomb friction (a coefficient free of torque) at full and at a quarter of the preset's torque."""
     pair = lumped.load_gear_pair(preset).with_(
+        mesh__contact="prescribed",
         mesh__relief="ignored",
         mesh__stiffness=STIFFNESS[stiffness],
         friction__law="coulomb",

@@ -11,6 +11,7 @@ from validation.prediction.uncertainty import percentile_interval, speed_band, u
 #: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
 LINEAR = lumped.load_gear_pair("nasa_28_28").with_(
     {
+        "mesh.contact": "prescribed",
         "friction.law": "none", "mesh.relief": "ignored", "operating.pinion_speed": 800.0, "sources": {},
         "uncertainty": {"operating.pinion_torque": "+- 4 %"},
     }
