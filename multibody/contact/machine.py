@@ -172,7 +172,6 @@ def machine(
     fill_friction(pair, p)
     friction = friction_switches(p)
     if p[kn.FRICTION + fr.LAW] == fr.TABLE:
-        # Loaded teeth touch beyond A and D, and the law with them.
         law = friction_path_function(pair, interval=contact_of(pair).elements(pair).stiffness.interval)
         p[kn.FRICTION + fr.COLUMNS] = law.coefficients.shape[0] + 2
         p = np.append(p, pack(law))
