@@ -14,8 +14,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from floquet.engine.chart import Axes, checked_axes
+from floquet.gear.attractors import JUMP
 from floquet.gear.axes import GEAR_AXES, GearAxis, GearVariation, operating_rpm
-from floquet.gear.response import JUMP, MARGINAL, ResponseBranches, lost_stability, member
+from floquet.gear.response import MARGINAL, ResponseBranches, lost_stability, member
 from floquet.gear.unilateral import unilateral_family
 from floquet.orbits.branch import Continuation, Family, Limits
 from floquet.orbits.folds import FoldContinuation
@@ -460,7 +461,7 @@ class _Removal:
             if (limit - value) * sign <= 0.0:
                 break
             here = member(self.varied(value), *self.branches.speeds_rpm)
-            folds = _folds(find_response(here.family, here.limits, here.start, periods=self.periods, seeds=0))
+            folds = _folds(find_response(here, periods=self.periods, seeds=0))
             if not folds:
                 return value - 0.5 * sign * margin, 0.5 * margin, speed
             margin *= 2.0

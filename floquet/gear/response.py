@@ -13,6 +13,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from floquet.gear.attractors import (
+    JUMP,
+    AttractorPoint,
+    Basin,
+    GearAttractor,
+    basins,
+    end_rate,
+    gear_attractor,
+    label,
+    peak_to_peak,
+)
 from floquet.gear.axes import checked_range, depends_on_speed, operating_rpm, speed_range
 from floquet.gear.orbit import (
     MOST_CYCLES,
@@ -22,19 +33,20 @@ from floquet.gear.orbit import (
     start_of,
     static_deflection,
 )
-from floquet.gear.orbit import long_run as settled_run
 from floquet.gear.unilateral import ContactForm, unilateral_family
 from floquet.orbits.bifurcations import Bifurcation, Kind
 from floquet.orbits.branch import Limits
-from floquet.orbits.long_run import Settled, long_run
-from floquet.orbits.response import Branch, Member, Response, find_response
+from floquet.orbits.long_run import LongRun, Settled, long_run
+from floquet.orbits.response import STARTS, Branch, Member, Response, find_response
 from lumped.arguments import whole_number
 from lumped.labelling import Variable, labelled_dataset
+from lumped.model.averaged import averaged_matrix
+from lumped.model.periodic_system import periodic_system
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.ranges import told_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import Progress
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,8 +56,6 @@ if TYPE_CHECKING:
 #: Part of the speed behind a bifurcation where a run shows what happens there.
 _BEYOND = 1e-3
 _CORNER = 1e-6
-#: Change of the root mean square that is a jump.
-JUMP = 0.1
 #: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
 MARGINAL = 1.0 + 1e-6
 #: Part of the range that counts as a gap between stable motions.
@@ -72,49 +82,27 @@ class GearBifurcation:
     sharp: bool
 
 
-def _label(unit: str, text: str) -> dict[str, str]:
-    """Unit and name of a field in a dataset."""
-    return {"unit": unit, "text": text}
-
-
 @dataclass(frozen=True)
 class Jump:
-    """A stable motion that ends as the speed rises or falls, and what the pair does right behind.
+    """A motion that ends as the speed rises or falls, and what the pair does right behind.
 
-    What it does is "periodic", "beats", "chaos" or "grows" beyond what is followed, where numbers are NaN.
+    Motions of 0 mesh cycles do not repeat. What it does is "periodic", "beats", "chaos" or "grows" beyond
+    what is followed, where numbers are NaN.
     """
 
-    speed_rpm: float = field(metadata=_label("rpm", "where a stable motion ends"))
-    rising: bool = field(metadata=_label("1", "on running up"))
-    dte_rms: float = field(metadata=_label("m", "dynamic transmission error before, rms"))
-    largest_load: float = field(metadata=_label("N", "largest normal load before"))
-    n: int = field(metadata=_label("1", "mesh cycles before"))
-    dte_rms_after: float = field(metadata=_label("m", "dynamic transmission error after, rms"))
-    largest_load_after: float = field(metadata=_label("N", "largest normal load after"))
-    after: Settled = field(metadata=_label("1", "motion after"))
-    n_after: int = field(metadata=_label("1", "mesh cycles after, 0 where it does not repeat"))
-
-
-@dataclass(frozen=True)
-class Restless:
-    """Speeds at which no stable periodic motion was found, and what a run does in the middle of them.
-
-    Attributes
-    ----------
-    low_rpm, high_rpm : [rpm]
-    kind : "beats", "chaos" or "grows"; "periodic" where the motion has more cycles than were looked for
-    n : mesh cycles of that, else 0
-    dte_rms : of the run [m]
-    exponent, uncertainty : Lyapunov exponent per mesh cycle and its standard error
-    """
-
-    low_rpm: float
-    high_rpm: float
-    kind: Settled
-    n: int
-    dte_rms: float
-    exponent: float
-    uncertainty: float
+    speed_rpm: float = field(metadata=label("rpm", "where a motion ends"))
+    rising: bool = field(metadata=label("1", "on running up"))
+    dte_rms: float = field(metadata=label("m", "dynamic transmission error before, rms"))
+    dte_peak_to_peak: float = field(metadata=label("m", "dynamic transmission error before, peak to peak"))
+    largest_load: float = field(metadata=label("N", "largest normal load before"))
+    n: int = field(metadata=label("1", "mesh cycles before, 0 where it does not repeat"))
+    dte_rms_after: float = field(metadata=label("m", "dynamic transmission error after, rms"))
+    dte_peak_to_peak_after: float = field(
+        metadata=label("m", "dynamic transmission error after, peak to peak")
+    )
+    largest_load_after: float = field(metadata=label("N", "largest normal load after"))
+    after: Settled = field(metadata=label("1", "motion after"))
+    n_after: int = field(metadata=label("1", "mesh cycles after, 0 where it does not repeat"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,12 +115,14 @@ class ResponseBranches:
     speeds_rpm : slowest and fastest speed [rpm]
     back_side : whether the back sides of the teeth touch
     response : what the search found, over the period
+    member : what was searched
     """
 
     pair: GearPair
     speeds_rpm: tuple[float, float]
     back_side: bool
     response: Response = field(repr=False)
+    member: Member = field(repr=False)
 
     @property
     def branches(self) -> tuple[Branch, ...]:
@@ -148,8 +138,17 @@ class ResponseBranches:
             o is not None and o.stable and o.run.least_load > 0.0 for o in orbits + ends
         )
 
+    @cached_property
+    def _cycle(self) -> float:
+        """Pinion speed times T [rpm s]."""
+        return self.pair.geometry.mesh_period * operating_rpm(self.pair)
+
     def _rpm(self, orbit: Orbit) -> float:
-        return self.pair.geometry.mesh_period * operating_rpm(self.pair) / orbit.period
+        return self._cycle / orbit.period
+
+    def _inside(self, rpm: float) -> bool:
+        """Whether a speed was asked for: the search goes a little beyond."""
+        return self.speeds_rpm[0] <= rpm <= self.speeds_rpm[1]
 
     @property
     def bifurcations(self) -> tuple[GearBifurcation, ...]:
@@ -158,6 +157,7 @@ class ResponseBranches:
             GearBifurcation(b.kind, self._rpm(b.orbit), b.orbit.run.rms, branch.n, b.sharp)
             for branch in self.branches
             for b in branch.bifurcations
+            if self._inside(self._rpm(b.orbit))
         )
 
     def at(self, speed_rpm: float) -> list[GearOrbit]:
@@ -170,31 +170,67 @@ class ResponseBranches:
         """Where the root mean square changes at once by a tenth or more, on running up and down.
 
         At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
-        speed further on.
+        speed further on. Where a motion that does not repeat ends is found within 0.1 %.
         """
         found = []
         for branch in self.branches:
             for b, behind in lost_stability(branch):
                 last, before = b.orbit, b.orbit.run
+                if not self._inside(self._rpm(last)):
+                    continue
                 system, limit = branch.family.at(behind), largest_motion(self.pair)
                 run = long_run(system, last.start, behind, last.parameter, amplitude=limit)
-                if abs(run.rms - before.rms) < JUMP * before.rms:
-                    continue
-                after = (run.rms, run.largest_load, run.kind, run.orbit.n if run.orbit else 0)
-                rising = behind < last.period
-                found.append(Jump(self._rpm(last), rising, before.rms, before.largest_load, branch.n, *after))
-        return tuple(sorted(found, key=lambda jump: jump.speed_rpm))
+                size = np.array([before.rms, before.least, before.most])
+                rising, load = behind < last.period, before.largest_load
+                found.append(_jump(self._rpm(last), rising, size, load, branch.n, run))
+        for one in self.response.attractors:
+            for side, rising in enumerate((False, True)):
+                end, last_run = one.ends[side], one.runs[-side]
+                if end is not None and self._inside(self._cycle * end.rate):
+                    n = last_run.orbit.n if last_run.orbit else 0
+                    load = last_run.largest_load
+                    found.append(_jump(self._cycle * end.rate, rising, end.size, load, n, end.after))
+        changed = (jump for jump in found if not abs(jump.dte_rms_after - jump.dte_rms) < JUMP * jump.dte_rms)
+        return tuple(sorted(changed, key=lambda jump: jump.speed_rpm))
 
     @cached_property
-    def restless(self) -> tuple[Restless, ...]:
-        """What a run does in the middle of each of ``gaps``."""
-        found = []
-        for low, high in self.gaps:
-            there = self.pair.with_({"operating.pinion_speed": 0.5 * (low + high)})
-            run = settled_run(there, back_side=self.back_side)
-            n = run.orbit.n if run.orbit else 0
-            found.append(Restless(low, high, run.kind, n, run.rms, run.exponent, run.uncertainty))
+    def attractors(self) -> tuple[GearAttractor, ...]:
+        """Motions that do not repeat, beats and chaos, each over the speeds at which it was found.
+
+        Runs come to them from the starts at the speeds of the search, or from the speed before.
+        """
+        losses = [
+            (1.0 / b.orbit.period, b.orbit.run.rms)
+            for branch in self.branches
+            for b, _ in lost_stability(branch)
+        ]
+        found, (slowest, fastest) = list[GearAttractor](), self.speeds_rpm
+        for one in self.response.attractors:
+            low, high = (self._cycle * end_rate(one, side, losses) for side in (0, 1))
+            if low < fastest and high > slowest:
+                ends = max(low, slowest), min(high, fastest)
+                found.append(gear_attractor(one, self._cycle, self.pair.geometry.normal_backlash, *ends))
         return tuple(found)
+
+    def basins(self, speed_rpm: float | None = None, starts: int = 256, seed: int = 1) -> tuple[Basin, ...]:
+        """To which motions start states lead at a pinion speed [rpm], the operating speed by default.
+
+        The start states are those of the linear motion at t = 0 with another transmission error, evenly from
+        -8 to 5 static deflections beside it, and another rate, up to 6.5 times that of a vibration of one
+        static deflection at the fastest natural frequency.
+
+        Parameters
+        ----------
+        speed_rpm : pinion speed [rpm]
+        starts : how many start states, 1 to 100,000
+        seed : of their random choice
+        """
+        rpm = operating_rpm(self.pair) if speed_rpm is None else speed_rpm
+        self.pair.with_({"operating.pinion_speed": rpm})  # refuses what is no speed
+        starts = whole_number("starts", starts, 1, 100_000)
+        return basins(
+            self.response, self.member, rpm / self._cycle, starts, whole_number("seed", seed, 0, 2**32)
+        )
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
@@ -215,7 +251,7 @@ class ResponseBranches:
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """All orbits in a row, ``branch`` saying which belong together, and all jumps."""
+        """All orbits in a row, ``branch`` saying which belong together; jumps; points of attractors."""
         rows = [(j, o) for j, branch in enumerate(self.branches) for o in branch.orbits]
         orbits = [o for _, o in rows]
         radius = np.array([o.spectral_radius for o in orbits])
@@ -240,9 +276,15 @@ class ResponseBranches:
         for f in fields(Jump):
             values = [getattr(jump, f.name) for jump in self.jumps]
             table[f"jump_{f.name}"] = "jump", values, f.metadata["unit"], f.metadata["text"]
+        points = [(j, point) for j, one in enumerate(self.attractors) for point in one.points]
+        table["attractor"] = "attractor_point", [j for j, _ in points], "1", "motion that does not repeat"
+        for f in fields(AttractorPoint):
+            values = [getattr(point, f.name) for _, point in points]
+            table[f"attractor_{f.name}"] = "attractor_point", values, f.metadata["unit"], f.metadata["text"]
         return labelled_dataset(
             table,
             {
+                "attractor_point": (np.arange(len(points)), "1", "point"),
                 "point": (np.arange(len(rows)), "1", "orbit"),
                 "jump": (np.arange(len(self.jumps)), "1", "jump"),
             },
@@ -257,22 +299,23 @@ def response_branches(
     speeds: tuple[float, float] | None = None,
     periods: Collection[int] = (1, 2, 3),
     *,
-    seeds: int = 40,
+    seeds: int = 20,
     back_side: bool = False,
     progress: Progress | None = None,
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
 
-    Found are the branches through the motion of the linear model, those that double their period, and those
-    to which runs settle that are started at ``seeds`` speeds. An isolated branch that no run comes to is not
-    found.
+    Found are the branches through the motion of the linear model, those that double their period, those to
+    which runs settle, and motions that do not repeat. What no run comes to is not found. Speeds that are
+    looked at depend on the pair's natural frequency alone, not on the range.
 
     Parameters
     ----------
     pair : the gear pair
     speeds : slowest and fastest pinion speed [rpm]; None: ``operating.speed_range``
     periods : mesh cycles after which motions repeat
-    seeds : speeds at which runs settle, to find isolated branches
+    seeds : speeds an octave at which 32 runs settle, to find isolated branches and motions that do not
+        repeat; 0: none
     back_side : whether the back sides of the teeth touch after the backlash; motions that need it say so
         without it (``GearOrbit.reaches_back_side``)
     progress : called with the finished fraction
@@ -286,10 +329,14 @@ def response_branches(
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
     found = member(pair, low, high, form_with(back_side=back_side))
-    response = find_response(
-        found.family, found.limits, found.start, periods=wanted, seeds=seeds, progress=progress
-    )
-    return ResponseBranches(pair, (low, high), back_side, response)
+    response = find_response(found, periods=wanted, seeds=seeds, progress=progress)
+    return ResponseBranches(pair, (low, high), back_side, response, found)
+
+
+def _jump(rpm: float, rising: bool, size: FloatArray, load: float, n: int, after: LongRun) -> Jump:
+    before = float(size[0]), float(size[2] - size[1]), load, n
+    behind = after.rms, peak_to_peak(after), after.largest_load, after.kind
+    return Jump(rpm, rising, *before, *behind, after.orbit.n if after.orbit else 0)
 
 
 def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
@@ -314,18 +361,32 @@ def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
 
 
 def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:
-    """What the search for branches needs of a gear pair, for speeds from ``low`` to ``high`` [rpm]."""
+    """What the search for branches needs of a gear pair, for speeds from ``low`` to ``high`` [rpm].
+
+    The range is widened to speeds of the grid, so that what is found at a speed depends on it little.
+    """
     cycle = pair.geometry.mesh_period * operating_rpm(pair)
+    frequency = _natural_frequency(pair)
+    steps = STARTS * np.log2(np.array([low, high]) / (cycle * frequency))
+    slowest, fastest = frequency * 2.0 ** (np.array([np.floor(steps[0]), np.ceil(steps[1])]) / STARTS)
     limits = Limits(
-        slowest=low / cycle,
-        fastest=high / cycle,
+        slowest=float(slowest),
+        fastest=float(fastest),
         length=static_deflection(pair),
         parameter=pair.operating.pinion_torque,
         amplitude=largest_motion(pair),
+        frequency=frequency,
     )
     elements = None if depends_on_speed(pair) else mesh_elements(pair)
     return Member(
-        unilateral_family(pair, low, high, form),
+        unilateral_family(pair, float(slowest * cycle), float(fastest * cycle), form),
         limits,
         lambda period: start_of(pair.with_({"operating.pinion_speed": cycle / period}), None, form, elements),
+    )
+
+
+def _natural_frequency(pair: GearPair) -> float:
+    """The fastest one of the averaged pair while contact holds [Hz]."""
+    return float(
+        np.abs(np.linalg.eigvals(averaged_matrix(periodic_system(pair, "mesh")))).max() / (2.0 * np.pi)
     )

@@ -26,6 +26,10 @@ _MOST_CORRECTIONS = 8
 _PERIOD_STEP = 1e-5
 #: Least cosine between the tangents of neighbours.
 _BEND = 0.95
+#: Relative change of the speed that counts as of order one: less than the width of a resonance, at any speed.
+_SPEED = 0.04
+#: Logarithm of speeds beyond which Newton's method has gone astray.
+_MOST_LOG = 100.0
 #: Phase rates are about this many times the displacements.
 _RATE = 10.0
 
@@ -54,6 +58,7 @@ class Limits:
     length : size of displacements
     parameter : size of the free parameter
     amplitude : largest motion of the output from its mean that is followed
+    frequency : of the fastest natural motion while contacts hold, with the mean stiffness [1/s]
     points : most orbits in a direction
     """
 
@@ -62,6 +67,7 @@ class Limits:
     length: float
     parameter: float
     amplitude: float
+    frequency: float
     points: int = 4000
 
 
@@ -86,7 +92,7 @@ class Path:
 
 
 class Continuation:
-    """Follows orbits of n cycles in (x, p, 1/T), scaled so that each is of order one."""
+    """Follows orbits of n cycles in (x, p, log 1/T), scaled so that each is of order one."""
 
     def __init__(self, family: Family, n: int, limits: Limits) -> None:
         self.family, self.n, self.limits = family, n, limits
@@ -94,15 +100,15 @@ class Continuation:
         self.size, self.balanced = system.size, system.balanced
         state = np.repeat([limits.length, _RATE * limits.length], self.size // 2)
         extra = [limits.parameter] if self.balanced else []
-        self.scale = np.concatenate([state, extra, [(limits.fastest - limits.slowest) / 20.0]])
+        self.scale = np.concatenate([state, extra, [_SPEED]])
         self._rows = np.concatenate([state, state[-1:] if self.balanced else []])
-        # Derivatives come by the start, T and the parameter; the unknowns end with 1/T.
+        # Derivatives come by the start, T and the parameter; the unknowns end with log 1/T.
         self._columns = [*range(self.size), *([self.size + 1] if self.balanced else []), self.size]
 
     def unknowns(self, orbit: Orbit) -> FloatArray:
         """The scaled vector X of an orbit."""
         extra = [orbit.parameter] if self.balanced else []
-        return np.asarray(np.concatenate([orbit.start, extra, [1.0 / orbit.period]]) / self.scale)
+        return np.asarray(np.concatenate([orbit.start, extra, [-np.log(orbit.period)]]) / self.scale)
 
     def evaluate(
         self, X: FloatArray, by_coefficients: FloatArray | None = None
@@ -111,24 +117,30 @@ class Continuation:
 
         ``by_coefficients`` is what `by_coefficients` gave nearby, where it need not be computed again.
         """
-        values = X * self.scale
-        if not values[-1] > 0.0:
-            raise NumericalError("the branch left for negative speeds.")
-        x, T = values[: self.size], 1.0 / float(values[-1])
-        parameter = float(values[self.size]) if self.balanced else 0.0
+        x, T, parameter = self._values(X)
         system = self.family.at(T)
         r, J, run = one_pass(system, x, T, self.n, parameter)
         if not self.family.constant:
             J[:, self.size] += self.by_coefficients(X) if by_coefficients is None else by_coefficients
-        J[:, self.size] *= -T * T
+        J[:, self.size] *= -T
         J = J[:, self._columns] * self.scale / self._rows[:, None]
         return r / self._rows, J, Orbit(system, T, self.n, parameter, run)
 
+    def _values(self, X: FloatArray) -> tuple[FloatArray, float, float]:
+        """Start, T and parameter of scaled unknowns."""
+        values = X * self.scale
+        if abs(values[-1]) > _MOST_LOG:
+            raise NumericalError("the branch left for speeds beyond all numbers.")
+        return (
+            values[: self.size],
+            float(np.exp(-values[-1])),
+            float(values[self.size]) if self.balanced else 0.0,
+        )
+
     def by_coefficients(self, X: FloatArray) -> FloatArray:
         """What T does to the residual through coefficients that depend on it."""
-        values, ends = X * self.scale, []
-        x, T = values[: self.size], 1.0 / float(values[-1])
-        parameter = float(values[self.size]) if self.balanced else 0.0
+        x, T, parameter = self._values(X)
+        ends = []
         for sign in (1.0, -1.0):
             run = self.family.at(T * (1.0 + sign * _PERIOD_STEP)).run(x, T, self.n, parameter)
             ends.append(np.concatenate([run.end, run.accumulated]))

@@ -22,7 +22,10 @@ _RECURS = 1e-6
 _NEAR = 0.3
 #: A run that has not settled goes on for twice as long, so many times in all.
 _TURNS = 4
-_BLOCKS = 8
+#: Blocks of cycles of an exponent; the first is not counted.
+BLOCKS = 8
+#: A run is looked at for so many times the cycles of the motions looked for: locked beats repeat after many.
+_LOOKED = 8
 #: Largest exponent per cycle that counts as zero; quasi-periodic motions come to it as the inverse of the
 #: length.
 _ZERO_EXPONENT = 5e-3
@@ -73,9 +76,9 @@ def long_run(
 ) -> LongRun:
     """Let a motion settle and say what it is.
 
-    First it is compared with itself after 1 to n cycles, then Newton's method looks for a stable motion of 1
-    to n cycles near it, since near a bifurcation settling takes long; what is left has its Lyapunov exponent
-    measured.
+    First it is compared with itself after 1 to 8 n cycles, then Newton's method looks for a stable motion of
+    1 to n cycles near it, since near a bifurcation settling takes long; what is left has its Lyapunov
+    exponent measured. Where that is negative the run is on its way to a motion that repeats, and goes on.
 
     Parameters
     ----------
@@ -85,22 +88,28 @@ def long_run(
     amplitude : largest motion of the output from its mean that is looked at
     """
     state = start
-    for turn in range(_TURNS):
+    for turn in range(_TURNS + 1):
         try:
             settled = system.run(state, period, settle << turn, parameter)
-            seen = system.run(settled.end, period, 8 * most_cycles, parameter, samples=np.zeros(1))
+            seen = system.run(settled.end, period, _LOOKED * most_cycles, parameter, samples=np.zeros(1))
         except NumericalError:
-            return _grown(parameter)
+            return grown(parameter)
         if max(seen.most - seen.mean, seen.mean - seen.least) > amplitude:
-            return _grown(parameter)
+            return grown(parameter)
         orbit = _periodic(system, seen, period, parameter, most_cycles)
         if orbit is not None:
             return LongRun("periodic", orbit, float("nan"), float("nan"), orbit.run, orbit.parameter)
         state = seen.end
-    exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe)
-    kind: Settled = "chaos" if exponent > max(3.0 * uncertainty, _ZERO_EXPONENT) else "beats"
+        if turn < _TURNS - 1:
+            continue
+        exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe)
+        zero = max(3.0 * uncertainty, _ZERO_EXPONENT)
+        if (
+            exponent > -zero
+        ):  # else it has left for a motion that repeats, which it will have reached next time
+            break
     last = system.run(state, period, observe, parameter)
-    return LongRun(kind, None, exponent, uncertainty, last, parameter)
+    return LongRun("chaos" if exponent > zero else "beats", None, exponent, uncertainty, last, parameter)
 
 
 def _periodic(
@@ -109,7 +118,7 @@ def _periodic(
     """The stable periodic motion that a run has come to or comes near to."""
     scale = state_scale(seen.end)
     recurs = [
-        n for n in range(1, most_cycles + 1) if (np.abs(seen.states[-n] - seen.end) <= _RECURS * scale).all()
+        n for n in range(1, len(seen.states)) if (np.abs(seen.states[-n] - seen.end) <= _RECURS * scale).all()
     ]
     for n in recurs[:1] or range(1, most_cycles + 1):
         try:
@@ -127,7 +136,8 @@ def _near(orbit: Orbit, seen: Run) -> bool:
     return abs(orbit.run.least - seen.least) < room and abs(orbit.run.most - seen.most) < room
 
 
-def _grown(parameter: float) -> LongRun:
+def grown(parameter: float) -> LongRun:
+    """The result of a run that grows."""
     return LongRun("grows", None, float("nan"), float("nan"), None, parameter)
 
 
@@ -147,6 +157,6 @@ def lyapunov_exponent(
         vector = (run.derivative[: start.size, : start.size] @ (vector * scale)) / scale
         length = float(np.linalg.norm(vector))
         growth[j], vector, x = np.log(length), vector / length, run.end
-    counted = growth[cycles // _BLOCKS :]
-    blocks = np.array([block.mean() for block in np.array_split(counted, _BLOCKS - 1)])
+    counted = growth[cycles // BLOCKS :]
+    blocks = np.array([block.mean() for block in np.array_split(counted, BLOCKS - 1)])
     return float(counted.mean()), float(blocks.std(ddof=1) / np.sqrt(blocks.size))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from floquet.orbits.attractors import Attractor, Motion, Survey
 from floquet.orbits.bifurcations import (
     Bifurcation,
     bifurcations,
@@ -17,26 +18,33 @@ from floquet.orbits.bifurcations import (
     with_bifurcations,
 )
 from floquet.orbits.branch import Continuation, End, Family, Limits, Path
-from floquet.orbits.long_run import LongRun, long_run
-from floquet.orbits.orbit import Orbit, find_orbit, one_pass, primitive, same_motion
+from floquet.orbits.long_run import LongRun, grown, long_run
+from floquet.orbits.orbit import Orbit, find_orbit, one_pass, primitive, same_motion, state_scale
+from floquet.orbits.settling import alike
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray, Progress
 
 #: T [s] -> (state, parameter) to start from: the motion while all contacts hold.
 Start = Callable[[float], tuple[FloatArray, float]]
 
-_STARTS = 24
-_SETTLE = 60
+#: Speeds in an octave at which Newton's method starts. They are powers of a ratio times the fastest natural
+#: frequency, so that what is looked for at a speed does not depend on the range.
+STARTS = 12
+#: Part of a step of the grid of speeds that is rounding; speeds of the grid in an octave, at most.
+_SAME, _EVEN = 1e-6, 10_000
 _SUBHARMONICS = 10
 #: Motions of each branch of a neighbour from which Newton's method starts.
 _NEIGHBOURS = 6
-#: Starts apart from all motions, two a speed: displacements and phase rates in lengths, by an additive
-#: recurrence that fills the square evenly (Roberts 2018), the same at every run.
-_APART = 2
-#: Where no motion found loses contact, every so many of these speeds.
-_HELD = 2
+#: Runs at each speed. They start apart from the motion while all contacts hold: by displacements in lengths,
+#: and by phase rates in lengths times those of the fastest natural motion, evenly spread over a rectangle by
+#: an additive recurrence (Roberts 2018), the same at every run.
+_RUNS = 32
 _FILL = np.array([0.7548776662466927, 0.5698402909980532])
-_SPREAD = np.array([[-8.0, 5.0], [-40.0, 40.0]])
+_SPREAD = np.array([[-8.0, 5.0], [-6.5, 6.5]])
+#: Distance from a stable motion, over its size, within which a settled run has come to it.
+_CLOSE = 0.03
+#: Cycles that a run which has settled settles once more, and is observed.
+_AGAIN, _OBSERVE = 40, 400
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,11 +100,15 @@ class Response:
     Attributes
     ----------
     branches : curves of periodic motions
-    settled : (T [s], what a run settled to) at the speeds that were tried
+    settled : (T [s], what runs settled to) at the speeds that were tried
+    attractors : what does not repeat after the cycles looked for, over speed
+    runs : how many runs settled
     """
 
     branches: tuple[Branch, ...]
     settled: tuple[tuple[float, LongRun], ...]
+    attractors: tuple[Attractor, ...]
+    runs: int
 
     def at(self, period: float) -> list[Orbit]:
         """All orbits that were found at a period, of few cycles first."""
@@ -105,44 +117,96 @@ class Response:
             found += [o for o in branch.at(period) if not any(same_motion(o, other) for other in found)]
         return found
 
+    def basins(self, member: Member, rate: float, places: FloatArray) -> list[tuple[LongRun, int]]:
+        """To what runs from places (k, 2) of the unit square settle at a speed, and how many of them."""
+        survey = Survey(member.family, member.limits, np.array([rate]), member.apart(rate, places))
+        orbits, found = self.at(1.0 / rate), list[tuple[Motion, int]]()
+        for motion in survey.levels[0]:
+            motion.identify(member.exactly(motion, orbits))
+            same = [j for j, (other, _) in enumerate(found) if _same(motion, other)]
+            for j in same[:1]:
+                found[j] = found[j][0], found[j][1] + motion.starts
+            found += [] if same else [(motion, motion.starts)]
+        shares = [(motion.run, count) for motion, count in found]
+        shares += [(grown(survey.grown[0].parameter), len(survey.grown))] if survey.grown else []
+        return sorted(shares, key=lambda share: -share[1])
 
-def find_response(
-    family: Family,
-    limits: Limits,
-    start: Start,
-    *,
-    periods: Collection[int] = (1, 2, 3),
-    seeds: int = 40,
-    progress: Progress | None = None,
-) -> Response:
-    """Return the branches over a range of speeds.
 
-    Branches of one cycle are looked for from the motion while all contacts hold, at 24 speeds; those of
-    twice the cycles leave period doublings; isolated ones start from runs that settled, at ``seeds`` speeds,
-    on running up, on running down and from two starts apart. Where all motions found so far are stable and
-    have some load at every moment, runs settle from starts apart only, at every other speed.
-
-    Parameters
-    ----------
-    family : the system over its period
-    limits : range of speeds, sizes and amplitude
-    start : from where to look for the first motions
-    periods : numbers of cycles of the motions wanted
-    seeds : speeds at which runs settle
-    progress : called with the finished fraction
-    """
-    search = _Search(family, limits, start, set(periods))
-    search.explore(seeds, progress)
-    return search.response
+def _same(one: Motion, other: Motion) -> bool:
+    """Whether two that were identified at one speed are one motion."""
+    a, b = one.run.orbit, other.run.orbit
+    if a is None or b is None:
+        return a is b and alike(one.size, other.size)
+    return a.n == b.n and same_motion(a, b)
 
 
 @dataclass(frozen=True)
 class Member:
-    """A system of a stack: what `find_response` takes."""
+    """A system over a range of speeds: one of a stack.
+
+    Attributes
+    ----------
+    family : the system over its period
+    limits : range of speeds, sizes and amplitude
+    start : from where to look for the first motions
+    """
 
     family: Family
     limits: Limits
     start: Start
+
+    def grid(self, count: int) -> FloatArray:
+        """Speeds 1/T of the range, ``count`` an octave, the fastest natural frequency among them."""
+        limits = self.limits
+        low, high = (count * np.log2(rate / limits.frequency) for rate in (limits.slowest, limits.fastest))
+        steps = np.arange(np.ceil(low - _SAME), np.floor(high + _SAME) + 1.0)
+        return np.asarray(limits.frequency * 2.0 ** (steps / count))
+
+    def apart(self, rate: float, places: FloatArray) -> list[tuple[float, FloatArray, float]]:
+        """Starts apart from the motion while all contacts hold, at places (k, 2) of the unit square."""
+        state, parameter = self.start(1.0 / rate)
+        half, limits = state.size // 2, self.limits
+        lengths = _SPREAD[:, 0] + places * np.diff(_SPREAD, axis=1)[:, 0]
+        states = np.tile(state, (len(places), 1))
+        states[:, [0, half]] += lengths * limits.length * [1.0, 2.0 * np.pi * limits.frequency / rate]
+        return [(rate, one, parameter) for one in states]
+
+    def exactly(self, motion: Motion, orbits: list[Orbit]) -> LongRun:
+        """What a settled run has come to: one of the orbits that were found there, or something else."""
+        period = 1.0 / motion.rate
+        for orbit in orbits:
+            close = _CLOSE * state_scale(motion.state)
+            if orbit.stable and any((np.abs(s - motion.state) <= close).all() for s in orbit.shifted()):
+                return LongRun("periodic", orbit, np.nan, np.nan, orbit.run, orbit.parameter)
+        return long_run(
+            self.family.at(period), motion.state, period, motion.parameter,
+            settle=_AGAIN, observe=_OBSERVE, amplitude=self.limits.amplitude,
+        )  # fmt: skip
+
+
+def find_response(
+    member: Member,
+    *,
+    periods: Collection[int] = (1, 2, 3),
+    seeds: int = 20,
+    progress: Progress | None = None,
+) -> Response:
+    """Return the branches over a range of speeds.
+
+    Branches of one cycle are looked for from the motion while all contacts hold, at 12 speeds an octave;
+    those of twice the cycles leave period doublings; isolated ones start from runs that settled, at
+    ``seeds`` speeds an octave, from starts apart and on running up and down from what these came to.
+
+    Parameters
+    ----------
+    member : the system and the range
+    periods : numbers of cycles of the motions wanted
+    seeds : speeds an octave at which runs settle
+    progress : called with the finished fraction
+    """
+    search = _Search(member, set(periods))
+    search.explore(seeds, progress)
+    return search.response
 
 
 def find_stack(
@@ -159,7 +223,7 @@ def find_stack(
     """
     searches: list[_Search] = []
     for j, member in enumerate(members):
-        search = _Search(member.family, member.limits, member.start, set(periods))
+        search = _Search(member, set(periods))
         if searches:
             search.from_neighbour(searches[-1])
         search.explore(seeds)
@@ -177,48 +241,66 @@ def find_stack(
 class _Search:
     """The branches found so far."""
 
-    def __init__(self, family: Family, limits: Limits, start: Start, periods: set[int]) -> None:
-        self.family, self.limits, self.start, self.periods = family, limits, start, periods
+    def __init__(self, member: Member, periods: set[int]) -> None:
+        self.member, self.periods = member, periods
+        self.family, self.limits, self.start = member.family, member.limits, member.start
         self.branches: list[Branch] = []
         self.settled: list[tuple[float, LongRun]] = []
+        self.attractors: tuple[Attractor, ...] = ()
+        self.runs = 0
         self._done: set[int] = set()
 
     @property
     def response(self) -> Response:
-        return Response(tuple(self.branches), tuple(self.settled))
+        return Response(tuple(self.branches), tuple(self.settled), self.attractors, self.runs)
 
     def explore(self, seeds: int, progress: Progress | None = None) -> None:
         """Look everywhere: see `find_response`."""
-        limits, report = self.limits, progress or (lambda done: None)
-        for j, rate in enumerate(np.linspace(limits.fastest, limits.slowest, _STARTS)):
+        report = progress or (lambda done: None)
+        rates = self.member.grid(STARTS)
+        for j, rate in enumerate(rates[::-1]):
             self.from_start(1.0 / float(rate))
-            report(0.4 * (j + 1) / _STARTS)
+            report(0.4 * (j + 1) / rates.size)
         self.doublings()
         self.subharmonics()
         report(0.5)
-        rates = np.linspace(limits.slowest, limits.fastest, seeds)
-        if self.held:  # runs up and down would stay on the motions that are there
-            rates = rates[::_HELD]
-        for k, way in enumerate(() if self.held else (rates, rates[::-1])):
-            state: FloatArray | None = None
-            for j, rate in enumerate(way):
-                run = self.settle(1.0 / float(rate), state)
-                state = None if run.run is None else run.run.end
-                report(0.5 + 0.15 * (k + (j + 1) / seeds))
-        for j, rate in enumerate(rates):
-            for k in range(_APART):
-                place = np.mod(0.5 + (_APART * j + k) * _FILL, 1.0)
-                apart = _SPREAD[:, 0] + place * np.diff(_SPREAD, axis=1)[:, 0]
-                self.settle(1.0 / float(rate), None, apart)
-            report(0.8 + 0.2 * (j + 1) / rates.size)
-        self.doublings()
+        if seeds:
+            self.settle(self.member.grid(seeds), report)
+            self.doublings()
         report(1.0)
 
-    @property
-    def held(self) -> bool:
-        """Whether all motions found so far are stable and have some load at every moment."""
-        orbits = [orbit for branch in self.branches for orbit in branch.orbits]
-        return bool(orbits) and all(o.stable and o.run.least_load > 0.0 for o in orbits)
+    def settle(self, rates: FloatArray, report: Callable[[float], None]) -> None:
+        """Let runs settle at the speeds, follow the motions to which they come where they are new."""
+        starts = []
+        for rate in map(float, rates):
+            # The same numbers at a speed, whatever the range.
+            first = _RUNS * round(_EVEN * np.log2(rate / self.limits.frequency))
+            places = np.mod(0.5 + (first + np.arange(_RUNS))[:, None] * _FILL, 1.0)
+            starts += self.member.apart(rate, places)
+        self.runs += len(starts)
+        survey = Survey(self.family, self.limits, rates, starts)
+        self.settled += [(1.0 / start.rate, grown(start.parameter)) for start in survey.grown]
+        report(0.6)
+        for j, level in enumerate(survey.levels):
+            for motion in level:
+                motion.identify(self.identify(motion))
+                self.settled.append((1.0 / motion.rate, motion.run))
+            report(0.6 + 0.3 * (j + 1) / rates.size)
+        self.attractors = survey.attractors(self.unlisted, self.identify)
+
+    def unlisted(self, run: LongRun) -> bool:
+        """Whether a run has come to a motion that no branch can have."""
+        return run.run is not None and (run.orbit is None or run.orbit.n not in self.periods)
+
+    def identify(self, motion: Motion) -> LongRun:
+        """What a settled run has come to exactly; where it repeats and is new its branch is followed."""
+        known = self.response.at(1.0 / motion.rate)
+        run = self.member.exactly(motion, known)
+        if run.orbit is not None and run.orbit not in known:
+            self.from_settled(run.orbit)
+        elif run.orbit is None and run.run is not None:
+            self.near_beats(run.run.end, 1.0 / motion.rate, run.parameter)
+        return run
 
     def from_neighbour(self, other: _Search) -> None:
         """Look for the branches of a neighbouring system, lengths in proportion."""
@@ -252,24 +334,6 @@ class _Search:
         except NumericalError:
             return
         self.both_ways(orbit)
-
-    def settle(self, period: float, state: FloatArray | None, apart: FloatArray | None = None) -> LongRun:
-        """Let a run settle, and follow the motion it comes to where it is new."""
-        held, parameter = self.start(period)
-        state = held if state is None else state
-        if apart is not None:
-            state = state.copy()
-            state[[0, state.size // 2]] += apart * self.limits.length
-        run = long_run(
-            self.family.at(period), state, period, parameter,
-            settle=_SETTLE, observe=400, amplitude=self.limits.amplitude,
-        )  # fmt: skip
-        if run.orbit is not None:
-            self.from_settled(run.orbit)
-        elif run.run is not None:
-            self.near_beats(run.run.end, period, run.parameter)
-        self.settled.append((period, run))
-        return run
 
     def near_beats(self, state: FloatArray, period: float, parameter: float) -> None:
         """Look for motions, mostly unstable there, to which beats or chaos come near."""

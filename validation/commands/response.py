@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from floquet import JumpRemoval, ResponseBranches
+    from floquet.gear.attractors import Basin
     from lumped import GearPair
 
 _LINEAR_SPEEDS = 400
@@ -35,7 +38,10 @@ def response(
     periods: Annotated[int, typer.Option(help="Look for motions that repeat after 1 to so many cycles.")] = 3,
     seeds: Annotated[
         int | None,
-        typer.Option(help="Runs that settle, to find motions apart from the others; default 40, of a map 0."),
+        typer.Option(
+            help="Speeds an octave at which runs settle, to find motions apart from the others and beats or "
+            "chaos; default 20, of a map 0."
+        ),
     ] = None,
     over: Annotated[
         str | None,
@@ -59,8 +65,9 @@ def response(
 ) -> None:
     """Follow all motions over speed, stable and unstable, with unilateral contact.
 
-    Prints at which speeds the pair jumps from one motion to another on running up and down, and at which it
-    beats or is chaotic. The figure shows the branches, the jumps, the linear model and the multipliers.
+    Prints at which speeds the pair jumps from one motion to another on running up and down, at which it can
+    beat or be chaotic, and how many start states lead to each motion at the operating speed. The figure shows
+    the branches, the jumps, beats and chaos, the linear model and the multipliers.
 
     With --map the same over speed and torque, mesh damping or tip relief: where contact is lost, where
     several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
@@ -90,7 +97,7 @@ def response(
             gear_pair,
             None,
             range(1, periods + 1),
-            seeds=40 if seeds is None else seeds,
+            seeds=20 if seeds is None else seeds,
             back_side=back_side,
             progress=tell,
         )
@@ -99,9 +106,11 @@ def response(
             {
                 "gear_pair": gear_pair.name,
                 "speeds_rpm": list(found.speeds_rpm),
-                "jumps": [asdict(jump) for jump in found.jumps],
-                "restless": [asdict(one) for one in found.restless],
-                "bifurcations": [asdict(one) for one in found.bifurcations],
+                "jumps": _records(found.jumps),
+                "attractors": _records(found.attractors),
+                "gaps": found.gaps,
+                "basins": _records(_basins(found)),
+                "bifurcations": _records(found.bifurcations),
             }
         )
     else:
@@ -129,7 +138,7 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         (
             f"{number(jump.speed_rpm, 5)} rpm",
             "up" if jump.rising else "down",
-            motion(jump.dte_rms, jump.largest_load, "periodic", jump.n),
+            motion(jump.dte_rms, jump.largest_load, "does not repeat", jump.n),
             motion(jump.dte_rms_after, jump.largest_load_after, jump.after, jump.n_after),
         )
         for jump in found.jumps
@@ -137,19 +146,43 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
     shown = table(f"{pair.name}: jumps", "pinion speed", "running", "from", "to", rows=rows)
     stdout().print(shown if rows else "no jumps: one stable motion leads to the next")
     if found.contact_kept:
-        runs = len(found.response.settled)
+        runs = found.response.runs
         looked = (
             f"{runs} runs from far starts found no other" if runs else "no others were looked for (--seeds)"
         )
         stdout().print(f"contact is never lost in these motions; {looked}")
-    for one in found.restless:
-        words = (
-            "is chaotic" if one.kind == "chaos" else f"repeats after {one.n} cycles" if one.n else one.kind
-        )
+    for low, high in found.gaps:
+        stdout().print(f"{number(low, 5)} to {number(high, 5)} rpm: no stable motion of few cycles was found")
+    for one in found.attractors:
+        stdout().print(one.text)
+    for basin in _basins(found):
+        least, most = (number(100.0 * share, 3) for share in basin.share_interval)
         stdout().print(
-            f"{number(one.low_rpm, 5)} to {number(one.high_rpm, 5)} rpm: no stable motion of few cycles was "
-            f"found; in the middle the run {words}, {quantity(one.dte_rms, 'm', 3)} rms"
+            f"at the operating speed {number(100.0 * basin.share, 3)} % ({least} to {most} %) of the start "
+            f"states lead to {motion(basin.dte_rms, basin.largest_load, basin.kind, basin.n)}"
         )
+
+
+def _records(found: Iterable[Any]) -> list[Any]:
+    """Records as JSON has them: no number is null."""
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {key: plain(one) for key, one in value.items()}
+        if isinstance(value, list | tuple):
+            return [plain(one) for one in value]
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    return [plain(asdict(one)) for one in found]
+
+
+def _basins(found: ResponseBranches) -> tuple[Basin, ...]:
+    """Shares of start states at the operating speed, where it is in the range and motions coexist."""
+    from floquet.gear.axes import operating_rpm
+
+    low, high = found.speeds_rpm
+    shares = found.basins() if low <= operating_rpm(found.pair) <= high else ()
+    return shares if len(shares) > 1 else ()
 
 
 def _map(

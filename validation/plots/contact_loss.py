@@ -24,6 +24,7 @@ from validation.plots.style import (
     GREY,
     ORANGE,
     PURPLE,
+    RED,
     SKY,
     legend_outside,
     mark_operation,
@@ -40,6 +41,7 @@ _NAMES = ("contact kept", "contact loss", "several motions: jumps", "beats or ch
 _UP: Any = {"color": BLACK, "linewidth": 1.4, "linestyle": "-"}
 _DOWN: Any = {"color": BLACK, "linewidth": 1.4, "linestyle": (0, (3, 1.2))}
 _POINT: Any = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "markeredgecolor": BLACK}
+_ROAMS: Any = {"color": RED, "marker": "x", "markersize": 4.0, "linewidth": 0.7}
 #: Part of the range of speeds within which jumps of neighbouring values are of one curve.
 _NEAR = 0.06
 
@@ -47,7 +49,7 @@ _NEAR = 0.06
 def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> Figure:
     """Root mean square of the transmission error over speed, stable and unstable, with multipliers below.
 
-    Arrows are jumps on running up and down.
+    Arrows are jumps on running up and down; crosses are beats and chaos.
 
     Parameters
     ----------
@@ -57,7 +59,8 @@ def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> F
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]
     rms, cycles = branches["dte_rms"].to_numpy(), branches["n"].to_numpy()
-    factor = scale_y(top, "transmission error,\nroot mean square", "m", rms)
+    roams = branches["attractor_dte_rms"].to_numpy()
+    factor = scale_y(top, "transmission error,\nroot mean square", "m", np.append(rms, roams))
     radius = branches["spectral_radius"].to_numpy() ** (1.0 / cycles)
     speed, stable = branches["speed_rpm"].to_numpy(), branches["stable"].to_numpy().astype(bool)
     for branch in np.unique(branches["branch"]):
@@ -69,6 +72,12 @@ def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> F
         Line2D([], [], color=_COLOURS.get(n, SKY), label=_cycles(n)) for n in map(int, np.unique(cycles))
     ]
     handles.append(Line2D([], [], color=GREY, linestyle="--", linewidth=0.9, label="unstable"))
+    for one in np.unique(branches["attractor"]):
+        here = branches["attractor"].to_numpy() == one
+        at, size = (branches[f"attractor_{name}"].to_numpy()[here] for name in ("speed_rpm", "dte_rms"))
+        top.plot(at, size / factor, **_ROAMS)
+    if branches.sizes["attractor_point"]:
+        handles.append(Line2D([], [], **_ROAMS, label="beats or chaos"))
     if linear is not None:
         dotted: Any = {"color": BLACK, "linestyle": ":", "linewidth": 1.0, "label": "linear model"}
         handles += top.plot(linear["speed"], linear["dte_rms"] / factor, **dotted)
@@ -79,7 +88,7 @@ def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> F
             arrow = {"arrowstyle": "-|>", "color": BLACK, "shrinkA": 0, "shrinkB": 0}
             top.annotate("", (at, end / factor), (at, start / factor), arrowprops=arrow)
     top.set_xlim(branches.attrs["speed_low_rpm"], branches.attrs["speed_high_rpm"])
-    top.set_ylim(0.0, 1.06 * float(rms.max()) / factor)
+    top.set_ylim(0.0, 1.06 * float(np.append(rms, roams).max()) / factor)
     bottom.axhline(1.0, color=GREY, linewidth=0.8)
     bottom.set(ylabel="largest multiplier,\nper mesh cycle [-]", xlabel="pinion speed [rpm]")
     bottom.set_ylim(max(0.0, float(radius.min()) - 0.05), min(1.6, float(radius.max()) + 0.05))

@@ -25,7 +25,8 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     data : over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``pulling`` (the same motion where a
         tooth pair pulls, NaN elsewhere), ``low`` and ``high`` where the inputs were varied; over
         ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over
-        ``jump_speed_rpm``: ``jump_from``, ``jump_to``
+        ``jump_speed_rpm``: ``jump_from``, ``jump_to``; over ``roaming_speed_rpm``: ``roaming``, what does not
+        repeat
     operating_rpm : operating speed [rpm]
     size : height and width [inch]
     """
@@ -52,6 +53,11 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
         ax.plot(place[stable], sizes[stable], color=RED, label="unilateral contact", gid="motion", **look)
         if not stable.all():
             ax.plot(place[~stable], sizes[~stable], color=GREY, label="unstable", **look)
+        if data.sizes.get("roaming_speed_rpm"):
+            seen.append(data["roaming"])
+            look_of: Any = {"linestyle": "none", "marker": "x", "markersize": 3.5, "color": ORANGE}
+            roams = data["roaming"].to_numpy() / factor
+            ax.plot(data["roaming_speed_rpm"].to_numpy(), roams, label="beats or chaos", **look_of)
         for at, start, end in zip(
             data["jump_speed_rpm"].to_numpy(),
             data["jump_from"].to_numpy() / factor,

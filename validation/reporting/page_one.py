@@ -25,6 +25,8 @@ NEAR = 0.05
 #: An input counts whose swing is at least this share of the result.
 _COUNTS = 0.05
 _MOST_ACTIONS = 3
+#: First words of a hazard -> the hazard as a noun.
+_KINDS = {"jump": "a jump", "beats": "beats", "chaos": "chaos", "periodic": "another motion"}
 _ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
 NOT_MODELLED = (
     "Not modelled: pitch errors, eccentricity and sidebands; helix; misalignment; "
@@ -178,7 +180,7 @@ def six_numbers(results: Results) -> tuple[Number, ...]:
         rows = rows[:3] + rows[4:]  # six rows: the bearing force gives way
     hazard = results.nearest_hazard
     low, high = (_rpm(speed) for speed in results.speeds)
-    label = "Distance to the nearest unstable speed or jump"
+    label = "Distance to the nearest unstable speed, jump or chaos"
     if hazard is None:
         rows.append(Number("hazard", label, math.nan, "rpm", note=f"none from {low} to {high}"))
     else:
@@ -269,16 +271,20 @@ def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
     if prediction.contact_lost:
         apart = 0.0 if hazard is None else 100.0 * (results.operating_rpm / hazard[0] - 1.0)
         side = "above" if apart > 0.0 else "below"
-        kind = "" if hazard is None else "a jump" if "jump" in hazard[1] else "an unstable speed"
+        kind = "" if hazard is None else _KINDS.get(hazard[1].split()[0].strip(","), "an unstable speed")
         place = f", {abs(apart):.0f} % {side} {kind}" if near else ""
         rises = (
             f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times the static one."
         )
-        return f"the teeth lose contact{place}", f"{rises} {_jump_words(results)}".strip()
+        words = f"{rises} {_jump_words(results)} {_attractor_words(results)}"
+        return f"the teeth lose contact{place}", " ".join(words.split())
     if not prediction.stable:
         return "the motion is unstable", "A small disturbance grows until contact is lost."
     if near:
-        return what, f"The operating speed is {_rpm(results.operating_rpm)}."
+        return (
+            what,
+            f"The operating speed is {_rpm(results.operating_rpm)}. {_attractor_words(results)}".strip(),
+        )
     return None
 
 
@@ -292,6 +298,14 @@ def _jump_words(results: Results) -> str:
         return f"Running {way}, the vibration grows without bound at {_rpm(jump.speed_rpm)}."
     factor = jump.dte_rms_after / jump.dte_rms
     return f"Running {way}, the vibration jumps at {_rpm(jump.speed_rpm)} to {factor:.2g} times (rms)."
+
+
+def _attractor_words(results: Results) -> str:
+    """Beats or chaos about the operating speed; empty where there are none."""
+    own, branches = results.operating_rpm, results.branches
+    found = branches.attractors if isinstance(branches, ResponseBranches) else ()
+    near = (one for one in found if one.low_rpm <= (1.0 + NEAR) * own and one.high_rpm >= (1.0 - NEAR) * own)
+    return " ".join(f"{one.text}." for one in near)
 
 
 def _calm(results: Results) -> str:

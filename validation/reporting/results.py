@@ -187,7 +187,7 @@ class Results:
         low, high = (factor * self.operating_rpm for factor in BRANCH_SPEEDS)
         ends = max(low, self.speeds[0]), min(high, self.speeds[1])
         try:
-            return floquet.response_branches(self.pair, ends, seeds=0, progress=self.stage("contact loss"))
+            return floquet.response_branches(self.pair, ends, progress=self.stage("contact loss"))
         except (NumericalError, ParameterError) as error:
             return Absent(Outcome.FAILED, str(error))
 
@@ -299,7 +299,7 @@ class Results:
 
     @property
     def nearest_hazard(self) -> tuple[float, str] | None:
-        """Speed [rpm] and kind of the unstable speed or jump that is nearest to the operating speed."""
+        """Speed [rpm] and kind of the unstable speed, jump, beats or chaos nearest to the operating speed."""
         edge = float(self.chart.attrs["nearest_edge_speed_rpm"])
         found = [] if math.isnan(edge) else [(edge, "unstable speed")]
         if self.multipliers.verdict == "unstable":
@@ -308,5 +308,12 @@ class Results:
             found += [
                 (jump.speed_rpm, f"jump, running {'up' if jump.rising else 'down'}")
                 for jump in self.branches.jumps
+            ]
+            found += [
+                (
+                    min(max(self.operating_rpm, one.low_rpm), one.high_rpm),
+                    f"{one.kind} possible",
+                )
+                for one in self.branches.attractors
             ]
         return min(found, key=lambda one: abs(one[0] - self.operating_rpm), default=None)

@@ -8,10 +8,12 @@ from floquet.orbits.bifurcations import doubling_direction
 from floquet.orbits.branch import Continuation, Family, Limits
 from floquet.orbits.long_run import long_run, lyapunov_exponent
 from floquet.orbits.orbit import find_orbit
-from floquet.orbits.response import find_response
+from floquet.orbits.response import Member, find_response
 from lumped import NumericalError
 
-LIMITS = Limits(slowest=0.1, fastest=1.0, length=1.0, parameter=1.0, amplitude=50.0)
+LIMITS = Limits(
+    slowest=0.1, fastest=1.0, length=1.0, parameter=1.0, amplitude=50.0, frequency=1.0 / (2.0 * np.pi)
+)
 
 
 def meissner_map(T, e=0.4, damping=0.1):
@@ -36,7 +38,7 @@ def start(T):
 def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue(meissner):
     """While contact holds, a period doubling is where the trace of the closed map is -1 - det."""
     system = meissner(e=0.6, damping=0.1)
-    found = find_response(Family(lambda T: system, True), LIMITS, start, periods=(1, 2), seeds=3)
+    found = find_response(Member(Family(lambda T: system, True), LIMITS, start), periods=(1, 2), seeds=1)
     doublings = [
         1.0 / b.orbit.period
         for branch in found.branches
@@ -62,7 +64,7 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue(meissner
 def test_a_fold_ends_the_jump_of_the_bouncing_resonance(meissner):
     """At speeds beyond a fold no motion of its branch is left, and at the fold a multiplier is 1."""
     system = meissner(e=0.3, damping=0.3)
-    found = find_response(Family(lambda T: system, True), LIMITS, start, periods=(1,), seeds=0)
+    found = find_response(Member(Family(lambda T: system, True), LIMITS, start), periods=(1,), seeds=0)
     folds = [b for branch in found.branches for b in branch.bifurcations if b.kind == "fold" and b.sharp]
     assert len(folds) == 2
     for fold in folds:

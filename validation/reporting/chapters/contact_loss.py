@@ -40,7 +40,7 @@ def write(results: Results) -> Content:
         ),
         table_of(
             "jumps",
-            "Jumps: where a stable motion ends as the speed rises or falls.",
+            "Jumps: where a motion ends as the speed rises or falls.",
             jumps,
             {
                 "speed": ("speed", lambda j: Quantity(j.speed_rpm, "rpm")),
@@ -70,12 +70,33 @@ def write(results: Results) -> Content:
                 },
             )
         )
-    for gap in branches.restless:
+    shares = branches.basins() if any(o.stable for o in here) or branches.attractors else ()
+    if len(shares) > 1:
+        total = sum(one.starts for one in shares)
         blocks.append(
-            Text(
-                f"From {number(gap.low_rpm, 5)} to {number(gap.high_rpm, 5)} rpm no stable motion repeats; a "
-                f"run ends in {gap.kind}, {number(1e6 * gap.dte_rms, 3)} µm rms."
+            table_of(
+                "basins",
+                f"To which motion {total} random start states lead at the operating speed.",
+                shares,
+                {
+                    "motion": ("motion", lambda one: str(one.kind)),
+                    "cycles": ("mesh cycles", lambda one: one.n),
+                    "size": (
+                        "transmission error, peak to peak",
+                        lambda one: Quantity(one.dte_peak_to_peak, "m"),
+                    ),
+                    "load": ("largest tooth load", lambda one: Quantity(one.largest_load, "N")),
+                    "share": ("share of the start states", lambda one: Quantity(one.share, "1")),
+                    "low": ("at least (95 %)", lambda one: Quantity(one.share_interval[0], "1")),
+                    "high": ("at most (95 %)", lambda one: Quantity(one.share_interval[1], "1")),
+                },
             )
+        )
+    for one in branches.attractors:
+        blocks.append(Text(f"{one.text}."))
+    for low_rpm, high_rpm in branches.gaps:
+        blocks.append(
+            Text(f"No motion that repeats is stable from {number(low_rpm, 5)} to {number(high_rpm, 5)} rpm.")
         )
     return Content(result, tuple(blocks))
 
@@ -103,16 +124,26 @@ def motions(results: Results, branches: ResponseBranches) -> xr.Dataset:
     stable = np.array([float(orbit.stable) for orbit in orbits])
     jumps = [j for j in branches.jumps if np.isfinite(j.dte_rms_after)]
     at = np.array([j.speed_rpm for j in jumps])
-    near = [_peak_at(branches, j.speed_rpm, j.dte_rms, j.dte_rms_after, j.rising) for j in jumps]
+    before, after = (
+        np.array([getattr(j, f"dte_peak_to_peak{when}") for j in jumps]) for when in ("", "_after")
+    )
+    roaming = [point for one in branches.attractors for point in one.points]
     text = "transmission error, peak to peak"
     more = labelled_dataset(
         {
             "motion": ("motion_speed_rpm", size, "m", f"{text}, unilateral contact"),
             "motion_stable": ("motion_speed_rpm", stable, "1", "whether the motion is stable"),
-            "jump_from": ("jump_speed_rpm", np.array([a for a, _ in near]), "m", f"{text}, before the jump"),
-            "jump_to": ("jump_speed_rpm", np.array([b for _, b in near]), "m", f"{text}, after the jump"),
+            "jump_from": ("jump_speed_rpm", before, "m", f"{text}, before the jump"),
+            "jump_to": ("jump_speed_rpm", after, "m", f"{text}, after the jump"),
+            "roaming": (
+                "roaming_speed_rpm",
+                np.array([point.dte_peak_to_peak for point in roaming]),
+                "m",
+                f"{text}, beats or chaos",
+            ),
         },
         {
+            "roaming_speed_rpm": (np.array([point.speed_rpm for point in roaming]), "rpm", "pinion speed"),
             "motion_speed_rpm": (speed, "rpm", "pinion speed"),
             "jump_speed_rpm": (at, "rpm", "pinion speed"),
         },
@@ -141,20 +172,6 @@ def linear_over_speed(results: Results) -> xr.Dataset:
             ends = np.interp(speeds, band["speed_rpm"], band[name])
             variables[name] = ("speed_rpm", ends, "m", str(band[name].attrs["long_name"]))
     return labelled_dataset(variables, {"speed_rpm": (speeds, "rpm", "pinion speed")})
-
-
-def _peak_at(
-    branches: ResponseBranches, rpm: float, before: float, after: float, rising: bool
-) -> tuple[float, float]:
-    """Peak to peak just before and just behind a jump: of the motions there with the nearest rms."""
-    found = []
-    for rms, side in ((before, -1.0), (after, 1.0)):
-        speed = rpm * (1.0 + 1e-3 * side * (1.0 if rising else -1.0))
-        low, high = branches.speeds_rpm
-        there = branches.at(min(max(speed, low), high))
-        orbit = min(there, key=lambda o: abs(o.dte_rms - rms), default=None)
-        found.append(float(np.ptp(orbit.dte_range)) if orbit is not None else np.nan)
-    return found[0], found[1]
 
 
 CHAPTER = Chapter("contact_loss", "Contact loss and jumps", write, seconds=2.0)
