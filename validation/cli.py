@@ -23,6 +23,7 @@ from validation.commands.response import response
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
+from validation.commands.teeth import teeth
 from validation.commands.terminal import NUMERICAL, Once, unprinted
 from validation.commands.uncertainty import uncertainty
 from validation.stop_signals import interrupt_once
@@ -78,6 +79,7 @@ COMMANDS = (
     stability,
     floquet,
     response,
+    teeth,
     interactive,
     sweep,
     measurement,

@@ -30,6 +30,7 @@ class OwnTeeth:
 
     Attributes
     ----------
+    index : (z,) index deviations as given or drawn, positive where the flank is further along the count [m]
     error : (z,) constant over the flank, positive where the teeth come too late [m]
     slope : (z,) profile slope deviations, material at the tip [m]
     relief : (z,) tip relief beyond the design's [m]
@@ -37,6 +38,7 @@ class OwnTeeth:
     phase : eps cos(rotation + phase), rotation counted from tooth 1 at A [rad]
     """
 
+    index: FloatArray
     error: FloatArray
     slope: FloatArray
     relief: FloatArray
@@ -54,7 +56,7 @@ def _of_gear(pair: GearPair, which: int) -> OwnTeeth:
     given = gear.deviations
     slope, relief = (_listed(given, name, z, 1.0) for name in ("profile_slope", "tip_relief"))
     phase = gear.mounting.phase if gear.mounting else 0.0
-    error, eccentricity = np.zeros(z), gear.eccentricity
+    error, index, eccentricity = np.zeros(z), np.zeros(z), gear.eccentricity
     if given is not None:
         index = _listed(given, "index", z, -1.0)
         if given.tolerance_class is not None:
@@ -71,7 +73,7 @@ def _of_gear(pair: GearPair, which: int) -> OwnTeeth:
             radius = (g.base_radius_pinion, g.base_radius_gear)[which]
             eccentricity = abs(first)
             phase = float(np.angle(first)) - (g.L_XP - g.L_XA) / radius
-    return OwnTeeth(error, slope, relief, float(eccentricity), float(phase))
+    return OwnTeeth(index, error, slope, relief, float(eccentricity), float(phase))
 
 
 def _listed(given: Deviations | None, name: str, teeth: int, mirrored: float) -> FloatArray:

@@ -17,7 +17,7 @@ import xarray as xr
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
-from lumped.outcomes import Absent
+from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
@@ -183,7 +183,7 @@ def document(
         "findings": sorted(findings(results)),
         "failed_checks": list(failed_checks(results)),
         "chapters": {chapter.key: chapter_data(chapter.title, content) for chapter, content in chapters},
-        "parameters": results.pair.to_mapping(),
+        "parameters": results.given.to_mapping(),
     }
 
 
@@ -215,9 +215,10 @@ def _write_data(results: Results, folder: Path) -> None:
         "sweep": results.sweep,
         "uncertainty": results.uncertainty,
         "budget": results.budget,
+        "teeth": Absent(Outcome.NOT_ASKED) if results.teeth is None else results.teeth.motion,
         "stability": results.chart,
     }
     for name, data in found.items():
         if not isinstance(data, Absent):
             write_dataset(data, folder / f"{name}.nc")
-    (folder / "parameters.toml").write_text(results.pair.to_toml(), encoding="utf-8")
+    (folder / "parameters.toml").write_text(results.given.to_toml(), encoding="utf-8")

@@ -13,7 +13,7 @@ import jinja2
 from validation.files.formatting import number, prose, quantity
 from validation.reporting.blocks import Badge, Block, Cell, Picture, Quantity, Table
 from validation.reporting.chapter import Written
-from validation.reporting.page_one import NOT_MODELLED, PageOne
+from validation.reporting.page_one import PageOne
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,6 @@ def render(
             numbers=numbers,
             images=images,
             data=data,
-            not_modelled=NOT_MODELLED,
             limits=limits(),
         )
     )

@@ -28,10 +28,10 @@ _MOST_ACTIONS = 3
 #: First words of a hazard -> the hazard as a noun.
 _KINDS = {"jump": "a jump", "beats": "beats", "chaos": "chaos", "periodic": "another motion"}
 _ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
-NOT_MODELLED = (
-    "Not modelled: pitch errors, eccentricity and sidebands; helix; misalignment; "
-    "housing and sound radiation."
-)
+_NOT_MODELLED = "Not modelled: helix; misalignment; housing and sound radiation."
+#: Before it, of a pair whose teeth are alike, and of one whose teeth differ.
+_ALIKE = "All teeth are taken as alike: no pitch errors, no sidebands."
+_OWN = "The numbers and figures above are those of like teeth; the chapter on teeth that differ has the rest."
 
 
 class Verdict(Enum):
@@ -119,6 +119,7 @@ class PageOne:
     actions : at most three
     sure : how sure, one line each
     remark : below the table; may be empty
+    not_modelled : what the numbers leave out
     warnings : values that hardly can be meant
     """
 
@@ -130,6 +131,7 @@ class PageOne:
     actions: tuple[Action, ...]
     sure: tuple[str, ...]
     remark: str
+    not_modelled: str
     warnings: tuple[str, ...]
 
 
@@ -145,6 +147,7 @@ def page_one(results: Results) -> PageOne:
         actions=_actions(results, verdict),
         sure=_sure(results),
         remark=_remark(results),
+        not_modelled=f"{_ALIKE if results.teeth is None else _OWN} {_NOT_MODELLED}",
         warnings=results.warnings,
     )
 

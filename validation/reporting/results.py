@@ -27,6 +27,7 @@ from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import Motion, Prediction, measured, predicted
 from validation.prediction.uncertainty import speed_band, uncertainty
+from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import doubts as warnings_of
 
@@ -69,7 +70,8 @@ class Results:
 
     Parameters
     ----------
-    pair : the gear pair
+    pair : the gear pair; where its teeth differ, ``teeth`` has what that does, and all else is about its twin
+        with like teeth
     effort : how finely
     name : how a command names the pair: its file, or the preset
     progress : called with the finished fraction of the present computation and its name
@@ -82,7 +84,7 @@ class Results:
     def __init__(
         self, pair: GearPair, effort: Effort, name: str = "", progress: Progress | None = None
     ) -> None:
-        self.pair = pair
+        self.given, self.pair = pair, pair.healthy
         self.effort = effort
         self.name = name or pair.name
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
@@ -107,6 +109,14 @@ class Results:
         """The best motion at the operating point."""
         self.stage("motion")
         return predicted(self.pair)
+
+    @cached_property
+    def teeth(self) -> TeethFindings | None:
+        """What teeth that differ do; None where they are alike."""
+        if self.given is self.pair:
+            return None
+        self.stage("teeth that differ")
+        return TeethFindings(self.given)
 
     @cached_property
     def linear(self) -> xr.Dataset | Absent:

@@ -1,4 +1,7 @@
-"""The nine chapters of the report, one module each, in their order. A module writes ``CHAPTER``."""
+"""The chapters of the report, one module each, in their order: nine, and one where teeth differ.
+
+A module writes ``CHAPTER``.
+"""
 
 from validation.reporting.chapter import Chapter
 from validation.reporting.chapters import (
@@ -11,6 +14,7 @@ from validation.reporting.chapters import (
     response,
     second_program,
     stability,
+    teeth,
 )
 
 CHAPTERS: tuple[Chapter, ...] = tuple(
@@ -20,6 +24,7 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         forces,
         contact_loss,
         stability,
+        teeth,
         losses,
         how_sure,
         second_program,

@@ -1,0 +1,99 @@
+"""Teeth that differ beside like teeth: tolerances, loads of meeting pairs, report, command."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.teeth.tolerances import flank_tolerances
+from tests.validation.commands.conftest import refused, run
+from validation.reporting.chapters import teeth as chapter
+from validation.reporting.results import QUICK, Results
+from validation.signals.findings import TeethFindings, deviations_table
+
+ONE_TOOTH = [0.0] * 27 + [4.0]
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    {"pinion.deviations": {"index": ONE_TOOTH, "first_order": "steps"}, "friction.law": "none"}
+)
+
+
+@pytest.fixture(scope="module")
+def found() -> TeethFindings:
+    return TeethFindings(PAIR)
+
+
+def test_deviations_are_compared_with_the_standard() -> None:
+    table = deviations_table(PAIR).sel(gear="pinion")
+    assert float(table["cumulative"]) == pytest.approx(4e-6)
+    assert float(table["pitch"]) == pytest.approx(4e-6)  # one tooth off: a step there and one back
+    held = int(table["tolerance_class"])
+    limits = [flank_tolerances(28, PAIR.basic_rack.module, number)["f_p"] for number in (held - 1, held)]
+    assert limits[0] < 4e-6 <= limits[1]
+    drawn = PAIR.with_({"pinion.deviations": {"tolerance_class": 6, "seed": 2}})
+    assert int(deviations_table(drawn)["tolerance_class"][0]) == 6
+    worse = PAIR.with_({"pinion.deviations": {"index": [0.0] * 27 + [500.0]}})
+    assert int(deviations_table(worse)["tolerance_class"][0]) == 12
+
+
+def test_the_load_map_has_the_pairs_that_meet(found: TeethFindings) -> None:
+    """28/28: tooth i meets tooth i alone."""
+    loads = found.largest_loads
+    assert np.nanmax(loads) == found.load(found.motion)
+    assert np.isfinite(np.diag(loads)).all()
+    assert np.isnan(loads[np.arange(28), (np.arange(28) + 5) % 28]).all()
+    own = np.diag(loads)
+    assert np.argmax(np.abs(own - np.median(own))) in (26, 27, 0)  # the tooth that is off, or one beside it
+
+
+def test_the_twin_stands_at_the_mesh_harmonics(found: TeethFindings) -> None:
+    shown = found.spectrum("pinion")
+    order, healthy = shown["order"].to_numpy(), shown["healthy"].to_numpy()
+    twin = found.twin["dte"].to_numpy()
+    first = 2.0 * abs(np.fft.rfft(twin)[1]) / twin.size
+    assert healthy[np.argmin(abs(order - 28.0))] == pytest.approx(first)
+    assert set(np.flatnonzero(healthy) % 28) == {0}
+
+
+def test_one_tooth_off_is_told_as_sidebands_and_residual(found: TeethFindings) -> None:
+    hertz = PAIR.geometry.mesh_frequency / 28
+    assert f"every {hertz:.3g} Hz" in found.sentence
+    assert "contact is kept" in found.sentence
+    assert found.contact_lost == ()
+    table = found.indicators("pinion")["value"].sel(indicator="RMS_residual")
+    assert float(table.sel(record="pair")) > 3.0 * float(table.sel(record="healthy twin"))
+    assert f"{float(table[0] / table[1]):.2g} times the residual" in found.sentence
+
+
+def test_like_teeth_are_refused() -> None:
+    with pytest.raises(lumped.ParameterError, match=r"\[pinion.deviations\]"):
+        TeethFindings(PAIR.healthy)
+
+
+def test_the_report_is_about_like_teeth_and_has_a_chapter_on_those_that_differ(found: TeethFindings) -> None:
+    results = Results(PAIR, QUICK)
+    assert results.pair is PAIR.healthy
+    results.__dict__["teeth"] = found
+    content = chapter.write(results)
+    assert content is not None
+    assert content.result == found.sentence
+    pictures = {block.key: block for block in content.blocks if hasattr(block, "draw")}
+    assert set(pictures) == {"teeth_turn", "teeth_loads_pinion", "teeth_orders_pinion"}
+    for picture in pictures.values():
+        picture.figure()
+    (bars,) = pictures["teeth_loads_pinion"].figure().axes
+    np.testing.assert_allclose(
+        [bar.get_height() for bar in bars.patches],
+        np.nanmax(found.largest_loads, axis=1) / found.static_force,
+    )
+    assert chapter.write(Results(PAIR.healthy, QUICK)) is None
+
+
+def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
+    path, target = tmp_path / "own.toml", tmp_path / "motion.csv"
+    path.write_text(PAIR.to_toml(), encoding="utf-8")
+    result = run("teeth", path, "-o", target)
+    assert found.sentence in result.stdout
+    assert f"{1e6 * found.twin.attrs['dte_peak_to_peak']:.3g}" in result.stdout
+    assert target.read_text(encoding="utf-8").count("\n") >= found.motion.sizes["time"]
+    assert "teeth that are alike" in refused("teeth", "nasa_28_28")
