@@ -40,5 +40,5 @@ def interactive(
     data = check_file(output.with_suffix(".nc"), (".nc",), force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     with progress_bar("interactive page") as tell:
-        write_interactive_page(gear_pair, output, data=data, progress=tell)
+        write_interactive_page(gear_pair, output, data=data, new=not force, progress=tell)
     stderr().print(f"wrote {output} and {data}")

@@ -31,6 +31,7 @@ def write_interactive_page(
     path: str | Path,
     *,
     data: str | Path | None = None,
+    new: bool = False,
     sampling: Sampling = FINE,
     progress: Progress | None = None,
 ) -> Path:
@@ -39,8 +40,9 @@ def write_interactive_page(
     Parameters
     ----------
     pair : gear pair, preset name or parameter file
-    path : the page, ``.html``; an earlier one is replaced
+    path : the page, ``.html``
     data : the data file, ``.nc``; default beside the page, with its name
+    new : whether files of these names that are there when all is computed stay; else they are replaced
     sampling : how finely
     progress : called with the finished fraction and what is being done
 
@@ -52,14 +54,15 @@ def write_interactive_page(
     ------
     ParameterError : a refused parameter
     NumericalError : a computation fails; the text says what to try
+    StorageError : a file cannot be written, or with ``new`` is there already
     """
     pair = load_gear_pair(pair)
     of_type("sampling", sampling, Sampling, "a Sampling")
     page = file_path("path", path)
     values = page.with_suffix(".nc") if data is None else file_path("data", data)
     results = compute(pair, sampling, progress)
-    write_dataset(results.dataset(), values)
-    write_text(page, render(results, values.name))
+    write_dataset(results.dataset(), values, new=new)
+    write_text(page, render(results, values.name), new=new)
     return page
 
 
