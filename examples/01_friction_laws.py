@@ -1,11 +1,13 @@
 """
-Five friction laws over the path of contact
-===========================================
+Friction laws over the path of contact
+======================================
 
 Which coefficient does each law give the same pair, and what happens at the pitch point? I jumps there, II
 rises until its bound stops it, III vanishes, IV turns over a short length, and V is II at this thin film:
 choose a law for the film you have.
 """
+
+from itertools import cycle
 
 import numpy as np
 import xarray as xr
@@ -32,7 +34,7 @@ def draw(result: xr.Dataset) -> Figure:
     figure = Figure(figsize=(7, 4), layout="constrained")
     axes = figure.add_subplot()
     distance = (result["xi"] - result.attrs["pitch_point"]) * 1e3
-    for style, (law, values) in zip(("-", "-", "-", "--", ":"), result.data_vars.items(), strict=True):
+    for style, (law, values) in zip(cycle(("-", "--", ":")), result.data_vars.items(), strict=False):
         axes.plot(distance, values, style, label=str(law).replace("_", " "))
     axes.set(xlabel="distance from the pitch point [mm]", ylabel="friction coefficient, signed [-]")
     axes.legend()

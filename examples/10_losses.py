@@ -3,7 +3,7 @@ Mesh losses of the FZG type C gears
 ===================================
 
 What does each friction law make of the mesh efficiency, beside the closed form and with vibration? The law
-decides: III loses less than a third of what the others do. Vibration moves the loss by less than a hundredth.
+decides: III loses less than half of what the others do. Vibration moves the loss by less than a hundredth.
 """
 
 import numpy as np

@@ -163,8 +163,8 @@ class MeshCycle:
         g = self.geometry
         t = np.atleast_1d(np.asarray(time, dtype=float))
         if segment is None:
-            # Multiples of the period round to either side of an edge; just before it counts as at it.
-            same = _SAME * self.period
+            # Times round to either side of an edge, by more in later cycles; just before it counts as at it.
+            same = _ROUNDING * self.period + 4.0 * np.spacing(np.abs(t))
             tau = np.mod(t, self.period)
             tau = np.where(tau > self.period - same, 0.0, tau)
             index = np.searchsorted(self.edges[1:-1], tau + same, side="right")

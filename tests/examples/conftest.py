@@ -20,3 +20,26 @@ def example():
         return module
 
     return load
+
+
+@pytest.fixture
+def labelled():
+    def check(figure):
+        for axes in figure.axes:
+            assert axes.get_xlabel()
+            assert axes.get_ylabel()
+
+    return check
+
+
+@pytest.fixture
+def shown(example, labelled):
+    """The module and the result of an example whose figure has labelled axes."""
+
+    def show(number: int):
+        module = example(number)
+        result = module.compute()
+        labelled(module.draw(result))
+        return module, result
+
+    return show

@@ -1,6 +1,9 @@
 """Does every example run, draw labelled axes, and show the fact it is there for?"""
 
 import functools
+import json
+import re
+from pathlib import Path
 
 import distributed
 import numpy as np
@@ -14,48 +17,33 @@ from floquet.gear.response import ResponseBranches
 from validation.studies import load_study, read_results, run_sweep
 
 
-def labelled(figure):
-    for axes in figure.axes:
-        assert axes.get_xlabel()
-        assert axes.get_ylabel()
-    return figure
-
-
-def test_01_friction_laws_differ_where_theory_says(example):
-    module = example(1)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_01_friction_laws_differ_where_theory_says(shown):
+    _, result = shown(1)
     near = np.abs(result["xi"] - result.attrs["pitch_point"]) < 5e-5
-    # Law III vanishes with the slide-to-roll ratio (its power b3 = 1.036), law II grows without bound.
+    # Law III vanishes with the slide-to-roll ratio (its power b3 = 1.036), law II rises to its bound.
     assert float(np.abs(result["xu_kahraman"]).where(near).max()) < 1e-3
-    largest = np.abs(result["benedict_kelley"])
-    assert bool(near[int(largest.argmax("xi"))])
+    rising = np.abs(result["benedict_kelley"])
+    assert float(rising.where(near).max()) == float(rising.max())
 
 
-def test_02_film_parameter_is_4_near_2500_rpm(example):
-    module = example(2)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_02_film_parameter_is_4_near_2500_rpm(shown):
+    _, result = shown(2)
     mean = result["film_parameter"].mean("xi")
     switch = float(np.interp(4.0, mean, result["speed"]))
     # The paper's Fig. 2b puts the abrupt change "near 2500 rpm"; read off to about 5 %.
     assert switch == pytest.approx(2500.0, rel=0.05)
 
 
-def test_03_the_largest_resonance_is_that_of_the_averaged_pair(example):
-    module = example(3)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_03_the_largest_resonance_is_that_of_the_averaged_pair(shown):
+    _, result = shown(3)
     speed = result["speed"].to_numpy()
     peak = speed[int(result["dte_peak_to_peak"].argmax("speed"))]
     # A stiffness that varies by 50 % bends the peak away from the averaged mode by a few per cent.
     assert peak == pytest.approx(result.attrs["resonant_speeds"][-1], rel=0.05)
 
 
-def test_04_the_printed_sign_speeds_the_pair_up(example):
-    module = example(4)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_04_the_printed_sign_speeds_the_pair_up(shown):
+    module, result = shown(4)
     pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
     steady, body = lumped.steady_state(pair), lumped.bodies(pair)
     moment = float((steady["position"] * steady["friction_force"]).sum("pair").mean())
@@ -65,17 +53,15 @@ def test_04_the_printed_sign_speeds_the_pair_up(example):
     assert module.drift(result["printed"]) == pytest.approx(expected, rel=0.1)
 
 
-def test_05_the_best_relief_is_best_near_its_design_torque(example):
-    module = example(5)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_05_the_best_relief_is_best_near_its_design_torque(shown):
+    _, result = shown(5)
     best = float(result["torque"][int(result["relieved"].argmin("torque"))])
     assert best == pytest.approx(result.attrs["design_torque"], rel=0.05)
     # The contact's compliance falls with the logarithm of the load, so the error grows less than the torque.
     assert (np.diff(result["involute"] / result["torque"]) < 0.0).all()
 
 
-def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example, monkeypatch):
+def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example, labelled, monkeypatch):
     module = example(6)
     # Long runs, which the picture has no use for; tests/floquet/gear/test_orbits.py judges them.
     monkeypatch.setattr(ResponseBranches, "jumps", ())
@@ -95,20 +81,16 @@ def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example, monk
     assert followed == pytest.approx(float(at["rising"]), rel=0.05)
 
 
-def test_07_energy_stiffness_lies_in_the_scatter_of_the_standard(example):
-    module = example(7)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_07_energy_stiffness_lies_in_the_scatter_of_the_standard(shown):
+    _, result = shown(7)
     # ISO 6336-1 states that its mean mesh stiffness deviates from measurements by +5 % to -8 %.
     assert 0.92 < 1.0 / result.attrs["mean_over_iso"] < 1.05
     # The linearised contact of much literature is some three times too stiff and leaves that scatter.
     assert result.attrs["linearised_over_iso"] > 1.15
 
 
-def test_08_two_pairs_share_by_halves_in_the_middle_and_deflection_lengthens_the_contact(example):
-    module = example(8)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_08_two_pairs_share_by_halves_in_the_middle_and_deflection_lengthens_the_contact(shown):
+    _, result = shown(8)
     # Nearest sampled phase to the middle of double contact, where equal gears are symmetric.
     middle = result.sel(phase=(result.attrs["contact_ratio"] - 1.0) / 2.0, method="nearest")
     touching = middle["load_share"].where(middle["load_share"] > 0.0)
@@ -120,10 +102,8 @@ def test_08_two_pairs_share_by_halves_in_the_middle_and_deflection_lengthens_the
     assert float(longer.sel(torque=113.0) / longer.sel(torque=28.25)) == pytest.approx(2.0, rel=0.06)
 
 
-def test_09_relief_shows_without_load_and_vanishes_at_its_torque(example):
-    module = example(9)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_09_relief_shows_without_load_and_vanishes_at_its_torque(shown):
+    _, result = shown(9)
     # No load: the pair with less relief touches. At worst, in the middle of double contact, both stand half
     # that length from their tips, with the relief C (1 - (eps - 1) p/2L) left there; 256 positions.
     left = 1.0 - 0.5 * result.attrs["double_contact"] / result.attrs["length"]
@@ -133,10 +113,8 @@ def test_09_relief_shows_without_load_and_vanishes_at_its_torque(example):
     assert float(result["peak_to_peak"].min()) < 0.1 * unloaded
 
 
-def test_10_loss_of_small_friction_is_the_published_loss_factor(example):
-    module = example(10)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_10_loss_of_small_friction_is_the_published_loss_factor(shown):
+    _, result = shown(10)
     # GEARpie's report of the FZG C14 gears prints H_V (Ohlendorf) = 0.1986; half its last place.
     assert result.attrs["ohlendorf"] == pytest.approx(0.1986, abs=5e-5)
     assert float(result["loss_over_mu"].sel(mu=1e-6)) == pytest.approx(result.attrs["ohlendorf"], rel=1e-5)
@@ -144,22 +122,18 @@ def test_10_loss_of_small_friction_is_the_published_loss_factor(example):
     quiet, shaken = 1 - result["mesh_efficiency"], 1 - result["mesh_efficiency_dynamic"]
     np.testing.assert_allclose(shaken, quiet, rtol=1e-2)
     thin = quiet.sel(law="xu_kahraman")
-    assert bool((quiet.drop_sel(law="xu_kahraman") > 3.0 * thin).all())
+    assert bool((quiet.drop_sel(law="xu_kahraman") > 2.0 * thin).all())
 
 
-def test_11_models_differ_by_the_square_of_the_torque(example):
-    module = example(11)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_11_models_differ_by_the_square_of_the_torque(shown):
+    _, result = shown(11)
     # Finite motions enter as deflection times force; contact loss, which does not, is switched off.
     for name in ("dte", "x_p", "y_p"):
         assert result.attrs[name] == pytest.approx(2.0, abs=0.05)
 
 
-def test_12_tongues_stand_at_the_predicted_speeds(example):
-    module = example(12)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_12_tongues_stand_at_the_predicted_speeds(shown):
+    _, result = shown(12)
     assert {"2w3/2", "2w3/5", "2w3/4"} <= set(result["label"].values)
     # The line is that of the averaged system; a variation of half the stiffness moves the tongue a little.
     peak = result["peak"].isel(damping_ratio=0)
@@ -172,10 +146,8 @@ def test_12_tongues_stand_at_the_predicted_speeds(example):
     assert (np.diff(width, axis=1)[np.isfinite(np.diff(width, axis=1))] < 0.0).all()
 
 
-def test_13_half_a_period_each_needs_no_damping(example):
-    module = example(13)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_13_half_a_period_each_needs_no_damping(shown):
+    _, result = shown(13)
     quiet = result.attrs["quiet_contact_ratio"]
     # Both half periods return the mode, so there is no tongue. Exact for one mode; the mode's shapes at one
     # and at two tooth pairs differ only by how much the bearings move.
@@ -185,10 +157,8 @@ def test_13_half_a_period_each_needs_no_damping(example):
     assert float(result["critical_damping"].max()) > 0.02
 
 
-def test_14_sensitivities_are_the_slopes_of_a_chart(example):
-    module = example(14)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_14_sensitivities_are_the_slopes_of_a_chart(shown):
+    _, result = shown(14)
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         operating__pinion_speed=16000.0, friction__law="coulomb", friction__coefficient=0.05
     )
@@ -202,17 +172,15 @@ def test_14_sensitivities_are_the_slopes_of_a_chart(example):
         assert float(result["relative"].sel(parameter=name)) == pytest.approx(slope, rel=1e-5)
 
 
-def test_15_the_true_coefficient_lies_in_its_interval(example):
-    module = example(15)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_15_the_true_coefficient_lies_in_its_interval(shown):
+    _, result = shown(15)
     (found,) = result.evaluation.found
     # Three standard errors: a right interval misses by this much once in 370 noise seeds; the seed is fixed.
     assert abs(found.estimate - result.truth) < 3.0 * found.standard_error
     assert found.standard_error < 0.01 * result.truth
 
 
-def test_16_the_cluster_gives_the_file_of_one_process(example, tmp_path, monkeypatch):
+def test_16_the_cluster_gives_the_file_of_one_process(example, labelled, tmp_path, monkeypatch):
     module = example(16)
     # Workers in this process: tests/validation/studies/test_cluster.py starts processes, and kills them.
     local = functools.partial(distributed.LocalCluster, processes=False)
@@ -243,10 +211,8 @@ def test_19_only_torques_far_from_that_of_the_relief_jump(example):
     assert float((falling["jump_dte_rms"] / falling["jump_dte_rms_after"]).min()) > 10.0
 
 
-def test_20_one_motion_is_chaotic_beside_a_periodic_one(example):
-    module = example(20)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_20_one_motion_is_chaotic_beside_a_periodic_one(shown):
+    module, result = shown(20)
     assert result.attrs["kind"] == "chaos"
     # Growth of the distance of two runs over 6000 cycles, without derivatives: 0.138 per cycle.
     # Four times the standard error, 0.007 over 2000 cycles; which motion it is hangs on rounding.
@@ -258,10 +224,8 @@ def test_20_one_motion_is_chaotic_beside_a_periodic_one(example):
     assert 0.2 < float((result["chaotic_load"] == 0.0).mean()) < 0.8
 
 
-def test_21_meissners_trace_is_that_of_the_multipliers(example):
-    module = example(21)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_21_meissners_trace_is_that_of_the_multipliers(shown):
+    _, result = shown(21)
     trace = result["multipliers"].sum("multiplier").real
     assert (
         np.abs(trace - result["exact"]) <= 2.0 * result["multiplier_errors"].max("multiplier") + 1e-13
@@ -280,10 +244,8 @@ def test_22_mathieus_equation_grows_between_the_characteristic_values(example):
     assert result["proven"].all()
 
 
-def test_23_a_shaft_of_two_stiffnesses_grows_between_its_critical_speeds(example):
-    module = example(23)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_23_a_shaft_of_two_stiffnesses_grows_between_its_critical_speeds(shown):
+    module, result = shown(23)
     low, high = module.CRITICAL
     between = (low < result["speed"]) & (result["speed"] < high)
     np.testing.assert_array_equal(result["verdict"].sel(ratio=0.0), np.where(between, -1, 0))
@@ -324,10 +286,8 @@ def test_24_two_blades_are_the_published_propeller_on_the_mean_and_exact_on_an_e
     )
 
 
-def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(example):
-    module = example(25)
-    result = module.compute()
-    labelled(module.draw(result))
+def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(shown):
+    module, result = shown(25)
     assert result.attrs["certificate"] == "proven"
     unstable = result["speed_rpm"].where(result["verdict"] == -1, drop=True)
     # Ninth mode of ross.MultiRotor (2.3.0) of both shafts without damping, with the mean mesh stiffness.
@@ -360,7 +320,7 @@ def test_25_rigid_shafts_are_the_lumped_pair(example):
     np.testing.assert_allclose(*moduli, rtol=1e-8)
 
 
-def test_26_springs_miss_what_the_modes_of_the_shafts_do(example):
+def test_26_springs_miss_what_the_modes_of_the_shafts_do(example, labelled):
     module = example(26)
     module.SPEEDS = np.array([2750.0, 4875.0])
     result = module.compute()
@@ -376,3 +336,30 @@ def test_26_springs_miss_what_the_modes_of_the_shafts_do(example):
     assert float(dte.sel(model="condensed", speed=2750.0)) < 0.5 * float(
         dte.sel(model="shafts", speed=2750.0)
     )
+
+
+ROOT = Path(__file__).parents[2]
+
+
+def tutorial():
+    text = (ROOT / "docs" / "tutorial" / "in_python.md").read_text(encoding="utf-8")
+    return [code.strip() for code in re.findall(r"```python\n(.*?)```", text, re.DOTALL)]
+
+
+def notebook():
+    cells = json.loads((ROOT / "examples" / "first_session.ipynb").read_text(encoding="utf-8"))["cells"]
+    return ["".join(cell["source"]).strip() for cell in cells if cell["cell_type"] == "code"]
+
+
+@pytest.mark.parametrize("source", [tutorial, notebook])
+def test_it_runs(source, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for code in source():
+        exec(code, names)
+    assert {path.name for path in tmp_path.iterdir()} == {"steady.png", "chart.png"}
+    assert "4875.0" in capsys.readouterr().out
+
+
+def test_the_notebook_is_the_tutorial():
+    assert notebook() == tutorial()

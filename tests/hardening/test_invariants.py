@@ -4,12 +4,15 @@ import math
 import warnings
 
 import numpy as np
+import pytest
 from hypothesis import event, given
 from hypothesis import strategies as st
 
 from floquet.gear.multipliers import gear_pair_multipliers
-from lumped import geometry, mesh_cycle, steady_state
-from lumped.errors import LawRangeWarning, SpurcheckError
+from lumped import geometry, load_gear_pair, mesh_cycle, steady_state
+from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
+from lumped.fields.units import UNITS, to_si
+from lumped.schema.pair import leaf_paths, stated_unit
 
 
 def quiet(function, *arguments, **options):
@@ -151,3 +154,69 @@ def geometry_exists(mapping):
     from lumped import load_gear_pair
 
     return quiet(load_gear_pair, mapping) is not None
+
+
+#: SI unit -> exponents of length, time and force (a mass is force time^2 / length).
+EXPONENTS = {
+    "1": (0, 0, 0), "rad": (0, 0, 0), "m": (1, 0, 0), "1/m": (-1, 0, 0), "rad/s": (0, -1, 0),
+    "N*m": (1, 0, 1), "kg": (-1, 2, 1), "kg*m**2": (1, 2, 1), "kg/m**3": (-4, 2, 1), "Pa": (-2, 0, 1),
+    "N/m": (-1, 0, 1), "Pa*s": (-2, 1, 1), "m/s": (1, -1, 0),
+}  # fmt: skip
+#: Variable -> exponents of its result.
+RESULTS = {
+    "theta_p": (0, 0, 0), "x_p": (1, 0, 0), "y_g": (1, 0, 0), "dte": (1, 0, 0), "dte_dot": (1, -1, 0),
+    "normal_load": (0, 0, 1), "friction_power": (1, -1, 1), "mesh_stiffness": (-1, 0, 1),
+    "bearing_force_x_p": (0, 0, 1),
+}  # fmt: skip
+
+
+def factor(exponents, scales):
+    return float(np.prod([scale**power for scale, power in zip(scales, exponents, strict=True)]))
+
+
+def scaled(pair, scales):
+    """The same pair in other units: every quantity of the schema times the factor of its dimension."""
+    changes = {}
+    for path, value in leaf_paths(pair).items():
+        unit = stated_unit(path)
+        if unit is None or value == "balanced":
+            continue
+        si = UNITS[unit][0]
+        if any(EXPONENTS[si]):
+            changes[path] = f"{to_si(value, unit) * factor(EXPONENTS[si], scales)!r} {si}"
+    return pair.with_(changes)
+
+
+@pytest.fixture(scope="module")
+def similar():
+    """A pair without empirical laws, which have units of their own; inertia given, so that it scales."""
+    return load_gear_pair("nasa_28_28").with_(
+        friction__law="smoothed_coulomb",
+        friction__coefficient=0.06,
+        mesh__stiffness={"model": "parabolic", "peak": 2.5e8, "end_ratio": 0.6, "ramp_length": 0.4},
+    )
+
+
+# Powers of two up to 2^6 each way keep decimal numbers short and the scaled pair inside the schema's ranges.
+@given(powers=st.tuples(*[st.integers(-2, 2)] * 3))
+def test_results_scale_with_length_time_and_force(similar, powers):
+    scales = tuple(2.0**power for power in powers)
+    try:
+        other = scaled(similar, scales)
+    except ParameterError:  # such as a Young's modulus that the schema does not believe
+        return
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LawRangeWarning)
+        base, run = (steady_state(pair, samples_per_cycle=32) for pair in (similar, other))
+        multipliers = [gear_pair_multipliers(pair) for pair in (similar, other)]
+    # Both runs carry the stated error of the periodic solution, of order 1e-8, and nothing else.
+    tolerance = 10.0 * (base.attrs["error_estimate"] + run.attrs["error_estimate"]) + 1e-9
+    for name, exponents in RESULTS.items():
+        expected = base[name].to_numpy() * factor(exponents, scales)
+        np.testing.assert_allclose(
+            run[name], expected, rtol=0, atol=tolerance * np.abs(expected).max(), err_msg=name
+        )
+    assert run.attrs["mesh_efficiency"] == pytest.approx(base.attrs["mesh_efficiency"], abs=tolerance)
+    assert multipliers[1].spectral_radius == pytest.approx(
+        multipliers[0].spectral_radius, abs=multipliers[0].error + multipliers[1].error + 1e-12
+    )

@@ -1,10 +1,19 @@
-"""Does the command answer at once, and does an import load only what it needs?"""
+"""Does the wheel have every file, do imports stay light, does the module spurcheck have every name?"""
 
+import ast
 import json
 import subprocess
 import sys
+import tomllib
+from fnmatch import fnmatch
+from importlib import import_module
+from pathlib import Path
 
 import pytest
+
+import lumped
+import multibody
+import spurcheck
 
 #: Libraries that take a tenth of a second or more, or a display, and that a bare import has no use for.
 HEAVY = {"control", "dask", "distributed", "matplotlib", "pandas", "plotly", "scipy.stats", "xarray"}
@@ -61,3 +70,58 @@ def test_an_import_loads_nothing_heavy_and_takes_a_second_and_a_half_at_most(pac
     assert not [name for name in modules if name.startswith("floquet.rank_one.kernels")]  # slow to compile
     # 0.6 s to 0.8 s on a busy machine where this was written, most of it numpy, scipy, numba and pydantic.
     assert seconds < 1.5
+
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("lumped", "multibody", "floquet", "validation")
+
+
+def test_every_file_of_the_packages_goes_into_the_wheel():
+    data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    patterns = data["tool"]["setuptools"]["package-data"]
+    found, left_out = 0, []
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*")):
+            if path.is_dir() or path.suffix == ".py" or path.parent.name == "__pycache__":
+                continue
+            found += 1
+            name = path.relative_to(ROOT / package).as_posix()
+            named = any(fnmatch(name, pattern) for pattern in patterns.get(package, ()))
+            if not named and not any(fnmatch(path.name, pattern) for pattern in patterns["*"]):
+                left_out.append(f"{package}/{name}")
+    assert left_out == []
+    assert found > 10
+
+
+SOURCE = ast.parse(Path(spurcheck.__file__).read_text(encoding="utf-8"))
+
+
+def test_every_name_is_what_its_annotation_imports():
+    """What a type checker sees, the imports of the block for it, is what `__getattr__` gives."""
+    (block,) = (
+        node for node in SOURCE.body if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node)
+    )
+    packages = {alias.name for node in block.body if isinstance(node, ast.Import) for alias in node.names}
+    verbs = {
+        alias.name: node.module
+        for node in block.body
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    }
+    assert {*packages, *verbs, "__version__"} == set(dir(spurcheck))
+    for name, source in verbs.items():
+        assert getattr(spurcheck, name) is getattr(import_module(source), name), name
+    for name in packages:
+        assert getattr(spurcheck, name) is import_module(name)
+
+
+def test_a_name_that_two_packages_have_is_that_of_the_lumped_model():
+    assert spurcheck.simulate is lumped.simulate
+    assert spurcheck.multibody.simulate is multibody.simulate
+    with pytest.raises(AttributeError, match="no_such_name"):
+        spurcheck.no_such_name  # noqa: B018
+
+
+def test_it_runs_the_command():
+    run = [sys.executable, "-m", "spurcheck", "--version"]
+    assert subprocess.check_output(run, text=True).strip() == f"spurcheck {spurcheck.__version__}"

@@ -1,17 +1,22 @@
 """Are the paper's figures computed from the models as their captions say, and written with their data?"""
 
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 
 from lumped import geometry, load_gear_pair, simulate
 from lumped.errors import ParameterError
 from lumped.friction import xu_kahraman
 from lumped.path_of_contact import contact_path
 from reproductions.he_cho_singh_2008 import DRAW, figure_records, law_runs
+from reproductions.he_cho_singh_2008 import __main__ as command
 from reproductions.he_cho_singh_2008.figures.figure2 import regime_switch
 from reproductions.he_cho_singh_2008.figures.figure7 import measured_points
 from reproductions.he_cho_singh_2008.operating_points import FIGURE_4, FIGURE_7
+from reproductions.he_cho_singh_2008.records import ClaimsTable, ErrataChapter, FigureRecord
 from reproductions.he_cho_singh_2008.twins import agreement, continuous_labels, mesh_orders, roll_angle, twins
 from validation.measurements import predict, synthetic_measurement
 
@@ -226,3 +231,22 @@ def test_every_figure_can_be_drawn_and_says_what_it_shows(records):
 def test_unknown_figures_are_refused():
     with pytest.raises(ParameterError, match="figures"):
         figure_records(figures=("8",))
+
+
+def test_everything_is_written(tmp_path, monkeypatch, capsys):
+    records = [FigureRecord(n, "t", "", {}, {"a": xr.Dataset({"x": ("t", [1.0])})}) for n in DRAW]
+    made = {
+        "law_runs": None, "figure_records": records,
+        "errata_chapter": ErrataChapter("", {}, (), xr.Dataset()), "claims": ClaimsTable("", {}, 0, 0, 0, ()),
+        "draw_errata": Figure(),
+    }  # fmt: skip
+    for name, value in made.items():
+        monkeypatch.setattr(command, name, lambda *_, value=value, **__: value)
+    monkeypatch.setattr(command, "DRAW", {n: lambda _: Figure() for n in DRAW})
+    command.main(tmp_path / "out")
+    names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}
+    drawn = [*(f"figure{n}" for n in DRAW), "errata"]
+    assert {f"{n}.svg" for n in drawn} | {f"pictures/{n}.png" for n in drawn} <= names
+    assert {"claims.json", "errata.json", "data/figure7_a.nc", "data/figure7_a.csv"} <= names
+    assert json.loads((tmp_path / "out" / "claims.json").read_text())["samples"] == 0
+    assert "figure 7" in capsys.readouterr().out

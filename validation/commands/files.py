@@ -246,7 +246,6 @@ def _export_pair(
     from validation.exchange.results import STATE_SPACE_SUFFIXES
     from validation.exchange.rexs.encodings import FORMS
     from validation.exchange.rexs.vocabulary import WRITTEN
-    from validation.files.output import check_file
 
     if output.suffix.lower() in STATE_SPACE_SUFFIXES:
         if rexs_version is not None:
@@ -258,8 +257,7 @@ def _export_pair(
         raise refuse("output", output, allowed, "The suffix chooses the format.")
     if form is not None:
         raise refuse("--form", "with a REXS file", "a linear model", "Leave it out.")
-    path = check_file(output, (output.suffix.lower(),), force=force)
-    write_rexs(pair, path, rexs_version or WRITTEN[-1])
+    write_rexs(pair, output, rexs_version or WRITTEN[-1], force=force)
     note(
         "REXS is written without bearings, shafts, damping, friction law, stiffness model and inertia: "
         "keep the parameter file"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from floquet import PeriodicSystem, monodromy
+from floquet import PROPAGATORS, PeriodicSystem, monodromy
 from floquet.engine.multipliers import (
     Spectrum,
     least_separation,
@@ -12,6 +12,9 @@ from floquet.engine.multipliers import (
     radii_with_bounds,
     verdicts,
 )
+from floquet.engine.propagators.one_step import GaussLegendre, Propagator
+from floquet.engine.propagators.registry import propagator
+from tests.evidence.floquet.closed_forms import propagate_fixed
 
 
 def distances(computed: np.ndarray, exact: np.ndarray) -> np.ndarray:
@@ -160,3 +163,40 @@ def test_the_radius_may_be_that_of_another_multiplier_within_its_bound() -> None
 def test_liouville_residual_sees_a_wrong_propagation(mathieu) -> None:
     # A method of low order at a loose tolerance: its determinant is wrong by about what it was allowed.
     assert monodromy(mathieu(3.0, 2.0, 0.1), rtol=1e-4, method="rk4").liouville_residual > 1e-9
+
+
+def error(method: Propagator, system: PeriodicSystem, exact: np.ndarray, steps: int) -> float:
+    return float(np.linalg.norm(propagate_fixed(system, method, steps) - exact))
+
+
+def observed_order(method: Propagator, system: PeriodicSystem, exact: np.ndarray) -> float:
+    """Order from the last two numbers of steps, each twice the one before, whose error is above rounding."""
+    errors = [error(method, system, exact, 1)]
+    while errors[-1] > 1e-10 * np.linalg.norm(exact) and len(errors) < 9:
+        errors.append(error(method, system, exact, 2 ** len(errors)))
+    return float(np.log2(errors[-2] / errors[-1]))
+
+
+@pytest.mark.parametrize("method", [*PROPAGATORS.values(), *map(GaussLegendre, (1, 5))])
+def test_order_survives_declared_switches(method, known_system) -> None:
+    B, S = np.random.default_rng(13).normal(size=(2, 3, 3))
+    system, exact = known_system(0.5 * B, 0.6 * S, 7.0, "triangle")
+    # 0.3: the next term of the error series.
+    assert observed_order(method, system, exact) == pytest.approx(method.order, abs=0.3)
+
+
+@pytest.mark.parametrize("name", PROPAGATORS)
+def test_order_falls_to_one_across_an_undeclared_switch(name: str) -> None:
+    # A jumps at T/3 and nobody says so. The jump cuts a step of size h at the same fraction for N and 4 N
+    # steps (N = 4^k), so the error there is a constant times h.
+    low, high = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([[0.0, 1.0], [-4.0, 0.0]])
+
+    def A(t: np.ndarray) -> np.ndarray:
+        return np.where((t < 1.0 / 3.0)[:, None, None], low, high)
+
+    told = PeriodicSystem(A, 1.0, (1.0 / 3.0,), vectorized=True)
+    untold = PeriodicSystem(A, 1.0, vectorized=True)
+    exact = propagate_fixed(told, propagator("gauss"), 8)
+    coarse, fine = (error(propagator(name), untold, exact, n) for n in (256, 1024))
+    order = np.log(coarse / fine) / np.log(4.0)
+    assert order == pytest.approx(1.0, abs=0.1)  # h = 1/256: the h^2 term is below a few percent

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped.errors import ParameterError
+from lumped.fields.text_file import read_bytes, read_text
 from lumped.fields.units import UNITS, Quantity, to_file, to_si, to_stated
 
 # A correctly rounded conversion is exact to half a unit in the last place of the float it gives.
@@ -169,3 +170,30 @@ def test_stated_value_is_shown_as_it_was_given(unit, stated):
 def test_a_number_of_few_digits_reads_back_in_its_own_digits(stated):
     """Not 2999.9999999999998 rpm for 3000, nor its rad/s in a file."""
     assert to_stated(to_si(stated, "rpm"), "rpm") == to_file(to_si(stated, "rpm"), "rpm") == stated
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda path: None, "that exists"),
+        (lambda path: path.mkdir(), "folder or a device"),
+        (lambda path: path.symlink_to(path), "levels of symbolic links"),
+        (lambda path: path.symlink_to("/dev/zero"), "folder or a device"),
+        (lambda path: path.write_bytes(b"a = 'caf\xe9'"), "byte 8 is no UTF-8"),
+        (lambda path: path.write_bytes(b"x" * 11), "<= 10 bytes"),
+    ],
+)
+def test_files_that_are_no_text_say_why(tmp_path, make, words):
+    make(tmp_path / "file")
+    with pytest.raises(ParameterError, match=words) as caught:
+        read_text(tmp_path / "file", 10 if "10 bytes" in words else 100, field="data", kind="CSV file")
+    assert caught.value.problems[0].field == "data"
+    assert str(tmp_path / "file") in caught.value.problems[0].value
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("a\0b", "cannot be read: embedded null byte"), ("a" * 5000, "name too long")]
+)
+def test_names_that_no_file_can_have(name, words):
+    with pytest.raises(ParameterError, match=words):
+        read_bytes(name, 10)

@@ -1,14 +1,21 @@
-"""Do the friction laws say what their sources say?"""
+"""Do friction laws say what their sources say, under every name, and does mu(xi) of a pair follow them?"""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
+from hypothesis import given, reject, settings
+from hypothesis import strategies as st
 
-from lumped.errors import ParameterError
-from lumped.friction import benedict_kelley, composite, coulomb, smoothed_coulomb, xu_kahraman
-from lumped.friction.registry import LAWS, law_named
+from lumped import load_gear_pair, preset_names
+from lumped.errors import LawRangeWarning, ParameterError
+from lumped.friction import LAWS, benedict_kelley, composite, coulomb, smoothed_coulomb, xu_kahraman
+from lumped.friction.base import graded_breaks
+from lumped.friction.registry import law_named
 from lumped.friction.xu_kahraman import B
+from lumped.path_function import PathFunction
+from lumped.path_of_contact import contact_path, friction_path_function
 
 
 def test_benedict_kelley_is_bounded():
@@ -105,3 +112,92 @@ def test_a_law_is_found_as_tables_and_reports_call_it(nasa, name, spelled):
 def test_any_other_name_is_refused_with_the_list(nasa, text):
     with pytest.raises(ParameterError, match="one of none, coulomb"):
         nasa.with_(friction__law=text)
+
+
+PITCH, LOW, HIGH = 0.0152, 0.0075, 0.0229
+
+
+def graded(law, breaks, tolerance):
+    return PathFunction.fit(law, breaks, tolerance=tolerance, cut=graded_breaks(PITCH))
+
+
+def logarithm(xi):
+    d = np.maximum(np.abs(xi - PITCH), 1e-8)
+    return np.sign(xi - PITCH) * -0.0085 * np.log(d)
+
+
+def power(xi):
+    return np.sign(xi - PITCH) * 6.0 * np.abs(xi - PITCH) ** 1.036
+
+
+def ramp(xi):
+    return 0.03 * np.arctan((xi - PITCH) / 2e-5)
+
+
+@pytest.mark.parametrize(("law", "knots"), [(logarithm, (-1e-8, 0.0, 1e-8)), (power, (0.0,)), (ramp, (0.0,))])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
+def test_tolerance_is_met_at_every_distance(law, knots, tolerance):
+    breaks = [LOW, *(PITCH + k for k in knots), HIGH]
+    fit = graded(law, breaks, tolerance)
+    d = np.geomspace(1.1e-8, 0.99 * (PITCH - LOW), 4000)
+    for side in (-1.0, 1.0):
+        error = np.abs(fit(PITCH + side * d) - law(PITCH + side * d)).max()
+        # probes see the error of a piece to within its ripple, a factor of two
+        assert error < 2 * tolerance
+    assert fit.breaks.size < 100
+
+
+def test_pieces_grow_like_the_logarithm_of_the_resolution():
+    # graded pieces: each decade of a smaller inner scale adds some pieces, it does not multiply them
+    def ramps(scale):
+        return graded(lambda xi: np.arctan((xi - PITCH) / scale), [LOW, PITCH, HIGH], 1e-9).breaks.size
+
+    sizes = [ramps(1e-4), ramps(1e-5), ramps(1e-6)]
+    # a piece spans a ratio of 1.6 or so in distance: ln 10/ln 1.6 = 5 a decade and side, and slack
+    assert max(np.diff(sizes)) <= 14
+    assert sizes[2] < 80
+
+
+PAIRS = {name: load_gear_pair(name) for name in preset_names()}
+
+
+def decades(low, high):
+    return st.floats(math.log10(low), math.log10(high)).map(lambda x: 10.0**x)
+
+
+@st.composite
+def operating_points(draw):
+    return PAIRS[draw(st.sampled_from(sorted(PAIRS)))].with_(
+        operating__pinion_speed=draw(decades(10, 1e5)), operating__pinion_torque=draw(decades(0.1, 3e3)),
+        lubricant__viscosity=draw(decades(1, 1e3)), pinion__roughness=draw(decades(0.02, 1.1)),
+        gear__roughness=draw(decades(0.02, 1.1)), friction__maximum=draw(decades(0.01, 1)),
+        friction__sharpness=draw(decades(1, 1e3)),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("law", [name for name in LAWS if name != "none"])
+@settings(max_examples=25)
+@given(pair=operating_points(), where=st.lists(st.floats(-8.0, -2.2), min_size=5, max_size=30))
+def test_any_operating_point(law, pair, where):
+    path, parameters = contact_path(pair), pair.friction
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LawRangeWarning)  # the law is followed outside its range as well
+        try:
+            function = friction_path_function(pair, law=law)
+        except ParameterError as error:
+            if "mu up to" not in str(error):  # law III has no bound of its own and is refused above 1
+                raise
+            reject()
+    assert ((function.switches > path.L_XA) & (function.switches < path.L_XD)).all()
+    assert np.isin(function.switches, function.breaks).all()
+    d = 10.0 ** np.array(where)
+    xi = np.concatenate([path.L_XP - d, path.L_XP + d])
+    xi = xi[(xi > path.L_XA) & (xi < path.L_XD)]
+    near = np.abs(xi[:, None] - np.append(function.switches, path.L_XP)).min(axis=1) < 1e-11
+    xi = xi[~near]
+    mu = function(xi)
+    # 1e-10 is the tolerance of the fit at its probes; its ripple between them may be twice that
+    np.testing.assert_allclose(mu, LAWS[law].signed(xi, path, parameters), atol=2e-10, rtol=0)
+    assert (mu * np.sign(xi - path.L_XP) >= -2e-10).all()  # never drives the sliding
+    if law == "benedict_kelley":
+        assert (np.abs(mu) <= parameters.maximum + 2e-10).all()

@@ -158,3 +158,18 @@ def test_the_least_contact_ratio(nasa, off):
     cycle = mesh_cycle(at_contact_ratio(nasa, 1.0 + off))
     times = np.linspace(0, cycle.period, 1001)
     assert cycle.sample(times).contact.any(axis=0).all()
+
+
+@pytest.mark.parametrize("cycles", [0, 1, 1000, 100_000])
+def test_no_more_than_rounding_counts_as_at_a_switch(cycle, cycles):
+    """Behind it where a switch is hit but for the rounding of the time; the law before it just before."""
+    places, segments = cycle.edges[1:-1], np.arange(cycle.edges.size - 2)
+    jumps = []
+    for time, segment in ((places * (1.0 - 2e-12), segments), (places + cycles * cycle.period, segments + 1)):
+        found, expected = cycle.sample(time), cycle.sample(places, segment=segment)
+        for name in ("stiffness", "damping", "friction", "error"):
+            of, at = getattr(found, name), getattr(expected, name)
+            # A law has no slope that would show over the rounding of 1e5 periods, 1e-11 of one.
+            np.testing.assert_allclose(of, at, rtol=0.0, atol=1e-6 * np.abs(at).max(), err_msg=name)
+        jumps.append(expected.stiffness)
+    assert (np.abs(jumps[1] - jumps[0]).max(axis=0) > 1e-3 * np.abs(jumps[0]).max()).any()

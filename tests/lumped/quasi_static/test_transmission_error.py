@@ -4,8 +4,10 @@ import time
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from lumped import NumericalError, ParameterError, geometry, load_gear_pair
+from lumped import NumericalError, ParameterError, geometry, load_gear_pair, mesh_elements, steady_state
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static import (
     optimal_relief,
@@ -253,3 +255,84 @@ def test_bad_input_is_refused():
 def test_zero_force_shares_at_first_contact():
     found = share_load(np.full((2, 2), K), np.array([[1e-6, 3e-6], [4e-6, 2e-6]]), 0.0)
     assert found.transmission_error == pytest.approx([1e-6, 2e-6], rel=1e-14)
+
+
+def relieved(**changes):
+    return load_gear_pair("nasa_28_28").with_(
+        {
+            "mesh.contact": "prescribed",
+            "mesh.relief": "static", "mesh.stiffness": {"model": "energy"}, "operating.pinion_torque": 56.5,
+            "friction.law": "none", **changes,
+        }
+    )  # fmt: skip
+
+
+def test_elements_carry_the_error_and_the_loaded_contact():
+    pair = relieved()
+    g, e = geometry(pair), mesh_elements(pair)
+    assert float(e.error(g.L_XD)) == pytest.approx(
+        23e-6, rel=1e-9
+    )  # amount of the preset's relief at the tip
+    assert float(e.stiffness(g.L_XA + 1e-6)) == 0.0  # 56.5 N m do not close 23 um
+    assert float(e.damping(g.L_XA + 1e-6)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_slow_running_is_quasi_static():
+    exact = static_transmission_error(relieved(), phases=512, extended=False).transmission_error.values[0]
+    differences = []
+    for rpm in (400.0, 100.0):
+        dte = steady_state(relieved(**{"operating.pinion_speed": rpm}), samples_per_cycle=512).dte.values
+        differences.append(np.sqrt(np.mean((dte[:512] - exact) ** 2)) / np.ptp(exact))
+    # Inertia forces grow with the square of the speed and damping with the speed; kinks of k and e ring.
+    assert differences[1] < 3e-3
+    assert differences[1] < differences[0] / 4
+
+
+@given(
+    k=st.lists(st.floats(0.01, 10.0), min_size=3, max_size=3),
+    e=st.lists(st.floats(-5.0, 5.0), min_size=3, max_size=3),
+    force=st.floats(0.0, 50.0),
+)
+def test_equilibrium_and_compatibility(k, e, force):
+    k, e = np.array(k), np.array(e)
+    found = share_load(k, e, force)
+    rounding = 1e-12 * (1.0 + force + np.abs(k * e).sum())  # sums of a few products
+    assert found.load.sum() == pytest.approx(force, abs=10 * rounding)
+    assert np.all(found.load >= 0.0)
+    assert found.load == pytest.approx(k * np.maximum(found.transmission_error - e, 0.0), abs=rounding)
+
+
+def test_pairs_that_cannot_touch_carry_nothing():
+    found = share_load(np.array([1e8, 1e8]), np.array([0.0, np.inf]), np.array([[10.0], [20.0]])[:, 0])
+    assert found.load == pytest.approx(np.array([[10.0, 0.0], [20.0, 0.0]]), rel=1e-14)
+    with pytest.raises(NumericalError, match="no tooth pair"):
+        share_load([1e8], [np.inf], 1.0)
+
+
+@given(
+    k=st.lists(st.floats(0.3, 3.0), min_size=3, max_size=3),
+    e=st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),
+    w=st.lists(st.floats(-0.1, 0.15), min_size=3, max_size=3),
+    force=st.floats(0.0, 5.0),
+)
+def test_pairs_that_move_each_other(k, e, w, force):
+    # What is asked of a contact, which has one solution: nobody pulls, nobody is through its mate.
+    coupling = np.zeros((3, 3))
+    coupling[np.triu_indices(3, 1)] = w
+    coupling += coupling.T
+    found = share_load([k], [e], [force], [coupling])
+    load, matrix = found.load[0], coupling + np.diag(1.0 / np.array(k))
+    left = found.transmission_error[0] - np.array(e) - matrix @ load
+    assert load.sum() == pytest.approx(force, abs=1e-11)
+    assert np.all(load >= 0.0)
+    assert np.all(left <= 1e-11)
+    assert np.abs(left * load).max() < 1e-11
+    with pytest.raises(NumericalError, match="no tooth pair"):
+        share_load([k], [[np.inf] * 3], [force], [coupling + 0.01])
+
+
+def test_a_coupling_too_small_to_matter_changes_nothing():
+    k, e = np.array([[1.0, 2.0, 0.5, 0.0]]), np.array([[0.3, 0.0, np.inf, 0.1]])
+    alone, nearly = (share_load(k, e, [2.0], w) for w in (None, np.full((1, 4, 4), 1e-300)))
+    assert nearly.load == pytest.approx(alone.load, rel=1e-14)
+    assert nearly.transmission_error == pytest.approx(alone.transmission_error, rel=1e-14)

@@ -224,6 +224,11 @@ def test_writing_refuses_what_it_cannot_write(tmp_path):
         with pytest.raises(ParameterError, match=r"one of 1\.4"):
             write_rexs(pair, tmp_path / "pair.rexs", version)
     assert list(tmp_path.iterdir()) == []
+    (tmp_path / "pair.rexs").write_text("of the user")
+    with pytest.raises(ParameterError, match="It exists"):
+        write_rexs(pair, tmp_path / "pair.rexs")
+    assert (tmp_path / "pair.rexs").read_text() == "of the user"
+    assert write_rexs(pair, tmp_path / "pair.rexs", force=True).stat().st_size > 1000
 
 
 @pytest.mark.parametrize("form", [".rexs", ".rexsj", ".rexsz"])

@@ -2,6 +2,9 @@
 
 import csv
 import os
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -148,3 +151,40 @@ def test_output_files_are_refused_before_any_work(tmp_path):
         with pytest.raises(ParameterError, match=reason):
             output.check_file(path, output.DATA_SUFFIXES, force=False)
     assert output.check_file(existing, output.DATA_SUFFIXES, force=True) == existing
+
+
+def limited():
+    """A file may grow to 4 kB: writing more fails as on a full disk, at any place."""
+    import resource  # POSIX
+
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+
+#: Runs the command for each file, and ends with the exit codes.
+RUNS = """
+import sys
+from validation.cli import main
+for out in sys.argv[1:]:
+    sys.argv = ["spurcheck", "simulate", "--cycles", "1", "-o", out]
+    try:
+        main()
+    except SystemExit as stop:
+        print("exit code", stop.code, file=sys.stderr)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of a process are POSIX")
+def test_a_result_that_does_not_fit_is_told_and_leaves_nothing(tmp_path):
+    # HDF5 alone ends the process with a segmentation fault here.
+    outs = [str(tmp_path / f"run.{suffix}") for suffix in ("nc", "csv", "mat", "png")]
+    # Without compiling: its cache could not be written either.
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "MPLBACKEND": "Agg"}
+    command = [sys.executable, "-c", RUNS, *outs]
+    run = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, env=environment)
+    assert run.returncode == 0, run.stderr
+    told = run.stderr.split("exit code 3")
+    assert len(told) == len(outs) + 1
+    assert [out in text for out, text in zip(outs, told, strict=False)] == [True] * len(outs)
+    assert "Traceback" not in run.stderr
+    assert list(tmp_path.iterdir()) == []

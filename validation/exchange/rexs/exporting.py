@@ -16,10 +16,10 @@ from validation.exchange.rexs.encodings import encoded, form_of
 from validation.exchange.rexs.gears import RELIEFS, diameter_at, end_of_flank
 from validation.exchange.rexs.model import Document
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN, rexs_from_si
-from validation.files.output import whole_file
+from validation.files.output import check_file, whole_file
 
 
-def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1]) -> Path:
+def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, force: bool = False) -> Path:
     """Write what REXS has attributes for of a gear pair, with the fifteen digits that it allows.
 
     REXS has no place for bearings as springs along and off the line of action, damping, the friction law, the
@@ -30,6 +30,7 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1]) -> P
     pair : a validated gear pair
     path : file to write; .rexs, .rexs.xml (XML), .rexsj, .rexs.json (JSON), .rexsz, .rexs.zip (zipped XML)
     version : of REXS, "1.4" to "1.7"
+    force : overwrite an existing file
 
     Returns
     -------
@@ -37,12 +38,13 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1]) -> P
 
     Raises
     ------
-    ParameterError : an unknown suffix or version
+    ParameterError : an unknown suffix or version, or an existing file without ``force``
     """
     pair, path = load_gear_pair(pair), file_path("path", path)
     form = form_of(path)
+    check_file(path, (path.suffix.lower(),), force=force)
     document = rexs_document(pair, one_of("version", version, WRITTEN))
-    with whole_file(path) as temporary:
+    with whole_file(path, new=not force) as temporary:
         temporary.write_bytes(encoded(document, form, path.name.split(".")[0]))
     return path
 
