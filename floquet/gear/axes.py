@@ -21,7 +21,7 @@ from lumped.fields.units import SIValue, to_stated
 from lumped.friction import LAWS, mean_coefficient
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath
 from lumped.friction.registry import law_named
-from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import Supports
 from lumped.path_of_contact.friction import contact_path, fit_law
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -60,7 +60,7 @@ class GearVariation:
 
     def cycle(self) -> MeshCycle:
         """Mesh cycle, with the friction law scaled to ``friction_mean``."""
-        cycle = mesh_cycle(self.pair)
+        cycle = MeshCycle.of(self.pair)
         if self.friction_mean is None:
             return cycle
         friction = cycle.elements.friction
@@ -149,7 +149,7 @@ GEAR_AXES: Mapping[str, GearAxis] = {
     ),
     "friction_coefficient": GearAxis(
         "1", "mean friction coefficient", _friction,
-        lambda pair: mean_coefficient(mesh_cycle(pair).elements.friction), low=0.0, high=1.0,
+        lambda pair: mean_coefficient(MeshCycle.of(pair).elements.friction), low=0.0, high=1.0,
     ),
     "torque": GearAxis(
         "N m", "pinion torque", _field("operating.pinion_torque"),

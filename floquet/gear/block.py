@@ -21,7 +21,7 @@ from floquet.rank_one.piecewise import fit_pieces, series_rounding, to_series
 from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import real_number
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.path_function import PathFunction
 from lumped.schema.files import AnyPair
 from lumped.typing import FloatArray
@@ -60,7 +60,7 @@ class Feedback:
 
 def feedback_system(variation: GearVariation) -> Feedback:
     """Return what the mesh couples of a gear pair."""
-    system = periodic_system(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
+    system = LTVSystem.of(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
     if variation.supports == "shafts":
         return _leading_modes(system)
     s = system.structure

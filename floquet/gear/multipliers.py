@@ -19,7 +19,7 @@ from floquet.gear.axes import GearVariation
 from floquet.gear.block import Feedback, feedback_system, fitted_block
 from floquet.rank_one.batch import fast_multipliers
 from lumped.arguments import one_of, real_number
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair
 from lumped.typing import ComplexArray, FloatArray
@@ -76,7 +76,7 @@ def gear_pair_system(
     if form == "mesh":
         system = feedback_system(variation).system
     else:
-        system = periodic_system(variation.pair, form, cycle=variation.cycle(), supports=variation.supports)
+        system = LTVSystem.of(variation.pair, form, cycle=variation.cycle(), supports=variation.supports)
     coefficients = _Coefficients(system, variation.stiffness_variation)
     return PeriodicSystem(coefficients, system.period, tuple(system.breakpoints), vectorized=True)
 

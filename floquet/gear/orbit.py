@@ -21,11 +21,11 @@ from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable
 from lumped.model.equations import COORDINATES
-from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.model.periodic_system import periodic_system
+from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
-from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -154,7 +154,7 @@ class GearOrbit:
         phases = np.arange(samples_per_cycle) / samples_per_cycle
         run = o.system.run(o.start, o.period, o.n, o.parameter, samples=phases)
         states = _absolute_states(self.pair, cycle, o, run)
-        system = periodic_system(self.pair, "full", cycle=cycle)
+        system = LTVSystem.of(self.pair, "full", cycle=cycle)
         time, drive = run.phases * o.period, cycle.offsets.size
         values = response(system, time, states, run.loads[:, :drive].T)
         values["contact"] = (values["normal_load"] > 0.0).astype(float)
@@ -183,7 +183,7 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
     The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
     friction by the trapezoidal rule.
     """
-    g, held = pair.geometry, periodic_system(pair, "elastic", cycle=cycle).held
+    g, held = pair.geometry, LTVSystem.of(pair, "elastic", cycle=cycle).held
     time, torques = run.phases * orbit.period, _torques(pair, orbit.parameter)
     steps = np.diff(time, append=orbit.n * orbit.period)
 
@@ -283,7 +283,7 @@ def form_with(*, back_side: bool) -> ContactForm:
 
 def static_deflection(pair: GearPair) -> float:
     """Deflection of the mesh by the mean load and the mean stiffness [m]."""
-    return pair.operating.pinion_torque / pair.geometry.base_radius_pinion / mesh_cycle(pair).mean_stiffness
+    return pair.operating.pinion_torque / pair.geometry.base_radius_pinion / MeshCycle.of(pair).mean_stiffness
 
 
 def largest_motion(pair: GearPair) -> float:
@@ -307,8 +307,8 @@ def start_of(
     g, operating, states = pair.geometry, pair.operating, np.zeros(12)
     given = operating.brake_torque != "balanced"
     torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
-    cycle = MeshCycle(g, mesh_elements(pair) if elements is None else elements)
-    absolute = periodic_system(pair, "full", cycle=cycle)
+    cycle = MeshCycle(g, contact_of(pair).elements(pair) if elements is None else elements)
+    absolute = LTVSystem.of(pair, "full", cycle=cycle)
     if start is not None:
         states = real_array("start", start)
         if states.shape != (12,):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.arguments import one_of, whole_number
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.teeth.monodromy import cycle_maps
@@ -74,7 +74,7 @@ def revolution_multipliers(
     """
     pair = load_gear_pair(pair)
     one_of("supports", supports, ("springs", "shafts"))
-    system = periodic_system(pair.healthy, "mesh" if supports == "springs" else "elastic", supports=supports)
+    system = LTVSystem.of(pair.healthy, "mesh" if supports == "springs" else "elastic", supports=supports)
     steps = 2 * steps_of(system) if steps is None else whole_number("steps", steps, 32, 65536)
     cycles = period_of(pair)
     multipliers, rates = _of_period(pair, system, cycles, steps)

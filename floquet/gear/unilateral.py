@@ -22,13 +22,12 @@ from floquet.gear.axes import (
 from floquet.orbits.branch import Family
 from floquet.orbits.system import Contact, ContactSystem
 from lumped.gear_geometry.tooth_profile import tooth_half_angle
-from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.model.periodic_system import periodic_system
+from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import PathFunction, shifted
 from lumped.path_of_contact import friction_path_function
-from lumped.quasi_static.contacts import mesh_elements
-from lumped.quasi_static.tooth_error import error_function
-from lumped.schema.bodies import bodies
+from lumped.quasi_static.contacts import contact_of
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -61,7 +60,7 @@ def unilateral_system(
         driving flanks
     """
     cycle = cycle or contact_cycle(pair)
-    base = periodic_system(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle)
+    base = LTVSystem.of(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle)
     s, g = base.structure, pair.geometry
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
@@ -164,8 +163,8 @@ def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank
     sign: tuple[npt.ArrayLike, npt.ArrayLike] | None = None
     if zeta == 0.0:
         sign = (1.0, 0.0)
-    elif pair.mesh.contact == "prescribed":  # k/c = c/(4 zeta^2 m_e)
-        sign = (c / (4.0 * zeta**2 * bodies(pair).effective_mass), 1.0)
+    elif contact_of(pair).root_damping:  # k/c = c/(4 zeta^2 m_e)
+        sign = (c / (4.0 * zeta**2 * bodies_of(pair).effective_mass), 1.0)
     return Contact(
         direction=flank.direction,
         acceleration=acceleration,
@@ -211,7 +210,7 @@ class _Parts:
     def __init__(self, pair: GearPair, family: FrictionFamily, form: ContactForm) -> None:
         self.family = family
         there = pair.with_({"operating.pinion_speed": family.speed_rpm})
-        mu = friction_path_function(there, interval=mesh_cycle(there).elements.stiffness.interval)
+        mu = friction_path_function(there, interval=MeshCycle.of(there).elements.stiffness.interval)
         steady = _signed(mu, pair.geometry.L_XP, family.level or 0.0)
         parts = [mu] if family.level is None else [_plus(mu, steady, -1.0), steady]
         # Zero times the law, so that all have the same pieces.
@@ -260,10 +259,7 @@ def _plus(one: PathFunction, other: PathFunction, factor: float) -> PathFunction
 
 def contact_cycle(pair: GearPair) -> MeshCycle:
     """The mesh cycle with clearance for relief; the linear model has the stiffness that statics leave."""
-    if pair.mesh.contact == "loaded" or pair.mesh.relief == "ignored":
-        return MeshCycle(pair.geometry, mesh_elements(pair))
-    raw = mesh_elements(pair.with_(mesh__relief="ignored"))
-    return MeshCycle(pair.geometry, replace(raw, error=error_function(pair)))
+    return MeshCycle(pair.geometry, contact_of(pair).unilateral_elements(pair))
 
 
 def _over_phase(function: PathFunction, start: FloatArray, inside: FloatArray, pitch: float) -> FloatArray:

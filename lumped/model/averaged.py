@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -51,7 +51,7 @@ def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.Stat
     import control  # takes longer to import than all else of lumped; modes do without
 
     one_of("form", form, ("elastic", "mesh"), "The rigid rotation has no steady response.")
-    system = periodic_system(pair, form)
+    system = LTVSystem.of(pair, form)
     m = len(system.coordinates)
     b = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     c = np.zeros((3, system.size))
@@ -111,7 +111,7 @@ def modes(pair: GearPair) -> tuple[Mode, ...]:
     ------
     NumericalError : a mode of the averaged system is overdamped, so it has no natural frequency
     """
-    system = periodic_system(pair, "elastic")
+    system = LTVSystem.of(pair, "elastic")
     m = len(system.coordinates)
     values, vectors = np.linalg.eig(averaged_matrix(system))
     found = []

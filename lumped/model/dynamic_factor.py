@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lumped.schema.bodies import bodies
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.stiffness.iso6336 import mean_mesh_stiffness, pair_single_stiffness
 
@@ -48,7 +48,7 @@ def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -
     pair : a validated gear pair
     tolerance_class : of ISO 1328-1, 1 to 11
     """
-    g, b = pair.geometry, bodies(pair)
+    g, b = pair.geometry, bodies_of(pair)
     width = 1e3 * g.face_width  # mm; the formulas are in N, mm, um
     ratio = pair.gear.teeth / pair.pinion.teeth
     eps = g.contact_ratio

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.kernels import law_at
 from lumped.path_function import PathFunction
-from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
 #: One-sided limits are taken this fraction of a base pitch inside a segment.
@@ -59,6 +61,11 @@ class MeshCycle:
     def period(self) -> float:
         """T_m = lambda / (Omega_p r_bp) [s]."""
         return self.geometry.mesh_period
+
+    @classmethod
+    def of(cls, pair: GearPair) -> Self:
+        """The mesh cycle of a gear pair in its own form of contact."""
+        return cls(pair.geometry, contact_of(pair).elements(pair))
 
     @property
     def mean_stiffness(self) -> float:
@@ -189,5 +196,4 @@ def is_edge(times: FloatArray, edges: FloatArray) -> BoolArray:
 
 def mesh_cycle(pair: AnyPair) -> MeshCycle:
     """Return the mesh cycle of a gear pair."""
-    pair = load_gear_pair(pair)
-    return MeshCycle(pair.geometry, mesh_elements(pair))
+    return MeshCycle.of(load_gear_pair(pair))

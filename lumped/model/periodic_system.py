@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, get_args
+from typing import Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
 from lumped.model.equations import Structure, structure
-from lumped.model.mesh_cycle import MeshCycle, PairState, mesh_cycle
+from lumped.model.mesh_cycle import MeshCycle, PairState
 from lumped.model.supports import SUPPORTS, Form
 from lumped.model.supports import Supports as _Supports
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -80,6 +80,42 @@ class LTVSystem:
         """The six coordinates and their rates, (k, 6) each, of states (k, 2m); see ``gears``."""
         m = len(self.coordinates)
         return states[:, :m] @ self.gears.T, states[:, m:] @ self.gears.T
+
+    @classmethod
+    def of(
+        cls,
+        pair: GearPair,
+        form: Form = "elastic",
+        *,
+        as_printed: Collection[int] = (),
+        cycle: MeshCycle | None = None,
+        supports: Supports = "springs",
+    ) -> Self:
+        """The system of a gear pair; arguments as ``periodic_system``."""
+        one_of("form", form, get_args(Form))
+        one_of("supports", supports, get_args(Supports))
+        s = structure(pair, as_printed)
+        held = SUPPORTS[supports](pair, s)
+        z = held.coordinates(form)
+        m = len(z.names)
+        constant, torques = np.zeros((2 * m, 2 * m)), np.zeros((2, 2 * m))
+        constant[:m, m:] = np.eye(m)
+        constant[m:, :m], constant[m:, m:], torques[:, m:] = -z.stiffness, -z.damping, z.torques
+        return cls(
+            pair=pair,
+            form=form,
+            coordinates=z.names,
+            cycle=cycle or MeshCycle.of(pair),
+            constant=constant,
+            torque_pinion=torques[0],
+            torque_gear=torques[1],
+            deflection=z.deflection,
+            reduction=z.reduction,
+            structure=s,
+            gears=z.gears,
+            gyroscopic=z.gyroscopic,
+            held=held,
+        )
 
     @property
     def pinion_torque(self) -> float:
@@ -174,28 +210,4 @@ def periodic_system(
     ------
     ParameterError : unknown form, supports or equation, or shafts that the pair does not have
     """
-    pair = load_gear_pair(pair)
-    one_of("form", form, get_args(Form))
-    one_of("supports", supports, get_args(Supports))
-    s = structure(pair, as_printed)
-    held = SUPPORTS[supports](pair, s)
-    z = held.coordinates(form)
-    m = len(z.names)
-    constant, torques = np.zeros((2 * m, 2 * m)), np.zeros((2, 2 * m))
-    constant[:m, m:] = np.eye(m)
-    constant[m:, :m], constant[m:, m:], torques[:, m:] = -z.stiffness, -z.damping, z.torques
-    return LTVSystem(
-        pair=pair,
-        form=form,
-        coordinates=z.names,
-        cycle=cycle or mesh_cycle(pair),
-        constant=constant,
-        torque_pinion=torques[0],
-        torque_gear=torques[1],
-        deflection=z.deflection,
-        reduction=z.reduction,
-        structure=s,
-        gears=z.gears,
-        gyroscopic=z.gyroscopic,
-        held=held,
-    )
+    return LTVSystem.of(load_gear_pair(pair), form, as_printed=as_printed, cycle=cycle, supports=supports)

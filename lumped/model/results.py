@@ -11,12 +11,15 @@ from lumped.labelling import Variable, labelled_dataset
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
-from lumped.quasi_static.contacts import CONTACTS
+from lumped.quasi_static.contacts import contact_of
+from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Loads below this share of the static load are zero for the question whether teeth separate.
+LOAD_NOISE = 1e-4
 #: Variable -> (dimensions, unit, plain name). Every model of the pair returns these.
 VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
     "theta_p": (("time",), "rad", "pinion rotation, deviation from nominal"),
@@ -73,14 +76,21 @@ def dataset(
     return system.held.labelled(labelled(time, response(system, time, states), attributes), states)
 
 
-def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
+def load_range(pair: GearPair, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
     """Largest load of a tooth pair, and smallest load: negative where the teeth would separate [N].
 
-    ``contact_form`` is the pair's ``mesh.contact``, which says what must press, see ``Contact.least_load``;
-    ``contact`` (pairs, k) whether the pair can touch.
+    ``load`` (pairs, k) [N], ``contact`` (pairs, k) whether the pair can touch. What must press depends on the
+    form of contact, see ``Contact.pressing``.
     """
     touching = contact > 0
-    return float(load[touching].max()), CONTACTS[contact_form].least_load(load, touching)
+    pressing, where = contact_of(pair).pressing(load, touching)
+    return float(load[touching].max()), float(pressing[where].min())
+
+
+def needs_pull(pair: GearPair, motion: xr.Dataset) -> bool:
+    """Whether a motion of the linear model needs teeth that pull, by more than ``LOAD_NOISE``."""
+    least = load_range(pair, *(motion[name].to_numpy() for name in ("normal_load", "contact")))[1]
+    return least < -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
 
 
 def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArray) -> float:

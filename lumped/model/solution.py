@@ -15,7 +15,7 @@ from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import provenance
 from lumped.model import powers
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import step_maps
 from lumped.model.results import dataset
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
@@ -69,13 +69,11 @@ def simulate(
     """
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
-    system = periodic_system(pair, "full", as_printed=as_printed, supports=supports)
+    system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     grid = sample_times(system.period, samples_per_cycle)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
     # as a drift instead of being balanced away.
-    repaired = (
-        system if not as_printed else periodic_system(pair, "full", cycle=system.cycle, supports=supports)
-    )
+    repaired = system if not as_printed else LTVSystem.of(pair, "full", cycle=system.cycle, supports=supports)
     balance = periodic_solution(repaired, grid[:1], estimate_error=False)
     state = initial_state(system, initial, balance)
     time = np.concatenate([grid + j * system.period for j in range(cycles)] + [[cycles * system.period]])
@@ -139,7 +137,7 @@ def steady_cycle(
     supports: Supports = "springs",
 ) -> xr.Dataset:
     """The result of ``lumped.steady_state`` of like teeth, over one mesh cycle."""
-    system = periodic_system(pair, "full", as_printed=as_printed, supports=supports)
+    system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))

@@ -10,7 +10,7 @@ import numpy as np
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import STAGES, STEP_ANGLE, StepMaps, step_maps
 from lumped.model.results import peak_to_peak, response
 from lumped.schema.pair import GearPair
@@ -125,7 +125,7 @@ def periodic_solution(
 
 def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "springs") -> PeriodicSolution:
     """Periodic motion without error estimate, labels and provenance: half the time of ``steady_state``."""
-    system = periodic_system(pair, "full", supports=supports)
+    system = LTVSystem.of(pair, "full", supports=supports)
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 

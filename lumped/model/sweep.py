@@ -16,12 +16,12 @@ from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
-from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
 from lumped.ranges import told_once
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -106,7 +106,7 @@ def speed_sweep(
         for name in names:
             table[f"{name}_peak_to_peak"][j] = solution.peak_to_peak[name]
             table[f"{name}_rms"][j] = np.std(run[name])
-        found = load_range(pair.mesh.contact, run["normal_load"], run["contact"])
+        found = load_range(pair, run["normal_load"], run["contact"])
         table["normal_load_max"][j], table["normal_load_min"][j] = found
         table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
         table["mesh_efficiency"][j] = balance(solution)["mesh_efficiency"]
@@ -132,12 +132,12 @@ def systems_over_speed(pairs: Iterable[GearPair], supports: Supports = "springs"
     for at in pairs:
         g = at.geometry
         if elements is None:
-            elements = mesh_elements(at)
+            elements = contact_of(at).elements(at)
         else:
             elements = replace(
                 elements, friction=friction_path_function(at, interval=elements.stiffness.interval)
             )
-        yield periodic_system(at, "full", cycle=MeshCycle(g, elements), supports=supports)
+        yield LTVSystem.of(at, "full", cycle=MeshCycle(g, elements), supports=supports)
 
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
@@ -153,7 +153,7 @@ def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:
 
 @told_once()
 def resolved_sweep(
-    pair: AnyPair,
+    pair: GearPair,
     speeds_rpm: tuple[float, float],
     *,
     most: int = 240,
@@ -180,7 +180,6 @@ def resolved_sweep(
     """
     import xarray as xr
 
-    pair = load_gear_pair(pair)
     new = _first_speeds(pair, speeds_rpm, max(int(_FIRST * most), 2))[:most]
     found: xr.Dataset | None = None
     done = 0

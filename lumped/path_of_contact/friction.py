@@ -22,7 +22,6 @@ from lumped.labelling import labelled_dataset
 from lumped.lubrication import film
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
-from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -32,14 +31,13 @@ if TYPE_CHECKING:
 _CHECKED_POSITIONS = 201
 
 
-def contact_path(pair: AnyPair) -> ContactPath:
+def contact_path(pair: GearPair) -> ContactPath:
     """Collect the nominal contact of a pair: kinematics at nominal speed, full static load w_n, film data.
 
     S is the mean of both Ra; R_comp is their root sum of squares unless ``friction.composite_roughness`` is
     given. The full static load w_n = T_p/(Z r_bp) is used at every position, as in the paper, also where two
     pairs share it.
     """
-    pair = load_gear_pair(pair)
     g, lubricant, friction = pair.geometry, pair.lubricant, pair.friction
     pinion, gear = pair.pinion, pair.gear
     composite = friction.composite_roughness
@@ -68,7 +66,7 @@ def contact_path(pair: AnyPair) -> ContactPath:
 
 
 def friction_path_function(
-    pair: AnyPair, law: str | None = None, interval: tuple[float, float] | None = None
+    pair: GearPair, law: str | None = None, interval: tuple[float, float] | None = None
 ) -> PathFunction:
     """Signed friction coefficient mu_i(xi) of one tooth pair at nominal speed and load.
 
@@ -92,7 +90,6 @@ def friction_path_function(
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
-    pair = load_gear_pair(pair)
     path, name = contact_path(pair), _name(pair, law)
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
@@ -105,7 +102,7 @@ def friction_path_function(
     return function
 
 
-def law_range_violations(pair: AnyPair, law: str | None = None) -> tuple[RangeViolation, ...]:
+def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
     """List where a pair leaves the validity ranges of a friction law, by default its own.
 
     A law made of others (V) is checked against each of them where that one is in force.
@@ -115,7 +112,6 @@ def law_range_violations(pair: AnyPair, law: str | None = None) -> tuple[RangeVi
     pair : the gear pair
     law : name of a friction law
     """
-    pair = load_gear_pair(pair)
     return violations_of(contact_path(pair), pair.friction, _name(pair, law))
 
 
@@ -212,7 +208,7 @@ def film_note(low: float, high: float) -> str:
     )
 
 
-def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
+def friction_profile(pair: GearPair, points: int = 401) -> xr.Dataset:
     """Compare all laws with friction over the path of contact, with the contact conditions they see.
 
     Parameters
@@ -227,7 +223,6 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
     ``range_warnings``, one text per left validity range; ``left_out``, laws that this pair does not allow
     and why.
     """
-    pair = load_gear_pair(pair)
     path, settings = contact_path(pair), pair.friction
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []

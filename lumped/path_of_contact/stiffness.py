@@ -26,14 +26,13 @@ if TYPE_CHECKING:
 LOADS = (iso6336.LOW_LOAD, 1600.0)
 
 
-def pair_stiffness(pair: AnyPair) -> PathFunction:
+def pair_stiffness(pair: GearPair) -> PathFunction:
     """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m].
 
     Raises
     ------
     ParameterError : the model's parameters do not fit this pair
     """
-    pair = load_gear_pair(pair)
     return pair.mesh.stiffness.curve(pair).scaled(pair.mesh.stiffness_factor)
 
 
@@ -130,7 +129,7 @@ def mesh_stiffness(pair: AnyPair, samples: int = 512) -> xr.Dataset:
     )
 
 
-def iso_comparison(pair: AnyPair) -> xr.Dataset:
+def iso_comparison(pair: GearPair) -> xr.Dataset:
     """Energy stiffness over ISO 6336-1's, as the pair is and with one assumption changed at a time.
 
     The ratio of the mean mesh stiffnesses is exactly the product of the size of the stiffness and the
@@ -153,7 +152,6 @@ def iso_comparison(pair: AnyPair) -> xr.Dataset:
     ParameterError : the rack cannot cut these teeth
     NumericalError : the strain energy did not converge
     """
-    pair = load_gear_pair(pair)
     g = pair.geometry
     top, mean = iso6336.single_of(pair), iso6336.mean_of(pair)
     low, high = (pair.with_(operating__pinion_torque=_torque(load, g)) for load in LOADS)

@@ -60,6 +60,10 @@ class Contact(ABC):
     name: ClassVar[str]
     #: Whether the elastic energy of the teeth is conserved, so that the brake balances every loss.
     conservative: ClassVar[bool]
+    #: What must press in words: below zero load it has lost contact.
+    pressed: ClassVar[str]
+    #: Whether the damping of a pair is 2 zeta sqrt(k m_e) wherever it touches.
+    root_damping: ClassVar[bool]
 
     @abstractmethod
     def elements(self, pair: GearPair) -> MeshElements:
@@ -70,8 +74,12 @@ class Contact(ABC):
         """How far the load of a pair moves the one m pitches ahead, w_m(xi), m = 1, 2, ... [m/N]."""
 
     @abstractmethod
-    def least_load(self, load: FloatArray, contact: BoolArray) -> float:
-        """The smallest of the loads (pairs, k) that must not pull: below zero contact is lost [N]."""
+    def unilateral_elements(self, pair: GearPair) -> MeshElements:
+        """Laws of one tooth pair that touches where its flanks meet, relief being clearance."""
+
+    @abstractmethod
+    def pressing(self, load: FloatArray, contact: BoolArray) -> tuple[FloatArray, BoolArray]:
+        """Loads that must not pull [N] and where they touch (n, k), of those of the pairs (pairs, k)."""
 
 
 def at_rest(pair: GearPair) -> GearPair:

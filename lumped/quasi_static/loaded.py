@@ -56,6 +56,8 @@ class Loaded(Contact):
 
     name = "loaded"
     conservative = True
+    pressed = "all pairs together"
+    root_damping = False
 
     def elements(self, pair: GearPair) -> MeshElements:
         """The laws about the static loaded motion; the damper takes hold as the load does."""
@@ -72,9 +74,13 @@ class Loaded(Contact):
         """Those of the stiffness model."""
         return cross_compliances(pair)
 
-    def least_load(self, load: FloatArray, contact: BoolArray) -> float:
-        """All pairs together must press: each begins and ends its contact gradually."""
-        return float(load.sum(axis=0).min())
+    def unilateral_elements(self, pair: GearPair) -> MeshElements:
+        """The same laws: their error is the gap that closes under the mean load."""
+        return self.elements(pair)
+
+    def pressing(self, load: FloatArray, contact: BoolArray) -> tuple[FloatArray, BoolArray]:
+        """All pairs together: each begins and ends its contact gradually."""
+        return np.atleast_2d(load.sum(axis=0)), np.atleast_2d(contact.any(axis=0))
 
 
 @dataclass(frozen=True, eq=False)

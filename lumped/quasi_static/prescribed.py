@@ -9,7 +9,7 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -36,6 +36,8 @@ class Prescribed(Contact):
 
     name = "prescribed"
     conservative = False
+    pressed = "a tooth pair"
+    root_damping = True
 
     def elements(self, pair: GearPair) -> MeshElements:
         """Stiffness of the model, and the error of the reliefs, from A to D."""
@@ -56,9 +58,15 @@ class Prescribed(Contact):
         """None: pairs stand alone."""
         return ()
 
-    def least_load(self, load: FloatArray, contact: BoolArray) -> float:
-        """Every pair in contact must press."""
-        return float(load[contact].min())
+    def unilateral_elements(self, pair: GearPair) -> MeshElements:
+        """The whole stiffness, not what statics leave, and the error of the reliefs."""
+        if pair.mesh.relief == "ignored":
+            return self.elements(pair)
+        return replace(self.elements(pair.with_(mesh__relief="ignored")), error=error_function(pair))
+
+    def pressing(self, load: FloatArray, contact: BoolArray) -> tuple[FloatArray, BoolArray]:
+        """Every pair in contact."""
+        return load, contact
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ import numpy as np
 from lumped.arguments import real_number
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset, provenance
-from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -135,7 +135,7 @@ def shaft_modes(pair: AnyPair) -> xr.Dataset:
     ParameterError : the pair has no shafts
     """
     pair = load_gear_pair(pair)
-    shafts, elements, g = shafted_pair(pair), mesh_elements(pair), pair.geometry
+    shafts, elements, g = shafted_pair(pair), contact_of(pair).elements(pair), pair.geometry
     k, c = (mean_of_pairs(law, g.base_pitch) for law in (elements.stiffness, elements.damping))
     m, squares = shafts.frequencies.size - 1, shafts.frequencies[1:] ** 2  # without the common rotation
     damping = (shafts.damping + g.omega_pinion * shafts.gyroscopic)[1:, 1:]

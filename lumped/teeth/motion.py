@@ -15,7 +15,7 @@ import numpy as np
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.model.mesh_cycle import PairState
-from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import fastest_frequency
 from lumped.model.results import labelled, peak_to_peak, response
 from lumped.model.steady import periodic_solution
@@ -150,7 +150,7 @@ def own_motion(
     steps : least number of steps in a mesh cycle; by default by the fastest vibration
     """
     form = form_of(pair, touch)
-    system = periodic_system(pair.healthy, "full", supports=supports)
+    system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     laws = Laws(pair)
     steps = steps_of(system) if steps is None else steps

@@ -10,8 +10,12 @@ import math
 import numpy as np
 
 from lumped.typing import FloatArray
+from multibody.contact import layout as kn
 from multibody.contact.kinematics import compiled
 
+#: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the mean
+#: load. Acting at once it would make the load jump by c times the speed of approach at the first touch.
+GRADUAL = 1.0 / 15.0
 #: Below this share of the mean load a pair is linear: Hertz's logarithm would make it infinitely soft.
 _LINEAR_BELOW = 1e-3
 #: Steps for the load of Hertz's contact, of which four are the most needed.
@@ -259,3 +263,35 @@ def gradual(share: float) -> float:
     """Smooth step from 0 at 0 to 1 at 1."""
     x = min(max(share, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
+
+
+@compiled
+def relief_at(p: FloatArray, xi: float) -> tuple[float, float]:
+    """Material missing from both flanks that touch at xi [m], and its slope over xi.
+
+    Each relief grows over the roll angle of its own gear, the flank's distance from the base circle over the
+    base radius, from its start to the end of the flank.
+    """
+    error = slope = 0.0
+    for i in range(int(p[kn.RELIEFS])):
+        row = kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * i
+        pinion = p[row] == 0.0
+        sense = 1.0 / p[kn.RADIUS_P] if pinion else -1.0 / p[kn.RADIUS_G]
+        roll = xi / p[kn.RADIUS_P] if pinion else (p[kn.L_XY] - xi) / p[kn.RADIUS_G]
+        width = p[row + 2] - p[row + 1]
+        share = (roll - p[row + 1]) / width
+        if share > 0.0:
+            power = p[row + 4]
+            error += p[row + 3] * share**power
+            slope += p[row + 3] * power * share ** (power - 1.0) * sense / width
+    return error, slope
+
+
+@compiled
+def coupling_at(p: FloatArray, apart: int, xi: float) -> tuple[float, float]:
+    """Motion of a pair by a unit load on one ``apart`` pitches off, the one behind at xi; its slope [m/N]."""
+    if apart > p[kn.COUPLED]:
+        return 0.0, 0.0
+    first = kn.FIRST_COUPLED + kn.COUPLED_COLUMNS * (apart - 1)
+    row = p[first : first + kn.COUPLED_COLUMNS].reshape((1, kn.COUPLED_COLUMNS))
+    return stiffness_and_slope(row, xi)

@@ -15,16 +15,16 @@ import numpy as np
 
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
-from multibody.contact import kernels as kn
-from multibody.contact.elements import compliances
-from multibody.contact.kernels import coupling_at, mesh_position, relief_at
+from multibody.contact import layout as kn
+from multibody.contact.elements import GRADUAL, compliances, coupling_at, relief_at
+from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import (
     DRIVE,
-    MAX_PAIRS,
     Line,
     compiled,
     corner_gap,
     corner_reach,
+    mesh_position,
     overlap_rate,
     sliding_velocity,
     wrap,
@@ -115,7 +115,7 @@ def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArra
     if flags & kn.MOVING_LINE:
         turning = (line.ey * vx - line.ex * vy) / length
         lengthening = (rp + rg) * turning - (line.ex * vx + line.ey * vy)
-    full = kn.GRADUAL * p[kn.NOMINAL_FORCE]
+    full = GRADUAL * p[kn.NOMINAL_FORCE]
     damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
     softening = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0
     closing = overlap_rate(line, vx, vy, omega_p, omega_g)
@@ -221,12 +221,12 @@ def time_to_event(
     """
     pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
     coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and p[kn.COUPLED] > 0.0
-    contacts, count, ahead = np.empty((2 * MAX_PAIRS, kn.N_RECORD)), 0, np.empty((3, 6))
+    contacts, count, ahead = np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD)), 0, np.empty((3, 6))
     later, moving = ahead[0], ahead[1]
     if coupled:
         for j in range(6):
             later[j], moving[j] = q[j], v[j]
-        count = kn.contact_forces(t, ahead, p, flags, table, contacts)
+        count = contact_forces(t, ahead, p, flags, table, contacts)
     way, which = math.inf, 0
     for i in range(events.shape[0]):
         d = distance(events[i, 0], events[i, 1], t, q, v, p, flags, contacts, count) % pitch
@@ -241,7 +241,7 @@ def time_to_event(
         for j in range(6):
             later[j], moving[j] = q[j] + wait * (v[j] + 0.5 * wait * a[j]), v[j] + wait * a[j]
         if coupled and kind >= FIRST_TOUCH:
-            count = kn.contact_forces(t + wait, ahead, p, flags, table, contacts)
+            count = contact_forces(t + wait, ahead, p, flags, table, contacts)
         d = distance(kind, events[which, 1], t + wait, later, moving, p, flags, contacts, count)
         change = wrap(d, pitch) / speed
         share = 1.0  # of the way that the secant through the last two predictions goes

@@ -16,6 +16,7 @@ import math
 
 from lumped.typing import FloatArray
 from multibody.contact.kinematics import compiled
+from multibody.contact.layout import N_FRICTION
 
 # Places in the vector of friction parameters, all SI.
 (
@@ -35,8 +36,7 @@ from multibody.contact.kinematics import compiled
     SLOWEST,  # sliding velocity below which law II is held constant [m/s]
     SLOWEST_ROLLING,  # sum of the rolling velocities below which the laws are held [m/s]
     COLUMNS,  # of the lumped model's table, with the code TABLE
-    N_FRICTION,
-) = range(19)  # fmt: skip
+) = range(N_FRICTION)  # fmt: skip
 
 #: Codes of the laws, by their names in parameter files.
 LAWS = {

@@ -44,14 +44,15 @@ from typing import NamedTuple
 
 from lumped.compiler import Compiler
 from lumped.typing import FloatArray
+from multibody.contact import layout as kn
 
 _PACKAGE = Path(__file__).parents[1]
 compiled = Compiler(path for path in _PACKAGE.rglob("*.py") if b"@compiled" in path.read_bytes())
 
+#: How far beyond the tips contact is looked for, over the base pitch.
+_REACH = 0.4
 #: Flanks: the one that drives in the pinion's running sense, and the back side.
 DRIVE, COAST = 1.0, -1.0
-#: Most tooth pairs in contact at once: contact ratio below 4.
-MAX_PAIRS = 4
 
 
 class Line(NamedTuple):
@@ -269,7 +270,7 @@ def pairs_in_contact(
     """
     count = 0
     rho_p = rho
-    while rho_p <= tip_p and count < MAX_PAIRS:
+    while rho_p <= tip_p and count < kn.MAX_PAIRS:
         rho_g = length + delta - rho_p
         if 0.0 <= rho_g <= tip_g:
             arms[count, 0] = rho_p
@@ -299,3 +300,44 @@ def corners_at(line: Line, rho_p: float, rho_g: float, tip_p: float, tip_g: floa
     gap_p, by_p, length_p = corner_gap(rho_p - tip_p, tip_p, length, radius_p, radius_g)
     gap_g, by_g, length_g = corner_gap(rho_g - tip_g, tip_g, length, radius_g, radius_p)
     return Corners(gap_p + gap_g, by_p, by_g, length_p + length_g)
+
+
+@compiled
+def mesh_position(
+    t: float, q: FloatArray, p: FloatArray, flags: int, flank: float
+) -> tuple[Line, float, float, float]:
+    """Line of action of one side of the teeth, and where they stand on it; arguments as ``contact_forces``.
+
+    Returns (line, delta, rho, xi) : the line; overlap; flank distance rho_p of one tooth pair from X, with
+        which ``engaged`` finds the pairs in contact, and its position on the path of contact [m]. The other
+        pairs follow at whole pitches
+    """
+    rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
+    tau = min(max(t, p[kn.T_LOW]), p[kn.T_HIGH])
+    rolled = p[kn.OMEGA_P] * tau * rp
+    moving = (flags & kn.MOVING_LINE) != 0
+    along, off = (q[3] - q[0], q[4] - q[1]) if moving else (0.0, 0.0)
+    chi, apart = (p[kn.CHI_P], p[kn.APART]) if flank > 0.0 else (p[kn.CHI_P_BACK], p[kn.APART_BACK])
+    ex, ey, grown, psi = line_of_action(along, off, p[kn.L_XY], rp + rg, flank)
+    first, delta = mesh_phase(psi, grown, q[2], q[5], rolled, rp, rg, p[kn.PITCH], chi, apart, flank)
+    beyond = delta  # excess of rho_p + rho_g over the length, which places the contact point
+    if not moving:
+        delta += ex * (q[0] - q[3]) + ey * (q[1] - q[4])
+    if not flags & kn.ROTATION_PHASE:
+        first, beyond = mesh_phase(psi, grown, 0.0, 0.0, rolled, rp, rg, p[kn.PITCH], chi, apart, flank)
+    xi = first - 0.5 * (grown + beyond)
+    rho = xi + 0.5 * (grown + delta) if flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT) else xi
+    return Line(ex, ey, p[kn.L_XY] + grown, flank, rp, rg), delta, rho, xi
+
+
+@compiled
+def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, arms: FloatArray) -> int:
+    """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift."""
+    if flags & kn.TIP_CONTACT:  # candidates; those beyond the tips touch where they press
+        reach = _REACH * p[kn.PITCH]
+        return pairs_in_contact(
+            rho, delta, length, p[kn.PITCH], p[kn.TIP_P] + reach, p[kn.TIP_G] + reach, arms
+        )
+    if flags & kn.ENTRY_SHIFT:
+        return pairs_in_contact(rho, delta, length, p[kn.PITCH], p[kn.TIP_P], p[kn.TIP_G], arms)
+    return pairs_in_contact(rho, 0.0, p[kn.L_XY], p[kn.PITCH], p[kn.L_XD], p[kn.L_XY] - p[kn.L_XA], arms)

@@ -19,7 +19,7 @@ import numpy as np
 
 from lumped.arguments import some_of
 from lumped.errors import refuse
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 
 
 class Effect(NamedTuple):
@@ -27,53 +27,47 @@ class Effect(NamedTuple):
 
     bits : its switches in ``kernels``
     cause : the cause of differences that it belongs to, a key of ``CAUSES``
-    default : whether it acts where no effects are named
+    forms : values of ``mesh.contact`` with which it acts where no effects are named
     """
 
     bits: int
     cause: str
-    default: bool = True
+    forms: tuple[str, ...] = ("prescribed", "loaded")
 
 
 EFFECTS: dict[str, Effect] = {
     # The contact moves with the actual rotations, vibration included ...
-    "rotation_phase": Effect(kn.ROTATION_PHASE, "contact_position"),
+    "rotation_phase": Effect(kn.ROTATION_PHASE, "contact"),
     # ... and its line with the actual gear centres.
-    "moving_line": Effect(kn.MOVING_LINE, "contact_position"),
+    "moving_line": Effect(kn.MOVING_LINE, "contact"),
     "sliding_velocity": Effect(kn.SLIDING, "sliding_velocity"),
-    "entry_shift": Effect(kn.ENTRY_SHIFT, "entry_shift"),
+    "entry_shift": Effect(kn.ENTRY_SHIFT, "contact"),
     # After the backlash the back sides touch.
-    "contact_loss": Effect(kn.CONTACT_LOSS | kn.BACK_SIDE, "contact_loss"),
-    "friction_load": Effect(kn.FRICTION_LOAD, "friction_load", default=False),
-    "path_work": Effect(kn.PATH_WORK, "path_work", default=False),
+    "contact_loss": Effect(kn.CONTACT_LOSS | kn.BACK_SIDE, "contact"),
+    "friction_load": Effect(kn.FRICTION_LOAD, "friction_load", ()),
+    "path_work": Effect(kn.PATH_WORK, "path_work", ("loaded",)),
     # Teeth touch where the gap of flanks and tip corners closes, also before A and behind D ...
-    "tip_contact": Effect(kn.TIP_CONTACT, "contact_energy", default=False),
+    "tip_contact": Effect(kn.TIP_CONTACT, "contact", ("loaded",)),
     # ... and where their flanks meet, not where statics say: relief is clearance.
-    "clearance": Effect(kn.CLEARANCE, "contact_energy", default=False),
+    "clearance": Effect(kn.CLEARANCE, "contact", ("loaded",)),
     # The contact grows stiffer with its own momentary load, by Weber and Banaschek.
-    "contact_law": Effect(kn.CONTACT_LAW, "contact_energy", default=False),
+    "contact_law": Effect(kn.CONTACT_LAW, "contact", ("loaded",)),
     # The load of a tooth moves the next teeth, where the stiffness model knows how far.
-    "neighbours": Effect(kn.NEIGHBOURS, "contact_energy", default=False),
+    "neighbours": Effect(kn.NEIGHBOURS, "contact", ("loaded",)),
 }
-#: Why the models may differ, in words. Rotations and centres together place the contact; one without the
-#: other is no motion of the machine, so the two effects count as one cause.
+#: Why the models may differ, in words. Rotations, centres, tip circles and gaps together say where and if
+#: teeth touch; one without the others is no motion of the machine, so these effects are one cause.
 CAUSES: dict[str, str] = {
-    "contact_position": "contact moves with the actual rotations and centres",
+    "contact": "teeth touch where the actual flanks meet, and push only",
     "sliding_velocity": "friction follows the actual sliding and rolling velocities",
-    "entry_shift": "teeth enter and leave where the deflected flanks cross the tip circles",
-    "contact_loss": "teeth push but never pull",
-    "friction_load": "friction law at the momentary load of each pair",
-    "contact_energy": "contact that follows from clearance and the load of each pair",
     "path_work": "bent teeth turn the contact normal: the shafts supply what the teeth store",
+    "friction_load": "friction law at the momentary load of each pair",
 }
-#: Effects that act where none are named: all finite motions.
-DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name, effect in EFFECTS.items() if effect.default)
 
 
 def default_effects(contact: str) -> tuple[str, ...]:
     """Names of the effects that act where none are named, with ``mesh.contact`` of the pair."""
-    energy = ("contact_energy", "path_work") if contact == "loaded" else ()
-    return tuple(name for name, e in EFFECTS.items() if e.default or e.cause in energy)
+    return tuple(name for name, effect in EFFECTS.items() if contact in effect.forms)
 
 
 def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "prescribed") -> int:

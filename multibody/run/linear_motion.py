@@ -20,9 +20,9 @@ from scipy.integrate import DOP853, simpson
 
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.kernels import tooth_forces_over
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.layout import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.shafts.train import Train
 

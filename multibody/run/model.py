@@ -18,9 +18,9 @@ import exudyn.itemInterface as items
 import numpy as np
 
 from lumped.typing import FloatArray, IntArray
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.kernels import tooth_forces, tooth_forces_over
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.layout import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.shafts.train import Train
 

@@ -12,14 +12,15 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
 from lumped.labelling import provenance
-from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from multibody.contact import kernels as kn
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact import layout as kn
+from multibody.contact.kernels import nominal_friction
+from multibody.contact.layout import MAX_PAIRS
 from multibody.contact.machine import Machine, Supports, loaded_phase, machine
 from multibody.run.effects import EFFECTS, active_effects, effect_flags
 from multibody.run.integration import Segment, integrate
@@ -132,7 +133,7 @@ def prepare(
             allowed = "at most contact_loss at fidelity 'linear'"
             raise refuse("effects", shown(effects), allowed, "Use fidelity='exact'.")
         flags |= kn.LINEAR
-    system = periodic_system(pair, "full")
+    system = LTVSystem.of(pair, "full")
     numbers = machine(pair, flags, supports, system.cycle)
     call_limit = _call_limit(numbers)
     if pair.mesh.contact == "loaded":
@@ -276,9 +277,9 @@ def choose_friction_velocity(machine: Machine) -> tuple[float, str]:
     Q = 1/(2 zeta) times a_f, so sign() is safe where a_s > (1 + Q) a_f.
     """
     p, place = machine.parameters, float(machine.parameters[kn.L_XP])
-    beside = max(abs(kn.nominal_friction(p, place + side * _BESIDE)) for side in (-1.0, 1.0))
+    beside = max(abs(nominal_friction(p, place + side * _BESIDE)) for side in (-1.0, 1.0))
     path = np.linspace(p[kn.L_XA], p[kn.L_XD], _PLACES)
-    if beside <= _CONTINUOUS * max(abs(kn.nominal_friction(p, xi)) for xi in path):
+    if beside <= _CONTINUOUS * max(abs(nominal_friction(p, xi)) for xi in path):
         return 0.0, "sign(): the friction law is continuous at the pitch point"
     arms = np.array([place, float(p[kn.L_XY]) - place])
     mobility = float((1.0 / machine.mass).sum() + (arms**2 / machine.inertia).sum())

@@ -19,7 +19,7 @@ from lumped.model.steady import sample_times
 from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.machine import Supports
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state, to_lumped_state
@@ -188,7 +188,7 @@ def simulate(
     rtol : relative tolerance of the integration
     friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at
         once; None chooses, and the attribute ``friction_velocity_reason`` says why (see
-        ``multibody.contact.machine``)
+        ``multibody.run.setup``)
     supports : "springs" of ``pair.bearings``, or the elastic "shafts" of ``pair.shafts`` with their own
         bearings, motor and load
     progress : called with the finished fraction

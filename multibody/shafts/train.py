@@ -351,11 +351,7 @@ class Train:
 
 
 def train(
-    pair: GearPair,
-    mass: FloatArray,
-    inertia: FloatArray,
-    speeds: tuple[float, float],
-    enough: float,
+    pair: GearPair, mass: FloatArray, inertia: FloatArray, speeds: tuple[float, float], enough: float
 ) -> Train:
     """Both shafts of a pair.
 

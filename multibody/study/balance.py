@@ -18,7 +18,7 @@ from lumped.arguments import whole_number
 from lumped.model.solution import Initial
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import BoolArray, FloatArray
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare

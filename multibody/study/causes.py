@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
+from lumped.model.results import needs_pull
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from multibody.run.effects import CAUSES, EFFECTS, default_effects
@@ -23,7 +25,7 @@ _SAMPLES = 128
 #: The shares that are stated err by as much.
 _RTOL = 1e-7
 _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
-_KINDS = {"alone": "this cause alone", "without": "all causes but this"}
+_KINDS = {"alone": "by this cause", "without": "all causes but this"}
 
 
 def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Dataset:
@@ -39,19 +41,22 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
 
     Returns
     -------
-    xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change when only this cause acts,
-    and ``without``, the largest change when all causes but this one act; both over the peak to peak of the
+    xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change by one cause, and
+    ``without``, the largest change when all causes but this one act; both over the peak to peak of the
     motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
-    difference: the effects that act by default. ``without`` is NaN for "friction_load", which is no part of
-    it. The attribute ``largest`` names the cause that alone changes the transmission error most. A quantity
-    that does not move without effects (y_p without friction) is NaN.
+    difference: the effects that act by default. The attribute ``largest`` names the cause of this difference
+    that changes the transmission error most. "friction_load" stands below "all": it is no part of the
+    difference. A quantity that does not move without effects (y_p without friction) is NaN.
 
-    Contact that follows from clearance includes contact loss: without it teeth would pull over a gap. With
-    loaded contact this is one cause, "contact_energy", and the others act on it: their ``alone`` is the
-    change of the motion that it makes; its own ``without`` is NaN. With prescribed contact it is no cause.
+    Every exact motion has "contact", the teeth touching where their actual flanks meet and pushing only: else
+    they would pull over a gap. ``alone`` of the other causes is the change of the motion that it makes. Its
+    own ``without`` is NaN.
+
+    Raises
+    ------
+    NumericalError : the lumped motion needs teeth that pull, or a motion is not found
     """
     pair = load_gear_pair(pair)
-
     orbits: dict[frozenset[str], tuple[Orbit, xr.Dataset]] = {}
 
     def motion(effects: set[str], near: set[str] | None = None) -> xr.Dataset:
@@ -65,22 +70,23 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
 
     every = set(default_effects(pair.mesh.contact))
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
-    contact = groups["contact_energy"] | groups["entry_shift"] | groups["contact_loss"]
-    if contact <= every:
-        groups["contact_energy"] = contact
-        del groups["entry_shift"], groups["contact_loss"]
-    else:
-        contact = set()
-        del groups["contact_energy"], groups["path_work"]
-    groups["all"] = every
+    contact = groups["contact"] & every
+    parts = {cause: own & every for cause, own in groups.items() if own & every}
+    asked_for = {c: own for c, own in groups.items() if not any(EFFECTS[name].forms for name in own)}
+    groups = parts | {"all": every} | asked_for
     base = motion(set())
-    on_contact = motion(contact, set())
+    if needs_pull(pair, base):
+        raise NumericalError(
+            "The lumped motion needs teeth that pull, so differences from it have no cause. "
+            "Raise the torque or the damping, or change the speed."
+        )
+    touching = motion(contact, set())
     motion(every, contact)
     table = {kind: np.full((len(groups), len(_QUANTITIES)), np.nan) for kind in _KINDS}
     for row, (cause, own) in enumerate(groups.items()):
-        start = base if own == contact or cause == "all" else on_contact
+        start = base if contact <= own else touching
         runs = {"alone": (motion(contact | own, contact), start)}
-        if own <= every and own != contact:
+        if own <= every - contact or cause == "all":
             runs["without"] = (motion(every - own, every), base)
         for kind, (run, reference) in runs.items():
             for column, name in enumerate(_QUANTITIES):
@@ -89,21 +95,15 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
                 table[kind][row, column] = change / swing if swing > 0.0 else np.nan
         if progress is not None:
             progress((row + 1) / len(groups))
-    causes = list(groups)
-    parts = [cause for cause in causes[:-1] if groups[cause] <= every]
     return labelled_dataset(
         {
             kind: (("cause", "quantity"), table[kind], "1", f"largest change over peak to peak, {text}")
             for kind, text in _KINDS.items()
         },
         {
-            "cause": (causes, "1", "cause of the difference"),
+            "cause": (list(groups), "1", "cause of the difference"),
             "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
         provenance(pair, samples_per_cycle=_SAMPLES)
-        | {
-            "largest": causes[int(np.nanargmax(table["alone"][:-1, 0]))],
-            "parts": ", ".join(parts),
-            "contact": pair.mesh.contact,
-        },
+        | {"largest": list(parts)[int(np.nanargmax(table["alone"][: len(parts), 0]))]},
     )

@@ -18,7 +18,8 @@ from lumped.stiffness.energy import beam_compliance, contact_half_width, local_c
 from lumped.stiffness.foundation import foundation_compliance
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
+from multibody.contact.kernels import signed_friction
 from tests.evidence.check import Check
 
 #: Module -> formulas that are published, each of which shows one number.
@@ -65,7 +66,7 @@ def _law(**values: float) -> FloatArray:
 def _own_coulomb() -> float:
     p = np.append(np.zeros(kn.FRICTION), _law(LAW=fr.LAWS["coulomb"], MEAN=0.05))
     p[kn.OMEGA_P] = 1.0
-    return float(kn.signed_friction(p, kn.SLIDING, 1.0, 0.0, -2.0, 10.0, 0.01, 0.01, 1.0))
+    return float(signed_friction(p, kn.SLIDING, 1.0, 0.0, -2.0, 10.0, 0.01, 0.01, 1.0))
 
 
 _OIL = {"VISCOSITY": 0.010, "PRESSURE_K": 0.010471, "PRESSURE_S": 0.1348}

@@ -26,10 +26,12 @@ from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.quasi_static.tooth_error import relief_error
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
-from multibody.contact import kernels as kn
-from multibody.contact.elements import gradual, shared_loads, stiffness_at
+from multibody.contact import layout as kn
+from multibody.contact.drawing import circles, masses
+from multibody.contact.elements import coupling_at, gradual, relief_at, shared_loads, stiffness_at
+from multibody.contact.kernels import nominal_friction
 from multibody.contact.kinematics import DRIVE, Line, corners_at
-from multibody.contact.machine import Machine, circles, machine, masses
+from multibody.contact.machine import Machine, machine
 from multibody.run.effects import effect_flags
 from tests.evidence.check import Check, rows
 
@@ -103,7 +105,7 @@ def _laws(pair: GearPair) -> Check:
             p = machine(pair.with_(friction__law=name)).parameters
         except ParameterError:  # a law that this pair does not allow
             continue
-        own = np.array([kn.nominal_friction(p, x) for x in xi])
+        own = np.array([nominal_friction(p, x) for x in xi])
         away = np.abs(law(xi) - own)
         # Where a law jumps, rounding of the place decides; such a place is left out.
         away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
@@ -119,7 +121,7 @@ def _relief(pair: GearPair) -> Iterator[Check]:
     if not reliefs:
         return
     xi, p = _inside(pair), machine(pair.with_({"mesh.relief": "static"})).parameters
-    own = np.array([kn.relief_at(p, x)[0] for x in xi])
+    own = np.array([relief_at(p, x)[0] for x in xi])
     scale = float(sum(r.amount for r in reliefs))
     yield rows(
         "relief of both flanks", _OWN, 1e-9, np.stack([relief_error(pair, xi), own], axis=1) / scale + 1.0
@@ -172,7 +174,7 @@ class _Mesh:
         for i, xi in enumerate(places):
             arms = xi + half, p[kn.L_XY] - xi + half
             corners = corners_at(line, *arms, p[kn.TIP_P], p[kn.TIP_G])
-            relief, _ = kn.relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))
+            relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))
             found[i] = delta - relief - corners.gap
         return found
 
@@ -183,7 +185,7 @@ class _Mesh:
         coupling, loads = np.zeros((n, n)), np.zeros(n)
         for i in range(n):
             for j in range(i):
-                coupling[i, j] = coupling[j, i] = kn.coupling_at(p, i - j, places[j])[0]
+                coupling[i, j] = coupling[j, i] = coupling_at(p, i - j, places[j])[0]
         law = p[kn.SOFTENING], p[kn.NOMINAL_FORCE]
         shared_loads(n, pressed, stiffness, 0, coupling, *law, loads)
         return loads, pressed - coupling @ loads

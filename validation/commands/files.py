@@ -185,7 +185,7 @@ def export(
     output: Annotated[
         Path,
         opt.output(
-            "Of a pair: .rexs, .rexsj or .rexsz (REXS as XML, JSON, zipped), .mat or .npz (linear "
+            "Of a pair: .rexs or .rexsj (REXS as XML, JSON), .mat or .npz (linear "
             "model). Of a result: .csv, .mat or .nc. The suffix chooses."
         ),
     ],

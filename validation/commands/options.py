@@ -85,7 +85,7 @@ def gear_pair(
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
     from validation.commands.terminal import note
-    from validation.validity.plausibility import doubts
+    from validation.validity.plausibility import parameter_warnings
 
     asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
     for option, path, text in (
@@ -112,18 +112,19 @@ def gear_pair(
         elif path.endswith(".roughness") and pair.friction.composite_roughness is not None:
             cause = "friction.composite_roughness is given"
         note(f"{options[path]} changes nothing in the motion, for {cause}.")
-    for doubt in doubts(pair):
-        note(doubt)
+    for warning in parameter_warnings(pair):
+        note(warning)
     return pair
 
 
 def without_effect(own: GearPair, pair: GearPair, changes: Mapping[str, Any]) -> Iterator[str]:
     """Return the fields of the changes that made ``pair`` of ``own`` and that no law of it reads."""
-    from lumped import LawRangeWarning, mesh_elements
+    from lumped import LawRangeWarning
     from lumped.errors import ParameterError
+    from lumped.quasi_static.contacts import contact_of
 
     def laws(of: GearPair) -> list[bytes]:
-        elements = mesh_elements(of)
+        elements = contact_of(of).elements(of)
         functions = (elements.stiffness, elements.friction, elements.error)
         return [array.tobytes() for law in functions for array in (law.breaks, law.coefficients)]
 

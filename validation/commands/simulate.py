@@ -74,14 +74,15 @@ def simulate(
             common |= {"fidelity": fidelity, "initial": initial}
             result = multibody.simulate(gear_pair, cycles, progress=tell, **common)
     from lumped.model.results import cycle_peak_to_peak, load_range
+    from lumped.quasi_static.contacts import contact_of
     from validation.files.formatting import number, quantity
     from validation.validity.flags import contact_loss
 
     g = gear_pair.geometry
     # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
     last = result.isel(time=slice(-samples - (not steady), None))
-    form = gear_pair.mesh.contact
-    largest, smallest = load_range(form, last["normal_load"].to_numpy(), last["contact"].to_numpy())
+    form = contact_of(gear_pair)
+    largest, smallest = load_range(gear_pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
     static = gear_pair.operating.pinion_torque / g.base_radius_pinion
     numbers = {
         "dte_peak_to_peak": cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None),
@@ -92,10 +93,10 @@ def simulate(
         "mesh_efficiency": float(result.attrs["mesh_efficiency"]),
         "brake_torque": float(result.attrs["brake_torque"]),
     }
-    # With prescribed contact the brake torque balances sliding alone.
-    prescribed = form == "prescribed"
-    if prescribed and "power_energy_residual" in result.attrs:
+    # Where energy is not conserved the brake torque balances sliding alone.
+    if not form.conservative and "power_energy_residual" in result.attrs:
         numbers["power_energy_residual"] = float(result.attrs["power_energy_residual"])
+    alone = "" if form.conservative else ", sliding alone"
     if as_json:
         print_json({"gear_pair": gear_pair.name, "model": model, "supports": supports} | numbers)
     else:
@@ -103,11 +104,9 @@ def simulate(
             "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3, measured=True),
             "transmission error, mean": quantity(numbers["dte_mean"], "m"),
             "largest load of a tooth pair": quantity(largest, "N", 3, measured=True),
-            f"smallest load of {'all pairs together' if form == 'loaded' else 'a tooth pair'}": quantity(
-                smallest, "N", 3, measured=True
-            ),
+            f"smallest load of {form.pressed}": quantity(smallest, "N", 3, measured=True),
             "largest load over static load": number(numbers["load_factor"], 3, measured=True),
-            f"mesh efficiency{', sliding alone' * prescribed}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
+            f"mesh efficiency{alone}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
             "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
         }
         if "power_energy_residual" in numbers:

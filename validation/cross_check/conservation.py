@@ -16,10 +16,11 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
-from lumped.model.periodic_system import periodic_system
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.steady import periodic_solution
+from lumped.quasi_static.contacts import contact_of
 from lumped.typing import FloatArray
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.machine import Machine
 from multibody.run.setup import prepare
 from multibody.study.balance import balance_of
@@ -71,7 +72,7 @@ def conservation(
     motions = {"lumped": reference} | {
         name: run.isel(time=slice(-samples - 1, -1)) for name, run in runs.items()
     }
-    system = periodic_system(pair, "full")
+    system = LTVSystem.of(pair, "full")
     powers: dict[str, Mapping[str, float]] = {}
     histories = _friction_histories(reference)
     if not contact_loss:
@@ -95,7 +96,7 @@ def conservation(
         found += _first_law(name, one)
     if "linear" in powers and "lumped" in powers:
         found += _same_powers(powers["lumped"], powers["linear"])
-    if "exact" in powers and pair.mesh.contact == "loaded":
+    if "exact" in powers and contact_of(pair).conservative:
         exact = powers["exact"]
         found.append(
             Judgement(

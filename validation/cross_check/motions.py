@@ -15,11 +15,11 @@ import multibody
 from floquet.gear.orbit import GearOrbit, long_run, periodic_orbit
 from lumped import GearPair
 from lumped.errors import NumericalError
+from lumped.model.results import LOAD_NOISE
 from lumped.typing import FloatArray
 from validation.cross_check import metrics
 from validation.cross_check.agreement import Fidelity
 from validation.cross_check.verdict import SAME_EQUATIONS
-from validation.validity.flags import LOAD_NOISE
 
 #: Tolerances of the integrations: far below the limits they are used to check, where a motion has an ordinary
 #: size: the smallest limit over the deflection, as a share of that of the transmission error.

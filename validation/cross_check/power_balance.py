@@ -18,7 +18,7 @@ from lumped.model.propagation import fastest_frequency
 from lumped.model.results import response
 from lumped.model.steady import PeriodicSolution
 from lumped.typing import FloatArray
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.machine import Machine
 
 #: Power -> what it is in words. Their sum is the driving power.

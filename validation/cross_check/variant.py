@@ -15,6 +15,7 @@ import numpy as np
 from lumped import GearPair
 from lumped.errors import SpurcheckError
 from lumped.model.steady import UNSTABLE, periodic_cycle
+from lumped.quasi_static.contacts import contact_of
 
 #: Factors of the bearings' stiffness and damping, along and off the line of action.
 _BEARINGS = {
@@ -63,11 +64,8 @@ def prediction_holds(pair: GearPair) -> bool:
     motion = periodic_cycle(pair, _SAMPLES)
     pairs, values = motion.system.cycle.sample(motion.time), motion.values
     touching = (values["dte"] >= pairs.error) | (pairs.stiffness == 0.0)
-    pressing = values["normal_load"] >= 0.0
-    if pair.mesh.contact == "loaded":
-        pressing = values["normal_load"].sum(axis=0) > 0.0
-        touching = pressing
-    return bool(motion.spectral_radius <= UNSTABLE and touching.all() and pressing.all())
+    load, touching = contact_of(pair).pressing(values["normal_load"], touching)
+    return bool(motion.spectral_radius <= UNSTABLE and touching.all() and load.min() >= 0.0)
 
 
 def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:

@@ -13,10 +13,11 @@ from typing import Any
 import tomli_w
 
 from lumped.errors import ParameterError, refuse
+from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import FORMAT, SHORT_NAMES, GearPair, leaf_paths, stated_unit
-from validation.exchange.rexs.draft import DOUBTFUL, completed
+from validation.exchange.rexs.draft import DOUBTFUL
 
 GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
@@ -92,6 +93,30 @@ def new_pair(
     named = name or f"pair_{re.sub('[^0-9]+', '_', str(teeth))}"
     text = new_pair_text(named, {SHORT_NAMES.get(path, path): value for path, value in request.items()})
     return load_gear_pair(tomllib.loads(text))
+
+
+#: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened
+#: steel gears of any size.
+_LOAD_INTENSITY = 20e6
+_BEARING = {"stiffness": 1e8, "damping_ratio": 0.05}
+#: Field -> value in file units that stands in where a file has none.
+_STAND_INS: dict[str, Any] = {
+    "pinion.roughness": 0.4,
+    "gear.roughness": 0.4,
+    **{
+        f"bearings.{gear}.{line}_{key}": value
+        for gear in ("pinion", "gear")
+        for line in ("loa", "oloa")
+        for key, value in _BEARING.items()
+    },
+    "mesh.damping_ratio": 0.05,
+    "mesh.stiffness.model": "energy",
+    "friction.law": "xu_kahraman",
+    "operating.pinion_speed": 1000.0,
+}
+#: Oil temperature where a file has viscosities but no temperature [degC], and dynamic viscosity where it has
+#: none [mPa s].
+_TEMPERATURE, _VISCOSITY = 70.0, 10.0
 
 
 def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
@@ -241,3 +266,24 @@ def _commented(line: str, path: str, sources: Mapping[str, str]) -> str:
     if DOUBTFUL in sources.get(path, ""):
         remarks.append("doubtful")
     return f"{line:<{_COLUMN}} # {', '.join(remarks)}" if remarks else line
+
+
+def completed(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a full parameter mapping, name and description apart, from known values: path -> file units."""
+    full = _STAND_INS | dict(values)
+    if any(path.startswith("lubricant.viscosity_law") for path in full):
+        full.setdefault("lubricant.viscosity_law.temperature", _TEMPERATURE)
+    else:
+        full.setdefault("lubricant.viscosity", _VISCOSITY)
+    if "operating.pinion_torque" not in full:
+        module, width = (to_si(full[path], "mm") for path in ("basic_rack.module", "pinion.face_width"))
+        radius = 0.5 * module * full["pinion.teeth"]  # of the reference circle
+        full["operating.pinion_torque"] = float(f"{_LOAD_INTENSITY * width * module * radius:.3g}")
+    root: dict[str, Any] = {}
+    for path, value in full.items():
+        *parents, leaf = path.split(".")
+        node = root
+        for parent in parents:
+            node = node.setdefault(parent, {})
+        node[leaf] = value
+    return root

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.friction import LAWS
+from lumped.model.results import LOAD_NOISE
 from validation.interactive.results import SAMPLES, PageResults, Slices
 from validation.plots.stability import pretty
-from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS, STATES
+from validation.validity.flags import REVERSAL_LIMITS, STATES
 
 #: Decimals of a largest multiplier, and significant digits of everything else.
 DECIMALS, DIGITS = 6, 6

@@ -19,6 +19,7 @@ from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
+from lumped.model.results import LOAD_NOISE
 from lumped.model.sweep import resolved_sweep
 from lumped.path_of_contact import law_range_violations
 from lumped.typing import FloatArray, Progress
@@ -28,7 +29,7 @@ from validation.validity.beyond_contact_loss import (
     branches_about_operation,
     jumps_about_operation,
 )
-from validation.validity.flags import LOAD_NOISE, STATES, validity_state
+from validation.validity.flags import STATES, validity_state
 
 Grid = dict[str, FloatArray]
 

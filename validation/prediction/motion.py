@@ -22,6 +22,7 @@ from floquet.gear.orbit import GearOrbit
 from floquet.gear.unilateral import contact_cycle
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import cycle_peak_to_peak
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -273,6 +274,6 @@ def _lost(pair: GearPair, motion: xr.Dataset) -> float:
     load, closing = motion["normal_load"].to_numpy(), motion["dte_dot"].to_numpy() - at.error_rate
     damper = np.where(load > 0.0, load - at.stiffness * (motion["dte"].to_numpy() - at.error), 0.0)
     rates = np.stack([motion[f"{name}_dot"].to_numpy() for name in COORDINATES])
-    bearings = lumped.periodic_system(pair, "full").structure.damping @ rates**2
+    bearings = LTVSystem.of(pair, "full").structure.damping @ rates**2
     sliding = -motion["friction_power"].sum("pair").to_numpy()
     return float(np.mean(sliding + bearings + (damper * closing).sum(axis=0)))

@@ -91,7 +91,7 @@ def uncertainty(
     return _dataset(pair, inputs, points[kept], table, given, alone, swings, samples, seed)
 
 
-def speed_band(pair: AnyPair, speeds_rpm: FloatArray, samples: int = 32, seed: int = 1) -> xr.Dataset:
+def speed_band(pair: GearPair, speeds_rpm: FloatArray, samples: int = 32, seed: int = 1) -> xr.Dataset:
     """Return the range of the transmission error's peak to peak over speed, linear motion.
 
     Parameters
@@ -105,7 +105,6 @@ def speed_band(pair: AnyPair, speeds_rpm: FloatArray, samples: int = 32, seed: i
     -------
     xarray.Dataset over ``speed_rpm``: ``low`` and ``high``, the 5 and 95 % of the samples [m]
     """
-    pair = load_gear_pair(pair)
     inputs = uncertain_inputs(pair)
     found = []
     for point in qmc.Sobol(max(len(inputs), 1), rng=np.random.default_rng(seed)).random(samples):

@@ -29,7 +29,7 @@ from validation.prediction.motion import Motion, Prediction, measured, predicted
 from validation.prediction.uncertainty import speed_band, uncertainty
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
-from validation.validity.plausibility import doubts as warnings_of
+from validation.validity.plausibility import parameter_warnings
 
 #: Speeds of the motions beyond contact loss, over the operating speed.
 BRANCH_SPEEDS = (0.8, 1.25)
@@ -259,7 +259,7 @@ class Results:
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on given values that hardly can be meant."""
-        return warnings_of(self.pair)
+        return parameter_warnings(self.pair)
 
     @property
     def finite_elements(self) -> bool:

@@ -17,18 +17,17 @@ from numpy.typing import NDArray
 from lumped import GearPair, Geometry
 from lumped.arguments import of_type
 from lumped.friction import LAWS
-from lumped.model.results import farthest_reversal
+from lumped.model.results import LOAD_NOISE, farthest_reversal
 from lumped.path_of_contact import contact_path, law_range_violations
+from lumped.quasi_static.contacts import contact_of
 from lumped.ranges import RangeViolation
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import BoolArray, FloatArray
+from lumped.typing import FloatArray
 from validation.files.tables import read_table
 
 if TYPE_CHECKING:
     from floquet.gear.multipliers import GearPairMultipliers
 
-#: Loads below this share of the static load are zero for the question whether teeth separate.
-LOAD_NOISE = 1e-4
 #: Distance from the pitch point within which sliding may reverse, over the base pitch: warning, violation.
 REVERSAL_LIMITS = (0.02, 0.05)
 #: Relative drift of the mean speed over a run: warning, violation. Drift per run, not per cycle.
@@ -139,11 +138,9 @@ def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
 
     With loaded contact, where pairs begin and end their contact gradually, all pairs together must press.
     """
-    contact: BoolArray = motion["contact"].to_numpy() > 0
-    load = np.where(contact, motion["normal_load"].to_numpy(), np.inf)
-    if pair.mesh.contact == "loaded":
-        contact = np.atleast_2d(contact.any(axis=0))
-        load = np.atleast_2d(motion["normal_load"].to_numpy().sum(axis=0))
+    form = contact_of(pair)
+    load, contact = form.pressing(motion["normal_load"].to_numpy(), motion["contact"].to_numpy() > 0)
+    load = np.where(contact, load, np.inf)
     lowest = float(load.min())
     static = pair.operating.pinion_torque / g.base_radius_pinion
     separated = load < -LOAD_NOISE * static
@@ -151,8 +148,8 @@ def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
     place = _zone(g, float(motion["position"].to_numpy()[where]))
     share = separated.sum() / max(int(contact.sum()), 1)
     state: State = "violated" if separated.any() else "ok"
-    of = " of all pairs together" if pair.mesh.contact == "loaded" else ""
-    detail = f"lowest load{of} {lowest:.4g} N ({lowest / static:.3g} of the static load) {place}"
+    detail = f"lowest load of {form.pressed} {lowest:.4g} N ({lowest / static:.3g} of the static load)"
+    detail += f" {place}"
     if separated.any():
         detail += f"; below zero over {100 * share:.3g} % of the time in contact"
     return flag("contact_loss", state, lowest, detail)

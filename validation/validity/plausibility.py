@@ -11,8 +11,7 @@ from collections.abc import Iterator
 from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import contact_path
 from lumped.path_of_contact.stiffness import mesh_stiffness
-from lumped.schema.bodies import bodies
-from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.shafts.equivalents import condensed_bearings
 
@@ -35,14 +34,13 @@ _POLISHED, _AS_CUT, _LEAST_RELIEF = 0.01e-6, 12.5e-6, 0.5e-6
 _FAR = 2.0
 
 
-def doubts(pair: AnyPair) -> tuple[str, ...]:
+def parameter_warnings(pair: GearPair) -> tuple[str, ...]:
     """Return one sentence for each value that hardly can be meant: field, value, likely cause.
 
     Parameters
     ----------
     pair : a gear pair
     """
-    pair = load_gear_pair(pair)
     return (
         *_bearings(pair),
         *_shafts(pair),
@@ -90,7 +88,7 @@ def _shafts(pair: GearPair) -> Iterator[str]:
 
 def _squared_frequencies(pair: GearPair) -> Iterator[float]:
     """Squares of frequencies that bound those of the pair, of one spring and one body each [rad^2/s^2]."""
-    b, g = bodies(pair), pair.geometry
+    b, g = bodies_of(pair), pair.geometry
     mesh = float(mesh_stiffness(pair).attrs["mean"])
     for bearing, mass in ((pair.bearings.pinion, b.mass_pinion), (pair.bearings.gear, b.mass_gear)):
         yield (bearing.loa_stiffness + mesh) / mass

@@ -13,7 +13,7 @@ import numpy as np
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-from multibody.contact.machine import base_tooth_angle, circles, masses
+from multibody.contact.drawing import base_tooth_angle, circles, masses
 
 #: Points on each of the four parts of half a tooth.
 _POINTS = 400

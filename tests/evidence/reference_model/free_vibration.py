@@ -15,7 +15,7 @@ import numpy as np
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.elements import stiffness_at
 from multibody.contact.machine import Machine, machine
 from multibody.run.integration import Segment, integrate

@@ -16,7 +16,7 @@ from scipy.optimize import root
 from lumped.model.periodic_system import periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.run.model import ExudynModel, accelerations, build, contact_state
 from multibody.run.setup import Setup, prepare
 

@@ -10,7 +10,7 @@ import lumped
 import multibody
 from lumped.friction.registry import LAWS
 from multibody.contact import friction
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.machine import machine
 from multibody.run.linear_motion import mesh_wrench
 from multibody.run.setup import prepare

@@ -13,9 +13,10 @@ from lumped.quasi_static.kernels import load_of
 from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
 from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import corner_gap as lumped_corner_gap
-from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
-from multibody.contact.elements import elastic_load, shared_loads, stored_energy
+from multibody.contact import layout as kn
+from multibody.contact.elements import GRADUAL, elastic_load, shared_loads, stored_energy
+from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 
@@ -51,9 +52,9 @@ BACKLASH = PAIRS["Hertz"].mesh.backlash
 
 
 def contact(numbers, t, q, v=None, flags=ALL):
-    contacts = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+    contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
     state = np.array([q, np.zeros(6) if v is None else v, np.zeros(6)])
-    count = kn.contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
+    count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
     return state[2], contacts[:count]
 
 
@@ -152,7 +153,7 @@ def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alon
     """Also where it would pull: then the load is zero, and what the teeth store stays."""
     numbers, seen = machine(PAIRS["relief"].with_(mesh__damping_ratio=0.1), ALL), set()
     p, rng = numbers.parameters, np.random.default_rng(2)
-    full = kn.GRADUAL * p[kn.NOMINAL_FORCE]
+    full = GRADUAL * p[kn.NOMINAL_FORCE]
     for t, q in states(numbers, 200):
         q[2] *= rng.uniform(0.1, 1.0)
         v = rng.normal(size=6) * 0.3

@@ -9,9 +9,8 @@ import lumped
 from lumped.friction.registry import law_named
 from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
-from multibody.contact import kernels as kn
-from multibody.contact import kinematics as kin
-from multibody.contact.kernels import linear_forces, tooth_forces
+from multibody.contact import layout as kn
+from multibody.contact.kernels import contact_forces, linear_forces, tooth_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 from multibody.run.model import accelerations, from_lumped_state
@@ -29,8 +28,8 @@ def make(pair):
 
 
 def forces(numbers, t, q, v, flags=ALL):
-    state, contacts = np.array([q, v, np.zeros(6)]), np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
-    count = kn.contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
+    state, contacts = np.array([q, v, np.zeros(6)]), np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
     assert count >= 0
     return state[2], contacts[:count]
 
@@ -135,7 +134,7 @@ def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):
     for t in np.linspace(0.1, 0.9, 9) * numbers.period:
         q, v = pressed_state(numbers, rng)
         found, state = np.zeros((2, 6)), np.array([q, v, np.zeros(6)])
-        records = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+        records = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
         for wrench, flags in zip(found, (kn.LINEAR, 0), strict=True):
             tooth_forces(t, state, p, flags, table, records)
             wrench[:] = state[2]

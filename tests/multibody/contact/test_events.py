@@ -6,7 +6,7 @@ import pytest
 import lumped
 import multibody
 from lumped import PathFunction
-from multibody.contact import kernels as kn
+from multibody.contact import layout as kn
 from multibody.contact.events import (
     ENTRY,
     EXIT,
@@ -18,7 +18,8 @@ from multibody.contact.events import (
     event_table,
     time_to_event,
 )
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.kernels import contact_forces
+from multibody.contact.layout import MAX_PAIRS
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 
@@ -33,7 +34,7 @@ UNEQUAL = JUMPS.with_(
 def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
     state, records = np.array([q, v, np.zeros(6)]), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-    count = kn.contact_forces(t, state, numbers.parameters, flags, numbers.table, records)
+    count = contact_forces(t, state, numbers.parameters, flags, numbers.table, records)
     return count, tuple(np.sign(records[:count, kn.MU]))
 
 
@@ -100,7 +101,7 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(stiffness):
         for tau in (wait - 2e-6 * period, wait + 2e-6 * period):
             records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
             state = np.array([q + tau * v, v, np.zeros(6)])
-            count = kn.contact_forces(tau, state, p, flags, table, records)
+            count = contact_forces(tau, state, p, flags, table, records)
             yield count, records[:count, kn.LOAD].min(), records[:count, kn.ELASTIC].min()
 
     assert [count for count, *_ in around(FIRST_TOUCH)] == [1, 2]

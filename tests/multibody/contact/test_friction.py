@@ -5,8 +5,8 @@ import pytest
 
 import lumped
 from multibody.contact import friction as fr
-from multibody.contact import kernels as kn
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact import layout as kn
+from multibody.contact.kernels import contact_forces, nominal_friction, signed_friction
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 
@@ -27,7 +27,7 @@ def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
     pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed").with_(changes)
     p, table = machine(pair).parameters, lumped.mesh_elements(pair).friction
     xi = 0.3 * p[kn.L_XA] + 0.7 * p[kn.L_XP]
-    assert kn.nominal_friction(p, xi) == pytest.approx(float(table(xi)), abs=FIT)
+    assert nominal_friction(p, xi) == pytest.approx(float(table(xi)), abs=FIT)
 
 
 def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
@@ -58,7 +58,7 @@ def test_the_momentary_load_is_an_effect_of_its_own():
         xi, w = p[kn.L_XP] + 2e-3, p[kn.FRICTION + fr.NOMINAL_LOAD] * pair.gear.face_width
 
         def mu(flags, normal, p=p, xi=xi):
-            return kn.signed_friction(p, flags, 1.0, xi, 1.0, 1.0, xi, p[kn.L_XY] - xi, normal)
+            return signed_friction(p, flags, 1.0, xi, 1.0, 1.0, xi, p[kn.L_XY] - xi, normal)
 
         on = effect_flags({"friction_load"})
         assert mu(0, 0.5 * w) == mu(0, w) == pytest.approx(mu(on, w))
@@ -73,10 +73,10 @@ def test_actual_rolling_velocities_belong_to_the_sliding_velocity():
     slide = 2e-3 * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
 
     def mu(flags, factor):
-        return kn.signed_friction(p, flags, 1.0, xi, slide, factor * rolling, xi, p[kn.L_XY] - xi, 1.0)
+        return signed_friction(p, flags, 1.0, xi, slide, factor * rolling, xi, p[kn.L_XY] - xi, 1.0)
 
     on = effect_flags({"sliding_velocity"})
-    assert mu(on, 1.0) == pytest.approx(kn.nominal_friction(p, xi), rel=1e-12)
+    assert mu(on, 1.0) == pytest.approx(nominal_friction(p, xi), rel=1e-12)
     assert mu(0, 2.0) == mu(0, 1.0)
     assert mu(on, 2.0) < 0.7 * mu(on, 1.0)
 
@@ -87,10 +87,10 @@ def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     faster = pair.with_(operating__pinion_speed=1.5 * pair.operating.pinion_speed * 30.0 / np.pi)
     numbers, flags = machine(pair), effect_flags({"sliding_velocity"})
     p = numbers.parameters
-    state, contacts = np.zeros((3, 6)), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    state, contacts = np.zeros((3, 6)), np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
     state[0, 5] = -6e-5 / p[kn.RADIUS_G]  # presses the flanks
     state[1, [2, 5]] = -0.5 * p[kn.OMEGA_P], 0.5 * p[kn.OMEGA_G]
-    count = kn.contact_forces(0.3 * numbers.period, state, p, flags, numbers.table, contacts)
+    count = contact_forces(0.3 * numbers.period, state, p, flags, numbers.table, contacts)
     found = contacts[:count]
     expected = lumped.mesh_elements(faster).friction(found[:, kn.XI])
     nominal = lumped.mesh_elements(pair).friction(found[:, kn.XI])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped.model import mesh_cycle, periodic_system
+from lumped.model import periodic_system
 from lumped.path_function import PathFunction
 from lumped.quasi_static import prescribed
 from validation.cross_check.comparison import crosscheck
@@ -48,13 +48,13 @@ def _light(s):
 
 
 def damping_doubled(m):
-    true = mesh_cycle.mesh_elements
+    true = prescribed.Prescribed.elements
 
-    def doubled(pair):
-        elements = true(pair)
+    def doubled(form, pair):
+        elements = true(form, pair)
         return dataclasses.replace(elements, damping=scaled(elements.damping, 2.0))
 
-    m.setattr(mesh_cycle, "mesh_elements", doubled)
+    m.setattr(prescribed.Prescribed, "elements", doubled)
 
 
 FAULTS = {

@@ -13,9 +13,9 @@ from validation.exchange.rexs.exporting import rexs_document
 from validation.exchange.rexs.model import model_of
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN
 
-#: Ending -> first letter of the file after its byte order mark: XML, JSON, and ZIP, which packs XML.
+#: Ending -> first letter of the file after its byte order mark: XML and JSON.
 ENDINGS = {
-    ".rexs": b"<", ".rexs.xml": b"<", ".rexsj": b"{", ".rexs.json": b"{", ".rexsz": b"P", ".rexs.zip": b"P",
+    ".rexs": b"<", ".rexs.xml": b"<", ".rexsj": b"{", ".rexs.json": b"{",
 }  # fmt: skip
 
 

@@ -231,7 +231,7 @@ def test_writing_refuses_what_it_cannot_write(tmp_path):
     assert write_rexs(pair, tmp_path / "pair.rexs", force=True).stat().st_size > 1000
 
 
-@pytest.mark.parametrize("form", [".rexs", ".rexsj", ".rexsz"])
+@pytest.mark.parametrize("form", [".rexs", ".rexsj"])
 def test_damaged_files_are_read_or_refused_but_nothing_else_happens(tmp_path, form):
     seed = 20240501
     dice = random.Random(seed)
@@ -244,7 +244,7 @@ def test_damaged_files_are_read_or_refused_but_nothing_else_happens(tmp_path, fo
         if dice.random() < 0.5:
             data[dice.randrange(len(data))] = dice.randrange(256)
         else:
-            numbers = list(re.finditer(rb'(?<=[>: "])-?\d+(\.\d+)?', whole)) or [re.match(b"PK", whole)]
+            numbers = list(re.finditer(rb'(?<=[>: "])-?\d+(\.\d+)?', whole))
             place = dice.choice(numbers)
             data[place.start() : place.end()] = dice.choice(words)
         path.write_bytes(data)
@@ -254,4 +254,4 @@ def test_damaged_files_are_read_or_refused_but_nothing_else_happens(tmp_path, fo
         except ParameterError:
             outcomes.add("refused")
     assert "refused" in outcomes, seed
-    assert "read" in outcomes or form == ".rexsz", seed  # the checksum of an archive sees nearly all
+    assert "read" in outcomes, seed

@@ -11,7 +11,7 @@ from validation.cli import app
 from validation.commands.options import without_effect
 from validation.validity import flags as validity
 from validation.validity.flags import validity_state, worst_state
-from validation.validity.plausibility import doubts
+from validation.validity.plausibility import parameter_warnings
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +137,7 @@ def test_state_over_speed_is_the_worse_of_contact_and_sliding():
 def test_a_sensible_pair_raises_no_doubt(name, speed):
     pair = load_gear_pair(name)
     rpm = speed * pair.operating.pinion_speed.to("rpm")
-    assert doubts(pair.with_(operating__pinion_speed=rpm)) == ()
+    assert parameter_warnings(pair.with_(operating__pinion_speed=rpm)) == ()
 
 
 @pytest.mark.parametrize(("changes", "said"), [
@@ -157,7 +157,7 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
     ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
 ])  # fmt: skip
 def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, said):
-    found = doubts(nasa_pair.with_(changes))
+    found = parameter_warnings(nasa_pair.with_(changes))
     assert any(said in one for one in found), found
 
 
@@ -168,7 +168,7 @@ def test_no_backlash_but_for_rounding_is_not_doubted():
     own |= {"description": "", "mesh.backlash": 0, "operating.speed_range": None}
     for centre_distance in (None, 17.5):
         pair = load_gear_pair("nasa_28_28").with_(own | {"centre_distance": centre_distance})
-        assert not any("backlash" in one for one in doubts(pair))
+        assert not any("backlash" in one for one in parameter_warnings(pair))
 
 
 @pytest.fixture(scope="module")
@@ -202,7 +202,7 @@ def test_springs_that_the_shafts_contradict_are_named(nasa_pair):
     shaft = {"segments": [{"length": 100, "diameter": 60}], "gear_position": 50, "bearings": bearings}
     thin = shaft | {"segments": [{"length": 100, "diameter": 15}]}
     pair = nasa_pair.with_(shafts={"damping_ratio": 0.01, "pinion": shaft, "gear": thin})
-    found = [doubt for doubt in doubts(pair) if "on its shaft" in doubt]
+    found = [doubt for doubt in parameter_warnings(pair) if "on its shaft" in doubt]
     assert [doubt.split(" ")[0] for doubt in found] == [
         f"bearings.gear.{d}_stiffness" for d in ("loa", "oloa")
     ]

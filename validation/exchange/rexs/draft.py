@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumped.errors import FieldProblem, shown
-from lumped.fields.units import to_file, to_si
+from lumped.fields.units import to_file
 from lumped.schema.pair import stated_unit
 from validation.exchange.rexs.model import Component, RexsModel
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
@@ -18,28 +18,6 @@ ASSUMED = "assumed"
 DOUBTFUL = "; doubtful: "
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
 _SMALLEST, _LARGEST = 1e-30, 1e30
-#: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened
-#: steel gears of any size.
-_LOAD_INTENSITY = 20e6
-_BEARING = {"stiffness": 1e8, "damping_ratio": 0.05}
-#: Field -> value in file units that stands in where a file has none.
-_STAND_INS: dict[str, Any] = {
-    "pinion.roughness": 0.4,
-    "gear.roughness": 0.4,
-    **{
-        f"bearings.{gear}.{line}_{key}": value
-        for gear in ("pinion", "gear")
-        for line in ("loa", "oloa")
-        for key, value in _BEARING.items()
-    },
-    "mesh.damping_ratio": 0.05,
-    "mesh.stiffness.model": "energy",
-    "friction.law": "xu_kahraman",
-    "operating.pinion_speed": 1000.0,
-}
-#: Oil temperature where a file has viscosities but no temperature [degC], and dynamic viscosity where it has
-#: none [mPa s].
-_TEMPERATURE, _VISCOSITY = 70.0, 10.0
 
 
 @dataclass(frozen=True)
@@ -150,24 +128,3 @@ class Draft:
         """Add the problem that a value which cannot be assumed is not in the file."""
         action = "Nothing can stand in for it: complete the model in the program that exported it."
         self.problems.append(FieldProblem(self.where(component, attribute), "not given", "a value", action))
-
-
-def completed(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a full parameter mapping, name and description apart, from known values: path -> file units."""
-    full = _STAND_INS | dict(values)
-    if any(path.startswith("lubricant.viscosity_law") for path in full):
-        full.setdefault("lubricant.viscosity_law.temperature", _TEMPERATURE)
-    else:
-        full.setdefault("lubricant.viscosity", _VISCOSITY)
-    if "operating.pinion_torque" not in full:
-        module, width = (to_si(full[path], "mm") for path in ("basic_rack.module", "pinion.face_width"))
-        radius = 0.5 * module * full["pinion.teeth"]  # of the reference circle
-        full["operating.pinion_torque"] = float(f"{_LOAD_INTENSITY * width * module * radius:.3g}")
-    root: dict[str, Any] = {}
-    for path, value in full.items():
-        *parents, leaf = path.split(".")
-        node = root
-        for parent in parents:
-            node = node.setdefault(parent, {})
-        node[leaf] = value
-    return root

@@ -1,4 +1,4 @@
-"""The encodings of REXS, read into one tree and written from it: XML, JSON, or one in a ZIP archive."""
+"""The encodings of REXS, one tree for all: XML and JSON, read and written; one in an archive is read."""
 
 from __future__ import annotations
 
@@ -24,17 +24,11 @@ _MAX_DEPTH = 32
 _MAX_ELEMENTS = 1_000_000
 _MAX_MEMBERS = 10_000
 _BLOCK = 65536
+_SKIPPED = ET.Element("skipped")
 _MARK = b"\xef\xbb\xbf"
 _DAMAGED = (zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, ValueError, RuntimeError)
-#: Suffix of a file to write -> its form; ".rexsz" and ".rexs.zip" hold the XML form.
-FORMS = {
-    ".rexs": "xml",
-    ".rexs.xml": "xml",
-    ".rexsj": "json",
-    ".rexs.json": "json",
-    ".rexsz": "zip",
-    ".rexs.zip": "zip",
-}
+#: Suffix of a file to write -> its form.
+FORMS = {".rexs": "xml", ".rexs.xml": "xml", ".rexsj": "json", ".rexs.json": "json"}
 
 
 def read_rexs(path: str | Path) -> RexsModel:
@@ -63,13 +57,23 @@ def _unzipped(data: bytes, file: str) -> bytes:
     """Return the one model of an archive; nothing is ever written to disk."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            members = archive.infolist()
+            members = [m for m in archive.infolist() if not m.is_dir()]
             if len(members) > _MAX_MEMBERS:
                 raise broken(file, f"the archive has more than {_MAX_MEMBERS} members")
-            member = _model_in(members, file)
-            if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-                raise broken(file, f"the member {shown(member.filename)!r} is not compressed by 'deflate'")
-            with archive.open(member) as stream:
+            names = [PurePosixPath(m.filename).name.lower() for m in members]
+            for suffixes in ((".rexs", ".rexsj", ".rexs.xml", ".rexs.json"), (".xml", ".json")):
+                found = [
+                    m
+                    for m, name in zip(members, names, strict=True)
+                    if name.endswith(suffixes) and not name.startswith("._")
+                ]
+                if found:
+                    break
+            if len(found) != 1:
+                raise broken(file, f"the archive has {len(found)} models instead of one")
+            if found[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise broken(file, f"the member {shown(found[0].filename)!r} is not compressed by 'deflate'")
+            with archive.open(found[0]) as stream:
                 content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
     except ParameterError:
         raise
@@ -79,23 +83,6 @@ def _unzipped(data: bytes, file: str) -> bytes:
     if len(content) > MAX_BYTES:
         raise broken(file, f"the model in the archive has more than {MAX_BYTES} bytes")
     return content
-
-
-def _model_in(members: list[zipfile.ZipInfo], file: str) -> zipfile.ZipInfo:
-    files = [
-        m
-        for m in members
-        if not m.is_dir()
-        and not m.filename.startswith("__MACOSX/")
-        and not PurePosixPath(m.filename).name.startswith("._")
-    ]
-    for suffixes in ((".rexs", ".rexsj", ".rexs.xml", ".rexs.json"), (".xml", ".json")):
-        found = [m for m in files if m.filename.lower().endswith(suffixes)]
-        if found:
-            break
-    if len(found) != 1:
-        raise broken(file, f"the archive has {len(found)} models instead of one")
-    return found[0]
 
 
 def from_json(data: bytes, file: str) -> Document:
@@ -157,40 +144,34 @@ def from_xml(data: bytes, file: str) -> Document:
     return {"model": {**root.attrib, **parts, "load_spectrum": {"load_cases": cases}}}
 
 
-class _Elements:
+class _Elements(ET.TreeBuilder):
     """Target of the parser: a tree without namespaces and without what stands inside attributes."""
 
     def __init__(self, file: str) -> None:
-        self.file = file
-        self.builder = ET.TreeBuilder()
+        super().__init__()
+        self.file, self.count = file, 0
         self.path: list[str] = []
-        self.count = 0
 
     def doctype(self, *_: object) -> None:
         raise broken(self.file, "it has a document type declaration, which REXS does not use")
 
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
+    def start(self, tag: str, attributes: dict[Any, Any]) -> ET.Element:
         inside = "attribute" in self.path
         self.path.append(tag.rpartition("}")[2])
+        self.count += not inside
         if len(self.path) > _MAX_DEPTH:
             raise broken(self.file, f"elements are nested deeper than {_MAX_DEPTH}")
-        if not inside:
-            self.count += 1
-            if self.count > _MAX_ELEMENTS:
-                raise broken(self.file, f"it has more than {_MAX_ELEMENTS} elements")
-            self.builder.start(self.path[-1], attributes)
+        if self.count > _MAX_ELEMENTS:
+            raise broken(self.file, f"it has more than {_MAX_ELEMENTS} elements")
+        return _SKIPPED if inside else super().start(self.path[-1], attributes)
 
-    def end(self, _: str) -> None:
+    def end(self, _: str) -> ET.Element:
         name = self.path.pop()
-        if "attribute" not in self.path:
-            self.builder.end(name)
+        return _SKIPPED if "attribute" in self.path else super().end(name)
 
     def data(self, text: str) -> None:
         if self.path[-1] == "attribute":
-            self.builder.data(text)
-
-    def close(self) -> ET.Element:
-        return self.builder.close()
+            super().data(text)
 
 
 def form_of(path: Path) -> str:
@@ -206,21 +187,11 @@ def form_of(path: Path) -> str:
     raise refuse("output", path, "a name ending in " + ", ".join(FORMS), "The suffix chooses the form.")
 
 
-def encoded(document: Document, form: str, name: str) -> bytes:
-    """Bytes of a tree: UTF-8 with a byte-order mark, as the specification asks, or an archive of that."""
+def encoded(document: Document, form: str) -> bytes:
+    """Bytes of a tree: UTF-8 with a byte-order mark, as the specification asks."""
     if form == "json":
-        text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
-        return _MARK + text.encode() + b"\n"
-    data = _MARK + b'<?xml version="1.0" encoding="UTF-8"?>\n' + _xml(document["model"]).encode() + b"\n"
-    if form == "xml":
-        return data
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
-        # A fixed date, so that equal models give equal bytes.
-        member = zipfile.ZipInfo(f"{name}.rexs", (1980, 1, 1, 0, 0, 0))
-        member.compress_type = zipfile.ZIP_DEFLATED
-        archive.writestr(member, data)
-    return stream.getvalue()
+        return _MARK + json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+    return _MARK + b'<?xml version="1.0" encoding="UTF-8"?>\n' + _xml(document["model"]).encode() + b"\n"
 
 
 def _xml(model: dict[str, Any]) -> str:

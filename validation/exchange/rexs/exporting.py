@@ -28,7 +28,7 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, f
     Parameters
     ----------
     pair : a validated gear pair
-    path : file to write; .rexs, .rexs.xml (XML), .rexsj, .rexs.json (JSON), .rexsz, .rexs.zip (zipped XML)
+    path : file to write; .rexs, .rexs.xml (XML), .rexsj, .rexs.json (JSON)
     version : of REXS, "1.4" to "1.7"
     force : overwrite an existing file
 
@@ -45,7 +45,7 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, f
     check_file(path, (path.suffix.lower(),), force=force)
     document = rexs_document(pair, one_of("version", version, WRITTEN))
     with whole_file(path, new=not force) as temporary:
-        temporary.write_bytes(encoded(document, form, path.name.split(".")[0]))
+        temporary.write_bytes(encoded(document, form))
     return path
 
 

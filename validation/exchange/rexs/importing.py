@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumped.arguments import whole_number
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.fields.units import to_stated
+from lumped.gear_geometry.geometry import theoretical_backlash
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.rexs.contradictions import warn_of_contradictions, without_contradiction
-from validation.exchange.rexs.draft import ASSUMED, Draft, completed
+from validation.exchange.new_pair_file import completed
+from validation.exchange.rexs.draft import ASSUMED, DOUBTFUL, Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
-from validation.exchange.rexs.gears import read_gears, read_reliefs
+from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
 from validation.exchange.rexs.model import Component, RexsModel, broken
-from validation.exchange.rexs.operation import (
-    driving_first,
-    read_backlash,
-    read_lubricant,
-    read_operating_point,
-)
 from validation.exchange.rexs.shafts import read_shafts
-from validation.exchange.rexs.vocabulary import VERSIONS
+from validation.exchange.rexs.vocabulary import VERSIONS, derived_number
 
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
@@ -32,6 +29,17 @@ _BECAUSE = {
     "operating.pinion_torque": "assumed: tangential load over face width and module of 20 N/mm^2",
     "operating.pinion_speed": "assumed: a round number",
 }
+#: Field of the viscosity law -> attribute of the oil.
+_VISCOSITY_LAW = {
+    "kinematic_viscosity_40": "viscosity_at_40_degree_celsius",
+    "kinematic_viscosity_100": "viscosity_at_100_degree_celsius",
+    "density": "density_at_15_degree_celsius",
+}
+_TIPS = ("pinion.tip_diameter", "gear.tip_diameter")
+_CENTRE, _BACKLASH = "centre_distance", "mesh.backlash"
+_OF_FLANKS = ("pinion.profile_shift", "gear.profile_shift", "basic_rack.pressure_angle")
+#: Backlash [modules] beyond which the centre distance hardly can be meant: ten times DIN 3967 at module 2.
+_MOST_BACKLASH = 0.25
 
 
 class _Stage(NamedTuple):
@@ -82,7 +90,7 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     model = read_rexs(path)
     picked, notes = _chosen(model, stage)
     draft, component = Draft(model, notes=notes), picked.component
-    pinion, gear = driving_first(draft, component, picked.gears)
+    pinion, gear = _driving_first(draft, component, picked.gears)
     gears = {"pinion": pinion, "gear": gear}
 
     def validated() -> GearPair:
@@ -92,11 +100,11 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
 
     read_gears(draft, pinion, gear)
     draft.take("centre_distance", draft.number(component, "center_distance"))
-    read_lubricant(draft, component)
-    read_operating_point(draft, component, pinion, gear)
-    read_backlash(draft, component, without_contradiction(draft, validated))
-    pair = without_contradiction(draft, validated)
-    warn_of_contradictions(draft, component, gears, pair)
+    _read_lubricant(draft, component)
+    _read_operating_point(draft, component, pinion, gear)
+    _read_backlash(draft, component, _without_contradiction(draft, validated))
+    pair = _without_contradiction(draft, validated)
+    _warn_of_contradictions(draft, pair)
     read_reliefs(draft, component, gears, pair.geometry)
     read_shafts(draft, gears, validated)
     pair = validated()
@@ -208,3 +216,144 @@ def _note_assumptions(draft: Draft, pair: GearPair, sources: dict[str, str]) -> 
             draft.note(text)
     if pair.pinion.tip_relief or pair.gear.tip_relief:
         draft.note("reliefs are read but mesh.relief decides whether the dynamics use them")
+
+
+def _driving_first(draft: Draft, stage: Component, gears: list[Component]) -> tuple[Component, Component]:
+    """Return the driving and the driven gear; where the file does not say, gear_1 drives."""
+    flags = [
+        [(draft.text(d, "is_driving_gear") or "").lower() for d in gear_data_of(draft, stage, g)]
+        for g in gears
+    ]
+    first, second = ("true" if {"true", "1"} & set(f) else "false" if f and f[0] else "" for f in flags)
+    if second == "true" and first != "true":
+        return gears[1], gears[0]
+    if first != "true" and second != "false":
+        draft.note(f"the file does not say which gear drives: gear_1, {gears[0].label}, is taken (assumed)")
+    return gears[0], gears[1]
+
+
+def _read_backlash(draft: Draft, stage: Component, pair: GearPair) -> None:
+    """Take from the normal backlash what the centre distance does not give already.
+
+    Parameters
+    ----------
+    pair : with the centre distance of the file, and teeth of full thickness
+    """
+    low, high = (draft.number(stage, f"{end}_normal_backlash") for end in ("minimum", "maximum"))
+    if low is None or high is None:
+        return
+    where = f"{low.where} and maximum, their mean"
+    if DOUBTFUL in draft.sources.get("centre_distance", ""):
+        text = f"{where}, was computed with a centre distance that stands for no pair of gears"
+        draft.warn(["mesh.backlash"], f"{text}; {1e3 * pair.mesh.backlash:g} mm stands in")
+        return
+    share = theoretical_backlash(*pair.wheels, pair.geometry.operating_pressure_angle)
+    thinning = 0.5 * (low.si + high.si) - share
+    remark = "" if "centre_distance" not in draft.values else ", without the share of the centre distance"
+    # A difference of lengths of about 100 mm, in fifteen digits.
+    draft.put("mesh.backlash", max(round(to_stated(thinning, "mm"), 12), 0.0), where + remark)
+
+
+def _read_lubricant(draft: Draft, stage: Component) -> None:
+    """Read the oil of the stage, of the casing, or the only one of the file."""
+    model = draft.model
+    places = [stage, *model.of_type("gear_casing")]
+    oils = [oil for place in places for oil in model.referenced(place, "lubricant")]
+    oils = oils or (only if len(only := model.of_type("lubricant")) == 1 else [])
+    if not oils:
+        return
+    v40, v100, density = (draft.number(oils[0], attribute) for attribute in _VISCOSITY_LAW.values())
+    viscosity = draft.first(places, "operating_viscosity")
+    if v40 is not None and v100 is not None:
+        law = "lubricant.viscosity_law"
+        draft.take_all(law, oils[0], _VISCOSITY_LAW)
+        draft.take(f"{law}.temperature", draft.first(places, "temperature_lubricant"))
+    elif viscosity is not None and density is not None:
+        where = f"{viscosity.where} times the density at 15 degC"
+        draft.take("lubricant.viscosity", Reading(viscosity.si * density.si, where))
+
+
+def _read_operating_point(draft: Draft, stage: Component, pinion: Component, gear: Component) -> None:
+    """Read speed and torque of the driving gear.
+
+    A load case of the load spectrum stands in where the components themselves have no value; of several load
+    cases the first.
+    """
+    shafts = {g.id: draft.model.neighbours(g, "shaft") for g in (pinion, gear)}
+    speed = draft.first((pinion, *shafts[pinion.id]), "rotational_speed")
+    if speed is None:
+        other = draft.first((gear, *shafts[gear.id]), "rotational_speed")
+        teeth = [draft.values.get(f"{which}.teeth", 0) for which in ("pinion", "gear")]
+        if other is not None and teeth[0] > 0:
+            speed = Reading(other.si * teeth[1] / teeth[0], f"{other.where}, times the gear ratio")
+    torque = _torque(draft, stage, pinion, shafts[pinion.id], speed)
+    for path, reading in (("operating.pinion_speed", speed), ("operating.pinion_torque", torque)):
+        if reading is not None:
+            draft.take(path, Reading(abs(reading.si), reading.where))
+    if (cases := len(draft.model.load_cases)) > 1:
+        draft.note(f"the file has {cases} load cases; where they matter the first is used")
+
+
+def _torque(
+    draft: Draft, stage: Component, pinion: Component, shafts: list[Component], speed: Reading | None
+) -> Reading | None:
+    model = draft.model
+    torque = draft.first(gear_data_of(draft, stage, pinion), "torque")
+    on_shaft = {g.id for s in shafts for g in model.neighbours(s, "cylindrical_gear")}
+    if torque is not None or len(on_shaft) != 1:  # a shaft with further gears passes torque on
+        return torque
+    loads = [load for s in shafts for load in model.neighbours(s, "external_load")]
+
+    def acting(attribute: str) -> list[Reading]:
+        return [r for load in loads if (r := draft.first([load], attribute)) is not None and r.si]
+
+    torques, powers = acting("torque_around_u_axis"), acting("power")
+    if len(torques) == 1:
+        return torques[0]
+    if not torques and len(powers) == 1 and speed is not None and speed.si:
+        return Reading(powers[0].si / speed.si, f"{powers[0].where} over the speed")
+    return None
+
+
+def _without_contradiction(draft: Draft, validated: Callable[[], GearPair]) -> GearPair:
+    """Validate; where that fails and values that the others give are why, put these in their place.
+
+    Raises
+    ------
+    ParameterError : the pair is refused with and without its derived values
+    """
+    try:
+        return validated()
+    except ParameterError as error:
+        refused = error
+    named = {p.field for p in refused.problems}
+    derived = [path for path in (_CENTRE, _BACKLASH, *_TIPS) if path in draft.values]
+    derived.sort(key=lambda path: path not in named)
+    for count in range(1, len(derived) + 1):
+        for paths in combinations(derived, count):
+            left_out = {path: draft.values.pop(path) for path in paths}
+            try:
+                pair = validated()
+            except ParameterError:
+                draft.values |= left_out
+                continue
+            g = pair.geometry
+            others = {_CENTRE: g.centre_distance, _BACKLASH: pair.mesh.backlash}
+            others |= {_TIPS[0]: 2.0 * g.tip_radius_pinion, _TIPS[1]: 2.0 * g.tip_radius_gear}
+            for path, value in left_out.items():
+                text = f"{draft.sources[path]} has {value:g} mm, with which the other values give no pair"
+                draft.put(path, derived_number(others[path], "mm"), ASSUMED)
+                draft.warn([path], f"{text} of gears; {draft.values[path]:g} mm stands in")
+            return validated()
+    raise refused
+
+
+def _warn_of_contradictions(draft: Draft, pair: GearPair) -> None:
+    """Mark the lines of a valid pair that hardly can be meant."""
+    g = pair.geometry
+    if max(g.normal_backlash, pair.mesh.backlash) > _MOST_BACKLASH * pair.basic_rack.module:
+        text = f"the normal backlash is {1e3 * g.normal_backlash:.3g} mm, more than {_MOST_BACKLASH} modules"
+        draft.warn([path for path in (_CENTRE, _BACKLASH) if path in draft.values], text)
+    if draft.model.of_type("flank_geometry"):
+        marked = [path for path in _OF_FLANKS if path in leaf_paths(pair)]
+        draft.warn(marked, "flank_geometry, where REXS before 1.3 has these, is not read")

@@ -42,23 +42,20 @@ UNITS = {
 
 #: REXS unit -> attributes.
 _NAMES = {
-    "none": "number_of_gears gear_shift_index reference_component_for_position number_of_teeth gear_ratio "
-    "radial_contact_ratio overlap_contact_ratio sum_of_addendum_modification_coefficients is_driving_gear "
-    "addendum_modification_coefficient addendum_coefficient_basic_profile loaded_tooth_flank defines_speed "
-    "transmits_torque defines_torque poisson_ratio shape_of_relief addendum_coefficient_reference_profile "
-    "tip_radius_factor tip_corner_radius_factor_reference_profile",
+    "none": "number_of_gears gear_shift_index reference_component_for_position number_of_teeth "
+    "is_driving_gear addendum_modification_coefficient addendum_coefficient_basic_profile loaded_tooth_flank "
+    "defines_speed transmits_torque defines_torque poisson_ratio shape_of_relief "
+    "addendum_coefficient_reference_profile tip_radius_factor tip_corner_radius_factor_reference_profile",
     "mm": "support_vector u_axis_vector w_axis_vector center_distance minimum_normal_backlash "
-    "maximum_normal_backlash normal_base_pitch normal_module face_width tip_diameter root_diameter "
-    "inner_diameter reference_circle_diameter base_circle_diameter base_diameter pitch_diameter "
-    "reference_diameter_cylindrical_gear addendum_modification u_coordinate_on_shaft length "
+    "maximum_normal_backlash normal_module face_width tip_diameter root_diameter "
+    "inner_diameter addendum_modification u_coordinate_on_shaft length "
     "outer_diameter_begin outer_diameter_end inner_diameter_begin inner_diameter_end "
     "u_coordinate_on_shaft_inner_side u_coordinate_on_shaft_outer_side tip_relief_depth root_relief_depth "
     "tip_relief_datum_diameter tip_relief_evaluation_reference root_relief_datum_diameter "
     "root_relief_evaluation_reference",
     "mum": "arithmetic_average_roughness_flank averaged_peak_to_valley_height_flank "
     "arithmetic_mean_roughness_flank_iso_4287_1997 mean_peak_to_valley_roughness_flank_iso_4287_1997",
-    "deg": "helix_angle_reference_diameter normal_pressure_angle "
-    "operating_pressure_angle_in_the_transverse_section",
+    "deg": "helix_angle_reference_diameter normal_pressure_angle",
     "1 / min": "rotational_speed",
     "N m": "torque torque_around_u_axis",
     "kW": "power",

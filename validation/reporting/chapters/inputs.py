@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from lumped.path_of_contact import pair_stiffness
-from lumped.schema.bodies import bodies
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import leaf_paths, stated_unit
 from validation.prediction.inputs import source_of, uncertain_inputs
 from validation.reporting.blocks import Badge, Cell, Content, quantities, table_of
@@ -39,7 +39,7 @@ def write(results: Results) -> Content:
             ),
         },
     )
-    b = bodies(pair)
+    b = bodies_of(pair)
     derived = quantities(
         "derived",
         "What follows from them.",
