@@ -17,9 +17,10 @@ from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import FORMAT, SHORT_NAMES, GearPair, leaf_paths, stated_unit
-from validation.exchange.rexs.draft import DOUBTFUL
 
 GIVEN = "given by the user"
+#: Joins the source of a value and why it is doubtful.
+DOUBTFUL = "; doubtful: "
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
 _WHY = {
     "_stiffness": "of rolling bearing, shaft and housing together; see the guide on bearings",

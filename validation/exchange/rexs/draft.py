@@ -10,12 +10,11 @@ from typing import Any
 from lumped.errors import FieldProblem, shown
 from lumped.fields.units import to_file
 from lumped.schema.pair import stated_unit
+from validation.exchange.new_pair_file import DOUBTFUL
 from validation.exchange.rexs.model import Component, RexsModel
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
 
 ASSUMED = "assumed"
-#: Joins the source of a value and why it is doubtful.
-DOUBTFUL = "; doubtful: "
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
 _SMALLEST, _LARGEST = 1e-30, 1e30
 

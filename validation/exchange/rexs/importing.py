@@ -13,8 +13,8 @@ from lumped.fields.units import to_stated
 from lumped.gear_geometry.geometry import theoretical_backlash
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.new_pair_file import completed
-from validation.exchange.rexs.draft import ASSUMED, DOUBTFUL, Draft, Reading
+from validation.exchange.new_pair_file import DOUBTFUL, completed
+from validation.exchange.rexs.draft import ASSUMED, Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
 from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
 from validation.exchange.rexs.model import Component, RexsModel, broken
