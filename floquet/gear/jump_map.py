@@ -27,6 +27,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
 from lumped.labelling import Variable, labelled_dataset
 from lumped.ranges import told_once
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray, IntArray, Progress
 
@@ -105,7 +106,7 @@ def _at(pair: GearPair, axis: str, value: float) -> GearPair:
 
 @told_once()
 def jump_map(
-    pair: GearPair,
+    pair: AnyPair,
     axes: Axes,
     periods: Collection[int] = (1, 2),
     *,
@@ -140,6 +141,7 @@ def jump_map(
     ------
     ParameterError : unknown axis, values outside its range, too many points, a pair without tip relief
     """
+    pair = load_gear_pair(pair)
     name, grid = _checked(pair, axes)
     wanted = sorted({whole_number("periods", n, 1, 64) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)

@@ -30,7 +30,7 @@ from lumped.model.results import labelled
 from lumped.model.steady import periodic_cycle, sample_times
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class _Loads:
 
 
 def quasi_static_losses(
-    pair: GearPair,
+    pair: AnyPair,
     law: str | None = None,
     sharing: Sharing = "elements",
     *,
@@ -80,6 +80,7 @@ def quasi_static_losses(
     ``input_power`` [W], ``loss_factor`` H_v and ``mean_coefficient`` = loss/(H_v input power) come from an
     exact quadrature between the switches, not from the samples.
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     time = sample_times(g.mesh_period, samples_per_cycle)
     mu = friction_path_function(pair, law)
@@ -134,7 +135,7 @@ def _loads(g: Geometry, torque: float, mu: PathFunction, teeth: Springs, at: Cyc
     return _Loads(share, normal, coefficient, friction, sliding, -friction * sliding, brake)
 
 
-def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
+def dynamic_losses(pair: AnyPair, solution: xr.Dataset) -> xr.Dataset:
     """Sliding loss and efficiency over time of a lumped or multibody solution.
 
     The loss is -SUM F_i v_s,i with the nominal sliding velocity: by the mean moment balance of both gears it
@@ -156,6 +157,7 @@ def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
     ------
     ParameterError : the dataset has no friction power
     """
+    pair = load_gear_pair(pair)
     if "friction_power_nominal" not in solution:
         raise refuse(
             "solution",
@@ -214,7 +216,7 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
     )
 
 
-def losses_of_laws(pair: GearPair, *, dynamic: bool = True) -> xr.Dataset:
+def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
     """Mesh efficiency of every law with friction at the operating point.
 
     Parameters
@@ -227,6 +229,7 @@ def losses_of_laws(pair: GearPair, *, dynamic: bool = True) -> xr.Dataset:
     xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
     mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
     """
+    pair = load_gear_pair(pair)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []
     for name in FRICTIONAL:

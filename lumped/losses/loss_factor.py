@@ -18,6 +18,7 @@ from lumped.path_function import PathFunction
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.contacts import CONTACTS
 from lumped.quasi_static.prescribed import loaded_mesh
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
@@ -160,12 +161,13 @@ def addendum_contact_ratios(g: Geometry) -> tuple[float, float]:
     return (g.L_XD - g.L_XP) / g.base_pitch, (g.L_XP - g.L_XA) / g.base_pitch
 
 
-def ohlendorf_of(pair: GearPair) -> float:
+def ohlendorf_of(pair: AnyPair) -> float:
     """Ohlendorf's loss factor of a gear pair [-], see ``ohlendorf``."""
+    pair = load_gear_pair(pair)
     return ohlendorf(pair.pinion.teeth, pair.gear.teeth, *addendum_contact_ratios(pair.geometry))
 
 
-def loss_factor(pair: GearPair, sharing: Sharing = "uniform") -> float:
+def loss_factor(pair: AnyPair, sharing: Sharing = "uniform") -> float:
     """Loss factor by exact integration, for any contact ratio and load sharing.
 
     H_v = 1/(p v_t) INTEGRAL over the cycle of SUM share_i |v_s,i|, v_t = Omega_p r_bp
@@ -179,6 +181,7 @@ def loss_factor(pair: GearPair, sharing: Sharing = "uniform") -> float:
     -------
     H_v [-]; the mean sliding loss of a constant mu is mu H_v times the power, to first order in mu
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     teeth = springs(pair, sharing)
     at = quadrature(g, teeth.functions)

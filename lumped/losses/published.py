@@ -13,22 +13,24 @@ from lumped.losses.loss_factor import loss_factor, quadrature, sliding_velocity,
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import contact_path
 from lumped.ranges import checked
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 _HALVINGS = 40
 
 
-def iso_14179_of(pair: GearPair) -> float:
+def iso_14179_of(pair: AnyPair) -> float:
     """Mean coefficient of ISO/TR 14179-2 of a pair at its operating point, with mineral oil [-]."""
+    pair = load_gear_pair(pair)
     return coefficient_of(contact_path(pair))
 
 
-def iso_14179_mesh_loss(pair: GearPair) -> float:
+def iso_14179_mesh_loss(pair: AnyPair) -> float:
     """Load-dependent loss of the mesh with mineral oil after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
 
     With the exact loss factor of equal load sharing, which is Ohlendorf's wherever his closed form holds.
     """
+    pair = load_gear_pair(pair)
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     return power * iso_14179_of(pair) * loss_factor(pair, "uniform")
 
@@ -69,7 +71,7 @@ def anderson_loewenthal_coefficient(
     return np.asarray(np.maximum(f, 0.0), dtype=np.float64)
 
 
-def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
+def anderson_loewenthal_sliding_loss(pair: AnyPair) -> float:
     """Mean sliding loss of the mesh [W].
 
     The instantaneous loss f w v_s of every pair in contact, each pair with an equal share of the load, is
@@ -77,6 +79,7 @@ def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
     the coefficient belongs to the load that the pair carries. Rolling and windage losses of the same report
     are not part of it.
     """
+    pair = load_gear_pair(pair)
     g, path = pair.geometry, contact_path(pair)
     at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
     touching, xi = at.contact, at.position[at.contact]

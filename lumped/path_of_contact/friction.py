@@ -22,6 +22,7 @@ from lumped.labelling import labelled_dataset
 from lumped.lubrication import film
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -208,7 +209,7 @@ def film_note(low: float, high: float) -> str:
     )
 
 
-def friction_profile(pair: GearPair, points: int = 401) -> xr.Dataset:
+def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
     """Compare all laws with friction over the path of contact, with the contact conditions they see.
 
     Parameters
@@ -223,6 +224,7 @@ def friction_profile(pair: GearPair, points: int = 401) -> xr.Dataset:
     ``range_warnings``, one text per left validity range; ``left_out``, laws that this pair does not allow
     and why.
     """
+    pair = load_gear_pair(pair)
     path, settings = contact_path(pair), pair.friction
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []

@@ -59,7 +59,7 @@ class OptimalRelief:
 
 
 def relief_map(
-    pair: GearPair,
+    pair: AnyPair,
     amounts: ArrayLike,
     lengths: ArrayLike,
 ) -> xr.Dataset:
@@ -75,6 +75,7 @@ def relief_map(
     -------
     xarray.Dataset : ``peak_to_peak`` [m] over ``amount`` [m] and ``length`` [m]
     """
+    pair = load_gear_pair(pair)
     amount = real_numbers("amounts", amounts, 0.0, unit="m", action="Give the material removed at the tip.")
     length = real_numbers("lengths", lengths, 0.0, above=True, unit="m")
     g, bare, force = _prepared(pair, None)
@@ -140,7 +141,7 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
     )
 
 
-def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
+def with_tip_relief(pair: AnyPair, optimum: OptimalRelief) -> GearPair:
     """Return the pair with this tip relief on both gears.
 
     Parameters
@@ -148,6 +149,7 @@ def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
     pair : a validated gear pair
     optimum : the relief
     """
+    pair = load_gear_pair(pair)
 
     def section(start: float) -> dict[str, object]:
         return {"amount": optimum.amount * 1e6, "start_roll_angle": math.degrees(start)}

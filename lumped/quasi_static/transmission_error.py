@@ -59,7 +59,7 @@ class MeshPositions:
     coupling: FloatArray
 
 
-def mesh_positions(pair: GearPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
+def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
     """Stiffness and unloaded error of the tooth pairs over one mesh cycle.
 
     Parameters
@@ -68,6 +68,7 @@ def mesh_positions(pair: GearPair, *, phases: int = 256, extended: bool = True) 
     phases : positions per mesh cycle, evenly spaced from a pair at A
     extended : whether deflection lets pairs touch before A and behind D
     """
+    pair = load_gear_pair(pair)
     phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")
     g = pair.geometry
     reach = REACH if extended else 0.0

@@ -31,7 +31,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
 from lumped.friction.registry import LAWS, file_name
 from lumped.path_of_contact import friction_path_function
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from validation.measurements.comparison import Alignment, align, overlay, overlay_metrics
 from validation.measurements.prediction import Prediction, predict
@@ -106,7 +106,7 @@ class Evaluation:
 
 
 def evaluate(
-    measurement: Measurement, pair: GearPair, *, identify: Sequence[str] = (), shift: float | None = None
+    measurement: Measurement, pair: AnyPair, *, identify: Sequence[str] = (), shift: float | None = None
 ) -> Evaluation:
     """Align a record, compare it with its prediction, and identify friction from it.
 
@@ -122,6 +122,7 @@ def evaluate(
     ParameterError : something unknown to identify, or channels that it needs are missing
     NumericalError : the record does not fit the prediction in any phase, or carries no friction
     """
+    pair = load_gear_pair(pair)
     laws = [name for name in LAWS if name != "none"]
     advice = "Name mu, a constant coefficient, or a law to scale."
     wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from lumped import Geometry, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 from validation.measurements.record import PAIR_LABELS, QUANTITIES
@@ -87,7 +88,7 @@ class Prediction:
 
 
 def predict(
-    pair: GearPair,
+    pair: AnyPair,
     speed: float | None = None,
     torque: float | None = None,
     *,
@@ -102,6 +103,7 @@ def predict(
     torque : pinion torque [N m]; default the pair's
     recurrence : see ``Prediction``; default the pinion's number of teeth
     """
+    pair = load_gear_pair(pair)
     at = pair
     if speed is not None:
         speed = real_number("speed", speed, 0.0, above=True, unit="rad/s")
