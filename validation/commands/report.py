@@ -39,6 +39,14 @@ def report(
             "contact.",
         ),
     ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            "--record",
+            metavar="TOML",
+            help="Description of a measured transmission error at this speed and torque, to compare with.",
+        ),
+    ] = None,
     compare: Annotated[
         Path | None,
         typer.Option(
@@ -85,6 +93,7 @@ def report(
             output,
             force=force,
             quick=quick,
+            record=record,
             compare=compare,
             tolerance=tolerance,
             name=pair or opt.DEFAULT_PAIR,

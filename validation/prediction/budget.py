@@ -24,6 +24,15 @@ from validation.prediction.motion import Prediction, predicted
 COLUMNS = ("dte_peak_to_peak", "tooth_load", "bearing_rms")
 
 
+class Compared(Protocol):
+    """What the budget reads of a comparison with a record."""
+
+    @property
+    def error(self) -> float: ...
+    @property
+    def uncertainty(self) -> float: ...
+
+
 class Known(Protocol):
     """What the budget reads; the report's shared results have it all."""
 
@@ -40,7 +49,7 @@ class Known(Protocol):
     @property
     def uncertainty(self) -> xr.Dataset | Absent: ...
     @property
-    def measured_error(self) -> float | None: ...
+    def measured_error(self) -> Compared | None: ...
     @property
     def finite_elements(self) -> bool: ...
 
@@ -200,10 +209,11 @@ def _inputs(known: Known) -> Row:
 
 
 def _measurement(known: Known) -> Row:
-    name, error = "measurement", known.measured_error
-    if error is None:
+    name, found = "measurement", known.measured_error
+    if found is None:
         return Row("measurement", name, "measurement", _UNKNOWN, "no measurement is given")
-    return Row("measurement", name, "measurement", (error, np.nan, np.nan), "record less prediction")
+    note = f"prediction less record; known to ±{2e6 * found.uncertainty:.2g} µm"
+    return Row("measurement", name, "measurement", (abs(found.error), np.nan, np.nan), note)
 
 
 _ROWS: tuple[Callable[[Known], Row], ...] = (

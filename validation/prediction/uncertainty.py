@@ -16,7 +16,9 @@ from scipy.stats import binom, qmc, rankdata
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
-from lumped.model.sweep import speed_sweep
+from lumped.model.solution import sample_times
+from lumped.model.steady import periodic_solution
+from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -29,6 +31,9 @@ PERCENTILES = (5.0, 50.0, 95.0)
 _SURE = 0.9
 #: Samples of which most must be left after refusals.
 _LEAST = 0.5
+#: Times in a mesh cycle, and largest angle of a step [rad], of motions over speed. Twice the step of other
+#: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range.
+_TIMES, _STEP_ANGLE = 32, 1.0
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 
 
@@ -109,12 +114,10 @@ def speed_band(pair: GearPair, speeds_rpm: FloatArray, samples: int = 32, seed: 
     found = []
     for point in qmc.Sobol(max(len(inputs), 1), rng=np.random.default_rng(seed)).random(samples):
         try:
-            sweep = speed_sweep(
-                _varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=False)]), speeds_rpm
-            )
+            varied = _varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=False)])
+            found.append(_peaks(varied, speeds_rpm))
         except SpurcheckError:
             continue
-        found.append(sweep["dte_peak_to_peak"].to_numpy())
     table = np.stack(found)
     low = np.asarray(np.nanpercentile(table, PERCENTILES[0], axis=0))
     high = np.asarray(np.nanpercentile(table, PERCENTILES[-1], axis=0))
@@ -127,6 +130,20 @@ def speed_band(pair: GearPair, speeds_rpm: FloatArray, samples: int = 32, seed: 
         {"speed_rpm": (np.asarray(speeds_rpm), "rpm", "pinion speed")},
         {"samples": len(found)},
     )
+
+
+def _peaks(pair: GearPair, speeds_rpm: FloatArray) -> FloatArray:
+    """Peak to peak of the linear transmission error at speeds, NaN where no motion is found [m]."""
+    pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds_rpm]
+    found = np.full(len(pairs), np.nan)
+    for j, system in enumerate(systems_over_speed(pairs)):
+        times = sample_times(system.period, _TIMES)
+        try:
+            motion = periodic_solution(system, times, estimate_error=False, step_angle=_STEP_ANGLE)
+        except NumericalError:
+            continue
+        found[j] = motion.peak_to_peak["dte"]
+    return found
 
 
 def percentile_interval(count: int, percentile: float) -> tuple[int, int]:

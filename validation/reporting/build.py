@@ -21,6 +21,8 @@ from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
+from validation.measurements.model_error import measured_peak_to_peak
+from validation.measurements.record import load_measurement
 from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
@@ -64,6 +66,7 @@ def report(
     *,
     force: bool = False,
     quick: bool = False,
+    record: str | Path | None = None,
     compare: str | Path | None = None,
     tolerance: float = TOLERANCE,
     name: str = "",
@@ -82,6 +85,7 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling, inputs not varied, for a first look
+    record : description of a measured record of the transmission error at this speed and torque (TOML)
     compare : report.json of an earlier report, or its folder
     tolerance : relative change of a number that passes in this comparison
     name : how commands name the pair, its file or preset; default the pair's name
@@ -101,11 +105,14 @@ def report(
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
+    measured = None if record is None else load_measurement(record)
+    if measured is not None:
+        measured_peak_to_peak(measured, gear_pair)  # refused before any work
     with whole_folder(target, force=force) as folder, warnings.catch_warnings():
         # The page says where a law is outside its range at the operating point; each speed and sample more
         # would say it again.
         warnings.simplefilter("ignore", LawRangeWarning)
-        results = Results(gear_pair, QUICK if quick else FULL, named)
+        results = Results(gear_pair, QUICK if quick else FULL, named, record=measured)
         if early is not None:
             tell(0.0, "motion")
             early(title(results), first_numbers(results.prediction))

@@ -15,6 +15,7 @@ from lumped.outcomes import Absent
 from validation.files.formatting import number, quantity
 from validation.files.tables import read_table
 from validation.prediction.motion import QUANTITIES, Prediction
+from validation.reporting.first_figures import plain_name
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
 
@@ -254,10 +255,13 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
         return Verdict.COMPARE, Verdict.COMPARE.value, f"{calm} But {inputs}, and they were not varied."
     low, middle, high = found["dte_peak_to_peak_percentile"].to_numpy()
     half = 0.5 * (high - low) / middle
-    if half <= ABSOLUTE and results.measured_error is not None:
-        return Verdict.ABSOLUTE, Verdict.ABSOLUTE.value, f"{calm} The inputs leave {100 * half:.0f} %."
+    measured = results.measured_error
+    if measured is not None and not measured.explained and abs(measured.error) > ABSOLUTE * measured.measured:
+        text = f"{calm} But the record differs by {100 * abs(measured.error) / measured.measured:.0f} %"
+        return Verdict.COMPARE, Verdict.COMPARE.value, f"{text}, more than inputs and noise explain."
     if half <= ABSOLUTE:
-        text = f"{calm} The inputs leave {100 * half:.0f} %; no measurement confirms it."
+        text = "a record confirms it" if measured is not None else "no measurement confirms it"
+        text = f"{calm} The inputs leave {100 * half:.0f} %; {text}."
         return Verdict.ABSOLUTE, Verdict.ABSOLUTE.value, text
     return (
         Verdict.COMPARE,
@@ -361,8 +365,10 @@ def advice_on_inputs(results: Results) -> list[Action]:
 
 def _sure(results: Results) -> tuple[str, ...]:
     given, assumed = results.inputs
-    measured = results.measured_error
-    compared = "no" if measured is None else f"yes, it differs by {quantity(measured, 'm', 2)}"
+    measured, compared = results.measured_error, "no"
+    if measured is not None:
+        error, size = quantity(measured.error, "m", 2), quantity(2.0 * measured.uncertainty, "m", 2)
+        compared = f"yes, the prediction less the record is {error}, known to ±{size}"
     return (
         f"Solved right? {results.second_words}",
         f"Inputs: {given} given, {assumed} assumed.",
@@ -375,6 +381,27 @@ def _remark(results: Results) -> str:
     if prediction.contact_lost and not isinstance(linear, Absent):
         size = quantity(float(linear.attrs["dte_peak_to_peak"]), "m", 3)
         return f"The linear model would give {size}. It lets teeth pull, so it is not used here."
+    return _beyond_the_range(results)
+
+
+def _beyond_the_range(results: Results) -> str:
+    """Why a result as given lies outside the range of the samples; empty where none does."""
+    found = results.uncertainty
+    if isinstance(found, Absent):
+        return ""
+    for key, label in _ROWS.items():
+        given, ends = results.prediction.numbers[key], found[f"{key}_percentile"].to_numpy()[[0, -1]]
+        if ends[0] <= given <= ends[1]:
+            continue
+        swing = np.nan_to_num(found[f"{key}_swing"].to_numpy(), nan=given)
+        # The input that, at its ends, takes the result furthest back into the range.
+        back = (swing - given).max(axis=1) if given < ends[0] else (given - swing).max(axis=1)
+        name = plain_name(str(found["input"].to_numpy()[int(np.argmax(back))]))
+        side = "below" if given < ends[0] else "above"
+        return (
+            f"As given, “{label}” lies {side} the range of the samples: what is assumed for the {name} "
+            "stands at the end of its range."
+        )
     return ""
 
 

@@ -23,6 +23,8 @@ from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
+from validation.measurements.model_error import ModelError, model_error
+from validation.measurements.record import Measurement
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import Motion, Prediction, measured, predicted
@@ -61,7 +63,7 @@ class Effort:
     full: bool
 
 
-FULL = Effort(128, 32, 61, 160, 1601, 101, 61, full=True)
+FULL = Effort(128, 24, 31, 160, 1601, 101, 61, full=True)
 QUICK = Effort(0, 0, 0, 48, 401, 41, 25, full=False)
 
 
@@ -75,6 +77,7 @@ class Results:
     effort : how finely
     name : how a command names the pair: its file, or the preset
     progress : called with the finished fraction of the present computation and its name
+    record : a measured record of the pair at its operating point
 
     Raises
     ------
@@ -82,9 +85,15 @@ class Results:
     """
 
     def __init__(
-        self, pair: GearPair, effort: Effort, name: str = "", progress: Progress | None = None
+        self,
+        pair: GearPair,
+        effort: Effort,
+        name: str = "",
+        progress: Progress | None = None,
+        record: Measurement | None = None,
     ) -> None:
         self.given, self.pair = pair, pair.healthy
+        self.record = record
         self.effort = effort
         self.name = name or pair.name
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
@@ -173,7 +182,8 @@ class Results:
         if isinstance(self.uncertainty, Absent):
             return self.uncertainty
         self.stage("range over speed")
-        speeds = np.linspace(*self.speeds, self.effort.band_speeds)
+        # Resonances are wider the faster the pair runs.
+        speeds = np.linspace(*np.sqrt(self.speeds), self.effort.band_speeds) ** 2
         return speed_band(self.pair, speeds, self.effort.band_samples)
 
     @cached_property
@@ -273,9 +283,13 @@ class Results:
         return max(found, default=None)
 
     @cached_property
-    def measured_error(self) -> float | None:
-        """Peak to peak of a measured record less that of the prediction [m]; None without a record."""
-        return None
+    def measured_error(self) -> ModelError | None:
+        """The prediction against a measured record; None without one."""
+        if self.record is None:
+            return None
+        simulated, linear = self.prediction.peak_to_peak, self.linear
+        share = 0.0 if isinstance(linear, Absent) else float(linear.attrs["error_estimate"])
+        return model_error(self.record, self.pair, simulated, share * simulated, self.uncertainty)
 
     @cached_property
     def outside(self) -> tuple[str, ...]:
