@@ -16,8 +16,7 @@ from scipy.stats import binom, qmc, rankdata
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
-from lumped.model.solution import sample_times
-from lumped.model.steady import periodic_solution
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair

@@ -63,7 +63,7 @@ class Effort:
     full: bool
 
 
-FULL = Effort(128, 24, 31, 160, 1601, 101, 61, full=True)
+FULL = Effort(128, 16, 31, 160, 1601, 101, 61, full=True)
 QUICK = Effort(0, 0, 0, 48, 401, 41, 25, full=False)
 
 
@@ -183,7 +183,8 @@ class Results:
             return self.uncertainty
         self.stage("range over speed")
         # Resonances are wider the faster the pair runs.
-        speeds = np.linspace(*np.sqrt(self.speeds), self.effort.band_speeds) ** 2
+        low, high = self.speeds
+        speeds = np.linspace(low**0.5, high**0.5, self.effort.band_speeds) ** 2
         return speed_band(self.pair, speeds, self.effort.band_samples)
 
     @cached_property
