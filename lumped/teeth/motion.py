@@ -87,6 +87,13 @@ class OwnMotion:
         """Mesh cycles."""
         return self.tables.period
 
+    def balance(self, conservative: bool) -> dict[str, float]:
+        """Torques that hold the mean speed [N m] and efficiency, as of ``lumped.model.powers.balance``."""
+        g, torque = self.pair.geometry, self.system.pinion_torque
+        brake = self.brake_torque - (self.powers["rolling"] / g.omega_gear if conservative else 0.0)
+        efficiency = brake * g.omega_gear / (torque * g.omega_pinion)
+        return {"brake_torque": brake, "pinion_torque": torque, "mesh_efficiency": efficiency}
+
     @cached_property
     def number(self) -> IntArray:
         """Number of the pair in each place at each output, (pairs, k)."""
@@ -326,22 +333,17 @@ def own_steady_state(pair: GearPair, samples: int | None, touch: Touch, supports
 
 def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset:
     """A motion under the names of ``lumped.model.results.VARIABLES``, with the teeth of each pair."""
-    system, g = motion.system, motion.pair.geometry
+    system = motion.system
     values = response(system, motion.time, motion.states, motion.load, motion.pairs)
     further: dict[str, Variable] = {
         f"{name}_tooth": (("pair", "time"), teeth + 1, "1", f"tooth of the {name}, counted from 1")
         for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
     }
-    brake = motion.brake_torque
-    if contact_of(motion.pair).conservative:
-        brake -= motion.powers["rolling"] / g.omega_gear
-    attributes = attributes | {
+    attributes = attributes | motion.balance(contact_of(motion.pair).conservative)
+    attributes |= {
         "model": "lumped",
         "period_cycles": motion.period,
         "touch": FORMS[motion.form],
-        "brake_torque": brake,
-        "pinion_torque": system.pinion_torque,
-        "mesh_efficiency": brake * g.omega_gear / (system.pinion_torque * g.omega_pinion),
         "power_sliding": motion.powers["sliding"],
         "power_tooth_dampers": motion.powers["tooth_dampers"],
         "power_bearings": motion.powers["supports"],

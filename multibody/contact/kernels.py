@@ -42,6 +42,7 @@ from multibody.contact.kinematics import (
     overlap_rate,
     sliding_velocity,
 )
+from multibody.contact.own_teeth import error_of, move_moments, off_axis
 
 
 @compiled
@@ -55,7 +56,8 @@ def friction_size(
     """
     f = p[kn.FRICTION :]
     if f[fr.LAW] == fr.TABLE:
-        table = p[kn.N_PARAMETERS :].reshape((-1, int(f[fr.COLUMNS])))
+        end = int(p[kn.OWN]) if p[kn.OWN] > 0.0 else p.size
+        table = p[kn.N_PARAMETERS : end].reshape((-1, int(f[fr.COLUMNS])))
         return abs(stiffness_at(table, p[kn.L_XP] + distance))
     return float(fr.magnitude(f, slide, rolling, rho_p, rho_g, distance, load))
 
@@ -125,6 +127,12 @@ def contact_forces(
     q, v, wrench = state[0], state[1], state[2]
     wrench[:] = 0.0
     rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
+    teeth, late = p[int(p[kn.OWN]) :], 0.0
+    if p[kn.OWN] > 0.0:
+        centres = off_axis(teeth, t, state, p[kn.OMEGA_P], p[kn.OMEGA_G])
+        q, v = centres[0], centres[1]
+    turned_p = p[kn.L_XA] + rp * (p[kn.OMEGA_P] * t - q[2])
+    turned_g = p[kn.L_XY] - p[kn.L_XA] - rg * (p[kn.OMEGA_G] * t + q[5])
     omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
     vx, vy = v[0] - v[3], v[1] - v[4]
     unilateral = (flags & kn.CONTACT_LOSS) != 0
@@ -154,15 +162,17 @@ def contact_forces(
         for candidate in range(candidates):
             rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
             xi = 0.5 * (rho_p - rho_g + p[kn.L_XY])
+            if p[kn.OWN] > 0.0:
+                late = error_of(teeth, turned_p, turned_g, rho_p, rho_g, p[kn.PITCH])
             error, error_slope = relief_at(p, xi)
-            pressed, pressing = delta - error, rate - error_slope * xi_rate
+            pressed, pressing = delta - error - late, rate - error_slope * xi_rate
             corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
             if flags & kn.TIP_CONTACT:
                 if xi < p[kn.L_XA] or xi > p[kn.L_XD]:
                     error, error_slope = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))[0], 0.0
                 corners = corners_at(line, rho_p, rho_g, p[kn.TIP_P], p[kn.TIP_G])
                 beyond = rho_p > p[kn.TIP_P] or rho_g > p[kn.TIP_G]
-                pressed = delta - error - corners.gap
+                pressed = delta - error - late - corners.gap
                 if beyond and pressed < -abs(delta):
                     continue  # further apart than any neighbour could move it
                 pressing = (
@@ -250,6 +260,8 @@ def contact_forces(
             record[kn.CLOSING], record[kn.ELASTIC], record[kn.ENERGY] = rate, elastic, stored
             record[kn.PATH], record[kn.PATH_RATE] = path, xi_rate
             count += 1
+    if p[kn.OWN] > 0.0:
+        move_moments(centres[2], wrench)
     total = 0.0
     for i in range(6):
         total += wrench[i]

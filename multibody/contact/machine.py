@@ -30,6 +30,7 @@ from multibody.contact.events import SLIDING, event_table
 from multibody.contact.friction_parameters import fill_friction, friction_switches
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
 from multibody.contact.layout import MAX_PAIRS
+from multibody.contact.own_teeth import with_block
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
@@ -175,6 +176,7 @@ def machine(
         p[kn.FRICTION + fr.COLUMNS] = law.coefficients.shape[0] + 2
         p = np.append(p, pack(law))
         friction = [(SLIDING, place) for place in law.switches.tolist()]
+    p = with_block(pair, p, kn.OWN)
     starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
     places = [place for _, place in friction]
     table = pack(stiffness)

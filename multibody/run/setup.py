@@ -17,6 +17,7 @@ from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
+from lumped.teeth.motion import own_motion
 from lumped.typing import FloatArray
 from multibody.contact import layout as kn
 from multibody.contact.kernels import nominal_friction
@@ -133,6 +134,9 @@ def prepare(
             allowed = "at most contact_loss at fidelity 'linear'"
             raise refuse("effects", shown(effects), allowed, "Use fidelity='exact'.")
         flags |= kn.LINEAR
+    if flags & kn.LINEAR and pair.healthy is not pair:
+        allowed = "'exact' where teeth differ"
+        raise refuse("fidelity", fidelity, allowed, "Use it with its effects, or pair.healthy.")
     system = LTVSystem.of(pair, "full")
     numbers = machine(pair, flags, supports, system.cycle)
     call_limit = _call_limit(numbers)
@@ -197,6 +201,10 @@ def _on_springs(
     """Loads and initial state of the lumped model."""
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
+    if pair.healthy is not pair:
+        own = own_motion(pair, 8, "push_only")
+        balance = replace(balance, states=own.states[:1])
+        mean_balance = own.balance(conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]
     numbers = replace(numbers, torque_pinion=torques[0], torque_gear=torques[1])
     static, _ = from_lumped_state(initial_state(system, "static", balance))
