@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from computed.markdown import table
-from tests.evidence.faults.fault import GROUPS
+from tests.evidence.faults.fault import GROUPS, REPORT_FAULTS
 from tests.evidence.faults.table import counts, laws_that_act
 
 FOLDER = Path(__file__).resolve().parents[1] / "verification"
@@ -71,7 +71,22 @@ def sound_pairs(stored: Sequence[Row]) -> str:
     )
 
 
+def report_faults() -> str:
+    """Faults in what the report shows, and the checks that see each."""
+    stored = json.loads((FOLDER / "report_faults.json").read_text(encoding="utf-8"))
+    seen = [
+        (
+            REPORT_FAULTS[key].words,
+            ", ".join(one.removeprefix("test_").replace("_", " ") for one in checks[:2]),
+        )
+        for key, checks in stored.items()
+    ]
+    missed = sum(not checks for checks in stored.values())
+    return f"{len(stored)} faults, {missed} missed.\n\n{table(('fault', 'seen by'), seen)}"
+
+
 FILES = {
+    "report_faults.md": report_faults,
     "faults.md": lambda: faults(rows("faults.json")),
     "sound_pairs.md": lambda: sound_pairs(rows("sound_pairs.json")),
 }

@@ -224,6 +224,7 @@ def _write_data(results: Results, folder: Path) -> None:
         "budget": results.budget,
         "teeth": Absent(Outcome.NOT_ASKED) if results.teeth is None else results.teeth.motion,
         "stability": results.chart,
+        "motions": results.branches if isinstance(results.branches, Absent) else results.branches.dataset,
     }
     for name, data in found.items():
         if not isinstance(data, Absent):

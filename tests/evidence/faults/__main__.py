@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tests.evidence.faults.fault import FAULTS
 from tests.evidence.faults.judging import judge
+from tests.evidence.faults.report_layer import report_faults
 from tests.evidence.faults.sound import sound_pairs
 from tests.evidence.faults.table import counts, row, sample, save, stored, verdict
 
@@ -22,10 +23,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--thorough", action="store_true", help="ask every part, also after the first that sees it"
     )
+    parser.add_argument("--report", action="store_true", help="faults in what the report shows instead")
     parser.add_argument("-o", "--output", type=Path, help="rows as .json; those of other faults stay")
     given = parser.parse_args(arguments)
     if given.sound is not None:
         return sound_pairs(given.sound, given.seed, given.output, relief=given.relief, loaded=given.loaded)
+    if given.report:
+        return report_faults(given.keys, given.output)
     if unknown := [key for key in given.keys if key not in FAULTS]:
         parser.error(f"no such fault: {', '.join(unknown)}")
     chosen = [FAULTS[key] for key in given.keys] or list(FAULTS.values())

@@ -68,3 +68,5 @@ GROUPS: Mapping[str, tuple[Fault, ...]] = {
 }
 #: Key -> fault.
 FAULTS: Mapping[str, Fault] = {fault.key: fault for group in GROUPS.values() for fault in group}
+#: Key -> fault in what the report shows: text, tables, figures. Checks of the report layer judge them.
+REPORT_FAULTS: Mapping[str, Fault] = {fault.key: fault for fault in _read("report layer")}

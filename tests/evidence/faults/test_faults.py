@@ -9,9 +9,10 @@ import pytest
 
 import validation
 from lumped.errors import LawRangeWarning
-from tests.evidence.faults.fault import FAULTS, GROUPS, Fault
+from tests.evidence.faults.fault import FAULTS, GROUPS, REPORT_FAULTS, Fault
 from tests.evidence.faults.judging import judge
 from tests.evidence.faults.quantities import change, quantities
+from tests.evidence.faults.report_layer import seen_by
 from tests.evidence.faults.rewriting import FaultError, applied, fitted
 from tests.evidence.faults.sound import drawn
 from tests.evidence.faults.table import laws_that_act, sample, verdict
@@ -56,7 +57,8 @@ def sound():
 def test_every_fault_fits_the_program():
     """A line that a fault changes is there, once; 60 faults and more, each with a name of its own."""
     assert len(FAULTS) == sum(len(faults) for faults in GROUPS.values()) >= 60
-    for fault in FAULTS.values():
+    assert len(REPORT_FAULTS) >= 60
+    for fault in (*FAULTS.values(), *REPORT_FAULTS.values()):
         if fault.target:
             fitted(fault)
 
@@ -101,9 +103,26 @@ def test_the_sound_program_keeps_every_relation_of_a_report(number):
     assert broken_relations(Results(list(pairs())[number], QUICK)) == ()
 
 
-def stored():
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", ["calm", "lost"])
+def test_a_sound_report_passes_and_faults_in_it_are_seen(pair):
+    """Two faults of those that show on both pairs, others at every change of the code."""
+    assert seen_by(None, [pair]) == ()
+    both = [key for key in REPORT_FAULTS if key.startswith(("order_", "force_", "axis_", "csv_"))]
+    number = int(source_digest()[:8], 16)
+    for key in (both[number % len(both)], both[number // 97 % len(both)]):
+        assert seen_by(REPORT_FAULTS[key], [pair]), key
+
+
+def test_every_fault_of_the_report_is_seen():
+    found = stored("report_faults.json")
+    assert set(found) == set(REPORT_FAULTS)
+    assert [key for key, checks in found.items() if not checks] == []
+
+
+def stored(name="faults.json"):
     folder = Path(__file__).parents[3] / "docs" / "verification"
-    return json.loads((folder / "faults.json").read_text(encoding="utf-8"))
+    return json.loads((folder / name).read_text(encoding="utf-8"))
 
 
 def test_the_stored_table_is_of_these_faults_and_misses_none():

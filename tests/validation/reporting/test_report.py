@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import lumped
-from tests.validation.reporting.conftest import PAIRS, SMALL
+from tests.validation.reporting.written import PAIRS, SMALL
 from validation.reporting import build
 from validation.reporting.chapters.how_sure import inputs_table
 from validation.reporting.page_one import ABSOLUTE, Number, Verdict, advice_on_inputs

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from lumped.labelling import provenance
 from validation.reporting.blocks import Badge, Block, Content, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.relations import broken_relations, failed_checks
@@ -35,15 +36,17 @@ def write(results: Results) -> Content:
             or (("all hold", Badge("ok")),),
         ),
     ]
-    attributes = results.prediction.cycle.attrs
-    versions = str(attributes.get("versions", ""))
+    made = provenance(results.pair)
     blocks += _program(stored_evidence(), source_hash())
     blocks.append(
         Table(
             "made_from",
             "What this report was made from.",
             {"name": "", "value": ""},
-            (("versions", versions), ("parameters, SHA-256", str(attributes.get("parameters_sha256", "")))),
+            (
+                ("versions", str(made["versions"])),
+                ("parameters, SHA-256", str(made["parameters_sha256"])),
+            ),
         )
     )
     result = (

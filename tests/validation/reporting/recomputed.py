@@ -1,0 +1,112 @@
+"""Numbers of a pair a second way, from its parameter file and the saved data; reading of printed numbers."""
+
+import math
+import re
+
+import numpy as np
+
+_PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "p": 1e-12}
+_PREFIXED = ("N/m", "m/s", "Pa", "Hz", "N", "W", "m", "s")
+_SUPERSCRIPT = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_NUMBER = re.compile(r"([-+]?\d+(?:\.\d+)?)(?: × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?: (.+))?")
+
+
+def unit_factor(unit):
+    """Base unit and factor of a unit with a prefix: "kN" is ("N", 1e3)."""
+    for base in _PREFIXED:
+        if unit == base:
+            return base, 1.0
+        if unit.endswith(base) and unit[: -len(base)] in _PREFIX:
+            return base, _PREFIX[unit[: -len(base)]]
+    return unit, 1.0
+
+
+def read(text):
+    """Value in SI and base unit ("1" for none) of a printed number."""
+    mantissa, power, unit = _NUMBER.fullmatch(text).groups()
+    base, factor = unit_factor(unit or "1")
+    return float(mantissa) * factor * 10.0 ** int((power or "0").translate(_SUPERSCRIPT)), base
+
+
+def assert_printed(text, value, unit, digits=4):
+    """A printed number is a value in its unit, to its digits; three where it has a power of ten."""
+    found, base = read(text)
+    digits = min(digits, 3) if "×" in text else digits
+    assert base == unit or value == 0.0, (text, unit)
+    assert abs(found - value) <= 0.51 * 10.0 ** (1 - digits) * abs(value) + 1e-300, (text, value)
+
+
+def assert_says(sentence, pattern, *expected, digits=3):
+    """A sentence has the form of a pattern, and its groups are the expected (value, unit), or text."""
+    found = re.fullmatch(pattern, sentence)
+    assert found, (sentence, pattern)
+    for group, one in zip(found.groups(), expected, strict=True):
+        if isinstance(one, str):
+            assert group == one, (sentence, one)
+        else:
+            assert_printed(group, *one, digits=digits)
+
+
+def static_force(parameters):
+    """T_p over the pinion's base radius m z cos(alpha)/2 [N]; torque in N m, module in mm."""
+    return parameters["operating"]["pinion_torque"] / base_radii(parameters)[0]
+
+
+def base_radii(parameters):
+    rack = parameters["basic_rack"]
+    half = 0.5e-3 * rack["module"] * math.cos(math.radians(rack["pressure_angle"]))
+    return tuple(half * parameters[gear]["teeth"] for gear in ("pinion", "gear"))
+
+
+def mesh_frequency(parameters):
+    return parameters["operating"]["pinion_speed"] / 60.0 * parameters["pinion"]["teeth"]
+
+
+def power(parameters):
+    operating = parameters["operating"]
+    return operating["pinion_torque"] * operating["pinion_speed"] * math.pi / 30.0
+
+
+def amplitudes(values, cycles=1):
+    """Amplitudes at the orders 1 to 10 by sums of cosines and sines."""
+    phase = 2.0 * np.pi * np.arange(values.size) * cycles / values.size
+    found = []
+    for order in range(1, 11):
+        c, s = (2.0 * np.mean(values * f(order * phase)) for f in (np.cos, np.sin))
+        found.append(math.hypot(c, s))
+    return np.array(found)
+
+
+def path_of_contact(parameters):
+    """A, P, D and the whole line of action X to Y [m], of standard gears."""
+    rack, (r_p, r_g) = parameters["basic_rack"], base_radii(parameters)
+    alpha = math.radians(rack["pressure_angle"])
+    tips = [0.5e-3 * rack["module"] * (parameters[g]["teeth"] + 2.0) for g in ("pinion", "gear")]
+    length = (r_p + r_g) * math.tan(alpha)
+    end, start = math.sqrt(tips[0] ** 2 - r_p**2), length - math.sqrt(tips[1] ** 2 - r_g**2)
+    return start, r_p * math.tan(alpha), end, length
+
+
+def contact(parameters, xi):
+    """Modulus E' [Pa], reduced radius [m], full load per width [N/m], sum velocity [m/s] at xi."""
+    _, _, _, length = path_of_contact(parameters)
+    pinion, gear = parameters["pinion"], parameters["gear"]
+    modulus = pinion["youngs_modulus"] * 1e9 / (1.0 - pinion["poisson_ratio"] ** 2)  # equal steels
+    load = static_force(parameters) / (1e-3 * min(pinion["face_width"], gear["face_width"]))
+    omega = parameters["operating"]["pinion_speed"] * math.pi / 30.0
+    rolling = omega * (xi + pinion["teeth"] / gear["teeth"] * (length - xi))
+    return modulus, xi * (length - xi) / length, load, rolling
+
+
+def films(parameters, xi):
+    """Film of Dowson and Toyoda, of Hamrock and Dowson [m], and film parameter of the first, at xi."""
+    modulus, radius, load, rolling = contact(parameters, xi)
+    oil, gears = parameters["lubricant"], (parameters["pinion"], parameters["gear"])
+    eta = 1e-3 * oil["viscosity"]
+    g = 1e-6 * oil["pressure_viscosity_k"] * (1e3 * eta) ** oil["pressure_viscosity_s"] * modulus
+    u, w = eta * rolling / (2.0 * modulus * radius), load / (modulus * radius)
+    film = 3.06 * g**0.56 * u**0.69 * w**-0.10 * radius
+    other = 2.69 * g**0.53 * u**0.67 * w**-0.067 * radius
+    rough = 1e-6 * math.hypot(*(one["roughness"] for one in gears))
+    band = 2.0 * np.sqrt(8.0 * load * radius / (math.pi * modulus))
+    return film, other, film / rough * np.sqrt(1e-3 * parameters["friction"]["film_length"] / band)

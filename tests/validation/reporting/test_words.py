@@ -1,0 +1,294 @@
+"""Every number in the sentences of the report, and of page 1 as printed, against the numbers they are of."""
+
+import re
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.losses import losses_of_laws
+from tests.validation.reporting import recomputed as own
+from tests.validation.reporting.test_numbers import nearest_hazard, of_motion, pair_of
+from tests.validation.reporting.written import plain
+from validation.files.formatting import prose
+from validation.reporting.first_figures import plain_name
+
+
+def speed_of(written):
+    return written.parameters["operating"]["pinion_speed"], "rpm"
+
+
+def inputs_of(written):
+    """Numbers of inputs that are given and assumed."""
+    assumed = sum(bool(one["state"]) for one in written.table("parameters"))
+    return str(len(written.table("parameters")) - assumed), str(assumed)
+
+
+def test_page_1_prints_the_numbers(written):
+    """Two digits where the range is wider than a tenth of the result, else three; per cent are times 100."""
+    shown = written.printed["numbers"]
+    assert shown.headings == [
+        f"At {speed_of(written)[0]:g} rpm, {written.parameters['operating']['pinion_torque']:g} N m",
+        "result",
+        "5 to 95 %",
+        "second program",
+    ]
+    for (key, number), (label, value, spread, second) in zip(
+        written.document["numbers"].items(), shown.rows, strict=True
+    ):
+        assert label == plain(f"{number['label']} {number['note']}")
+        unit, times = number["unit"], 100.0 if number["unit"] == "%" else 1.0
+        low, high = number["low"], number["high"]
+        wide = low is not None and high - low > 0.1 * abs(number["value"])
+        digits = 5 if unit == "rpm" else 4 if unit == "%" else 2 if wide else 3
+        if number["value"] is None:
+            assert value == "none"
+        elif key != "hazard":
+            own.assert_printed(value, times * number["value"], unit, digits)
+        else:
+            assert value == f"{number['value']:+.0f} rpm"
+        if low is None:
+            assert spread == "–"
+        else:
+            ends = re.fullmatch(r"(.+?) to (.+)", spread).groups()
+            _, unit_shown = own.read(ends[1])
+            scale = ends[1].partition(" ")[2] if unit_shown != "1" else ""
+            first = ends[0] if " " in ends[0] or not scale else f"{ends[0]} {scale}"
+            own.assert_printed(first, times * low, unit, 3 if unit == "%" else digits)
+            own.assert_printed(ends[1], times * high, unit, 3 if unit == "%" else digits)
+        if number["second"] is None:
+            assert second == "not computed"
+        else:
+            own.assert_printed(second, times * number["second"], unit, 4 if unit == "%" else 3)
+
+
+def test_the_title(written):
+    p, (speed, _) = written.parameters, speed_of(written)
+    own.assert_says(
+        plain(written.result.first.title),
+        r"(\w+): spur gears (\d+)/(\d+), m ([\d.]+), b ([\d.]+) mm, (.*), ([\d.]+) N m \((.*)\)",
+        p["name"],
+        str(p["pinion"]["teeth"]),
+        str(p["gear"]["teeth"]),
+        f"{p['basic_rack']['module']:g}",
+        f"{min(p['pinion']['face_width'], p['gear']['face_width']):g}",
+        (speed, "rpm"),
+        f"{p['operating']['pinion_torque']:g}",
+        (own.power(p), "W"),
+    )
+
+
+def test_the_verdict(written):
+    verdict, hazard, (speed, _) = written.document["verdict"], nearest_hazard(written), speed_of(written)
+    headline, reason = plain(verdict["headline"]), plain(verdict["reason"])
+    if hazard is None:
+        low, middle, high = np.percentile(
+            written.data("uncertainty")["dte_peak_to_peak"].to_numpy(), [5.0, 50.0, 95.0]
+        )
+        half = 50.0 * (high - low) / middle
+        assert (verdict["kind"] == "ABSOLUTE") == (half <= 10.0)
+        pattern = (
+            r"The pair runs smoothly: contact is kept, and no speed from (.*) to (.*) is unstable\. (.*)"
+        )
+        tail = (
+            f"The inputs leave {half:.0f} %; no measurement confirms it."
+            if half <= 10.0
+            else f"But {inputs_of(written)[1]} of {sum(map(int, inputs_of(written)))} inputs are assumed, "
+            f"and they move the result by ±{half:.0f} %."
+        )
+        own.assert_says(reason, pattern, (0.1 * speed, "rpm"), (2.0 * speed, "rpm"), tail)
+        return
+    motions, at = written.data("motions"), hazard[0]
+    one = motions.isel(jump=int(np.argmin(np.abs(motions["jump_speed_rpm"].to_numpy() - at))))
+    apart = 100.0 * (speed / at - 1.0)
+    side = "above" if apart > 0.0 else "below"
+    near = (
+        f", {abs(apart):.0f} % {side} a jump"
+        if abs(speed / at - 1.0) > 0 and abs(at / speed - 1) <= 0.05
+        else ""
+    )
+    assert headline == f"Do not run here: the teeth lose contact{near}."
+    own.assert_says(
+        reason,
+        r"The mesh force falls to zero and rises to (.*) times the static one\. Running (\w+), the vibration "
+        r"jumps at (.*) to (.*) times \(rms\)\.",
+        (of_motion(written, "prediction")["dynamic_factor"], "1"),
+        hazard[1],
+        (at, "rpm"),
+        (float(one["jump_dte_rms_after"] / one["jump_dte_rms"]), "1"),
+        digits=2,
+    )
+
+
+def test_the_actions(written):
+    actions, samples = written.document["actions"], written.data("uncertainty")
+    given, hazard = written.document["numbers"]["dte_peak_to_peak"]["value"], nearest_hazard(written)
+    swing = samples["dte_peak_to_peak_swing"].to_numpy()
+    width = np.abs(swing[:, 1] - swing[:, 0])
+    gains = [plain(one["gain"]) for one in actions if one["gain"]]
+    if hazard is not None:
+        own.assert_says(
+            plain(actions[0]["text"]), r"Do not pass (.*) at this torque", (hazard[0], "rpm"), digits=5
+        )
+        assert actions[1]["command"] == f"spurcheck response {written.document['gear_pair']} --map"
+    found = []
+    for gain in gains:
+        low, high = re.fullmatch(r"it moves the transmission error from (.*) to (.*)", gain).groups()
+        rounding = [0.051 * 10.0 ** np.floor(np.log10(v)) for v in (own.read(low)[0], own.read(high)[0])]
+        fits = (np.abs(swing.min(axis=1) - own.read(low)[0]) <= rounding[0]) & (
+            np.abs(swing.max(axis=1) - own.read(high)[0]) <= rounding[1]
+        )
+        assert fits.any(), gain
+        found.append(width[fits].max())
+    assert all(one >= 0.05 * given for one in found)
+    assert found == sorted(found, reverse=True)
+    if hazard is None and width.max() >= 0.05 * given:
+        assert found[0] == width.max(), "the input that matters most comes first"
+
+
+def test_how_sure(written):
+    solved, inputs, measured = map(plain, written.document["how_sure"])
+    given, assumed = inputs_of(written)
+    assert inputs == f"Inputs: {given} given, {assumed} assumed."
+    assert measured == "Compared with a measurement? No."
+    assert solved == f"Solved right? {plain(written.sentences['second_program'])}"
+    exact = [one for one in written.table("agreement") if one["fidelity"].startswith("exact")]
+    dte = next(one["difference"] for one in exact if one["quantity"] == "dynamic transmission error")
+    worst = max(exact, key=lambda one: one["difference"] / one["limit"])
+    said = prose(solved.removeprefix("Solved right? "))
+    assert said in " ".join(plain(written.page).split()), (
+        "page 1 has no powers of ten as a computer writes them"
+    )
+    if worst["difference"] <= worst["limit"]:
+        own.assert_says(said, r"Yes: a second program agrees to (.*) %\.", (100.0 * dte, "1"), digits=2)
+        return
+    own.assert_says(
+        said,
+        r"Yes, but the second program, with exact contact, differs: (.*) by (.*) %, the transmission error "
+        r"by (.*) %\.",
+        worst["quantity"],
+        (100.0 * worst["difference"], "1"),
+        (100.0 * dte, "1"),
+        digits=2,
+    )
+
+
+def test_the_remark(written):
+    remark = plain(written.result.first.remark)
+    if of_motion(written, "prediction")["least_force"] > 0.0:
+        assert remark == ""
+        return
+    size = np.ptp(written.data("linear")["dte"].to_numpy())
+    own.assert_says(
+        remark,
+        r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\.",
+        (size, "m"),
+        digits=2,
+    )
+
+
+def test_findings(written):
+    first = of_motion(written, "prediction")
+    lost = first["least_force"] == 0.0
+    assert written.document["findings"] == (["contact", "holds"] if lost else [])
+
+
+def test_the_sentences_of_response_forces_and_contact_loss(written):
+    said, first, (speed, _) = written.sentences, of_motion(written, "prediction"), speed_of(written)
+    size = own.amplitudes(written.data("prediction")["dte"].to_numpy())
+    own.assert_says(
+        plain(said["response"]),
+        r"The prediction is (.*); its transmission error is (.*) peak to peak, most of it at mesh order "
+        r"(\d+)\.",
+        "the motion with unilateral contact",
+        (written.document["numbers"]["dte_peak_to_peak"]["value"], "m"),
+        str(int(np.argmax(size)) + 1),
+    )
+    own.assert_says(
+        plain(said["forces"]),
+        r"The largest mesh force is (.*) times the static (.*); one tooth pair carries at most (.*) times "
+        r"the static force\.",
+        (first["dynamic_factor"], "1"),
+        (own.static_force(written.parameters), "N"),
+        (first["tooth_load"], "1"),
+    )
+    if nearest_hazard(written) is None:
+        pattern, count = r"Contact is never lost from (.*) to (.*) rpm\.", []
+    else:
+        pattern = r"Contact is lost at the operating point\. From (.*) to (.*) rpm (.*) found\."
+        jumps = written.data("motions").sizes["jump"]
+        count = ["one jump was" if jumps == 1 else f"{jumps} jumps were"]
+    own.assert_says(
+        plain(said["contact_loss"]), pattern, (0.8 * speed, "1"), (1.25 * speed, "1"), *count, digits=5
+    )
+
+
+def test_the_sentences_of_stability_losses_and_inputs(written):
+    said, (speed, _) = written.sentences, speed_of(written)
+    own.assert_says(
+        plain(said["stability"]).partition("; ")[2].partition(" unstable")[0],
+        r"at the given damping no speed from (.*) to (.*) rpm is",
+        (0.1 * speed, "1"),
+        (2.0 * speed, "1"),
+        digits=5,
+    )
+    assert written.data("linear").attrs["spectral_radius"] < 1.0
+    assert "the linear motion is stable" in said["stability"]
+    loss = 100.0 * (1.0 - losses_of_laws(pair_of(written), dynamic=False)["mesh_efficiency"].to_numpy())
+    supply = own.power(written.parameters)
+    own.assert_says(
+        plain(said["losses"]),
+        r"The mesh loses (.*) of (.*); the friction laws differ from (.*) to (.*) %\.",
+        ((1.0 - written.document["numbers"]["efficiency"]["value"]) * supply, "W"),
+        (supply, "W"),
+        (loss.min(), "1"),
+        (loss.max(), "1"),
+        digits=2,
+    )
+    samples = written.data("uncertainty")
+    low, high = np.percentile(samples["dte_peak_to_peak"].to_numpy(), [5.0, 95.0])
+    budget = [one for one in written.table("error_budget") if one["share"] is not None]
+    own_errors = [
+        one for one in budget if one["error"] not in ("linear model, for charts", "form of the contact")
+    ]
+    own.assert_says(
+        plain(said["how_sure"]),
+        r"With its uncertain inputs the transmission error lies between (.*) and (.*) \(5 to 95 %\)\. "
+        r"The largest error of the prediction is “(.*)”\.",
+        (low, "m"),
+        (high, "m"),
+        max(own_errors, key=lambda one: one["share"])["error"],
+        digits=2,
+    )
+    text = next(one[0] for one in written.document["chapters"]["how_sure"]["text"] if "samples" in one[0])
+    lost = int((samples["least_force"].to_numpy() <= 0.0).sum())
+    assert text.startswith(
+        f"{samples.sizes['sample']} samples (scrambled Sobol points, seed {samples.attrs['seed']})"
+    )
+    assert f"Contact is lost in {lost} of them, {samples.attrs['unstable']} are unstable" in text
+    assert said["evidence"] == "Every check of the program passes."
+
+
+@pytest.mark.parametrize(
+    ("field", "words"),
+    [
+        ("bearings.pinion.loa_stiffness", "pinion bearing stiffness, on-line"),
+        ("bearings.gear.oloa_damping_ratio", "gear bearing damping, off-line"),
+        ("operating.pinion_torque", "torque"),
+        ("gear.roughness", "gear roughness"),
+    ],
+)
+def test_inputs_in_words(field, words):
+    assert plain_name(field) == words
+
+
+def test_every_uncertain_input_has_words_of_its_own(written):
+    names = [plain_name(str(field)) for field in written.data("uncertainty")["input"].to_numpy()]
+    assert len(set(names)) == len(names)
+    for field, name in zip(written.data("uncertainty")["input"].to_numpy(), names, strict=True):
+        for gear in ("pinion", "gear"):
+            if f".{gear}." in f".{field}." and "bearings" in str(field):
+                assert name.startswith(gear)
+        if "bearings" in str(field):
+            assert name.endswith("off-line" if "oloa" in str(field) else "on-line")
+    assert lumped.load_gear_pair(written.parameters).name == written.document["gear_pair"]
