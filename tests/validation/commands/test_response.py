@@ -65,7 +65,7 @@ def test_the_figure_shows_branches_jumps_and_the_operating_range(branches):
     assert len(plot(found.dataset).axes) == 2
 
 
-MAPPED = [*PAIR, "--range", "12900..15500"]
+MAPPED = ["nasa_28_28", "--range", "12900..15500", *PAIR[3:]]
 
 
 def test_damping_removes_the_jump_at_the_cusp(tmp_path):
