@@ -363,3 +363,25 @@ def test_it_runs(source, tmp_path, monkeypatch, capsys):
 
 def test_the_notebook_is_the_tutorial():
     assert notebook() == tutorial()
+
+
+def test_27_class_6_hides_a_crack(shown):
+    module, result = shown(27)
+    size = module.rms(result)
+    assert size["crack"] < 0.2 * size["class 6"]
+    assert size["class 6 and crack"] == pytest.approx(size["class 6"], rel=0.02)
+    # Alone it is an event of one tooth: far from the 3 of noise.
+    alone = result["signal"].sel(case="crack").to_numpy()
+    assert np.mean(alone**4) / np.mean(alone**2) ** 2 > 50.0
+
+
+def test_28_each_fault_has_its_own_orders(shown):
+    _, result = shown(28)
+    amplitude = result["amplitude"].assign_coords(order=np.round(result["order"]).astype(int))
+    eccentric = amplitude.sel(fault="eccentric 20 µm")
+    assert float(eccentric.sel(order=1)) == pytest.approx(20e-6, rel=1e-3)
+    assert float(eccentric.sel(order=range(3, 27)).max()) < 1e-2 * float(eccentric.sel(order=[27, 29]).min())
+    for fault, ratio in (("crack 1 mm", (0.0, 0.5)), ("spall", (0.8, 1.2)), ("chip", (0.8, 1.2))):
+        one = amplitude.sel(fault=fault)
+        low, high = ratio
+        assert low < float(one.sel(order=27) / one.sel(order=1)) < high, fault
