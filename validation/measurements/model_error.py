@@ -17,8 +17,9 @@ from lumped.typing import FloatArray
 from validation.measurements.comparison import mesh_cycles
 from validation.measurements.record import Measurement
 
-#: Most mesh orders of a record that its peak to peak takes in, and most per sample of a mesh cycle.
-_ORDERS, _PER_SAMPLE = 40, 0.3
+#: Most mesh orders of a record that its peak to peak takes in, most per different phase of its samples, and
+#: how many phases of a mesh cycle are different.
+_ORDERS, _PER_PHASE, _DIFFERENT = 40, 0.3, 1000
 #: Speed and torque of the record may be this share off those of the pair.
 _SAME = 0.01
 _PHASES = np.arange(2048) / 2048.0
@@ -84,7 +85,9 @@ def measured_peak_to_peak(measurement: Measurement, pair: GearPair) -> tuple[flo
             action = "Give the speed and the torque of the record to the pair."
             raise refuse(f"measurement.{name}", f"{there:.5g}", f"{here:.5g} within 1 %, SI", action)
     cycles, values = mesh_cycles(measurement, pair), measurement.channels[channel.name]
-    most = int(min(_ORDERS, _PER_SAMPLE / float(np.median(np.diff(cycles)))))
+    # Samples that are no whole number in a mesh cycle fill in its phases.
+    phases = np.unique(np.floor(_DIFFERENT * np.mod(cycles, 1.0))).size
+    most = int(min(_ORDERS, _PER_PHASE * phases))
     if most < 1 or values.size < 4 * (2 * most + 1):
         raise refuse("data", f"{values.size} samples", "several in each mesh cycle", "Sample faster.")
     columns = _waves(cycles, most)
