@@ -446,7 +446,6 @@ def tangents_of_cycle(
 ) -> tuple[FloatArray, float]:
     """Mesh of one cycle about its static state, at the nodes of the steps (steps, 3, 8), and the approach.
 
-
     Columns: d of the sums N, F and F xi over delta and over its rate, then de/dtheta of both gears.
     ``static`` is an approach near that of the first node.
     """
