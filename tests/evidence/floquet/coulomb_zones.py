@@ -158,7 +158,7 @@ def _gear() -> GearPair:
     return load_gear_pair("nasa_28_28").with_(
         {
             "friction.law": "coulomb", "friction.coefficient": MU, "mesh.damping_ratio": 0.0,
-            "mesh.relief": "ignored",
+            "mesh.relief": "ignored", "mesh.contact": "prescribed",
         }
     )  # fmt: skip
 

@@ -15,22 +15,14 @@ def steps(values, **more):
     return {"index": list(values), "first_order": "steps", **more}
 
 
-@pytest.mark.parametrize(
-    ("changes", "cycles"),
-    [
-        ({}, 1),
-        ({"pinion.mounting": {"eccentricity": 1}}, 25),
-        ({"gear.deviations": {"tolerance_class": 5}}, 31),
-        ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, 31),
-        (
-            {
-                "gear.mounting": {"eccentricity": 1},
-                "pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 0.1}],
-            },
-            775,
-        ),
-    ],
-)
+@pytest.mark.parametrize(("changes", "cycles"), [
+    ({}, 1),
+    ({"pinion.mounting": {"eccentricity": 1}}, 25),
+    ({"gear.deviations": {"tolerance_class": 5}}, 31),
+    ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, 31),
+    ({"gear.mounting": {"eccentricity": 1}, "pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 0.1}]},
+     775),
+])  # fmt: skip
 def test_period_is_a_revolution_or_the_hunting_period(unequal, changes, cycles):
     assert revolution(unequal.with_(changes)) == cycles
 

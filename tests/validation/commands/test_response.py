@@ -15,11 +15,9 @@ from validation.plots.of_result import plot
 PAIR = ["nasa_28_28", "--range", "12000..14000", "--law", "none"]
 PAIR += ["--set", "mesh.relief=ignored", "--set", "mesh.contact=prescribed"]
 SETTINGS = {
-    "mesh.contact": "prescribed",
-    "mesh.relief": "ignored",
-    "friction.law": "none",
+    "mesh.contact": "prescribed", "mesh.relief": "ignored", "friction.law": "none",
     "operating.speed_range": ["12000 rpm", "14000 rpm"],
-}
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
