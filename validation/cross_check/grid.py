@@ -172,7 +172,7 @@ def crosscheck_grid(
     xarray.Dataset over preset, law, stiffness, speed, torque (shares of the preset's operating point),
     fidelity and quantity:
 
-        difference : largest difference over the peak to peak of the lumped motion
+        difference : largest difference, over ``agreement.Agreement.scale``
         limit : its limit in the cross-check of a pair, over fidelity and quantity
         status : out of ``STATES``, or why a model failed
         torque_law : fall of the exact transmission error's difference to the next lower torque, over the fall
