@@ -117,8 +117,8 @@ def _print(check: CrossCheck) -> None:
     console = stdout()
     for shown in _tables(check):
         console.print(shown)
-    text = "differences: the largest one over the peak to peak of the lumped history; displacements at fidelity"
-    console.print(f"{text} exact over that of the transmission error, where it is larger", soft_wrap=True)
+    text = "differences: the largest one over the peak to peak of the lumped history; at fidelity exact"
+    console.print(f"{text} displacements over that of the transmission error, if larger", soft_wrap=True)
     if check.pulling:
         console.print(check.pulling, soft_wrap=True)
     told = {
