@@ -114,6 +114,8 @@ class ChartPoints:
 
 #: Charts of no more nodes are evaluated at each of them.
 SMALL = 1024
+#: Rows that seed the search where none is known to have the widest regions.
+_ROWS = 32
 #: Evaluates points by their place in the chart and puts them into its `ChartPoints`.
 Evaluate = Callable[[IntArray], None]
 
@@ -137,7 +139,8 @@ def refine_planes(
     points : takes the results
     evaluate : of some points
     cycles : cycles in a unit of time at the values of the first axis of the plane; None: equal ones
-    lowest_alone : whether regions are widest where the second axis of the plane is lowest
+    lowest_alone : whether regions are widest where the second axis of the plane is lowest: then that row
+        seeds the search, else some `_ROWS` rows do
     progress : told the finished fraction
     """
     names = list(grid)
@@ -146,6 +149,7 @@ def refine_planes(
     index = np.arange(math.prod(shape)).reshape(shape).transpose(order)
     first, second = (np.argsort(grid[name]) for name in plane)
     index = index[first][:, second].reshape(first.size, second.size, -1)
+    rows = (0,) if lowest_alone else (*range(0, second.size, max(1, second.size // _ROWS)), -1)
     smooth = np.ones(first.size) if cycles is None else cycles[first]
     for k in range(index.shape[2]):
         here = index[:, :, k].ravel()
@@ -158,9 +162,7 @@ def refine_planes(
             if progress is not None:
                 progress((k + fraction) / index.shape[2])
 
-        found = refined(
-            index.shape[:2], smooth, ask, rows=(0,) if lowest_alone else (0, -1), progress=tell
-        )  # fmt: skip
+        found = refined(index.shape[:2], smooth, ask, rows=rows, progress=tell)
         rest = ~found.known.ravel()
         points.radius[here[rest]], points.error[here[rest]] = (
             found.radius.ravel()[rest],

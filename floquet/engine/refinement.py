@@ -2,8 +2,8 @@
 
 A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
 cycles in a unit of time, is bilinear in it to the tolerance; else it is cut. Whole rows of the second axis
-are evaluated first to seed the search: the lowest, since tongues are widest where damping is least, and the
-highest of other parameters than damping.
+are evaluated first to seed the search: the lowest alone of damping, where tongues are widest; of other
+parameters several.
 
 Both sides of every edge are evaluated. A region can be missed that lies wholly inside a leaf and touches
 neither these rows nor an evaluated node.

@@ -58,8 +58,8 @@ def stability_chart(
 
     Over two axes the chart refines itself: nodes near edges of instability are evaluated, the others
     interpolated. Both sides of every edge are evaluated. An unstable region can only be missed if it lies
-    between evaluated nodes and does not reach the lowest damping (or lowest and highest value of another
-    second axis).
+    between evaluated nodes and does not reach the lowest damping (of another second axis: one of some 32 rows
+    that are evaluated whole).
 
     Parameters
     ----------

@@ -5,6 +5,7 @@ import pytest
 from scipy.special import mathieu_a, mathieu_b
 
 from floquet import PeriodicSystem, Spectrum, label_regions, monodromy, scan, stability_chart
+from floquet.engine import chart as planes
 from floquet.engine.multipliers import radii_with_bounds, verdicts
 from floquet.engine.refinement import refine
 from floquet.gear import chart as module
@@ -38,12 +39,15 @@ CASES = {
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
 @pytest.mark.parametrize("case", CASES)
-def test_a_refined_chart_has_the_verdicts_of_the_full_grid(pair, case) -> None:
+def test_a_refined_chart_has_the_verdicts_of_the_full_grid(pair, case, monkeypatch) -> None:
+    monkeypatch.setattr(
+        planes, "_ROWS", 8
+    )  # of few rows: else nearly all would be evaluated to seed the search
     changes, axis = CASES[case]
     here, axes = pair.with_(changes), {**axis, "speed_rpm": SPEEDS}
     got = stability_chart(here, axes, rtol=1e-8)
     full = stability_chart(here, axes, rtol=1e-8, refine=False)
-    assert 0.0 < float(got.known.mean()) < 0.8
+    assert 0.0 < float(got.known.mean()) < 0.95
     assert bool(full.known.all())
     assert got.spectral_radius.dims == full.spectral_radius.dims == tuple(axes)
     assert (got.verdict == full.verdict).all()

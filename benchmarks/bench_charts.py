@@ -1,0 +1,191 @@
+"""Charts that refine themselves against the full grid and against closed forms.
+
+    python benchmarks/bench_charts.py [PAIRS]
+
+prints the tables of docs/verification/charts.md; processor seconds.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+from floquet import stability_chart
+from floquet.engine.multipliers import radii_with_bounds, verdicts
+from floquet.engine.refinement import refine
+from floquet.gear.axes import speed_range
+from lumped import load_gear_pair, preset_names
+from lumped.errors import ParameterError, SpurcheckError
+from tests.evidence.floquet.reference_systems import mathieu_many, mathieu_unstable, meissner_trace
+
+SIZES = (500, 1000, 2000)
+COULOMB = {"friction.law": "coulomb", "friction.coefficient": 0.05}
+PAIRS = {
+    "28/28 Coulomb": load_gear_pair("nasa_28_28").with_(COULOMB),
+    "28/28 own law": load_gear_pair("nasa_28_28"),
+    "fzg_c": load_gear_pair("fzg_c"),
+    "50/50": load_gear_pair("kahraman_blankenship_50_50"),
+}
+LAWS = ("none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite")
+
+
+def cpu(call: Callable[[], Any]) -> tuple[Any, float]:
+    """Result and processor seconds of a call."""
+    start = time.process_time()
+    result = call()
+    return result, time.process_time() - start
+
+
+def compared(got: Any, full: Any) -> tuple[int, int, int]:
+    """Unstable regions of the full grid, those of which the refined chart has no node, wrong verdicts."""
+    unstable = np.asarray(full.verdict) < 0
+    numbered, count = ndimage.label(unstable, structure=np.ones((3, 3)))
+    seen = np.unique(numbered[np.asarray(got.verdict) < 0])
+    return (
+        count,
+        count - np.count_nonzero(seen),
+        int((np.asarray(got.verdict) != np.asarray(full.verdict)).sum()),
+    )
+
+
+def by_size() -> None:
+    print("| pair | N | evaluated | s | proven of them | largest bound | full grid: s, differences |")
+    print("|---|---|---|---|---|---|---|")
+    for name, pair in PAIRS.items():
+        stability_chart(pair, {"speed_rpm": [3000.0, 4000.0]})
+        for n in SIZES:
+            axes = {"speed_rpm": np.linspace(500.0, 20000.0, n), "damping_ratio": np.linspace(0.001, 0.1, n)}
+            got, seconds = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes))
+            known = got.known.values
+            whole = ""
+            if n == SIZES[0]:
+                full, each = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes, refine=False))
+                regions, lost, wrong = compared(got, full)
+                off = np.abs(got.spectral_radius - full.spectral_radius).values[~known]
+                rms = np.sqrt(np.mean(off**2))
+                whole = f"{each:.1f}; {regions} regions, {lost} lost, {wrong} wrong; "
+                whole += f"ρ elsewhere {off.max():.1e}, rms {rms:.0e}"
+            print(
+                f"| {name} | {n} | {known.mean():.2%} | {seconds:.1f} | "
+                f"{got.proven.values[known].mean():.0%} | {got.error.values[known].max():.0e} | {whole} |",
+                flush=True,
+            )
+
+
+def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
+    """A preset with changed damping, friction, torque and bearings, and two axes of it."""
+    name, law = rng.choice(preset_names()), str(rng.choice(LAWS))
+    pair = load_gear_pair(str(name))
+    changes: dict[str, Any] = {
+        "friction.law": law,
+        "mesh.contact": str(rng.choice(["prescribed", "loaded"])),
+        "mesh.damping_ratio": float(10.0 ** rng.uniform(-3.0, -1.3)),
+    }
+    changes["operating.pinion_torque"] = pair.operating.pinion_torque * float(rng.uniform(0.5, 1.5))
+    if law in ("coulomb", "smoothed_coulomb"):
+        changes["friction.coefficient"] = float(rng.uniform(0.0, 0.3))
+    damping = float(rng.choice([0.0, 0.005, 0.02, 0.05]))
+    changes |= {
+        f"bearings.{g}.{d}_damping_ratio": damping for g in ("pinion", "gear") for d in ("loa", "oloa")
+    }
+    pair = pair.with_(changes)
+    low, high = speed_range(pair)
+    axes: dict[str, Any] = {"speed_rpm": np.linspace(low, high * float(rng.uniform(1.0, 2.0)), 201)}
+    others = (
+        "damping_ratio",
+        "geometric",
+        "friction_coefficient",
+        "stiffness_variation",
+        "bearing_stiffness",
+    )
+    other = str(rng.choice((*others, "torque"), p=(0.3, 0.2, 0.2, 0.1, 0.1, 0.1)))
+    k, torque = pair.bearings.pinion.loa_stiffness, pair.operating.pinion_torque
+    values = {
+        "damping_ratio": np.linspace(float(rng.choice([0.0, 0.001])), 0.1, 65),
+        "geometric": np.geomspace(1e-4, 0.1, 65),
+        "friction_coefficient": np.linspace(0.0, 0.3, 65),
+        "torque": np.linspace(0.3 * torque, 1.5 * torque, 65),
+        "stiffness_variation": np.linspace(0.0, 1.5, 65),
+        "bearing_stiffness": np.geomspace(0.3 * k, 3.0 * k, 65),
+    }
+    axes["damping_ratio" if other == "geometric" else other] = values[other]
+    return pair, axes
+
+
+def at_random(count: int) -> None:
+    rng, rows = np.random.default_rng(34), []
+    while len(rows) < count:
+        try:
+            pair, axes = random_chart(rng)
+            got, seconds = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes, rtol=1e-9))
+            full, whole = cpu(
+                lambda pair=pair, axes=axes: stability_chart(pair, axes, rtol=1e-9, refine=False)
+            )
+        except (SpurcheckError, ParameterError):  # what cannot exist, as a law outside its formula
+            continue
+        known = got.known.values
+        rows.append((*compared(got, full), known.mean(), got.proven.values[known].mean(), seconds, whole))
+        if rows[-1][1] or rows[-1][2]:
+            print(f"{rows[-1][:3]} of {pair.name}, {pair.friction.law}, over {list(axes)[1]}", flush=True)
+    numbers = np.array(rows)
+    total = numbers.sum(axis=0)
+    shares = numbers[:, 3]
+    print(
+        f"{count} random pairs and axes: {total[0]:.0f} regions, {total[1]:.0f} lost, "
+        f"{total[2]:.0f} wrong verdicts; evaluated {shares.min():.1%} to {shares.max():.1%}, "
+        f"median {np.median(shares):.1%}; all evaluated nodes proven in {np.mean(numbers[:, 4] == 1.0):.0%} "
+        f"of the charts; {total[5]:.0f} s against {total[6]:.0f} s"
+    )
+
+
+def closed_forms(n: int) -> None:
+    """Mathieu to m = 6 and Meissner; parts of tongues that are at most two steps wide are left out."""
+    a, q = np.linspace(0.5, 42.0, n), np.linspace(0.0, 12.0, n)
+
+    def ask(flat: Any) -> Any:
+        i, j = np.unravel_index(flat, (n, n))
+        radius, error = radii_with_bounds(*mathieu_many(a[i], q[j]))
+        return radius, verdicts(radius, error).astype(np.intp)
+
+    got, seconds = cpu(lambda: refine((n, n), np.ones(n), ask, rows=(0, -1)))
+    wrong = thin = 0
+    for j in range(1, n):
+        unstable, edges = mathieu_unstable(a, float(q[j]))
+        width = np.diff(edges, prepend=-np.inf, append=np.inf)[np.searchsorted(edges, a)]
+        narrow = unstable & (width <= 2.0 * (a[1] - a[0]))
+        off = ((got.verdict[:, j] < 0) != unstable) & (np.abs(a[:, None] - edges).min(axis=1) > 1e-6)
+        wrong, thin = wrong + int((off & ~narrow).sum()), thin + int((off & narrow).sum())
+    share = f"{got.known.mean():.2%} evaluated, {seconds:.1f} s"
+    print(f"Mathieu {n} x {n}: {share}, {wrong} wrong verdicts, {thin} in thin parts")
+    delta, epsilon = np.linspace(0.5, 9.0, n), np.linspace(0.0, 0.45, n)
+
+    def trace(d: Any, e: Any) -> Any:
+        w1, w2 = np.sqrt(d + e), np.sqrt(d - e)
+        p1, p2 = np.pi * w1, np.pi * w2
+        return 2.0 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2)
+
+    def meissner(flat: Any) -> Any:
+        i, j = np.unravel_index(flat, (n, n))
+        half = 0.5 * np.abs(trace(delta[i], epsilon[j]))
+        radius = np.where(half > 1.0, half + np.sqrt(np.maximum(half**2 - 1.0, 0.0)), 1.0)
+        return radius, verdicts(radius, np.full(radius.size, 1e-9)).astype(np.intp)
+
+    assert abs(trace(3.0, 0.2) - meissner_trace(3.0, 0.2)) < 1e-12
+    got, seconds = cpu(lambda: refine((n, n), np.ones(n), meissner, rows=(0, -1)))
+    exact = np.abs(trace(delta[:, None], epsilon))
+    off = ((got.verdict < 0) != (exact > 2.0)) & (np.abs(exact - 2.0) > 1e-8)
+    share = f"{got.known.mean():.2%} evaluated, {seconds:.1f} s"
+    print(f"Meissner {n} x {n}: {share}, {int(off.sum())} wrong verdicts")
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore")
+    by_size()
+    at_random(int(sys.argv[1]) if len(sys.argv) > 1 else 40)
+    closed_forms(2000)
