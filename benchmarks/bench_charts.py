@@ -105,6 +105,8 @@ def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
         "bearing_stiffness",
     )
     other = str(rng.choice((*others, "torque"), p=(0.3, 0.2, 0.2, 0.1, 0.1, 0.1)))
+    if law in ("benedict_kelley", "composite") and other not in others[:3]:
+        other = "damping_ratio"  # a fit at every node of other axes, each of 0.03 s, would take hours
     k, torque = pair.bearings.pinion.loa_stiffness, pair.operating.pinion_torque
     values = {
         "damping_ratio": np.linspace(float(rng.choice([0.0, 0.001])), 0.1, 65),

@@ -116,7 +116,7 @@ def test_regions_are_named_measured_and_found_nearest(pair) -> None:
         assert at.known
         assert at.spectral_radius == region.radius
     # Single speeds on either side: stable from the pair's own speed up to the edge, unstable beyond.
-    edge, step = float(chart.nearest_edge_speed_rpm), float(np.diff(chart.speed_rpm).max())
+    edge, step = float(chart.nearest_edge_speed_rpm), 0.5 * float(np.median(np.diff(chart.speed_rpm)))
     beyond = edge - step if edge < 15000.0 else edge + step
     calm = np.linspace(15000.0, edge + np.sign(15000.0 - edge) * step, 50)
     assert (stability_chart(here, {"speed_rpm": calm}).verdict > 0).all()
