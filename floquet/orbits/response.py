@@ -43,8 +43,9 @@ _FILL = np.array([0.7548776662466927, 0.5698402909980532])
 _SPREAD = np.array([[-8.0, 5.0], [-6.5, 6.5]])
 #: Distance from a stable motion, over its size, within which a settled run has come to it.
 _CLOSE = 0.03
-#: Cycles that a run which has settled settles once more, and is observed.
-_AGAIN, _OBSERVE = 40, 400
+#: Cycles that a run which has settled settles once more, and is observed; cycles of a motion for which Newton
+#: looks near a run that has not come to one yet.
+_AGAIN, _OBSERVE, _MOST_CYCLES = 40, 400, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +181,7 @@ class Member:
                 return LongRun("periodic", orbit, np.nan, np.nan, orbit.run, orbit.parameter)
         return long_run(
             self.family.at(period), motion.state, period, motion.parameter,
-            settle=_AGAIN, observe=_OBSERVE, amplitude=self.limits.amplitude,
+            settle=_AGAIN, observe=_OBSERVE, most_cycles=_MOST_CYCLES, amplitude=self.limits.amplitude,
         )  # fmt: skip
 
 

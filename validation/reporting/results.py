@@ -35,6 +35,8 @@ from validation.validity.plausibility import parameter_warnings
 
 #: Speeds of the motions beyond contact loss, over the operating speed.
 BRANCH_SPEEDS = (0.8, 1.25)
+#: Speeds an octave at which runs settle, to find beats and chaos.
+_SEEDS = 8
 #: Times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
 
@@ -208,7 +210,10 @@ class Results:
         low, high = (factor * self.operating_rpm for factor in BRANCH_SPEEDS)
         ends = max(low, self.speeds[0]), min(high, self.speeds[1])
         try:
-            return floquet.response_branches(self.pair, ends, progress=self.stage("contact loss"))
+            seeds = _SEEDS if self.effort.full else 0
+            return floquet.response_branches(
+                self.pair, ends, seeds=seeds, progress=self.stage("contact loss")
+            )
         except (NumericalError, ParameterError) as error:
             return Absent(Outcome.FAILED, str(error))
 

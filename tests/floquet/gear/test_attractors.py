@@ -30,6 +30,7 @@ def pair():
             "pinion.teeth": 19,
             "gear.teeth": 41,
             "mesh.backlash": "0.115 mm",
+            "mesh.contact": "prescribed",
             "mesh.damping_ratio": 0.04,
             "mesh.relief": "ignored",
             "friction.law": "none",
