@@ -156,7 +156,7 @@ def test_a_law_outside_its_range_is_told_on_the_page_and_nowhere_else(tmp_path, 
     assert "friction number" in text
 
 
-@pytest.mark.parametrize(("model", "advised"), [("rectangular", 2), ("energy", 1), ("finite_elements", 0)])
+@pytest.mark.parametrize(("model", "advised"), [("rectangular", 1), ("energy", 1), ("finite_elements", 0)])
 def test_no_advice_is_to_do_what_the_pair_has(model, advised):
     inputs = ["mesh.stiffness", "mesh.stiffness_factor"]
     swing = (("input", "end"), np.array([[1.0, 2.0], [1.2, 2.0]]) * 1e-6)
