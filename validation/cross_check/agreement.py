@@ -28,9 +28,9 @@ _SWITCH_MARGIN = 1e-6
 #: that moves farther is outside the linear model (``validation.validity.flags.REVERSAL_LIMITS``).
 _FORCE_MARGIN = 0.02
 #: A gear's centre moves with the changing part of its load alone, so away from resonance it hardly swings. At
-#: "exact" its displacement is therefore measured by the transmission error, where that swings more: the loads
-#: and friction forces that drive it are compared by their own swing.
-_DISPLACEMENTS = ("x_p", "x_g", "y_p", "y_g")
+#: "exact" its displacement along the line of action is therefore measured by the transmission error, of which it
+#: is a part, where that swings more. Off that line it is measured by its own swing.
+_ALONG_LINE = ("x_p", "x_g")
 #: Quantity whose size scales the difference when the reference does not vary, as y without friction.
 _COMPANION = {"y_p": "x_p", "y_g": "x_g", "friction_force": "normal_load"}
 
@@ -44,8 +44,8 @@ class Agreement:
     quantity, unit, long_name : what is compared; at fidelity "exact" of tooth forces the sum over the pairs
     fidelity : "linear" or "exact"
     difference, rms, mean_shift : difference over ``scale``: largest, root mean square, of the means (signed)
-    scale : peak to peak of the lumped history; of a gear's displacement at fidelity "exact" that of the
-        transmission error, where it is larger, in ``unit``
+    scale : peak to peak of the lumped history; of x at fidelity "exact" that of the transmission error, where
+        it is larger, in ``unit``
     peak_to_peak, peak_to_peak_multibody : of both histories, in ``unit``
     sprague_geers : of the oscillations about the means; None where the lumped history does not vary
     limit, reason : largest ``difference`` that passes, and why
@@ -130,7 +130,7 @@ def agreement(
         scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
     elif not metrics.is_constant(a):
         oscillation = metrics.sprague_geers(a - a.mean(), b - b.mean())
-    if exact and quantity in _DISPLACEMENTS:
+    if exact and quantity in _ALONG_LINE:
         scale = max(float(np.ptp(b)), float(np.ptp(history(reference, "dte"))))
     return Agreement(
         quantity=quantity,

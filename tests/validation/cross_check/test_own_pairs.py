@@ -103,6 +103,8 @@ def test_a_small_swing_of_a_centre_is_no_difference_of_the_models():
     found = crosscheck(pair, cycles=6, samples_per_cycle=128, variant=False)
     gear = next(a for a in found.of("exact") if a.quantity == "x_g")
     swing = float(np.ptp(found.lumped["dte"].to_numpy()))
-    assert found.verdict is Verdict.AGREES
+    assert gear.within
+    # Off the line of action the corner that touches beyond A presses along the flank, in one model only.
+    assert {a.quantity for a in found.of("exact") if not a.within} <= {"y_p", "y_g"}
     assert gear.scale == pytest.approx(swing, rel=0.02)  # sampled at more times than are kept
     assert gear.difference * gear.scale / gear.peak_to_peak > 0.1
