@@ -28,8 +28,8 @@ _SWITCH_MARGIN = 1e-6
 #: that moves farther is outside the linear model (``validation.validity.flags.REVERSAL_LIMITS``).
 _FORCE_MARGIN = 0.02
 #: A gear's centre moves with the changing part of its load alone, so away from resonance it hardly swings. At
-#: "exact" its displacement along the line of action is therefore measured by the transmission error, of which it
-#: is a part, where that swings more. Off that line it is measured by its own swing.
+#: "exact" its displacement along the line of action is therefore measured by the transmission error, of which
+#: it is a part, where that swings more. Off that line it is measured by its own swing.
 _ALONG_LINE = ("x_p", "x_g")
 #: Quantity whose size scales the difference when the reference does not vary, as y without friction.
 _COMPANION = {"y_p": "x_p", "y_g": "x_g", "friction_force": "normal_load"}

@@ -24,8 +24,8 @@ NAMES = {
 
 #: docs/theory/contact_energy.md has the forces of the presets.
 _CORNER = (
-    "A tooth corner that touches beyond A or D presses along the flank of its mate, off the line of action. The "
-    "lumped model has no such force."
+    "A tooth corner that touches beyond A or D presses along the flank of its mate, off the line of action. "
+    "The lumped model has no such force."
 )
 
 

@@ -10,7 +10,6 @@ import multibody
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.motions import unilateral_orbit
 from validation.cross_check.variant import asymmetric_variant
-from validation.cross_check.verdict import Verdict
 from validation.exchange.new_pair_file import new_pair_text
 
 
