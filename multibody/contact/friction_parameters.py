@@ -55,11 +55,23 @@ def fill_friction(pair: GearPair, p: FloatArray) -> None:
     f[fr.SLOWEST] = _CLOSEST * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
     f[fr.SLOWEST_ROLLING] = _ROLLING * 2.0 * p[kn.OMEGA_P] * p[kn.L_XP]
     name = law.law
-    if law.coefficient is not None:
+    if name == "iso_14179":
+        f[fr.MEAN] = _iso_14179(p)
+    elif law.coefficient is not None:
         f[fr.MEAN] = law.coefficient
     elif name in ("coulomb", "smoothed_coulomb", "composite"):
         f[fr.MEAN] = _mean_of_law_two(p)
     f[fr.LAW] = fr.LAWS.get(name, fr.TABLE)
+
+
+def _iso_14179(p: FloatArray) -> float:
+    """Mean coefficient of ISO/TR 14179-2, eta in mPa s, Ra in um: w/(v rho) is N/mm over m/s and mm there."""
+    f, tangent = p[kn.FRICTION :], p[kn.L_XP]
+    rolling = 2.0 * p[kn.OMEGA_P] * tangent
+    radius = 1e3 * fr.reduced_radius(tangent, p[kn.L_XY] - tangent)
+    ratio = 1e-3 * f[fr.NOMINAL_LOAD] / (rolling * radius)
+    oil = (1e3 * f[fr.VISCOSITY]) ** -0.05 * (1e6 * f[fr.ROUGHNESS]) ** 0.25
+    return float(0.048 * ratio**0.2 * oil)
 
 
 def viscosity(lubricant: Lubricant) -> float:
