@@ -33,7 +33,7 @@ class RevolutionMultipliers:
     multipliers : over the whole period, largest first; 0 where they are below the smallest number
     rates : |multiplier|^(1/cycles), growth of each in one mesh cycle
     rate : the largest one; above 1 the motion is unstable
-    error : bound of ``rate`` that its change with twice the steps gives, four times that change
+    error : estimate for ``rate``, four times its change with half the steps; no proven bound
     cycles : mesh cycles of the period
     healthy_rate : that of the twin with like teeth, by the same method
     """

@@ -233,7 +233,7 @@ def export(
             raise refuse(given[0], "with a result file", "a gear pair", "Leave it out.")
         _export_result(source, output, force=force)
     else:
-        pair = opt.gear_pair(source, speed, torque, law, settings)
+        pair = opt.gear_pair(source, speed, torque, law, settings, own_teeth=True)
         _export_pair(pair, output, rexs_version, form, force=force)
     stderr().print(f"wrote {output}")
 

@@ -80,8 +80,13 @@ def gear_pair(
     law: str | None,
     settings: list[str] | None,
     speed_range: str | None = None,
+    *,
+    own_teeth: bool = False,
 ) -> GearPair:
-    """Load a gear pair and apply the options of the command line; None: the example, which a note says."""
+    """Load a gear pair and apply the options of the command line; None: the example, which a note says.
+
+    Unless the command takes teeth that differ (``own_teeth``), it gets the twin with like teeth, and says so.
+    """
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
     from validation.commands.terminal import note
@@ -114,6 +119,9 @@ def gear_pair(
         note(f"{options[path]} changes nothing in the motion, for {cause}.")
     for warning in parameter_warnings(pair):
         note(warning)
+    if not own_teeth and pair.healthy is not pair:
+        note("this command takes all teeth of a gear as alike; spurcheck teeth takes them as given.")
+        return pair.healthy
     return pair
 
 

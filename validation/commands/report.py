@@ -86,7 +86,7 @@ def report(
 
     required = some_of("--require", require or (), _REQUIRE)
     check_target(output, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range, own_teeth=True)
     with progress_bar("report") as bar, compiling(bar) as tell:
         written = write(
             gear_pair,

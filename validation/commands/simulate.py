@@ -58,7 +58,7 @@ def simulate(
     from lumped.errors import refuse
 
     target = opt.figure_or_data(output, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=steady)
     opt.check_supports(gear_pair, supports)
     if steady and model == "multibody":
         raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")

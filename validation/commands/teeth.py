@@ -49,7 +49,7 @@ def teeth(
     from validation.signals.findings import GEARS, NOISE, TeethFindings, deviations_table, rpm_and_period
 
     target = None if output is None else check_file(output, _SUFFIXES, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=True)
     with progress_bar("motion over the period of the teeth"):
         found = TeethFindings(gear_pair)
     console = stdout()

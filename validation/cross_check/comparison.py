@@ -167,7 +167,7 @@ def crosscheck(
 
     Parameters
     ----------
-    pair : a validated gear pair
+    pair : a validated gear pair; of teeth that differ the twin with like teeth
     cycles : mesh cycles to simulate, 6 to 100000
     samples_per_cycle : output times per mesh cycle, at least 32; more are compared where the fastest mode
         swings so fast that these would not show it
@@ -192,7 +192,7 @@ def crosscheck(
     chosen = some_of("fidelities", fidelities, FIDELITIES)
     if not chosen or len(set(chosen)) != len(chosen):
         raise refuse("fidelities", ", ".join(chosen), "at least one, each once", "Correct the list.")
-    pair = load_gear_pair(pair)
+    pair = load_gear_pair(pair).healthy
     other = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
     share = 0.75 if other is not None else 1.0
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import lumped
 from lumped.teeth.tolerances import flank_tolerances
@@ -97,3 +98,13 @@ def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
     assert f"{1e6 * found.twin.attrs['dte_peak_to_peak']:.3g}" in result.stdout
     assert target.read_text(encoding="utf-8").count("\n") >= found.motion.sizes["time"]
     assert "teeth that are alike" in refused("teeth", "nasa_28_28")
+
+
+def test_a_command_about_like_teeth_says_so(tmp_path) -> None:
+    path, motion = tmp_path / "own.toml", tmp_path / "motion.nc"
+    path.write_text(PAIR.to_toml(), encoding="utf-8")
+    assert "takes all teeth of a gear as alike" in run("stability", path).stderr
+    result = run("simulate", path, "--steady", "--samples", 64, "-o", motion)
+    assert "as alike" not in result.stderr
+    with xr.open_dataset(motion, engine="h5netcdf") as data:
+        assert data.attrs["period_cycles"] == 28
