@@ -63,7 +63,7 @@ _EXAMPLE = ("measurement", "tooth_forces", "--example")
 
 FILES: dict[str, Callable[[], str]] = {
     "commands.md": commands,
-    "output_crosscheck.md": lambda: transcript("crosscheck", "nasa_28_28", "--set", "mesh.relief=ignored"),
+    "output_crosscheck.md": lambda: transcript("crosscheck", "nasa_28_28"),
     "output_simulate.md": lambda: transcript("simulate", "mypair.toml", "-o", "run.nc", before=_INIT),
     "output_refused.md": lambda: transcript(
         "simulate", "mypair.toml", "--set", "centre_distance=80", exit_code=2, before=_INIT

@@ -118,7 +118,7 @@ def _print(check: CrossCheck) -> None:
     for shown in _tables(check):
         console.print(shown)
     text = "differences: the largest one over the peak to peak of the lumped history; at fidelity exact"
-    console.print(f"{text} displacements over that of the transmission error, if larger", soft_wrap=True)
+    console.print(f"{text} x over that of the transmission error, if larger", soft_wrap=True)
     if check.pulling:
         console.print(check.pulling, soft_wrap=True)
     told = {
