@@ -76,7 +76,7 @@ def test_faults_leave_no_trace(sound):
 
 def test_a_fault_acts_wherever_its_function_is_held(sound):
     """A method, a function imported by name, a function held by a record, a compiled one, a cached one."""
-    for key in ("eq2_arm", "radius", "law_iii_radius", "friction_twice", "mesh_period", "block_friction"):
+    for key in ("eq2_arm", "radius", "law_iii_radius", "friction_twice", "mesh_period", "block_bearings"):
         with applied(FAULTS[key]):
             both = zip(sound, pairs(), strict=True)
             assert any(change(old, quantities(pair))[0] > 0.01 for old, pair in both), key

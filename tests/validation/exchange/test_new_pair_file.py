@@ -15,7 +15,7 @@ OWN = {"--teeth": "19/41", "--module": "2.5", "--face-width": "20", "--speed": "
 
 
 def init(*more, without=(), **options):
-    given = [part for key, value in OWN.items() if key not in without for part in (key, value)]
+    given = [part for key, value in OWN.items() if key not in (*without, *more) for part in (key, value)]
     return CliRunner().invoke(app, ["init", *given, *more])
 
 
