@@ -1,4 +1,4 @@
-"""spurcheck crosscheck: the lumped model against the multibody model, for a pair or a grid."""
+"""spurcheck crosscheck: the lumped model against the multibody model."""
 
 from __future__ import annotations
 
@@ -28,25 +28,7 @@ def crosscheck(
     pair: opt.PairArgument = None,
     output: Annotated[
         Path | None,
-        opt.output(
-            "All metrics as .json, or the transmission errors as .png or .svg; with --grid the dataset as "
-            ".nc or .csv."
-        ),
-    ] = None,
-    grid: Annotated[
-        bool,
-        typer.Option(
-            "--grid",
-            help="Compare over all presets, friction laws, stiffness models, three speeds and two torques "
-            "instead of one pair; takes minutes.",
-        ),
-    ] = False,
-    checkpoint: Annotated[
-        Path | None,
-        typer.Option(
-            help="With --grid: a folder that keeps every finished part, so that the same command goes on "
-            "after an interruption.",
-        ),
+        opt.output("All metrics as .json, or the transmission errors as .png or .svg."),
     ] = None,
     limit: Annotated[
         str,
@@ -79,20 +61,11 @@ def crosscheck(
     spurcheck crosscheck
 
     spurcheck crosscheck my_pair.toml --speed 4000 --limit 2% -o agreement.json
-
-    spurcheck crosscheck --grid -o grid.nc --checkpoint grid
     """
-    if grid:
-        given = {"PAIR": pair, "--speed": speed, "--torque": torque, "--law": law}
-        _grid(output, checkpoint, [k for k, v in (given | {"--set": settings}).items() if v], force)
-        return
-    from lumped.errors import refuse
     from validation.cross_check.comparison import crosscheck as run
     from validation.cross_check.verdict import Verdict
     from validation.files.output import check_file
 
-    if checkpoint is not None:
-        raise refuse("--checkpoint", checkpoint, "only with --grid", "One pair takes seconds: leave it out.")
     target = None if output is None else check_file(output, _SUFFIXES, force=force)
     share = opt.number_in("--limit", limit, "1")
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
@@ -194,51 +167,3 @@ def _write(check: CrossCheck, target: Path, force: bool) -> None:
     save(
         cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), target, new=not force
     )
-
-
-def _grid(output: Path | None, checkpoint: Path | None, given: list[str], force: bool) -> None:
-    """Run the grid, print a row for each pair and stiffness, write the dataset."""
-    from lumped.errors import refuse
-    from validation.cross_check.grid import COMPARED, CONTACT_LOST, broken_rules
-    from validation.cross_check.grid import crosscheck_grid as run
-    from validation.files.formatting import number
-    from validation.files.output import check_file, write_dataset
-
-    if given:
-        raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")
-    target = None if output is None else check_file(output, (".nc", ".csv"), force=force)
-    with progress_bar("grid") as tell:
-        result = run(checkpoint=checkpoint, progress=tell)
-    if target is not None:
-        write_dataset(result, target, new=not force)
-        stderr().print(f"wrote {target}")
-    console = stdout()
-    headings = (
-        ">compared",
-        ">same equations,\nof limit",
-        ">exact dte,\nlargest",
-        ">fall over that\nof torque, least",
-    )
-    shown = table("both models over the grid", "preset", "stiffness", *headings)
-    for preset in result["preset"].to_numpy():
-        for stiffness in result["stiffness"].to_numpy():
-            part = result.sel(preset=preset, stiffness=stiffness)
-            linear, exact = (part["difference"].sel(fidelity=name) for name in ("linear", "exact"))
-            shown.add_row(
-                str(preset),
-                str(stiffness),
-                f"{int(part['status'].isin([COMPARED, CONTACT_LOST]).sum())} of {part['status'].size}",
-                number(float((linear / part["limit"].sel(fidelity="linear")).max()), 2),
-                number(float(exact.sel(quantity="dte").max()), 2),
-                number(float(part["torque_law"].min()), 2),
-            )
-    console.print(shown)
-    console.print(
-        f"{result['status'].size} points in {result.attrs['seconds']:.0f} s on {result.attrs['workers']} "
-        f"processes ({result.attrs['resumed']} kept from before)"
-    )
-    broken = broken_rules(result)
-    for point, what in broken:
-        console.print(f"{', '.join(f'{axis} {value}' for axis, value in point.items())}: {what}")
-    if broken:
-        raise typer.Exit(FAILED)

@@ -108,7 +108,7 @@ STIFFNESS = {
 CYCLES, SAMPLES = 10, 64
 PRESETS = lumped.preset_names()
 #: Every preset with two laws, every law with two presets, jumps of stiffness and parabola; every preset with
-#: one stiffness, and the default pair with all. The rest of the grid runs by ``spurcheck crosscheck --grid``.
+#: one stiffness, and the default pair with all.
 WITH_LAWS = [
     (name, LAWS[(i + step) % 5], stiffness)
     for i, name in enumerate(PRESETS)
