@@ -12,6 +12,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 OUT ?= report
+LOWEST ?= build/lowest
 # The matrices are small: threads inside BLAS only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
@@ -63,10 +64,10 @@ dist:
 	.ci/dist
 
 lowest:
-	@$(PYTHON) -m venv --clear build/lowest
-	@build/lowest/bin/python -m pip install --quiet --disable-pip-version-check uv
-	@build/lowest/bin/uv pip install --quiet --python build/lowest/bin/python --resolution lowest-direct .
-	MPLBACKEND=Agg build/lowest/bin/spurcheck report --quick --output build/lowest/report --force
+	@$(PYTHON) -m venv --clear $(LOWEST)
+	@$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check uv
+	@$(LOWEST)/bin/uv pip install --quiet --python $(LOWEST)/bin/python --resolution lowest-direct .
+	MPLBACKEND=Agg $(LOWEST)/bin/spurcheck report --quick --output $(LOWEST)/report --force
 
 clean:
 	rm -rf .venv build dist docs/_generated docs/gallery *.egg-info .pytest_cache .mypy_cache .ruff_cache
