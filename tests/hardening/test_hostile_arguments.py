@@ -63,7 +63,7 @@ CALLS = {
     floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
     floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
     crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities limit"),
-    predict: ({"pair": PAIR}, "speed torque recurrence"),
+    predict: ({"pair": PAIR}, "recurrence"),
 }  # fmt: skip
 #: Names that a refusal gives where a pair's own field takes the argument in.
 OWN = {

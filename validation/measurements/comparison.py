@@ -33,7 +33,7 @@ METRICS = {
     "relative_rms": "rms over the prediction's peak to peak",
     "correlation": "Pearson correlation of measured and predicted",
 }
-_RESAMPLES = 999
+_RESAMPLES, _FEWEST_BLOCKS = 999, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,9 +219,7 @@ def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment:
     columns: dict[str, list[float]] = {}
     for channel in measurement.spec.channel:
         _, y, p, block = _samples(measurement, prediction, alignment, channel)
-        if np.unique(block).size < 8:
-            block = np.arange(y.size) * 8 // y.size
-        number = np.unique(block, return_inverse=True)[1]
+        number = numbered_blocks(block)
         blocks = int(number.max()) + 1
         e = y - p
         terms = (np.ones(y.size), e, e**2, y, p, y * p, y**2, p**2)
@@ -241,6 +239,13 @@ def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment:
     )
 
 
+def numbered_blocks(block: FloatArray) -> NDArray[np.int64]:
+    """Block of each sample, numbered from 0; eight runs of samples where there are fewer blocks."""
+    if np.unique(block).size < _FEWEST_BLOCKS:
+        return np.arange(block.size) * _FEWEST_BLOCKS // block.size
+    return np.unique(block, return_inverse=True)[1].astype(np.int64)
+
+
 def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:
     n, e, e2, y, p, yp, y2, p2 = sums
     whole = span or np.nan  # a constant prediction, such as no friction, has no scale
@@ -252,7 +257,7 @@ def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:
 
 def _samples(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, channel: Channel
-) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Phase since A, measured, predicted and block number of a channel's samples (pairs: in contact only)."""
     u, y = alignment.cycles, measurement.channels[channel.name]
     if channel.pair is None:
@@ -266,4 +271,4 @@ def _samples(
             f"No sample of {channel.name} is in contact; check the abscissae, the shift and the pair labels."
         )
     p = prediction.value(channel.quantity, u, channel.pair)
-    return age[inside], y[inside], p[inside], block[inside].astype(np.int64)
+    return age[inside], y[inside], p[inside], block[inside]

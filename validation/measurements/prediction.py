@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from lumped import Geometry, steady_state
-from lumped.arguments import real_number, whole_number
+from lumped.arguments import whole_number
 from lumped.errors import refuse
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -87,32 +87,17 @@ class Prediction:
         return found
 
 
-def predict(
-    pair: AnyPair,
-    speed: float | None = None,
-    torque: float | None = None,
-    *,
-    recurrence: int | None = None,
-) -> Prediction:
-    """Predict the periodic motion at an operating point; between samples it is interpolated linearly.
+def predict(pair: AnyPair, *, recurrence: int | None = None) -> Prediction:
+    """Predict the periodic motion of a pair; between samples it is interpolated linearly.
 
     Parameters
     ----------
-    pair : a validated gear pair
-    speed : pinion speed [rad/s]; default the pair's
-    torque : pinion torque [N m]; default the pair's
+    pair : a validated gear pair, at the operating point of the record: ``Measurement.at``
     recurrence : see ``Prediction``; default the pinion's number of teeth
     """
     pair = load_gear_pair(pair)
-    at = pair
-    if speed is not None:
-        speed = real_number("speed", speed, 0.0, above=True, unit="rad/s")
-        at = at.with_({"operating.pinion_speed": f"{speed!r} rad/s"})
-    if torque is not None:
-        torque = real_number("torque", torque, 0.0, above=True, unit="N m")
-        at = at.with_({"operating.pinion_torque": torque})
-    again = at.pinion.teeth
+    again = pair.pinion.teeth
     if recurrence is not None:  # no fewer than the pairs in contact at once
         advice = "Count the mesh cycles until the same labelled pair is in contact again."
-        again = whole_number("recurrence", recurrence, at.geometry.pairs, 1_000_000, advice)
-    return Prediction(at, steady_state(at, samples_per_cycle=_SAMPLES), again)
+        again = whole_number("recurrence", recurrence, pair.geometry.pairs, 1_000_000, advice)
+    return Prediction(pair, steady_state(pair, samples_per_cycle=_SAMPLES), again)

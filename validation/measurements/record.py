@@ -19,6 +19,7 @@ from lumped.fields.refusals import translated
 from lumped.fields.section import OneOf, Section, Text
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.fields.units import Quantity, to_si
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -150,6 +151,12 @@ class Measurement:
     channels: dict[str, FloatArray]
     noise: dict[str, float | None]
     sha256: str = ""
+
+    def at(self, pair: GearPair) -> GearPair:
+        """The pair at the record's speed and torque."""
+        speed = f"{float(self.spec.pinion_speed)!r} rad/s"
+        torque = self.spec.pinion_torque
+        return pair.with_({"operating.pinion_speed": speed, "operating.pinion_torque": torque})
 
     def named(self, quantity: str) -> list[tuple[str, str | None]]:
         """Names and pair labels of the channels of a quantity."""

@@ -75,12 +75,7 @@ def measured_points(pair: GearPair, measurement: Measurement, *, bins: int = 48)
     bins : points per passage
     """
     spec = measurement.spec
-    prediction = predict(
-        pair.with_({"friction.law": LAW}),
-        spec.pinion_speed,
-        spec.pinion_torque,
-        recurrence=spec.recurrence,
-    )
+    prediction = predict(measurement.at(pair.with_({"friction.law": LAW})), recurrence=spec.recurrence)
     phase = align(measurement, prediction)
     points = overlay(measurement, prediction, phase, bins=bins)
     points = points.merge(overlay_metrics(measurement, prediction, phase), combine_attrs="override")
