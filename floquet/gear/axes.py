@@ -18,12 +18,13 @@ from floquet.engine.chart import Axes, ChartAxis, checked_axes
 from lumped.arguments import one_of, real_array
 from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
-from lumped.friction import LAWS, mean_coefficient
+from lumped.friction import mean_coefficient
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath
-from lumped.friction.registry import law_named
+from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import Supports
-from lumped.path_of_contact.friction import contact_path, fit_law
+from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
+from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
 from lumped.typing import FloatArray
@@ -100,7 +101,7 @@ def _friction(variation: GearVariation, value: float) -> GearVariation:
     if law == "none":
         law = "coulomb"
         variation = replace(variation, pair=variation.pair.with_({"friction.law": law}))
-    if LAWS[law].coefficient:
+    if law_of(variation.pair.friction).coefficient:
         return replace(variation, pair=variation.pair.with_({"friction.coefficient": value}))
     return replace(variation, friction_mean=value)
 
@@ -265,7 +266,7 @@ class FrictionFamily:
 
 def depends_on_speed(pair: GearPair) -> bool:
     """Say whether mu(xi) changes with speed: every law but a constant one whose coefficient is given."""
-    return not law_named(pair.friction.law).is_constant(pair.friction)
+    return not law_of(pair.friction).is_constant(pair.friction)
 
 
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
@@ -278,6 +279,9 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     """
     pair, rest = variation.pair, np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):
+        for rpm in {speeds_rpm.min(), speeds_rpm.max()}:  # a table is for one speed
+            path = contact_path(pair).at_speed(float(rpm) * np.pi / 30.0)
+            warn_violations(violations_of(path, pair.friction, pair.friction.law))
         return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None, exact=True)]
     law, families = _Law(variation), []
     while rest.size:
@@ -297,7 +301,7 @@ class _Law:
 
     def __init__(self, variation: GearVariation) -> None:
         self.path, self.settings = contact_path(variation.pair), variation.pair.friction
-        self.law, self.to_mean = law_named(self.settings.law), variation.friction_mean is not None
+        self.law, self.to_mean = law_of(self.settings), variation.friction_mean is not None
         self.positions, self.values = _positions(self.path), cache(self._values)
 
     def at(self, rpm: float) -> ContactPath:

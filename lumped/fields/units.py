@@ -106,6 +106,7 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
     "kg/m**3": ("kg/m**3", Decimal(1), "a density", "7.85 g/cm**3"),
     "GPa": ("Pa", Decimal("1e9"), "a pressure", "30e6 psi"),
     "N/m": ("N/m", Decimal(1), "a stiffness", "571000 lbf/inch"),
+    "N/mm": ("N/m", Decimal("1e3"), "a load per length", "600 lbf/inch"),
     "N*m/rad": ("N*m/rad", Decimal(1), "a torsional stiffness", "150 N*m/deg"),
     "N*s/m": ("N*s/m", Decimal(1), "a damping", "2 lbf*s/inch"),
     "N*m*s/rad": ("N*m*s/rad", Decimal(1), "a torsional damping", "0.5 N*m*s/deg"),

@@ -6,6 +6,7 @@ piecewise Chebyshev fits, Trefethen, Approximation Theory and Approximation Prac
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -82,6 +83,11 @@ class ContactPath:
             omega_gear=omega_pinion * (self.L_XP / (self.L_XY - self.L_XP)),
             pitch_line_velocity=self.pitch_line_velocity * (omega_pinion / self.omega_pinion),
         )
+
+    @property
+    def base_radius_pinion(self) -> float:
+        """r_bp [m], by Pythagoras from the operating pitch radius v_t/omega_p and L_XP."""
+        return math.sqrt((self.pitch_line_velocity / self.omega_pinion) ** 2 - self.L_XP**2)
 
     def radius(self, xi: FloatArray) -> FloatArray:
         """Reduced radius of curvature rho_r = rho_p rho_g/(rho_p + rho_g) [m], equations (11) and (15)."""
@@ -168,16 +174,22 @@ class FrictionSettings(Protocol):
 
     Attributes
     ----------
+    law : name of the pair's own law
     coefficient : mu_avg of laws I and IV [-]; None takes law II's average over the path, as in the paper
     sharpness : Phi of law IV [1/m]
     maximum : upper bound of law II [-]
     thresholds : film parameters at which law V changes over
     """
 
+    law: str
     coefficient: float | None
     sharpness: float
     maximum: float
     thresholds: tuple[float, float, float]
+
+    @property
+    def own_law(self) -> FrictionLaw | None:
+        """The law of the user's table, where one is given."""
 
     def __hash__(self) -> int:
         """Results are kept by the settings."""
@@ -201,6 +213,7 @@ class FrictionLaw:
     fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
     factor : (path, settings) -> number to which mu is proportional over speed, all else equal; None: speed
         changes the shape of mu too
+    joints : path -> positions where polynomials of a table meet, without jump or kink [m]
     """
 
     name: str
@@ -216,6 +229,8 @@ class FrictionLaw:
     varies: bool = True
     fluid_film: bool = False
     factor: Callable[[ContactPath, FrictionSettings], float] | None = None
+
+    joints: Callable[[ContactPath], list[float]] = lambda path: []
 
     @property
     def title(self) -> str:
@@ -237,6 +252,8 @@ class FrictionLaw:
 FIT_TOLERANCE = 1e-10
 #: Pinion speed [rad/s] at which laws are fitted that speed only scales: near 1000 rpm, in the middle of use.
 FIT_SPEED = 100.0
+#: Breaks closer than this share of the path of contact are one.
+_SAME = 1e-9
 _FIRST_CUT = 64.0  # a piece that ends at P is cut at this fraction of its length
 _GEOMETRIC_ABOVE = 2.0  # pieces whose ends are further apart than this ratio are cut at the geometric mean
 
@@ -260,6 +277,9 @@ def _fit(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> Pat
     switches = sorted({xi for xi in law.switches(path, settings) if path.L_XA < xi < path.L_XD})
     # The pitch point is a break of every law: also where mu is smooth there, it varies fastest around it.
     breaks = sorted({path.L_XA, path.L_XP, path.L_XD, *switches})
+    near = _SAME * (path.L_XD - path.L_XA)
+    joints = [xi for xi in law.joints(path) if path.L_XA < xi < path.L_XD]
+    breaks = sorted([*breaks, *(xi for xi in joints if min(abs(xi - b) for b in breaks) > near)])
     return PathFunction.fit(
         lambda xi: law.signed(xi, path, settings),
         breaks,

@@ -9,12 +9,14 @@ from types import MappingProxyType
 import numpy as np
 
 from lumped.arguments import one_of
-from lumped.friction.base import FrictionLaw
+from lumped.errors import refuse
+from lumped.friction.base import FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.composite import LAW as COMPOSITE
 from lumped.friction.coulomb import LAW as COULOMB
 from lumped.friction.iso_14179 import LAW as ISO_14179
 from lumped.friction.smoothed_coulomb import LAW as SMOOTHED_COULOMB
+from lumped.friction.table import TABLE
 from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 
 _NONE = FrictionLaw(
@@ -42,8 +44,14 @@ LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
 )
 
 
-#: Names of the laws with friction.
+#: Names of the laws with friction that every pair has.
 FRICTIONAL = tuple(name for name in LAWS if name != _NONE.name)
+#: Every name of ``friction.law``.
+NAMES = (*LAWS, TABLE)
+
+
+#: What to do where the law is the table and there is none.
+NO_TABLE = "Give friction.table, or in Python pair.with_(law=...) a function, an array or columns."
 
 
 def _plain(text: str) -> str:
@@ -66,6 +74,17 @@ def file_name(spelling: object) -> object:
     return _SPELLINGS.get(_plain(spelling), spelling) if isinstance(spelling, str) else spelling
 
 
-def law_named(name: str, field: str = "friction.law") -> FrictionLaw:
-    """Return a law by its name in parameter files, or as tables and reports call it, or refuse it."""
-    return LAWS[one_of(field, file_name(name), LAWS)]
+def law_of(settings: FrictionSettings, name: str | None = None) -> FrictionLaw:
+    """Return a law by its name in parameter files, or as tables call it; default the pair's own."""
+    known = one_of("friction.law", file_name(settings.law if name is None else name), NAMES)
+    if known != TABLE:
+        return LAWS[known]
+    if settings.own_law is None:
+        raise refuse("friction.table", None, "a table of mu over the path of contact", NO_TABLE)
+    return settings.own_law
+
+
+def laws_with_friction(settings: FrictionSettings) -> dict[str, FrictionLaw]:
+    """Return the laws that a pair can be computed with: those with a formula, and its table."""
+    own = {} if settings.own_law is None else {TABLE: settings.own_law}
+    return {name: LAWS[name] for name in FRICTIONAL} | own

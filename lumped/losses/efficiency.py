@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.errors import ParameterError, refuse
-from lumped.friction import FRICTIONAL, LAWS
+from lumped.friction.registry import laws_with_friction
 from lumped.gear_geometry.geometry import Geometry
 from lumped.labelling import labelled_dataset, provenance
 from lumped.losses.loss_factor import (
@@ -232,7 +232,8 @@ def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
     pair = load_gear_pair(pair)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []
-    for name in FRICTIONAL:
+    laws = laws_with_friction(pair.friction)
+    for name in laws:
         try:
             static = quasi_static_losses(pair, name, samples_per_cycle=8).attrs
             rows[name] = {key: static[key] for key in ("mesh_efficiency", "power_loss", "mean_coefficient")}
@@ -240,7 +241,7 @@ def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
                 run = periodic_cycle(pair.with_(friction__law=name), 8)
                 rows[name]["mesh_efficiency_dynamic"] = balance(run)["mesh_efficiency"]
         except ParameterError as error:
-            left_out.append(f"{LAWS[name].title}: {error}")
+            left_out.append(f"{laws[name].title}: {error}")
     units = {"power_loss": "W"}
     texts = {
         "mesh_efficiency": "mesh efficiency, quasi-static",
@@ -257,4 +258,4 @@ def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
         {"law": (list(rows), "1", "friction law")},
         {"left_out": left_out},
     )
-    return result.assign_coords(law_title=("law", [LAWS[name].title for name in rows]))
+    return result.assign_coords(law_title=("law", [laws[name].title for name in rows]))

@@ -17,7 +17,7 @@ from lumped.arguments import whole_number
 from lumped.errors import ParameterError, refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings, fit_signed, mean_coefficient
 from lumped.friction.benedict_kelley import average_coefficient, friction_number
-from lumped.friction.registry import FRICTIONAL, LAWS, law_named
+from lumped.friction.registry import law_of, laws_with_friction
 from lumped.labelling import labelled_dataset
 from lumped.lubrication import film
 from lumped.path_function import PathFunction
@@ -39,31 +39,7 @@ def contact_path(pair: GearPair) -> ContactPath:
     given. The full static load w_n = T_p/(Z r_bp) is used at every position, as in the paper, also where two
     pairs share it.
     """
-    g, lubricant, friction = pair.geometry, pair.lubricant, pair.friction
-    pinion, gear = pair.pinion, pair.gear
-    composite = friction.composite_roughness
-    if composite is None:
-        # The surfaces are independent: variances add.
-        composite = math.hypot(pinion.roughness, gear.roughness)
-    return ContactPath(
-        L_XA=g.L_XA,
-        L_XP=g.L_XP,
-        L_XD=g.L_XD,
-        L_XY=g.L_XY,
-        omega_pinion=g.omega_pinion,
-        omega_gear=g.omega_gear,
-        pitch_line_velocity=g.pitch_line_velocity,
-        unit_load=pair.operating.pinion_torque / (g.face_width * g.base_radius_pinion),
-        effective_modulus=film.effective_modulus(
-            pinion.youngs_modulus, pinion.poisson_ratio, gear.youngs_modulus, gear.poisson_ratio
-        ),
-        viscosity=lubricant.dynamic_viscosity,
-        pressure_viscosity_k=lubricant.pressure_viscosity_k,
-        pressure_viscosity_s=lubricant.pressure_viscosity_s,
-        roughness=0.5 * (pinion.roughness + gear.roughness),
-        composite_roughness=composite,
-        film_length=friction.film_length,
-    )
+    return pair.nominal_contact
 
 
 def friction_path_function(
@@ -95,7 +71,7 @@ def friction_path_function(
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
         longer = replace(path, L_XA=interval[0], L_XD=interval[1])
-        if _reads_average(LAWS[name], longer, settings):  # mu_avg stays the mean from A to D
+        if _reads_average(law_of(settings, name), longer, settings):  # mu_avg stays the mean from A to D
             settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
         path = longer
     function = fit_law(path, settings, name)
@@ -125,13 +101,13 @@ def _reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettin
 
 
 def _name(pair: GearPair, law: str | None) -> str:
-    return pair.friction.law if law is None else law_named(law).name
+    return law_of(pair.friction, law).name
 
 
 @lru_cache(maxsize=256)
 def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
     """mu(xi) of one law; cached, because charts over damping or stiffness ask for it at every node."""
-    law = LAWS[name]
+    law = law_of(settings, name)
     _must_be_friction(path, settings, law)
     return fit_signed(law, path, settings)
 
@@ -158,7 +134,7 @@ def _positions(path: ContactPath) -> FloatArray:
 @lru_cache(maxsize=256)
 def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> tuple[RangeViolation, ...]:
     """Validity ranges that a contact leaves under a law."""
-    law = LAWS[name]
+    law = law_of(settings, name)
     xi = _positions(path)
     if law.parts is None:
         return _left(law.title, law, path, settings, xi)
@@ -187,6 +163,7 @@ def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
     """Arguments of the laws along the path, by name, in the laws' published units."""
     velocities = path.sliding_velocity(xi), path.entraining_velocity(xi)
     return {
+        "pinion_speed": np.array(path.omega_pinion * 30.0 / math.pi),
         "unit_load": np.array(path.unit_load * 1e-3),
         "viscosity": np.array(path.viscosity * 1e3),
         "sliding_velocity": velocities[0],
@@ -228,11 +205,12 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
     path, settings = contact_path(pair), pair.friction
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []
-    for name in FRICTIONAL:
+    laws = laws_with_friction(settings)
+    for name, law in laws.items():
         try:
             functions[name] = fit_law(path, settings, name)
         except ParameterError as error:
-            left_out.append(f"{LAWS[name].title}: {error}")
+            left_out.append(f"{law.title}: {error}")
     grid = np.linspace(path.L_XA, path.L_XD, whole_number("points", points, 2, 1_000_000))
     # Just below the end: a path function is right-continuous and zero beyond it.
     grid[-1] = np.nextafter(path.L_XD, 0.0)
@@ -276,4 +254,4 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
     other = path.film_thickness_hamrock_dowson(xi) / result["film_thickness"].to_numpy()
     result["film_thickness"].attrs["note"] = film_note(float(other.min()), float(other.max()))
     result["regime"].attrs |= {"flag_values": [0, 1, 2, 3], "flag_meanings": ", ".join(film.REGIMES)}
-    return result.assign_coords(law_title=("law", [LAWS[name].title for name in functions]))
+    return result.assign_coords(law_title=("law", [laws[name].title for name in functions]))

@@ -11,7 +11,9 @@ from pydantic import BeforeValidator, Field, model_validator
 from lumped.errors import refuse
 from lumped.fields.section import OneOf, Section
 from lumped.fields.units import Quantity
-from lumped.friction.registry import LAWS, file_name
+from lumped.friction.base import FrictionLaw
+from lumped.friction.registry import LAWS, NAMES, NO_TABLE, file_name
+from lumped.friction.table import TABLE, FrictionTable
 from lumped.lubrication.viscosity import (
     ZERO_CELSIUS,
     grade_viscosity,
@@ -156,8 +158,9 @@ def _increasing(value: object) -> object:
 class Friction(Section):
     """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
 
-    law: Annotated[str, OneOf(tuple(LAWS), file_name)] = Field(
+    law: Annotated[str, OneOf(NAMES, file_name)] = Field(
         description=", ".join(f"{law.numeral or law.label} {law.name}" for law in LAWS.values())
+        + ", table: of the user"
     )
     coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(
         None, description="mean coefficient of laws I and IV; default the mean of law II over the path"
@@ -178,3 +181,15 @@ class Friction(Section):
     film_length: Annotated[float, Quantity("mm", above=0)] = Field(
         0.8, description="cut-off length L_x of the roughness filter in the film parameter"
     )
+    table: FrictionTable | None = Field(None, description="mu of the user over the path of contact")
+
+    @model_validator(mode="after")
+    def _has_its_table(self) -> Self:
+        if self.law == TABLE and self.table is None:
+            raise refuse("table", None, "a table of mu over the path of contact", NO_TABLE)
+        return self
+
+    @property
+    def own_law(self) -> FrictionLaw | None:
+        """The law of the user's table, where one is given."""
+        return None if self.table is None else self.table.law

@@ -24,8 +24,12 @@ from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity, QuantityRange, to_stated
+from lumped.friction.base import ContactPath
+from lumped.friction.registry import law_of
+from lumped.friction.table import TABLE
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, existence_problems
 from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.schema import own_laws
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.shafts import Bearings, Shafts
@@ -86,6 +90,7 @@ SHORT_NAMES = {
     "torque": "operating.pinion_torque",
     "range": "operating.speed_range",
     "law": "friction.law",
+    "stiffness": "mesh.stiffness",
     "module": "basic_rack.module",
     "viscosity": "lubricant.viscosity",
 }
@@ -157,6 +162,8 @@ class GearPair(Section, metaclass=_InOurWords):
         problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
         problems = self._with_centre_distance(problems)
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
+        if self.friction.law == TABLE and self.friction.table is not None and not problems:
+            problems += self.friction.table.problems(self.geometry)
         problems += [*self._teeth_that_are_not("pinion", 0), *self._teeth_that_are_not("gear", 1)]
         if problems:
             raise ParameterError(problems, self.name)
@@ -243,6 +250,12 @@ class GearPair(Section, metaclass=_InOurWords):
             for one in fault.problems(self.flank(which)):
                 yield replace(one, field=f"{name}.faults.{number}.{one.field}")
 
+    @property
+    def nominal_contact(self) -> ContactPath:
+        """What friction laws see, see ``lumped.path_of_contact.contact_path``."""
+        gears, torque = (self.pinion, self.gear), self.operating.pinion_torque
+        return own_laws.nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
+
     def flank(self, which: int) -> Flank:
         """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""
         g, gear = self.geometry, (self.pinion, self.gear)[which]
@@ -266,12 +279,13 @@ class GearPair(Section, metaclass=_InOurWords):
     def __repr__(self) -> str:
         """Return the pair in one line; ``to_toml()`` says every field."""
         pinion, gear, at = self.pinion, self.gear, self.operating
+        law = self.friction.law if self.friction.law != TABLE else law_of(self.friction).title
         return (
             f"<GearPair {self.name}: {pinion.teeth}/{gear.teeth} teeth, "
             f"module {self.basic_rack.module * 1e3:g} mm, "
             f"face widths {pinion.face_width * 1e3:g}/{gear.face_width * 1e3:g} mm, "
             f"{to_stated(at.pinion_speed, 'rpm'):g} rpm, {at.pinion_torque:g} N m, "
-            f"friction {self.friction.law}>"
+            f"friction {law}>"
         )
 
     __str__ = __repr__
@@ -306,14 +320,35 @@ class GearPair(Section, metaclass=_InOurWords):
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
             A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
-            ``torque``, ``range``, ``law``, ``module`` and ``viscosity``: ``pair.with_(speed=2000)``.
+            ``torque``, ``range``, ``law``, ``stiffness``, ``module`` and ``viscosity``.
+
+        ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
+        into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
+
+        - law as a function: magnitude of mu of any of ``xi`` (position from X [m]), ``radius`` [m],
+          ``sliding_velocity``, ``entraining_velocity`` [m/s], ``slide_to_roll``, ``hertz_pressure`` [Pa],
+          ``film_thickness`` [m], ``film_parameter``; called with numbers at the operating point.
+        - law as an array: mu at equal distances from A to D.
+        - stiffness as a function: of ``xi``, one pair from A to D, or of ``phase`` from 0 to 1, all pairs
+          over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included.
+        - columns: a mapping or DataFrame such as ``{"position [mm]": ..., "coefficient": ...}``,
+          ``{"phase": ..., "stiffness [N/um]": ...}``.
 
         Raises
         ------
         ParameterError : a value that is refused, or a name that is no field; it names the nearest
         """
         request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
-        return _varied(self, {SHORT_NAMES.get(path, path): value for path, value in request.items()})
+        fields = {SHORT_NAMES.get(path, path): value for path, value in request.items()}
+        own = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
+        pair = _varied(self, fields) if fields or not own else self
+        for path, value in own.items():
+            if path == "friction.law":
+                pair = _varied(pair, own_laws.own_friction(pair.nominal_contact, value))
+            else:
+                pair = _varied(pair, own_laws.own_stiffness(pair.geometry, value))
+                pair.mesh.stiffness.curve(pair)  # a table that does not fit is refused here
+        return pair
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:

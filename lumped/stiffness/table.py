@@ -5,107 +5,27 @@ Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numeric
 
 from __future__ import annotations
 
-import itertools
-import re
-from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, model_validator
-from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
+from scipy.interpolate import PPoly
 
-from lumped.errors import NumericalError, refuse, shown
-from lumped.fields.text_file import read_text
-from lumped.fields.units import to_si
+from lumped.errors import NumericalError, refuse
+from lumped.fields.tables import END_GAP, check_points, positions, spline, with_file
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction, shifted
 from lumped.stiffness.base import MeshingPair, RampLength, StiffnessModel, check_ramp_length, ramped
 from lumped.stiffness.energy import energy_curve
 from lumped.typing import FloatArray
 
-#: Column -> (axis of the table, unit of its numbers).
-_COLUMNS = {
-    "stiffness": ("stiffness", "N/m"),
-    "position": ("position_mm", "mm"),
-    "roll_angle": ("roll_angle_deg", "deg"),
-    "phase": ("phase", "1"),
-}
-_HEADER = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
-_FORMAT = "a header such as 'position [mm], stiffness [N/um]', then one row of two numbers per point"
-_MAX_BYTES = 10_000_000
+#: Name and unit of the column in a file.
+STIFFNESS = ("stiffness", "N/m")
 #: Largest stiffness of a spur gear mesh that is taken for real [N/m].
 _LARGEST = 1e12
 
 
-def read_stiffness_table(file: object, folder: str | Path = ".") -> dict[str, object]:
-    """Read a stiffness table: ``axis``, ``points`` and ``stiffness`` as the schema takes them.
-
-    The file has a header with a column ``position``, ``roll_angle`` or ``phase`` and a column ``stiffness``,
-    each with its unit in brackets (none for phase), in any order; lines that start with # are comments.
-    """
-    if not isinstance(file, str):
-        raise refuse("file", file, "the name of a CSV file", "Write the name as text.")
-    path = Path(folder) / file
-    text = read_text(path, _MAX_BYTES, kind="CSV file")
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    if len(lines) < 2:
-        raise refuse("file", path, _FORMAT, "Give two columns and at least four rows.")
-    names, units = _header(lines[0], path)
-    try:
-        columns = np.loadtxt(lines[1:], delimiter=",", quotechar='"', comments=None, ndmin=2).T
-        first, second = columns.tolist()
-    except ValueError as error:
-        raise refuse("file", path, _FORMAT, f"A row is no pair of numbers: {shown(str(error))}.") from None
-    table: dict[str, object] = {}
-    for name, unit, values in zip(names, units, (first, second), strict=True):
-        axis, stated = _COLUMNS[name]
-        factor = _factor(unit, stated, name, path)
-        scaled = tuple(value * factor for value in values)
-        table |= {"stiffness": scaled} if name == "stiffness" else {"axis": axis, "points": scaled}
-    return table
-
-
-def check_stiffness_table(points: Sequence[float], stiffness: Sequence[float]) -> None:
-    """Refuse unequal lengths, points that do not increase, stiffness not finite and positive."""
-    if len(points) != len(stiffness):
-        allowed = f"one per point, {len(points)}"
-        raise refuse("stiffness", f"{len(stiffness)} values", allowed, "Complete the table.")
-    for before, point in itertools.pairwise(points):
-        if not point > before:
-            action = "Sort the rows and remove repeated points."
-            raise refuse("points", f"{point:g} after {before:g}", "increasing", action)
-    for value in stiffness:
-        if not 0.0 < value <= _LARGEST:
-            action = "Check the unit and the sign; leave out points without contact."
-            raise refuse("stiffness", f"{value:g} N/m", f"> 0 and <= {_LARGEST:g} N/m", action)
-
-
-def _header(line: str, path: Path) -> tuple[list[str], list[str]]:
-    """Names and units of the two columns."""
-    matches = [_HEADER.fullmatch(cell.strip(' 	"')) for cell in line.split(",")]
-    names = [match[1].lower() for match in matches if match]
-    if not len(matches) == len(set(names)) == 2 or "stiffness" not in names or not {*names} <= {*_COLUMNS}:
-        raise refuse("file", path, _FORMAT, f"The header is '{shown(line)}'.")
-    return names, [match[2] or "" for match in matches if match]
-
-
-def _factor(unit: str, stated: str, column: str, path: Path) -> float:
-    """Number of stated units in one unit of the file."""
-    if stated == "1":
-        if unit.strip() not in ("", "1"):
-            raise refuse("file", path, "phase without a unit, in mesh cycles", f"It has the unit [{unit}].")
-        return 1.0
-    try:
-        return to_si(f"1 {unit}", stated) / to_si(1.0, stated)
-    except ValueError as error:
-        raise refuse("file", path, f"{column} with its unit in brackets", f"{error}.") from None
-
-
-#: A pair's table may miss the ends of the path of contact by this fraction of the path; it is then continued
-#: with its end value's polynomial.
-_END_GAP = 0.02
 #: Largest gap between points, over a mesh cycle, across which a curve is still called sampled.
 _LARGEST_GAP = 0.25
 _FIT_TOLERANCE = 1e-10
@@ -139,16 +59,15 @@ class TableStiffness(StiffnessModel):
     @classmethod
     def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
         """Replace ``file = "curve.csv"`` by its contents; a relative path is beside the parameter file."""
-        if not isinstance(data, dict) or "file" not in data:
-            return data
-        folder = (info.context or {}).get("folder", ".")
-        return {key: value for key, value in data.items() if key != "file"} | read_stiffness_table(
-            data["file"], folder
-        )
+        return with_file(data, info, STIFFNESS)
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
-        check_stiffness_table(self.points, self.stiffness)
+        check_points(self.points, self.stiffness, "stiffness")
+        for value in self.stiffness:
+            if not 0.0 < value <= _LARGEST:
+                action = "Check the unit and the sign; leave out points without contact."
+                raise refuse("stiffness", f"{value:g} N/m", f"> 0 and <= {_LARGEST:g} N/m", action)
         return self
 
     def curve(self, pair: MeshingPair) -> PathFunction:
@@ -158,31 +77,22 @@ class TableStiffness(StiffnessModel):
         part that its potential-energy stiffness has in the sum of theirs.
         """
         g = pair.geometry
-        position, stiffness = _positions(self, g), np.array(self.stiffness)
+        position, stiffness = self._positions(g), np.array(self.stiffness)
         if self.kind == "pair":
             return ramped(_pair_curve(position, stiffness, self, g), self.ramp_length)
         check_ramp_length(self.ramp_length, g.L_XA, g.L_XD)
         return _shared(_total_curve(position, stiffness, self, g), self.ramp_length, pair)
 
-
-def _positions(model: TableStiffness, geometry: Geometry) -> FloatArray:
-    """Points of the table as xi [m]."""
-    points = np.array(model.points)
-    if model.axis == "position_mm":
-        return np.asarray(points * 1e-3, dtype=np.float64)
-    if model.axis == "roll_angle_deg":
-        return np.asarray(np.deg2rad(points) * geometry.base_radius_pinion, dtype=np.float64)
-    return np.asarray(geometry.L_XA + points * geometry.base_pitch, dtype=np.float64)
-
-
-def _spline(x: FloatArray, y: FloatArray, interpolation: str) -> PPoly:
-    spline = PchipInterpolator(x, y) if interpolation == "monotone" else CubicSpline(x, y)
-    return PPoly(spline.c, spline.x)
+    def _positions(self, g: Geometry) -> FloatArray:
+        """Points as xi [m]."""
+        if self.axis == "phase":
+            return np.asarray(g.L_XA + np.array(self.points) * g.base_pitch, dtype=np.float64)
+        return positions(self.points, self.axis, g.base_radius_pinion)
 
 
 def _pair_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PathFunction:
     low, high = geometry.L_XA, geometry.L_XD
-    allowed = _END_GAP * (high - low)
+    allowed = END_GAP * (high - low)
     if x[0] > low + allowed or x[-1] < high - allowed:
         raise refuse(
             "mesh.stiffness.points",
@@ -191,7 +101,7 @@ def _pair_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: G
             "Extend the table, or check its axis and unit.",
         )
     _check_gaps(np.diff(np.clip(x, low, high)).max(), geometry)
-    poly = _spline(x, y, model.interpolation)
+    poly = spline(x, y, model.interpolation)
     inner = x[(x > low) & (x < high)]
     breaks = np.array([low, *inner, high])
     left = np.clip(np.searchsorted(poly.x, breaks[:-1], side="right") - 1, 0, poly.c.shape[1] - 1)
@@ -218,7 +128,7 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
     _check_gaps(np.diff(phase, append=phase[0] + period).max(), geometry)
     # Periodic by repetition: the middle copy of three is what an infinite table gives.
     tiled = np.concatenate([phase - period, phase, phase + period])
-    return _spline(tiled, np.tile(y, 3), model.interpolation)
+    return spline(tiled, np.tile(y, 3), model.interpolation)
 
 
 def _shared(total: PPoly, ramp_length: float, pair: MeshingPair) -> PathFunction:

@@ -56,6 +56,13 @@ def test_numbers_of_a_pair_by_their_names(pair: spurcheck.GearPair) -> None:
     assert np.sum((2 * np.pi * frequencies) ** 2) == pytest.approx(-np.trace(mean[m:, :m]), rel=2e-4)
 
 
+def test_the_multibody_model_has_the_law_of_the_user(pair: spurcheck.GearPair) -> None:
+    formula = pair.with_(law="coulomb", friction__coefficient=0.05)
+    laws = (formula, pair.with_(law=lambda xi: 0.05))
+    a, b = (spurcheck.multibody.simulate(one, cycles=2)["y_p"].to_numpy() for one in laws)
+    assert np.abs(a - b).max() < 1e-6 * np.ptp(a)
+
+
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [

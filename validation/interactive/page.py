@@ -16,7 +16,7 @@ from floquet.gear.axes import operating_rpm
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import file_path, of_type
 from lumped.errors import refuse
-from lumped.friction import LAWS
+from lumped.friction.registry import law_of
 from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import payload, script_json
@@ -86,13 +86,13 @@ def render(results: PageResults, data_name: str) -> str:
     return environment.get_template("page.html").render(
         pair=pair,
         rpm=operating_rpm(pair),
-        law=LAWS[pair.friction.law].title,
+        law=law_of(pair.friction).title,
         found=results.found,
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
         branches=isinstance(results.branches, xr.Dataset),
         jumps=results.jumps,
         no_branches=results.branches if isinstance(results.branches, str) else "",
-        missing={LAWS[law].title: reason for law, reason in results.missing.items()},
+        missing={law_of(pair.friction, law).title: reason for law, reason in results.missing.items()},
         data_name=data_name,
         policy="script-src " + " ".join(map(_hash, scripts)),
         scripts=[Markup(_safe(script)) for script in scripts],

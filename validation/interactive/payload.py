@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair
-from lumped.friction import LAWS
+from lumped.friction.registry import law_of
 from lumped.model.results import LOAD_NOISE
 from validation.interactive.results import SAMPLES, PageResults, Slices
 from validation.plots.stability import pretty
@@ -80,7 +80,7 @@ def _sweep(results: PageResults) -> dict[str, Any]:
         laws.append(
             {
                 "key": law,
-                "name": LAWS[law].title,
+                "name": law_of(results.pair.friction, law).title,
                 "note": results.notes[index],
                 **{name: _numbers(1e6 * one[variable].to_numpy()) for name, variable in micrometres.items()},
                 "load": _numbers(one["lowest_load"]),

@@ -17,6 +17,7 @@ from floquet.gear.regions import LabelledRegion, label_regions
 from floquet.gear.response import ResponseBranches
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
+from lumped.friction.table import TABLE
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
 from lumped.model.results import LOAD_NOISE
@@ -202,15 +203,16 @@ def _law_sweeps(
     """Response of every law that this pair admits, at the speeds of its own; why others are missing."""
     speeds = own["speed"].to_numpy()
     sweeps, missing = {pair.friction.law: _response(pair, own)}, {}
-    for done, law in enumerate(LAWS):
+    laws = [*LAWS, *([TABLE] if pair.friction.table is not None else [])]
+    for done, law in enumerate(laws):
         if law not in sweeps:
             try:
                 at = pair.with_({"friction.law": law})
                 sweeps[law] = _response(at, lumped.speed_sweep(at, speeds, samples_per_cycle=_SAMPLES))
             except (ParameterError, NumericalError) as error:
                 missing[law] = str(error)
-        tell((done + 1) / len(LAWS))
-    return {law: sweeps[law] for law in LAWS if law in sweeps}, missing
+        tell((done + 1) / len(laws))
+    return {law: sweeps[law] for law in laws if law in sweeps}, missing
 
 
 def _response(pair: GearPair, found: xr.Dataset) -> xr.Dataset:

@@ -28,7 +28,7 @@ from scipy.special import stdtrit
 from lumped.arguments import some_of
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
-from lumped.friction.registry import LAWS, file_name
+from lumped.friction.registry import file_name, laws_with_friction
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
@@ -127,7 +127,7 @@ def evaluate(
     NumericalError : the record does not fit the prediction in any phase, or carries no friction
     """
     pair = load_gear_pair(pair)
-    laws = [name for name in LAWS if name != "none"]
+    laws = list(laws_with_friction(pair.friction))
     advice = "Name mu, a constant coefficient, or a law to scale."
     wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)
     prediction = predict(measurement.at(pair), recurrence=measurement.spec.recurrence)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lumped import GearPair, Geometry
 from lumped.arguments import of_type
-from lumped.friction import LAWS
+from lumped.friction.registry import law_of
 from lumped.model.results import LOAD_NOISE, farthest_reversal
 from lumped.path_of_contact import contact_path, law_range_violations
 from lumped.quasi_static.contacts import contact_of
@@ -216,7 +216,7 @@ def film_regime(pair: GearPair) -> Flag:
     parameter = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 201))
     low, high = float(parameter.min()), float(parameter.max())
     boundary = pair.friction.thresholds[0]
-    fluid_law = LAWS[pair.friction.law].fluid_film
+    fluid_law = law_of(pair.friction).fluid_film
     state: State = "warning" if fluid_law and low < boundary else "ok"
     return flag(
         "film_parameter",

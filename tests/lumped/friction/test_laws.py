@@ -12,7 +12,7 @@ from lumped import load_gear_pair, preset_names
 from lumped.errors import LawRangeWarning, ParameterError
 from lumped.friction import LAWS, benedict_kelley, composite, coulomb, smoothed_coulomb, xu_kahraman
 from lumped.friction.base import graded_breaks
-from lumped.friction.registry import law_named
+from lumped.friction.registry import file_name
 from lumped.friction.xu_kahraman import B
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import contact_path, friction_path_function
@@ -104,7 +104,7 @@ NAMES = [
 
 @pytest.mark.parametrize(("name", "spelled"), NAMES)
 def test_a_law_is_found_as_tables_and_reports_call_it(nasa, name, spelled):
-    assert law_named(spelled) is LAWS[name]
+    assert LAWS[file_name(spelled)] is LAWS[name]
     assert nasa.with_(friction__law=spelled).friction.law == name
 
 

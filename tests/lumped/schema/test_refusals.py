@@ -54,6 +54,8 @@ def complete(nasa, shaft_tables):
             data[parents[0]][parents[-1]] = dict(RELIEF)
         if parents[:2] == ["mesh", "stiffness"]:
             data["mesh"]["stiffness"] = dict(STIFFNESS[leaf])
+        if parents == ["friction", "table"]:
+            data["friction"]["table"] = {"points": [1, 2, 3, 4], "coefficient": [0.05] * 4}
         if parents[1:] == ["mounting"]:
             data[parents[0]]["mounting"] = {}
         if parents[1:] == ["faults", "0"]:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from lumped import GearPair, ParameterError, geometry, load_gear_pair
+from lumped.fields.tables import read_columns
 from lumped.path_of_contact import pair_stiffness
-from lumped.stiffness.table import read_stiffness_table
+from lumped.stiffness.table import STIFFNESS
 
 
 def curve(xi, g):
@@ -123,12 +124,12 @@ def test_csv_beside_the_parameter_file(tmp_path):
 ])  # fmt: skip
 def test_wrong_files_are_refused(tmp_path, text, match):
     with pytest.raises(ParameterError, match=match):
-        read_stiffness_table(write(tmp_path, text).name, tmp_path)
+        read_columns(write(tmp_path, text).name, tmp_path, STIFFNESS)
 
 
 def test_missing_file_is_refused(tmp_path):
     with pytest.raises(ParameterError, match="CSV file that exists"):
-        read_stiffness_table("none.csv", tmp_path)
+        read_columns("none.csv", tmp_path, STIFFNESS)
 
 
 def test_wrong_numbers_are_refused():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped.friction.registry import law_named
+from lumped.friction.registry import law_of
 from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
 from multibody.contact import layout as kn
@@ -155,7 +155,7 @@ def lumped_forces(setup, motion, pair):
     q, v, touch = states[:, :6], states[:, 6:], mesh.contact
     load = mesh.stiffness * (q @ s.deflection - mesh.error)
     load += mesh.damping * (v @ s.deflection - mesh.error_rate)
-    friction, law = np.zeros(load.shape), law_named(pair.friction.law)
+    friction, law = np.zeros(load.shape), law_of(pair.friction)
     friction[touch] = load[touch] * law.signed(mesh.position[touch], contact_path(pair), pair.friction)
     force = np.outer(load.sum(0), s.normal) + (friction[..., None] * s.friction(mesh.position)).sum(0)
     force -= s.stiffness * q + s.damping * v

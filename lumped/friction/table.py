@@ -1,0 +1,137 @@
+"""A friction law of the user: a table of mu over the path of contact.
+
+Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numerical Analysis 17 (1980) 238-246.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, ValidationInfo, model_validator
+
+from lumped.errors import FieldProblem, refuse
+from lumped.fields.section import Section, Text
+from lumped.fields.tables import END_GAP, check_points, positions, spline, with_file
+from lumped.fields.units import Quantity
+from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.gear_geometry.geometry import Geometry
+from lumped.ranges import ValidityRange
+from lumped.typing import FloatArray
+
+#: Name and unit of the column in a file.
+COEFFICIENT = ("coefficient", "1")
+#: Name of the law in parameter files.
+TABLE = "table"
+#: Share by which speed and load may differ from the table's. Published laws go with a power of at most 0.3
+#: of them, so mu differs by at most 1.5 %.
+_NEAR = 0.05
+_MADE_AT = "the table holds at one operating point, +- 5 %"
+#: A point this close to P, as a share of the table's length, is at P.
+_AT_PITCH = 1e-9
+
+
+class FrictionTable(Section):
+    """The law 'table': friction coefficient of the user over the path of contact, at one operating point."""
+
+    name: Text = Field(
+        "table", min_length=1, max_length=60, description='its name, after "user\'s", in legends'
+    )
+    axis: Literal["position_mm", "roll_angle_deg"] = Field(
+        "position_mm", description="what 'points' are: distance from X [mm] or pinion roll angle [deg]"
+    )
+    points: tuple[float, ...] = Field(
+        min_length=4, max_length=10_000, description="increasing abscissae, in the unit of 'axis'"
+    )
+    coefficient: tuple[float, ...] = Field(
+        min_length=4,
+        max_length=10_000,
+        description="magnitude of mu at the points [1]; the sign follows from the direction of sliding",
+    )
+    speed: Annotated[float | None, Quantity("rpm", above=0, optional=True)] = Field(
+        None, description="pinion speed at which the table holds; default every speed"
+    )
+    unit_load: Annotated[float | None, Quantity("N/mm", above=0, optional=True)] = Field(
+        None, description="load per face width at which the table holds; default every load"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
+        """Replace ``file = "mu.csv"`` by its contents; a relative path is beside the parameter file."""
+        return with_file(data, info, COEFFICIENT)
+
+    @model_validator(mode="after")
+    def _checked(self) -> Self:
+        check_points(self.points, self.coefficient, "coefficient")
+        for value in self.coefficient:
+            if not 0.0 <= value <= 1.0:
+                action = "Give the magnitude; the sign follows from the direction of sliding."
+                raise refuse("coefficient", f"{value:g}", "0 to 1", action)
+        return self
+
+    def problems(self, g: Geometry) -> Iterator[FieldProblem]:
+        """A table that does not reach from A to D."""
+        x = positions(self.points, self.axis, g.base_radius_pinion)
+        gap = END_GAP * (g.L_XD - g.L_XA)
+        if x[0] > g.L_XA + gap or x[-1] < g.L_XD - gap:
+            value = f"{x[0] * 1e3:.4f} to {x[-1] * 1e3:.4f} mm from X"
+            allowed = f"at least {g.L_XA * 1e3:.4f} to {g.L_XD * 1e3:.4f} mm, A to D"
+            action = "Extend the table, or check its axis and unit."
+            yield FieldProblem("friction.table.points", value, allowed, action)
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The table as a friction law: the same at every speed and load, with a warning away from its own."""
+        return _law_of(self)
+
+    def positions(self, path: ContactPath) -> FloatArray:
+        """Its points as xi [m]."""
+        return positions(self.points, self.axis, path.base_radius_pinion)
+
+    def signed(self, xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
+        """Interpolated magnitude with the sign of the sliding; beyond the table its end values.
+
+        A point at P ends one curve and begins another: the magnitude of most laws has a corner there.
+        """
+        x, y, at = (
+            self.positions(path),
+            np.array(self.coefficient),
+            np.clip(xi, *self.positions(path)[[0, -1]]),
+        )
+        corner = [i for i in range(1, x.size - 1) if abs(x[i] - path.L_XP) <= _AT_PITCH * (x[-1] - x[0])]
+        magnitude = np.empty_like(at)
+        ends = [0, *corner, x.size - 1]
+        for first, last in itertools.pairwise(ends):
+            inside = (at >= x[first]) & (at <= x[last])
+            magnitude[inside] = spline(x[first : last + 1], y[first : last + 1], "monotone")(at[inside])
+        return np.asarray(magnitude * np.sign(xi - path.L_XP), dtype=np.float64)
+
+
+@lru_cache(maxsize=64)
+def _law_of(table: FrictionTable) -> FrictionLaw:
+    speed = None if table.speed is None else table.speed * 30.0 / np.pi
+    load = None if table.unit_load is None else table.unit_load * 1e-3
+    made_at = [("pinion_speed", "rpm", speed), ("unit_load", "N/mm", load)]
+    return FrictionLaw(
+        name=TABLE,
+        label=f"user's {table.name}",
+        signed=table.signed,
+        switches=lambda path, settings: [path.L_XP],
+        joints=lambda path: table.positions(path).tolist(),
+        ranges=tuple(
+            ValidityRange(
+                quantity,
+                unit,
+                value * (1.0 - _NEAR),
+                value * (1.0 + _NEAR),
+                _MADE_AT,
+            )
+            for quantity, unit, value in made_at
+            if value is not None
+        ),
+        varies=False,
+    )
