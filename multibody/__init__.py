@@ -3,7 +3,7 @@
 from multibody.run.effects import EFFECTS
 from multibody.run.flow_map import FlowMap, monodromy, steady_state
 from multibody.run.simulation import simulate, speed_sweep
-from multibody.study.balance import PowerBalance, power_balance
+from multibody.study.balance import PowerBalance, motion_balance, power_balance
 from multibody.study.causes import attribution
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "PowerBalance",
     "attribution",
     "monodromy",
+    "motion_balance",
     "power_balance",
     "simulate",
     "speed_sweep",

@@ -10,18 +10,24 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.solution import Initial
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 from multibody.contact import layout as kn
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 #: A step over less than the first share of the mesh cycle leads across an event. So does one over less than
@@ -87,6 +93,22 @@ def power_balance(
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     return balance_of(prepare(pair, fidelity, initial, effects, rtol, friction_velocity), cycles)
+
+
+def motion_balance(pair: GearPair, motion: xr.Dataset, rtol: float = 1e-8) -> PowerBalance:
+    """Power balance of a periodic motion over one mesh cycle, by a run from its first state.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    motion : on springs, of ``multibody.steady_state`` or ``simulate``, from the start of a mesh cycle
+    rtol : relative tolerance of the run
+    """
+    start, about = motion.isel(time=0), motion.attrs
+    state = np.array([float(start[name]) for name in LTVSystem.of(pair, "full").state_names])
+    effects = [name for name in about["effects"].split(", ") if name]
+    setup = prepare(pair, about["fidelity"], state, effects, rtol, float(about["friction_velocity"]))
+    return balance_of(setup.with_torques(setup.machine.torque_pinion, float(about["brake_torque"])), 1)
 
 
 def balance_of(setup: Setup, cycles: int) -> PowerBalance:

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+import xarray as xr
 
 import multibody
 from floquet.gear.axes import operating_rpm
@@ -25,8 +26,8 @@ from lumped.typing import FloatArray
 from multibody.contact.machine import machine
 from tests.evidence.check import Check, rows
 from validation.cross_check.agreement import FIDELITIES, Fidelity
-from validation.cross_check.metrics import mesh_orders
-from validation.cross_check.power_balance import losses, quadrature
+from validation.cross_check.conservation import losses, quadrature
+from validation.prediction.motion import Motion, Prediction
 
 _CYCLES = 2
 _SAMPLES = 512
@@ -34,18 +35,18 @@ _SAMPLES = 512
 
 def mechanics(pair: GearPair) -> Iterator[Check]:
     """What the report works out from a motion, and what a motion must fulfil whatever the parameters are."""
-    yield from (_orders(), _speeds(pair), _losses(pair), _forces(pair), _averaged(pair), _sharing())
+    yield from (_orders(pair), _speeds(pair), _losses(pair), _forces(pair), _averaged(pair), _sharing())
     yield from _lumped_identities(pair)
     for fidelity in FIDELITIES:
         yield _energy(pair, fidelity)
 
 
-def _orders() -> Check:
+def _orders(pair: GearPair) -> Check:
     phase = 2.0 * np.pi * np.arange(64) / 64
-    found = mesh_orders(3.0 + 2.0 * np.cos(phase + 0.4) + 0.5 * np.sin(3.0 * phase), 64, 4)
-    both = list(zip(found.amplitude + 1.0, (4.0, 3.0, 1.0, 1.5, 1.0), strict=True))
-    exact = "those of a sum of cosines"
-    return rows("amplitudes by mesh order", exact, 1e-12, [*both, (float(found.phase[1]), 0.4)])
+    values = 3.0 + 2.0 * np.cos(phase + 0.4) + 0.5 * np.sin(3.0 * phase)
+    motion = Prediction(pair, Motion.LINEAR, xr.Dataset({"dte": ("time", values)}), 0.0, True, 1, 1.0)
+    both = list(zip(motion.orders_of("dte")[:4] + 1.0, (3.0, 1.0, 1.5, 1.0), strict=True))
+    return rows("amplitudes by mesh order", "those of a sum of cosines", 1e-12, both)
 
 
 def _speeds(pair: GearPair) -> Check:

@@ -137,7 +137,8 @@ def _tables(check: CrossCheck) -> list[Table]:
     if check.variant is not None:
         g = check.variant.pair
         title = f"{name}: asymmetric variant, {g.pinion.teeth}/{g.gear.teeth} teeth, four unlike bearings"
-        judged.append((title, check.variant.worst_of_each))
+        worst = max(check.variant.conservation, key=lambda one: one.value / one.limit)
+        judged.append((title, (check.variant.worst("linear").judgement, worst)))
     for title, checks in judged:
         shown = table(title, "check", ">value", ">limit", "verdict")
         for one in checks:

@@ -13,14 +13,14 @@ from lumped.errors import NumericalError
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.results import VARIABLES
 from lumped.typing import BoolArray, FloatArray
-from validation.cross_check import metrics
-from validation.cross_check.metrics import SpragueGeers
 from validation.cross_check.verdict import SAME_EQUATIONS, Judgement
 
 Fidelity = Literal["linear", "exact"]
 
 QUANTITIES: tuple[str, ...] = tuple(SAME_EQUATIONS)
 FIDELITIES: tuple[Fidelity, ...] = ("linear", "exact")
+#: A history whose variation is below this share of its size is constant up to rounding.
+_CONSTANT = 1e-13
 #: A sample this close to a switch, in mesh cycles, may lie on either side of the jump by rounding alone.
 _SWITCH_MARGIN = 1e-6
 #: Tooth forces jump where teeth enter and leave and where sliding reverses. Finite motions move these places,
@@ -43,11 +43,10 @@ class Agreement:
     ----------
     quantity, unit, long_name : what is compared; at fidelity "exact" of tooth forces the sum over the pairs
     fidelity : "linear" or "exact"
-    difference, rms, mean_shift : difference over ``scale``: largest, root mean square, of the means (signed)
+    difference, rms : difference over ``scale``: largest, root mean square
     scale : peak to peak of the lumped history; of x at fidelity "exact" that of the transmission error, where
         it is larger, in ``unit``
     peak_to_peak, peak_to_peak_multibody : of both histories, in ``unit``
-    sprague_geers : of the oscillations about the means; None where the lumped history does not vary
     limit, reason : largest ``difference`` that passes, and why
     """
 
@@ -57,11 +56,9 @@ class Agreement:
     fidelity: Fidelity
     difference: float
     rms: float
-    mean_shift: float
     scale: float
     peak_to_peak: float
     peak_to_peak_multibody: float
-    sprague_geers: SpragueGeers | None
     limit: float
     reason: str
 
@@ -75,6 +72,11 @@ class Agreement:
         """The difference against its limit."""
         kind = "same equations" if self.fidelity == "linear" else "exact"
         return Judgement(f"{kind}: {self.quantity}", self.difference, self.limit, self.reason)
+
+
+def is_constant(values: FloatArray) -> bool:
+    """Whether a history varies by no more than rounding: measures relative to its span then mean nothing."""
+    return bool(np.ptp(values) <= _CONSTANT * max(float(np.abs(values).max()), np.finfo(float).tiny))
 
 
 def off_switch_samples(pair: GearPair, time: FloatArray, margin: float = _SWITCH_MARGIN) -> BoolArray:
@@ -124,12 +126,10 @@ def agreement(
             f"{quantity} is not finite at fidelity '{fidelity}'; lower the torque or the speed."
         )
     _, unit, long_name = VARIABLES[quantity]
-    scale, oscillation = float(np.ptp(b)), None
-    if metrics.is_constant(b):
+    scale = float(np.ptp(b))
+    if is_constant(b):
         companion = history(reference, _COMPANION.get(quantity, quantity))
         scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
-    elif not metrics.is_constant(a):
-        oscillation = metrics.sprague_geers(a - a.mean(), b - b.mean())
     if exact and quantity in _ALONG_LINE:
         scale = max(float(np.ptp(b)), float(np.ptp(history(reference, "dte"))))
     return Agreement(
@@ -139,11 +139,9 @@ def agreement(
         fidelity=fidelity,
         difference=float(np.abs(a - b).max()) / scale,
         rms=float(np.sqrt(np.mean((a - b) ** 2))) / scale,
-        mean_shift=float(a.mean() - b.mean()) / scale,
         scale=scale,
         peak_to_peak=float(np.ptp(b)),
         peak_to_peak_multibody=float(np.ptp(a)),
-        sprague_geers=oscillation,
         limit=limit[0],
         reason=limit[1],
     )

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
 import xarray as xr
 
 import lumped
@@ -17,15 +16,12 @@ from floquet.gear.orbit import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
 from lumped.errors import SpurcheckError, refuse
-from lumped.model.results import VARIABLES
 from lumped.model.steady import UNSTABLE, periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import Progress
 from multibody.contact.machine import machine
-from validation.cross_check import metrics
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
 from validation.cross_check.conservation import conservation
-from validation.cross_check.metrics import MeshOrders
 from validation.cross_check.motions import (
     CONTACT_LOSS,
     integration_tolerances,
@@ -38,30 +34,11 @@ from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit
 
 #: Cycles at the end of a run that are compared where the exact model has no periodic motion.
 _COMPARED_CYCLES = 4
-_ORDERS = 10
 #: Samples in a swing of the fastest mode, at least. Half of them tell the error of a quadrature: at six in a
 #: swing Hermite's rule errs by (2 pi/6)^4/720, 0.2 %, and by a 16th of that at twelve.
 _PER_SWING = 12
 #: Cycles of the asymmetric variant, and samples in each.
 _VARIANT_CYCLES, _VARIANT_SAMPLES = 2, 64
-
-
-@dataclass(frozen=True, eq=False)
-class OrderComparison:
-    """Mesh orders of one quantity in both models, the multibody model's at fidelity "exact".
-
-    Of tooth forces those of the sum over the pairs in contact.
-    """
-
-    quantity: str
-    unit: str
-    lumped: MeshOrders
-    multibody: MeshOrders
-
-    @property
-    def phase_difference(self) -> FloatArray:
-        """Phase of multibody - lumped per order [rad]."""
-        return metrics.phase_difference(self.multibody.phase, self.lumped.phase)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,14 +49,9 @@ class CrossCheck:
     ----------
     pair : the gear pair
     agreements : one per quantity and fidelity
-    orders : mesh orders of both models, per quantity; empty without "exact"
     lumped : dataset of the lumped model
     multibody : fidelity -> dataset of the multibody model, at the same times
     periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
-    cycles, compared_cycles : numbers of mesh cycles simulated, and of those at the end compared for "exact"
-    rtol : relative tolerance of the integration of "linear" and "exact"
-    unsettled : relative mismatch of the exact motion after a mesh cycle; of a run, the change of the
-        transmission error over its last two cycles, over its peak to peak
     conservation : conservation laws, checked on both models
     powers : model -> power of ``power_balance.POWERS`` and "driving" -> mean over the mesh cycle [W]
     orbit : the lumped motion with loss of contact that is compared; None where teeth push all the time, or
@@ -91,14 +63,9 @@ class CrossCheck:
 
     pair: GearPair
     agreements: tuple[Agreement, ...]
-    orders: tuple[OrderComparison, ...]
     lumped: xr.Dataset
     multibody: Mapping[Fidelity, xr.Dataset]
     periodic: bool
-    cycles: int
-    compared_cycles: int
-    rtol: Mapping[str, float]
-    unsettled: float
     conservation: tuple[Judgement, ...]
     powers: Mapping[str, Mapping[str, float]]
     orbit: GearOrbit | None = None
@@ -126,14 +93,6 @@ class CrossCheck:
         if not (self.periodic and self.of("exact")):
             return Verdict.NOT_CHECKED
         return Verdict.AGREES if all(a.within for a in self.of("exact")) else Verdict.DIFFERS
-
-    @property
-    def worst_of_each(self) -> tuple[Judgement, ...]:
-        """Of each kind of check (same equations, conservation) the one that uses most of its limit."""
-        kinds: dict[str, list[Judgement]] = {}
-        for judgement in self.judgements:
-            kinds.setdefault(judgement.check.split(":")[0], []).append(judgement)
-        return tuple(max(found, key=lambda j: j.value / j.limit) for found in kinds.values())
 
     def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
         """Agreements at one fidelity."""
@@ -283,41 +242,14 @@ def _compared(
         periodic=exact is not None,
         contact_loss=orbit is not None,
     )
-    unsettled = 0.0
-    orders: list[OrderComparison] = []
-    if "exact" in results:
-        run = results["exact"]
-        unsettled = _unsettled(run, samples) if exact is None else float(exact.attrs["closure"])
-        orders = [_orders(name, run.isel(time=end), reference.isel(time=end), samples) for name in QUANTITIES]
     return CrossCheck(
         pair=pair,
         agreements=tuple(agreements),
-        orders=tuple(orders),
         lumped=reference.isel(time=slice(None, None, every)),
         multibody={f: run.isel(time=slice(None, None, every)) for f, run in results.items()},
         periodic=exact is not None,
-        cycles=cycles,
-        compared_cycles=compared,
-        rtol=rtol,
-        unsettled=unsettled,
         conservation=checks,
         powers=powers,
         orbit=orbit,
         pulling=pulling,
     )
-
-
-def _orders(quantity: str, candidate: xr.Dataset, reference: xr.Dataset, samples: int) -> OrderComparison:
-    def analysed(result: xr.Dataset) -> MeshOrders:
-        values = result[quantity].to_numpy()
-        total = values.sum(axis=0) if values.ndim == 2 else values
-        # The grid ends on the last cycle's end, which is the first sample of a cycle that is not there.
-        return metrics.mesh_orders(total[:-1], samples, _ORDERS)
-
-    return OrderComparison(quantity, VARIABLES[quantity][1], analysed(reference), analysed(candidate))
-
-
-def _unsettled(result: xr.Dataset, samples: int) -> float:
-    dte = result["dte"].to_numpy()[:-1]
-    last, before = dte[-samples:], dte[-2 * samples : -samples]
-    return float(np.abs(last - before).max()) / max(float(np.ptp(last)), np.finfo(float).tiny)

@@ -4,7 +4,7 @@ No check compares a variable with itself: levers, bodies and bearings are those 
 out from the parameter file, also where the lumped motion is checked. No limit depends on how far the models
 are apart, so each check can fail whatever the exact motion is.
 
-Sources: docs/theory/multibody.md, "Conservation".
+Sources: the power balance of rigid bodies; docs/theory/multibody.md, "Conservation".
 """
 
 from __future__ import annotations
@@ -15,27 +15,34 @@ from typing import cast
 import numpy as np
 import xarray as xr
 
+import multibody
 from lumped import GearPair
 from lumped.model.periodic_system import LTVSystem
-from lumped.model.steady import periodic_solution
+from lumped.model.propagation import fastest_frequency
+from lumped.model.results import response
+from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.quasi_static.contacts import contact_of
 from lumped.typing import FloatArray
 from multibody.contact import layout as kn
 from multibody.contact.machine import Machine
-from multibody.run.setup import prepare
-from multibody.study.balance import balance_of
 from validation.cross_check.agreement import Fidelity
-from validation.cross_check.power_balance import (
-    POWERS,
-    lumped_powers,
-    multibody_powers,
-    quadrature,
-    residual,
-)
 from validation.cross_check.verdict import Judgement
 
 Powers = Mapping[str, Mapping[str, float]]
 
+#: Power -> what it is in words. Their sum is the driving power.
+POWERS: Mapping[str, str] = {
+    "braking": "taken by the brake",
+    "friction": "sliding friction of the teeth",
+    "bearings": "damping of the bearings",
+    "mesh_damping": "damping of the teeth",
+    "mesh_stiffness": "work of the change of stiffness and profile along the path",
+}
+#: Gauss's rule of a panel.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+#: Panels of the quadrature in a mesh cycle, at least, and largest angle of the fastest vibration in a panel
+#: [rad]: Gauss's rule with four nodes then leaves some 1e-12 of a power, which swings twice as fast.
+_PANELS, _PANEL_ANGLE = 160, 0.7
 #: Rounding of a product of a coefficient and a velocity over the largest one.
 _ROUNDING = 1e-9
 #: Laws that several checks of one model stand for.
@@ -82,8 +89,9 @@ def conservation(
         histories = _friction_histories(own.values)  # on both sides of every jump
     for fidelity in runs:
         if periodic if fidelity == "exact" else not contact_loss:
-            start, rtol = motions[fidelity].isel(time=0), 1e-8 if fidelity == "exact" else 1e-10
-            powers[fidelity] = _run_again(pair, fidelity, start, system.state_names, rtol, m.period)
+            rtol = 1e-8 if fidelity == "exact" else 1e-10
+            balance = multibody.motion_balance(pair, motions[fidelity], rtol)
+            powers[fidelity] = multibody_powers(balance, m.period)
     variation = tuple(float(np.abs(np.diff(h, append=h[:1])).sum()) for h in histories)
     found = []
     for name, motion in motions.items():
@@ -110,6 +118,62 @@ def conservation(
     return tuple(found), powers
 
 
+def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
+    """Times in the mesh cycle and their weights, which sum to one; in no panel a law is two polynomials."""
+    angle = fastest_frequency(system) * system.period
+    even = np.linspace(0.0, system.period, max(_PANELS, int(np.ceil(angle / _PANEL_ANGLE))) + 1)
+    marks = np.union1d(system.cycle.breaks, even)
+    marks = marks[np.diff(marks, prepend=-np.inf) > 1e-9 * system.period]
+    marks[-1] = system.period
+    width = np.diff(marks)[:, None]
+    times = (marks[:-1, None] + 0.5 * width * (1.0 + _NODES)).ravel()
+    return times, (0.5 * width * _WEIGHTS).ravel() / system.period
+
+
+def lumped_powers(motion: PeriodicSolution, machine: Machine, weights: FloatArray) -> dict[str, float]:
+    """Mean powers of the lumped periodic motion at the times of ``quadrature``: "driving" and ``POWERS`` [W].
+
+    ``machine`` has the pair's numbers as the multibody model derives them.
+    """
+    p = machine.parameters
+    found = losses(motion.system, machine, motion.time, motion.states, weights)
+    return found | {
+        "driving": motion.pinion_torque * float(p[kn.OMEGA_P] + weights @ motion.states[:, 6]),
+        "braking": motion.brake_torque * float(p[kn.OMEGA_G] + weights @ motion.states[:, 7]),
+    }
+
+
+def losses(
+    system: LTVSystem, machine: Machine, times: FloatArray, states: FloatArray, weights: FloatArray
+) -> dict[str, float]:
+    """Mean powers of what a lumped motion loses [W], from (k,) times, (k, 12) states and (k,) weights."""
+    p = machine.parameters
+    values, pairs, rates = response(system, times, states), system.cycle.sample(times), states[:, 6:]
+    place = values["position"]
+    sliding = (p[kn.OMEGA_P] + rates[:, 0]) * place
+    sliding -= (p[kn.OMEGA_G] + rates[:, 1]) * (p[kn.L_XY] - place) + rates[:, 4] - rates[:, 5]
+    closing = p[kn.RADIUS_P] * rates[:, 0] - p[kn.RADIUS_G] * rates[:, 1] + rates[:, 2] - rates[:, 3]
+    damping = np.sum(pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
+    bearings = machine.bearing_damping.T.ravel()  # x_p, x_g, y_p, y_g
+    return {
+        "friction": float(weights @ np.sum(values["friction_force"] * sliding, axis=0)),
+        "bearings": float(weights @ (rates[:, 2:] ** 2 @ bearings)),
+        "mesh_damping": float(weights @ damping),
+        "mesh_stiffness": float(weights @ (values["normal_load"].sum(axis=0) * closing - damping)),
+    }
+
+
+def multibody_powers(balance: multibody.PowerBalance, period: float) -> dict[str, float]:
+    """The same of a multibody run over one mesh cycle; what it stored counts as driving power less [W]."""
+    found = {name: float(getattr(balance, name)) / period for name in POWERS}
+    return found | {"driving": (balance.driving - balance.kinetic) / period}
+
+
+def residual(powers: Mapping[str, float]) -> float:
+    """Driving power that is not accounted for, over the driving power."""
+    return abs(powers["driving"] - sum(powers[name] for name in POWERS)) / abs(powers["driving"])
+
+
 def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
     """Of each law and model the check that uses most of its limit, for a short table."""
     groups: dict[tuple[str, str], Judgement] = {}
@@ -122,33 +186,10 @@ def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
     return tuple(groups.values())
 
 
-def fed_back(reference: xr.Dataset) -> float:
-    """Share of the friction power that vibration feeds back, because it reverses the sliding.
-
-    The lumped model keeps the sign of friction that belongs to the nominal sliding. Where vibration reverses
-    the sliding it feeds power in: a limit of the model's validity, not a wrong sign.
-    """
-    power = reference["friction_power"].to_numpy()
-    size = float(np.abs(power).sum())
-    return float(power[power > 0.0].sum()) / size if size > 0.0 else 0.0
-
-
 def _friction_histories(motion: Mapping[str, FloatArray] | xr.Dataset) -> tuple[FloatArray, FloatArray]:
     """Moment of friction about the pinion, and its sum over the pairs."""
     force, place = (np.asarray(motion[name]) for name in ("friction_force", "position"))
     return (force * place).sum(axis=0), force.sum(axis=0)
-
-
-def _run_again(
-    pair: GearPair, fidelity: Fidelity, start: xr.Dataset, states: Sequence[str], rtol: float, period: float
-) -> dict[str, float]:
-    """Mean powers of a multibody motion, from a run over one mesh cycle from one of its states."""
-    state = np.array([float(start[name]) for name in states])
-    effects = [name for name in str(start.attrs["effects"]).split(", ") if name]
-    velocity = float(start.attrs["friction_velocity"])
-    setup = prepare(pair, fidelity, state, effects, rtol, velocity)
-    setup = setup.with_torques(setup.machine.torque_pinion, float(start.attrs["brake_torque"]))
-    return multibody_powers(balance_of(setup, 1), period)
 
 
 def _friction_takes_power(m: Machine, name: str, motion: xr.Dataset) -> Judgement:

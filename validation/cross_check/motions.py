@@ -12,14 +12,14 @@ import xarray as xr
 
 import lumped
 import multibody
-from floquet.gear.orbit import GearOrbit, long_run, periodic_orbit
+from floquet.gear.orbit import GearOrbit
 from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.model.results import LOAD_NOISE
 from lumped.typing import FloatArray
-from validation.cross_check import metrics
-from validation.cross_check.agreement import Fidelity
+from validation.cross_check.agreement import Fidelity, is_constant
 from validation.cross_check.verdict import SAME_EQUATIONS
+from validation.prediction.motion import unilateral_motion
 
 #: Tolerances of the integrations: far below the limits they are used to check, where a motion has an ordinary
 #: size: the smallest limit over the deflection, as a share of that of the transmission error.
@@ -50,10 +50,7 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
     if float(motion["normal_load"].min()) >= least:
         return None, ""
     try:
-        orbit = periodic_orbit(pair)
-        if not orbit.stable:
-            settled = long_run(pair).orbit
-            orbit = orbit if settled is None else GearOrbit(pair, settled)
+        orbit, _ = unilateral_motion(pair)
     except NumericalError:
         return None, f"{_PULL} no periodic motion with contact loss was found. {_ADVICE}"
     if not orbit.stable or orbit.n > 1:
@@ -78,7 +75,7 @@ def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]
     limits = [
         SAME_EQUATIONS[name] * float(np.ptp(values[name]))
         for name in ("dte", "x_p", "x_g", "y_p", "y_g")
-        if not metrics.is_constant(values[name])
+        if not is_constant(values[name])
     ]
     share = min(limits, default=np.inf) / (SAME_EQUATIONS["dte"] * max(deflection, np.finfo(float).tiny))
     tighter = float(np.clip(share / _ORDINARY, _TIGHTER, 1.0))

@@ -9,6 +9,7 @@ Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Predictio
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
@@ -194,19 +195,30 @@ def predicted(pair: GearPair) -> Prediction:
         linear = None
     if linear is not None and float(linear["normal_load"].min()) >= _PULLS * force:
         return _of_cycle(pair, linear)
-    try:
-        orbit, motion = floquet.periodic_orbit(pair), Motion.UNILATERAL
-    except NumericalError:
-        orbit = None
-    if orbit is None or not orbit.stable:
-        settled, motion = floquet.long_run(pair), Motion.SETTLED
-        if settled.orbit is None:
-            raise NumericalError(
-                f"The motion with unilateral contact does not repeat: {settled.kind}. Read its branches over "
-                "speed: spurcheck response."
-            )
-        orbit = GearOrbit(pair, settled.orbit)
-    return _of_orbit(orbit, motion)
+    return _of_orbit(*unilateral_motion(pair))
+
+
+def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:
+    """Return the motion with unilateral contact that a run from the linear motion comes to, and which it is.
+
+    It is the one that Newton's method finds from the linear motion, if that is stable; else the one to which
+    a run settles.
+
+    Raises
+    ------
+    NumericalError : the motion does not repeat, or does not stay bounded
+    """
+    with suppress(NumericalError):
+        orbit = floquet.periodic_orbit(pair)
+        if orbit.stable:
+            return orbit, Motion.UNILATERAL
+    settled = floquet.long_run(pair)
+    if settled.orbit is None:
+        raise NumericalError(
+            f"The motion with unilateral contact does not repeat: {settled.kind}. Read its branches over "
+            "speed: spurcheck response."
+        )
+    return GearOrbit(pair, settled.orbit), Motion.SETTLED
 
 
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:

@@ -18,7 +18,6 @@ from lumped.model.averaged import modes
 from lumped.path_of_contact import friction_profile, iso_comparison
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.typing import FloatArray
-from validation.cross_check.metrics import mesh_orders
 from validation.prediction.motion import predicted
 
 #: Times per mesh cycle.
@@ -134,7 +133,7 @@ def _report(pair: GearPair) -> dict[str, FloatArray]:
         "static load": np.array([prediction.static_force]),
         **{name: np.array([value]) for name, value in prediction.numbers.items()},
         "loss factor": np.array([ohlendorf_of(pair)]),
-        "mesh orders": mesh_orders(motion["dte"].to_numpy(), SAMPLES, 6).amplitude,
+        "mesh orders": prediction.orders_of("dte"),
         "natural frequencies": np.array([mode.natural_frequency for mode in modes(pair)]),
         "resonant speeds": np.array([mode.resonant_speed for mode in modes(pair)]),
     }

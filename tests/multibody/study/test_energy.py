@@ -85,3 +85,13 @@ def test_nominal_friction_would_feed_energy_in():
     """With the nominal sign, as in the lumped model, the same start breaks the rule."""
     run = multibody.simulate(PAIR.with_(operating__pinion_speed=1500), 4, effects={"sliding_velocity": False})
     assert float(run["friction_power"].max()) > 1.0
+
+
+def test_the_balance_of_a_periodic_motion_has_its_own_brake_torque_and_stores_nothing():
+    motion, g = multibody.steady_state(PAIR), PAIR.geometry
+    found = multibody.motion_balance(PAIR, motion, 1e-10)
+    # A motion that closes to 1e-7 has the nominal mean speed; the torques of both models differ by more.
+    assert found.braking == pytest.approx(
+        motion.attrs["brake_torque"] * g.omega_gear * g.mesh_period, rel=1e-9
+    )
+    assert abs(found.kinetic) < 1e-6 * found.friction

@@ -29,8 +29,6 @@ def test_every_quantity_is_judged_at_both_fidelities(check):
 
 def test_the_exact_model_is_compared_in_a_periodic_motion_of_its_own(check):
     assert check.periodic
-    assert check.compared_cycles == 1
-    assert check.unsettled < 1e-7
     lumped_torque, own = (d.attrs["brake_torque"] for d in (check.lumped, check.multibody["exact"]))
     assert 1e-8 < abs(own / lumped_torque - 1.0) < 1e-5  # its friction takes another power
 
@@ -61,7 +59,6 @@ def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run_and_not_judg
     monkeypatch.setattr(multibody, "steady_state", fail)
     found = crosscheck(pair, cycles=12, samples_per_cycle=32, variant=False)
     assert not found.periodic
-    assert found.compared_cycles == 4
     assert found.verdict is Verdict.NOT_CHECKED
     own = found.multibody["exact"].attrs["brake_torque"]
     assert own == pytest.approx(found.lumped.attrs["brake_torque"], rel=1e-12)
@@ -79,7 +76,6 @@ def test_an_unstable_motion_is_not_judged_because_no_pair_stays_in_it(pair, monk
 def test_without_the_exact_model_nothing_is_checked(pair):
     found = crosscheck(pair, cycles=6, samples_per_cycle=32, fidelities=("linear",), variant=False)
     assert found.failures == ()
-    assert found.orders == ()
     assert found.verdict is Verdict.NOT_CHECKED
 
 
@@ -96,8 +92,6 @@ def test_a_wrong_sign_of_the_gear_displacement_fails(pair, monkeypatch):
     by_name = {(a.quantity, a.fidelity): a for a in found.agreements}
     assert by_name["dte", "linear"].within
     assert not by_name["x_g", "linear"].within
-    # x_g oscillates about its mean: reversed it is exactly out of phase.
-    assert by_name["x_g", "linear"].sprague_geers.phase == pytest.approx(1.0, abs=1e-6)
 
 
 def test_pairs_without_friction_agree_though_nothing_moves_off_the_line_of_action(pair):
@@ -105,7 +99,6 @@ def test_pairs_without_friction_agree_though_nothing_moves_off_the_line_of_actio
     for a in found.agreements:
         if a.quantity in ("y_p", "y_g", "friction_force"):
             assert a.within
-            assert a.sprague_geers is None
 
 
 def test_samples_on_switches_are_left_out_also_after_many_cycles(pair):

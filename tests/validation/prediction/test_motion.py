@@ -94,3 +94,11 @@ def test_a_motion_that_newton_does_not_find_is_the_one_a_run_settles_to():
         start = floquet.periodic_orbit(pair.with_({"operating.pinion_speed": float(rpm)}), start=start)
     low, high = start.dte_range
     assert found.peak_to_peak == pytest.approx(high - low, rel=1e-6)
+
+
+def test_an_unstable_motion_of_one_cycle_is_left_for_the_one_a_run_settles_to():
+    changes = {"operating.pinion_speed": 4550.0, "mesh.damping_ratio": 0.02}
+    pair = lumped.load_gear_pair("nasa_art_25_31").with_(changes)
+    assert not floquet.periodic_orbit(pair).stable
+    found = predicted(pair)
+    assert (found.motion, found.mesh_cycles, found.stable) == (Motion.SETTLED, 2, True)

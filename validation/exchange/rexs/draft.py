@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumped.errors import FieldProblem, shown
 from lumped.fields.units import to_file
@@ -19,8 +19,7 @@ ASSUMED = "assumed"
 _SMALLEST, _LARGEST = 1e-30, 1e30
 
 
-@dataclass(frozen=True)
-class Reading:
+class Reading(NamedTuple):
     """One number of the file in SI, and where it stands."""
 
     si: float
@@ -52,38 +51,36 @@ class Draft:
 
     def number(self, component: Component, attribute: str) -> Reading | None:
         """Read a number; what is no finite number becomes a problem."""
-        expected, where = ATTRIBUTES[attribute], self.where(component, attribute)
-        found = component.attributes.get(attribute)
-        if found is None or found.value is None:
+        where, request = self.where(component, attribute), component.attributes.get(attribute)
+        if request is None or request.value is None:
             return None
         try:
-            value = math.nan if isinstance(found.value, bool) else float(found.value)
-            if not (value == 0.0 or _SMALLEST < abs(value) < _LARGEST) or "_" in str(found.value):
-                raise ValueError
+            value = math.nan if isinstance(request.value, bool) else float(request.value)
         except (ValueError, OverflowError):
-            text = shown(str(found.value))
+            value = math.nan
+        if not (value == 0.0 or _SMALLEST < abs(value) < _LARGEST) or "_" in str(request.value):
+            text = shown(str(request.value))
             self.problems.append(FieldProblem(where, text, "a finite number of a gear", "Correct the file."))
             return None
-        return Reading(si_from_rexs(value, found.unit, expected, where), where)
+        return Reading(si_from_rexs(value, request.unit, ATTRIBUTES[attribute], where), where)
 
-    def first(self, places: Iterable[Component], attribute: str) -> Reading | None:
+    def first(self, places: Sequence[Component], attribute: str) -> Reading | None:
         """Read the first number that some components have, or else have in the first load case."""
-        places = list(places)
         for component in places:
-            if (found := self.number(component, attribute)) is not None:
-                return found
+            if (result := self.number(component, attribute)) is not None:
+                return result
         for number, parts in self.model.load_cases[:1]:
             of_case = {c.id: c.attributes for c in parts}
             for c in places:  # the JSON form leaves types out of load cases
                 own = Component(c.id, c.type, c.name, of_case.get(c.id, {}))
-                if (found := self.number(own, attribute)) is not None:
-                    return Reading(found.si, f"{found.where} (load case {number})")
+                if (result := self.number(own, attribute)) is not None:
+                    return Reading(result.si, f"{result.where} (load case {number})")
         return None
 
     def text(self, component: Component, attribute: str) -> str | None:
         """Read a text, an enumerated value or a flag."""
-        found = component.attributes.get(attribute)
-        return None if found is None or found.value is None else str(found.value)
+        result = component.attributes.get(attribute)
+        return None if result is None or result.value is None else str(result.value)
 
     def take(self, path: str, reading: Reading | None, remark: str = "") -> None:
         """Make a number the value of a field."""
@@ -94,6 +91,14 @@ class Draft:
         """Make attributes of a component the values of fields of a section: field -> attribute."""
         for key, attribute in attributes.items():
             self.take(f"{section}.{key}", self.number(component, attribute))
+
+    def take_first(self, path: str, readings: Iterable[Reading | None]) -> None:
+        """Take what spurcheck has once for both gears; where they differ that of the pinion, with a note."""
+        present = [r for r in readings if r is not None]
+        self.take(path, present[0] if present else None)
+        if any(not math.isclose(r.si, present[0].si, rel_tol=1e-9) for r in present[1:]):
+            values = ", ".join(f"{r.si:.6g} in {r.where}" for r in present[1:])
+            self.note(f"{path}: the first value is used for both gears, the file also has {values}")
 
     def put(self, path: str, value: Any, where: str) -> None:
         """Make anything the value of a field."""
@@ -122,8 +127,3 @@ class Draft:
                 self.problems.append(FieldProblem(other.where, f"{other.si:.9g} (SI)", allowed, why))
                 return None
         return present[0] if present else None
-
-    def missing(self, component: Component, attribute: str) -> None:
-        """Add the problem that a value which cannot be assumed is not in the file."""
-        action = "Nothing can stand in for it: complete the model in the program that exported it."
-        self.problems.append(FieldProblem(self.where(component, attribute), "not given", "a value", action))

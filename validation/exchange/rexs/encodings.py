@@ -20,12 +20,11 @@ from validation.exchange.rexs.model import Document, RexsModel, broken, model_of
 #: have a few megabytes.
 MAX_BYTES = 32_000_000
 #: The schema of XML nests ten elements; more is no REXS.
-_MAX_DEPTH = 32
-_MAX_ELEMENTS = 1_000_000
-_MAX_MEMBERS = 10_000
+_MAX_DEPTH, _MAX_ELEMENTS = 32, 1_000_000
 _BLOCK = 65536
 _SKIPPED = ET.Element("skipped")
 _MARK = b"\xef\xbb\xbf"
+#: What zipfile raises of a damaged archive: it trusts the offsets of the directory, so a seek may fail.
 _DAMAGED = (zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, ValueError, RuntimeError)
 #: Suffix of a file to write -> its form.
 FORMS = {".rexs": "xml", ".rexs.xml": "xml", ".rexsj": "json", ".rexs.json": "json"}
@@ -57,28 +56,19 @@ def _unzipped(data: bytes, file: str) -> bytes:
     """Return the one model of an archive; nothing is ever written to disk."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            members = [m for m in archive.infolist() if not m.is_dir()]
-            if len(members) > _MAX_MEMBERS:
-                raise broken(file, f"the archive has more than {_MAX_MEMBERS} members")
-            names = [PurePosixPath(m.filename).name.lower() for m in members]
-            for suffixes in ((".rexs", ".rexsj", ".rexs.xml", ".rexs.json"), (".xml", ".json")):
-                found = [
-                    m
-                    for m, name in zip(members, names, strict=True)
-                    if name.endswith(suffixes) and not name.startswith("._")
-                ]
-                if found:
+            members = [m for m in archive.infolist() if not PurePosixPath(m.filename).name.startswith("._")]
+            for suffixes in (tuple(FORMS), (".xml", ".json")):
+                if models := [m for m in members if m.filename.lower().endswith(suffixes)]:
                     break
-            if len(found) != 1:
-                raise broken(file, f"the archive has {len(found)} models instead of one")
-            if found[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-                raise broken(file, f"the member {shown(found[0].filename)!r} is not compressed by 'deflate'")
-            with archive.open(found[0]) as stream:
+            if len(models) != 1:
+                raise broken(file, f"the archive has {len(models)} models instead of one")
+            if models[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise broken(file, f"the member {shown(models[0].filename)!r} is not compressed by 'deflate'")
+            with archive.open(models[0]) as stream:
                 content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
     except ParameterError:
         raise
     except _DAMAGED as error:
-        # zipfile trusts the offsets of a damaged directory, so a bad seek is among what it raises.
         raise broken(file, f"the archive cannot be read: {error}") from None
     if len(content) > MAX_BYTES:
         raise broken(file, f"the model in the archive has more than {MAX_BYTES} bytes")
@@ -121,27 +111,29 @@ def from_xml(data: bytes, file: str) -> Document:
 
     def components(parent: ET.Element, path: str) -> list[dict[str, Any]]:
         return [
-            {
-                **part.attrib,
-                "id": part.get("id", ""),
-                "attributes": [
-                    {"id": a.get("id", ""), "unit": a.get("unit"), "string": (a.text or "").strip() or None}
-                    for a in part.iter("attribute")
-                ],
-            }
+            {"id": "", **part.attrib, "attributes": [attribute(a) for a in part.iter("attribute")]}
             for part in parent.iterfind(path)
         ]
 
-    relations = [
-        {**r.attrib, "refs": [{"id": "", **ref.attrib} for ref in r.iter("ref")]}
-        for r in root.iterfind("relations/relation")
-    ]
-    cases = [
-        {"id": case.get("id", ""), "components": components(case, ".//component")}
-        for case in root.iter("load_case")
-    ]
-    parts = {"components": components(root, "components/component"), "relations": relations}
-    return {"model": {**root.attrib, **parts, "load_spectrum": {"load_cases": cases}}}
+    def attribute(a: ET.Element) -> dict[str, Any]:
+        return {"id": a.get("id", ""), "unit": a.get("unit"), "string": (a.text or "").strip() or None}
+
+    return {
+        "model": {
+            **root.attrib,
+            "components": components(root, "components/component"),
+            "relations": [
+                {**r.attrib, "refs": [{"id": "", **ref.attrib} for ref in r.iter("ref")]}
+                for r in root.iterfind("relations/relation")
+            ],
+            "load_spectrum": {
+                "load_cases": [
+                    {"id": case.get("id", ""), "components": components(case, ".//component")}
+                    for case in root.iter("load_case")
+                ]
+            },
+        }
+    }
 
 
 class _Elements(ET.TreeBuilder):
@@ -175,12 +167,7 @@ class _Elements(ET.TreeBuilder):
 
 
 def form_of(path: Path) -> str:
-    """Form of a file to write, from its suffix.
-
-    Raises
-    ------
-    ParameterError : a suffix that the specification does not have
-    """
+    """Form of a file to write, from its suffix; refuse one that the specification does not have."""
     for suffix, form in FORMS.items():
         if path.name.lower().endswith(suffix):
             return form

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -49,21 +48,20 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, f
     return path
 
 
-@dataclass
 class _Builder:
     """Components and relations under construction; ids count up."""
 
-    components: list[dict[str, Any]] = field(default_factory=list)
-    relations: list[dict[str, Any]] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.components: list[dict[str, Any]] = []
+        self.relations: list[dict[str, Any]] = []
 
-    def add(self, kind: str, name: str = "", **values: object) -> int:
+    def add(self, kind: str, name: str = "", /, **values: object) -> int:
         """Add a component; numbers are SI, None is left out."""
         attributes = []
         for key, value in values.items():
             if value is not None:
-                unit, kind_of_value = ATTRIBUTES[key], KINDS.get(key, "floating_point")
-                number = rexs_from_si(value, unit) if isinstance(value, float) else value
-                attributes.append({"id": key, "unit": unit, kind_of_value: number})
+                number = rexs_from_si(value, ATTRIBUTES[key]) if isinstance(value, float) else value
+                attributes.append({"id": key, "unit": ATTRIBUTES[key], KINDS[key]: number})
         number = len(self.components) + 1
         self.components.append({"id": number, "type": kind, "name": name, "attributes": attributes})
         return number
@@ -77,16 +75,10 @@ class _Builder:
 
 def rexs_document(pair: GearPair, version: str = WRITTEN[-1]) -> Document:
     """Build the REXS tree of a pair."""
-    g = pair.geometry
-    build = _Builder()
+    g, build = pair.geometry, _Builder()
     unit = build.add("gear_unit", pair.name, number_of_gears=1, gear_shift_index=1, **_place(1, 0.0))
-    stage = build.add(
-        "cylindrical_stage",
-        pair.name,
-        center_distance=g.centre_distance,
-        minimum_normal_backlash=g.normal_backlash,
-        maximum_normal_backlash=g.normal_backlash,
-    )
+    backlash = dict.fromkeys(("minimum_normal_backlash", "maximum_normal_backlash"), g.normal_backlash)
+    stage = build.add("cylindrical_stage", pair.name, center_distance=g.centre_distance, **backlash)
     build.relate("assembly", assembly=unit, part=stage)
     gears = [_add_gear(build, pair, unit, which) for which in ("pinion", "gear")]
     build.relate("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
@@ -114,11 +106,15 @@ def _place(reference: int, offset: float) -> dict[str, object]:
 
 
 def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
-    g, driving = pair.geometry, which == "pinion"
-    gear = pair.pinion if driving else pair.gear
-    place = _place(unit, 0.0 if driving else g.centre_distance)
-    speed = g.omega_pinion if driving else -g.omega_gear
-    shaft = build.add("shaft", f"{which} shaft", **place, rotational_speed=speed, defines_speed=driving)
+    """Add a gear on its shaft with its load, material and flanks; return its id."""
+    g, gear, drives = pair.geometry, getattr(pair, which), which == "pinion"
+    brake = pair.operating.brake_torque
+    torque = pair.operating.pinion_torque if drives else brake if isinstance(brake, float) else None
+    speed, place = (
+        g.omega_pinion if drives else -g.omega_gear,
+        _place(unit, 0.0 if drives else g.centre_distance),
+    )
+    shaft = build.add("shaft", f"{which} shaft", **place, rotational_speed=speed, defines_speed=drives)
     build.relate("assembly", assembly=unit, part=shaft)
     number = build.add(
         "cylindrical_gear",
@@ -135,23 +131,11 @@ def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
         **place,
     )
     build.relate("assembly", assembly=shaft, part=number)
-    brake = pair.operating.brake_torque
-    torque = pair.operating.pinion_torque if driving else brake if isinstance(brake, float) else None
-    load = build.add(
-        "external_load",
-        "drive" if driving else "brake",
-        torque_around_u_axis=torque,
-        transmits_torque=True,
-        defines_torque=torque is not None,
-    )
+    known = {"transmits_torque": True, "defines_torque": torque is not None}
+    load = build.add("external_load", "drive" if drives else "brake", torque_around_u_axis=torque, **known)
     build.relate("assembly", assembly=shaft, part=load)
-    material = build.add(
-        "material",
-        f"material of the {which}",
-        elastic_modulus=gear.youngs_modulus,
-        poisson_ratio=gear.poisson_ratio,
-        density=gear.density,
-    )
+    steel = {"elastic_modulus": gear.youngs_modulus, "poisson_ratio": gear.poisson_ratio}
+    material = build.add("material", f"material of the {which}", **steel, density=gear.density)
     build.relate("reference", origin=number, referenced=material)
     _add_flanks(build, pair, which, number)
     return number
@@ -160,26 +144,23 @@ def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
 def _add_flanks(build: _Builder, pair: GearPair, which: str, number: int) -> None:
     """Add both flanks, alike, with their reliefs, and the tool whose tip makes the root."""
     rack, g, gear = pair.basic_rack, pair.geometry, getattr(pair, which)
-    flanks = {
-        side: build.add(
-            "cylindrical_gear_flank",
-            f"{which}, {side} flank",
-            normal_pressure_angle=rack.pressure_angle,
-            addendum_modification_coefficient=gear.profile_shift,
-            addendum_coefficient_basic_profile=rack.addendum_coefficient,
-        )
-        for side in ("left", "right")
+    own = {
+        "normal_pressure_angle": rack.pressure_angle,
+        "addendum_modification_coefficient": gear.profile_shift,
+        "addendum_coefficient_basic_profile": rack.addendum_coefficient,
     }
+    cutter = {
+        "normal_module": rack.module,
+        "normal_pressure_angle": rack.pressure_angle,
+        "addendum_coefficient_reference_profile": rack.dedendum_coefficient,
+        "tip_radius_factor": rack.fillet_radius_coefficient or None,
+    }
+    sides = ("left", "right")
+    flanks = {s: build.add("cylindrical_gear_flank", f"{which}, {s} flank", **own) for s in sides}
     build.relate("flank", gear=number, **flanks)
     base = 2.0 * getattr(g, f"base_radius_{which}")
     for flank in flanks.values():
-        tool = build.add(
-            "rack_shaped_tool",
-            normal_module=rack.module,
-            normal_pressure_angle=rack.pressure_angle,
-            addendum_coefficient_reference_profile=rack.dedendum_coefficient,
-            tip_radius_factor=rack.fillet_radius_coefficient or None,
-        )
+        tool = build.add("rack_shaped_tool", **cutter)
         settings = build.add("cylindrical_gear_manufacturing_settings")
         build.relate("manufacturing_step", 1, workpiece=flank, tool=tool, manufacturing_settings=settings)
         for kind in RELIEFS:
@@ -198,17 +179,12 @@ def _add_lubricant(build: _Builder, pair: GearPair, unit: int, stage: int) -> No
     law = pair.lubricant.viscosity_law
     if law is None:
         return
-    v40, v100 = law.kinematic_viscosity_40, law.kinematic_viscosity_100
+    name, v40, v100 = "", law.kinematic_viscosity_40, law.kinematic_viscosity_100
     if law.iso_vg is not None:
-        grade, index = law.iso_vg, law.viscosity_index
-        v40, v100 = (1e-6 * float(grade_viscosity(grade, celsius, index)) for celsius in (40.0, 100.0))
+        name, index = f"ISO VG {law.iso_vg}", law.viscosity_index
+        v40, v100 = (1e-6 * float(grade_viscosity(law.iso_vg, celsius, index)) for celsius in (40.0, 100.0))
     casing = build.add("gear_casing", "casing", temperature_lubricant=law.temperature)
     build.relate("assembly", assembly=unit, part=casing)
-    oil = build.add(
-        "lubricant",
-        "" if law.iso_vg is None else f"ISO VG {law.iso_vg}",
-        viscosity_at_40_degree_celsius=v40,
-        viscosity_at_100_degree_celsius=v100,
-        density_at_15_degree_celsius=law.density,
-    )
+    at = {"viscosity_at_40_degree_celsius": v40, "viscosity_at_100_degree_celsius": v100}
+    oil = build.add("lubricant", name, **at, density_at_15_degree_celsius=law.density)
     build.relate("reference", origin=stage, referenced=oil)

@@ -27,6 +27,9 @@ _ROUGHNESS = {
     "mean_peak_to_valley_roughness_flank_iso_4287_1997": 6.0,
 }
 RELIEFS = ("tip_relief", "root_relief")
+_SYMMETRIC = "The flanks of a tooth differ; only symmetric teeth can be modelled."
+_MESH = "Flanks that mesh have one pressure angle, and only symmetric teeth can be modelled."
+_MISSING = "Nothing can stand in for it: complete the model in the program that exported it."
 
 
 def read_gears(draft: Draft, pinion: Component, gear: Component) -> None:
@@ -64,64 +67,49 @@ def _read_blank(draft: Draft, which: str, gear: Component) -> None:
         draft.put(f"{which}.teeth", int(teeth.si), teeth.where)
     for needed in ("number_of_teeth", "face_width", "normal_module"):
         if draft.text(gear, needed) is None:
-            draft.missing(gear, needed)
+            problem = FieldProblem(draft.where(gear, needed), "not given", "a value", _MISSING)
+            draft.problems.append(problem)
     if draft.text(gear, "helix_angle_reference_diameter") is None:
         draft.note(f"{gear.label} has no helix angle: taken as a spur gear (assumed)")
     draft.take_all(which, gear, _BLANK)
     for attribute, factor in _ROUGHNESS.items():
-        if (found := draft.number(gear, attribute)) is not None:
+        if (result := draft.number(gear, attribute)) is not None:
             remark = "" if factor == 1.0 else ", Ra = Rz/6 (ISO 6336-2)"
-            draft.take(f"{which}.roughness", Reading(found.si / factor, found.where), remark)
+            draft.take(f"{which}.roughness", Reading(result.si / factor, result.where), remark)
             break
 
 
 def _read_shift(draft: Draft, which: str, gear: Component) -> None:
     flanks = flanks_of(draft, gear).values()
-    why = "The flanks of a tooth differ; only symmetric teeth can be modelled."
-    shift = draft.agreed((draft.number(f, "addendum_modification_coefficient") for f in flanks), why)
-    length = draft.agreed((draft.number(f, "addendum_modification") for f in flanks), why)
+    shift, length = (
+        draft.agreed((draft.number(f, f"addendum_modification{end}") for f in flanks), _SYMMETRIC)
+        for end in ("_coefficient", "")
+    )
     module = draft.number(gear, "normal_module")
     if shift is None and length is not None and module is not None and module.si > 0.0:
         shift = Reading(length.si / module.si, f"{length.where} / normal_module")
     draft.take(f"{which}.profile_shift", shift)
 
 
-def _read_rack(draft: Draft, pinion: Component, gear: Component) -> None:
+def _read_rack(draft: Draft, *gears: Component) -> None:
     """Read the basic rack: module and pressure angle must agree; the tool's tip is the teeth's root."""
-    both = (pinion, gear)
-    modules = (draft.number(g, "normal_module") for g in both)
-    module = draft.agreed(modules, "Gears that mesh have one module.")
+    module = draft.agreed(
+        (draft.number(g, "normal_module") for g in gears), "Gears that mesh have one module."
+    )
     draft.take("basic_rack.module", module)
-    flanks = [flank for g in both for flank in flanks_of(draft, g).values()]
-    why = "Flanks that mesh have one pressure angle, and only symmetric teeth can be modelled."
-    angle = draft.agreed((draft.number(f, "normal_pressure_angle") for f in flanks), why)
+    flanks = [flank for g in gears for flank in flanks_of(draft, g).values()]
+    angle = draft.agreed((draft.number(f, "normal_pressure_angle") for f in flanks), _MESH)
     draft.take("basic_rack.pressure_angle", angle)
-    tools = [
-        tool
-        for flank in flanks
-        for tool in draft.model.related(flank, "manufacturing_step", "workpiece", "tool", "rack_shaped_tool")
-    ]
-    addenda = [draft.number(f, "addendum_coefficient_basic_profile") for f in flanks]
+    step = ("manufacturing_step", "workpiece", "tool", "rack_shaped_tool")
+    tools = [tool for flank in flanks for tool in draft.model.related(flank, *step)]
     dedenda = [draft.number(t, "addendum_coefficient_reference_profile") for t in tools]
-    radii = [
-        draft.number(t, attribute)
-        for t in tools
-        for attribute in ("tip_radius_factor", "tip_corner_radius_factor_reference_profile")
-    ]
-    _take_first(draft, "basic_rack.addendum_coefficient", addenda)
-    dedenda = dedenda or [_dedendum(draft, g, module) for g in both]
-    _take_first(draft, "basic_rack.dedendum_coefficient", dedenda)
-    _take_first(draft, "basic_rack.fillet_radius_coefficient", radii)
-
-
-def _take_first(draft: Draft, path: str, readings: list[Reading | None]) -> None:
-    """Take a value that spurcheck has once for both gears; where they differ the pinion's, with a note."""
-    present = [r for r in readings if r is not None]
-    if present:
-        draft.take(path, present[0])
-    if any(not math.isclose(r.si, present[0].si, rel_tol=1e-9) for r in present[1:]):
-        values = ", ".join(f"{r.si:.6g} in {r.where}" for r in present[1:])
-        draft.note(f"{path}: the first value is used for both gears, the file also has {values}")
+    radii = ("tip_radius_factor", "tip_corner_radius_factor_reference_profile")
+    for path, readings in {
+        "addendum": [draft.number(f, "addendum_coefficient_basic_profile") for f in flanks],
+        "dedendum": dedenda or [_dedendum(draft, g, module) for g in gears],
+        "fillet_radius": [draft.number(t, name) for t in tools for name in radii],
+    }.items():
+        draft.take_first(f"basic_rack.{path}_coefficient", readings)
 
 
 def _dedendum(draft: Draft, gear: Component, module: Reading | None) -> Reading | None:
@@ -143,11 +131,11 @@ def read_reliefs(draft: Draft, stage: Component, gears: dict[str, Component], ge
         for other in draft.model.referenced(flank, *NOT_TAKEN):
             draft.note(f"{other.label} of {flank.label} is left out: spurcheck has no such modification")
         for kind in RELIEFS:
-            found = draft.model.referenced(flank, kind)
-            if len(found) > 1:
-                draft.note(f"{flank.label} has {len(found)} components {kind}: all are left out")
-            elif found:
-                _read_relief(draft, which, found[0], geometry)
+            reliefs = draft.model.referenced(flank, kind)
+            if len(reliefs) > 1:
+                draft.note(f"{flank.label} has {len(reliefs)} components {kind}: all are left out")
+            elif reliefs:
+                _read_relief(draft, which, reliefs[0], geometry)
 
 
 def _working_flank(draft: Draft, stage: Component, gear: Component) -> Component | None:
@@ -156,20 +144,17 @@ def _working_flank(draft: Draft, stage: Component, gear: Component) -> Component
     for data in gear_data_of(draft, stage, gear):
         if (side := draft.text(data, "loaded_tooth_flank")) in flanks:
             return flanks[side]
-    if not flanks:
-        return None
 
     def modifications(flank: Component) -> list[tuple[str, object]]:
-        found = draft.model.referenced(flank, *RELIEFS, *NOT_TAKEN)
-        return sorted((c.type, sorted(c.attributes.items(), key=str)) for c in found)
+        parts = draft.model.referenced(flank, *RELIEFS, *NOT_TAKEN)
+        return sorted((c.type, sorted(c.attributes.items(), key=str)) for c in parts)
 
-    first, *others = flanks.values()
-    if any(modifications(flank) != modifications(first) for flank in others):
+    if len({str(modifications(flank)) for flank in flanks.values()}) > 1:
         draft.note(
             f"{gear.label}: its flanks are modified differently and the file does not say which one carries "
             "load (loaded_tooth_flank); the left one is taken (assumed)"
         )
-    return first
+    return next(iter(flanks.values()), None)
 
 
 def _read_relief(draft: Draft, which: str, relief: Component, geometry: Geometry) -> None:
@@ -201,9 +186,8 @@ def _read_relief(draft: Draft, which: str, relief: Component, geometry: Geometry
     draft.put(f"{path}.start_roll_angle", derived_number(begin, "deg"), f"{start.where}, as roll angle")
 
 
-def end_of_flank(geometry: Geometry, which: str, kind: str) -> float:
+def end_of_flank(g: Geometry, which: str, kind: str) -> float:
     """Roll angle [rad] where the amount of a relief holds: of the tip, or of the active flank's start."""
-    g = geometry
     if which == "pinion":
         return (g.L_XD if kind == "tip_relief" else g.L_XA) / g.base_radius_pinion
     return (g.L_XY - (g.L_XA if kind == "tip_relief" else g.L_XD)) / g.base_radius_gear

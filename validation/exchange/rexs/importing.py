@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,6 +22,7 @@ from validation.exchange.rexs.model import Component, RexsModel, broken
 from validation.exchange.rexs.shafts import read_shafts
 from validation.exchange.rexs.vocabulary import VERSIONS, derived_number
 
+_GEARS_OF_PAIR = ("pinion", "gear")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
 _NO_HELIX = 1e-9
@@ -90,18 +92,15 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     model = read_rexs(path)
     picked, notes = _chosen(model, stage)
     draft, component = Draft(model, notes=notes), picked.component
-    pinion, gear = _driving_first(draft, component, picked.gears)
-    gears = {"pinion": pinion, "gear": gear}
+    gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, picked.gears), strict=True))
 
     def validated() -> GearPair:
-        if draft.problems:
-            raise ParameterError(draft.problems, model.file)
         return _validated(draft, picked)
 
-    read_gears(draft, pinion, gear)
+    read_gears(draft, *gears.values())
     draft.take("centre_distance", draft.number(component, "center_distance"))
     _read_lubricant(draft, component)
-    _read_operating_point(draft, component, pinion, gear)
+    _read_operating_point(draft, component, *gears.values())
     _read_backlash(draft, component, _without_contradiction(draft, validated))
     pair = _without_contradiction(draft, validated)
     _warn_of_contradictions(draft, pair)
@@ -138,8 +137,7 @@ def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
         raise broken(model.file, "it has no gear stage")
     if number is not None:
         stages = [stages[whole_number("stage", number, 1, len(stages)) - 1]]
-    listed = "; ".join(map(str, stages))
-    usable = [stage for stage in stages if not stage.reason]
+    listed, usable = "; ".join(map(str, stages)), [stage for stage in stages if not stage.reason]
     if len(usable) > 1:
         raise refuse("stage", "not given", f"one of {listed}", "Choose a stage by its number.")
     if not usable:
@@ -147,8 +145,9 @@ def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
         problems = []
         for stage in stages:
             kind, _, why = stage.reason.partition("; ")
-            action = f"{why[:1].upper()}{why[1:]}."
-            problems.append(FieldProblem(f"stage {stage.number}", kind, wanted, action))
+            problems.append(
+                FieldProblem(f"stage {stage.number}", kind, wanted, f"{why[0].upper()}{why[1:]}.")
+            )
         raise ParameterError(problems, model.file)
     notes = [] if len(stages) == 1 else [f"stage {usable[0].number} is the only spur stage of: {listed}"]
     return usable[0], notes
@@ -187,6 +186,8 @@ def _reason(model: RexsModel, stage: Component, gears: list[Component]) -> str:
 def _validated(draft: Draft, stage: _Stage) -> GearPair:
     """Validate; a refused value is reported with its place in the file."""
     model = draft.model
+    if draft.problems:
+        raise ParameterError(draft.problems, model.file)
     name = (stage.component.name.strip() or Path(model.file).stem)[:80]
     written = f", written by {model.application[:200]}" if model.application else ""
     description = f"stage {stage.number} of {model.file}{written}, REXS {shown(model.version)}"
@@ -194,10 +195,7 @@ def _validated(draft: Draft, stage: _Stage) -> GearPair:
         return load_gear_pair({"name": name, "description": description} | completed(draft.values))
     except ParameterError as error:
         places = {path: f" ({where})" for path, where in draft.sources.items()}
-        problems = [
-            FieldProblem(p.field, p.value + places.get(p.field, ""), p.allowed, p.action)
-            for p in error.problems
-        ]
+        problems = [replace(p, value=p.value + places.get(p.field, "")) for p in error.problems]
         raise ParameterError(problems, model.file) from None
 
 
@@ -210,7 +208,7 @@ def _note_assumptions(draft: Draft, pair: GearPair, sources: dict[str, str]) -> 
             draft.note(f"{text}; give your own, for example with --{key}")
     if assumed:
         draft.note("assumed, not known: " + ", ".join(assumed))
-    for which in ("pinion", "gear"):
+    for which in _GEARS_OF_PAIR:
         if f"{which}.inertia" not in sources and f"{which}.mass" in sources:
             text = f"{which}.inertia: REXS has none of a gear; it is that of a solid disc, not of its mass"
             draft.note(text)
@@ -235,23 +233,21 @@ def _driving_first(draft: Draft, stage: Component, gears: list[Component]) -> tu
 def _read_backlash(draft: Draft, stage: Component, pair: GearPair) -> None:
     """Take from the normal backlash what the centre distance does not give already.
 
-    Parameters
-    ----------
-    pair : with the centre distance of the file, and teeth of full thickness
+    ``pair`` has the centre distance of the file, and teeth of full thickness.
     """
     low, high = (draft.number(stage, f"{end}_normal_backlash") for end in ("minimum", "maximum"))
     if low is None or high is None:
         return
     where = f"{low.where} and maximum, their mean"
-    if DOUBTFUL in draft.sources.get("centre_distance", ""):
+    if DOUBTFUL in draft.sources.get(_CENTRE, ""):
         text = f"{where}, was computed with a centre distance that stands for no pair of gears"
-        draft.warn(["mesh.backlash"], f"{text}; {1e3 * pair.mesh.backlash:g} mm stands in")
+        draft.warn([_BACKLASH], f"{text}; {1e3 * pair.mesh.backlash:g} mm stands in")
         return
     share = theoretical_backlash(*pair.wheels, pair.geometry.operating_pressure_angle)
-    thinning = 0.5 * (low.si + high.si) - share
-    remark = "" if "centre_distance" not in draft.values else ", without the share of the centre distance"
+    remark = "" if _CENTRE not in draft.values else ", without the share of the centre distance"
     # A difference of lengths of about 100 mm, in fifteen digits.
-    draft.put("mesh.backlash", max(round(to_stated(thinning, "mm"), 12), 0.0), where + remark)
+    thinning = round(to_stated(0.5 * (low.si + high.si) - share, "mm"), 12)
+    draft.put(_BACKLASH, max(thinning, 0.0), where + remark)
 
 
 def _read_lubricant(draft: Draft, stage: Component) -> None:
@@ -273,20 +269,16 @@ def _read_lubricant(draft: Draft, stage: Component) -> None:
         draft.take("lubricant.viscosity", Reading(viscosity.si * density.si, where))
 
 
-def _read_operating_point(draft: Draft, stage: Component, pinion: Component, gear: Component) -> None:
-    """Read speed and torque of the driving gear.
-
-    A load case of the load spectrum stands in where the components themselves have no value; of several load
-    cases the first.
-    """
-    shafts = {g.id: draft.model.neighbours(g, "shaft") for g in (pinion, gear)}
-    speed = draft.first((pinion, *shafts[pinion.id]), "rotational_speed")
+def _read_operating_point(draft: Draft, stage: Component, *gears: Component) -> None:
+    """Read speed and torque of the first gear, which drives; else those of the first load case."""
+    (pinion, shafts), (gear, others) = ((g, draft.model.neighbours(g, "shaft")) for g in gears)
+    speed = draft.first((pinion, *shafts), "rotational_speed")
     if speed is None:
-        other = draft.first((gear, *shafts[gear.id]), "rotational_speed")
-        teeth = [draft.values.get(f"{which}.teeth", 0) for which in ("pinion", "gear")]
+        other = draft.first((gear, *others), "rotational_speed")
+        teeth = [draft.values.get(f"{which}.teeth", 0) for which in _GEARS_OF_PAIR]
         if other is not None and teeth[0] > 0:
             speed = Reading(other.si * teeth[1] / teeth[0], f"{other.where}, times the gear ratio")
-    torque = _torque(draft, stage, pinion, shafts[pinion.id], speed)
+    torque = draft.first(gear_data_of(draft, stage, pinion), "torque") or _external(draft, shafts, speed)
     for path, reading in (("operating.pinion_speed", speed), ("operating.pinion_torque", torque)):
         if reading is not None:
             draft.take(path, Reading(abs(reading.si), reading.where))
@@ -294,20 +286,16 @@ def _read_operating_point(draft: Draft, stage: Component, pinion: Component, gea
         draft.note(f"the file has {cases} load cases; where they matter the first is used")
 
 
-def _torque(
-    draft: Draft, stage: Component, pinion: Component, shafts: list[Component], speed: Reading | None
-) -> Reading | None:
+def _external(draft: Draft, shafts: list[Component], speed: Reading | None) -> Reading | None:
+    """Torque of the one external load; a shaft with further gears passes torque on."""
     model = draft.model
-    torque = draft.first(gear_data_of(draft, stage, pinion), "torque")
-    on_shaft = {g.id for s in shafts for g in model.neighbours(s, "cylindrical_gear")}
-    if torque is not None or len(on_shaft) != 1:  # a shaft with further gears passes torque on
-        return torque
+    if len({g.id for s in shafts for g in model.neighbours(s, "cylindrical_gear")}) != 1:
+        return None
     loads = [load for s in shafts for load in model.neighbours(s, "external_load")]
-
-    def acting(attribute: str) -> list[Reading]:
-        return [r for load in loads if (r := draft.first([load], attribute)) is not None and r.si]
-
-    torques, powers = acting("torque_around_u_axis"), acting("power")
+    torques, powers = (
+        [r for load in loads if (r := draft.first([load], attribute)) is not None and r.si]
+        for attribute in ("torque_around_u_axis", "power")
+    )
     if len(torques) == 1:
         return torques[0]
     if not torques and len(powers) == 1 and speed is not None and speed.si:
@@ -316,12 +304,7 @@ def _torque(
 
 
 def _without_contradiction(draft: Draft, validated: Callable[[], GearPair]) -> GearPair:
-    """Validate; where that fails and values that the others give are why, put these in their place.
-
-    Raises
-    ------
-    ParameterError : the pair is refused with and without its derived values
-    """
+    """Validate; where that fails and values that the others give are why, put these in their place."""
     try:
         return validated()
     except ParameterError as error:
@@ -329,22 +312,21 @@ def _without_contradiction(draft: Draft, validated: Callable[[], GearPair]) -> G
     named = {p.field for p in refused.problems}
     derived = [path for path in (_CENTRE, _BACKLASH, *_TIPS) if path in draft.values]
     derived.sort(key=lambda path: path not in named)
-    for count in range(1, len(derived) + 1):
-        for paths in combinations(derived, count):
-            left_out = {path: draft.values.pop(path) for path in paths}
-            try:
-                pair = validated()
-            except ParameterError:
-                draft.values |= left_out
-                continue
-            g = pair.geometry
-            others = {_CENTRE: g.centre_distance, _BACKLASH: pair.mesh.backlash}
-            others |= {_TIPS[0]: 2.0 * g.tip_radius_pinion, _TIPS[1]: 2.0 * g.tip_radius_gear}
-            for path, value in left_out.items():
-                text = f"{draft.sources[path]} has {value:g} mm, with which the other values give no pair"
-                draft.put(path, derived_number(others[path], "mm"), ASSUMED)
-                draft.warn([path], f"{text} of gears; {draft.values[path]:g} mm stands in")
-            return validated()
+    for paths in (some for n in range(1, len(derived) + 1) for some in combinations(derived, n)):
+        left_out = {path: draft.values.pop(path) for path in paths}
+        try:
+            pair = validated()
+        except ParameterError:
+            draft.values |= left_out
+            continue
+        g = pair.geometry
+        others = {_CENTRE: g.centre_distance, _BACKLASH: pair.mesh.backlash}
+        others |= {_TIPS[0]: 2.0 * g.tip_radius_pinion, _TIPS[1]: 2.0 * g.tip_radius_gear}
+        for path, value in left_out.items():
+            text = f"{draft.sources[path]} has {value:g} mm, with which the other values give no pair"
+            draft.put(path, derived_number(others[path], "mm"), ASSUMED)
+            draft.warn([path], f"{text} of gears; {draft.values[path]:g} mm stands in")
+        return validated()
     raise refused
 
 

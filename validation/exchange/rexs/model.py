@@ -1,20 +1,18 @@
 """A REXS model: components with attributes, and relations between them.
 
 One tree serves both encodings: the JSON document of the specification, as nested mappings and lists.
-`model_of` checks such a tree and gives the records that the import asks.
+``model_of`` checks such a tree and gives the records that the import asks.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumped.errors import ParameterError, refuse, shown
 
-Scalar = str | int | float | bool
 #: The JSON document of REXS: a mapping with the one key "model".
 Document = dict[str, Any]
-
 #: Keys of an attribute whose value is one number, text or flag.
 _SCALARS = (
     "floating_point", "integer", "boolean", "enum", "string", "reference_component", "file_reference",
@@ -22,11 +20,10 @@ _SCALARS = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Attribute:
+class Attribute(NamedTuple):
     """One attribute: its value as the file has it, None for a table; its unit, "" where it is left out."""
 
-    value: Scalar | None
+    value: str | int | float | bool | None
     unit: str = ""
 
 
@@ -69,14 +66,12 @@ class RexsModel:
         """Components of some types, in the order of the file."""
         return [c for c in self.components.values() if c.type in types]
 
-    def related(
-        self, component: Component, kind: str, own_role: str, role: str, *types: str
-    ) -> list[Component]:
-        """Components that a relation of some kind puts into ``role`` where this one is in ``own_role``."""
+    def related(self, component: Component, kind: str, own: str, role: str, *types: str) -> list[Component]:
+        """Components that a relation of some kind puts into ``role`` where this one has the role ``own``."""
         partners = [
             self.components[number]
             for relation, refs in self.relations
-            if relation == kind and (own_role, component.id) in refs
+            if relation == kind and (own, component.id) in refs
             for name, number in refs
             if name == role
         ]
@@ -88,22 +83,13 @@ class RexsModel:
 
     def neighbours(self, component: Component, *types: str) -> list[Component]:
         """Components of some types that share any relation with this one, each once."""
-        numbers = {
-            number: None
-            for _, refs in self.relations
-            if any(own == component.id for _, own in refs)
-            for _, number in refs
-        }
+        shared = [refs for _, refs in self.relations if any(own == component.id for _, own in refs)]
+        numbers = dict.fromkeys(number for refs in shared for _, number in refs)
         return [self.components[i] for i in numbers if self.components[i].type in types]
 
 
 def model_of(document: Document, file: str) -> RexsModel:
-    """Build the model of a tree, after checking its form, its ids and its references.
-
-    Raises
-    ------
-    ParameterError : not of the form of REXS
-    """
+    """Build the model of a tree; refuse one that is not of the form of REXS, its ids and its references."""
     try:
         model = document["model"]
         components = [_component(c) for c in model["components"]]
@@ -120,17 +106,17 @@ def model_of(document: Document, file: str) -> RexsModel:
         raise broken(file, f"it has no {error} where REXS has one") from None
     except (ValueError, TypeError, AttributeError) as error:
         raise broken(file, f"it is not of the form of REXS: {str(error)[:120]}") from None
-    table = {c.id: c for c in reversed(components)}
+    table: dict[int, Component] = {}
     for component in components:
-        if table[component.id] is not component:
+        if table.setdefault(component.id, component) is not component:
             raise broken(file, f"two components have the id {component.id}")
     of_relations = [number for _, refs in relations for _, number in refs]
     for number in [*of_relations, *(c.id for _, case in load_cases for c in case)]:
         if number not in table:
             raise broken(file, f"component {number} is referred to but does not exist")
     application = f"{head.get('applicationId', '')} {head.get('applicationVersion', '')}".strip()
-    by_id = {c.id: c for c in components}
-    return RexsModel(file, head.get("version", ""), application, by_id, tuple(relations), tuple(load_cases))
+    version = head.get("version", "")
+    return RexsModel(file, version, application, table, tuple(relations), tuple(load_cases))
 
 
 def _component(node: dict[str, Any]) -> Component:
@@ -147,12 +133,15 @@ def _attribute(node: dict[str, Any]) -> Attribute:
 
 def _id(value: object) -> int:
     """Whole number; XML has it as text."""
-    try:
-        if isinstance(value, str) or (isinstance(value, int) and not isinstance(value, bool)):
-            return int(value)
-    except ValueError:
-        pass
-    raise ValueError(f"an id is {str(value)[:40]!r} instead of a whole number")
+    text = str(value)
+    if (
+        isinstance(value, (str, int))
+        and text.isascii()
+        and text.removeprefix("-").isdigit()
+        and len(text) < 20
+    ):
+        return int(text)
+    raise ValueError(f"an id is {text[:40]!r} instead of a whole number")
 
 
 def _text(value: object) -> str:

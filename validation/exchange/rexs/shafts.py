@@ -17,12 +17,8 @@ _DAMPING_RATIO = 0.02
 #: Gap or overlap of neighbouring sections that is rounding [m].
 _GAP = 1e-6
 _SECTION = (
-    "length",
-    "outer_diameter_begin",
-    "outer_diameter_end",
-    "inner_diameter_begin",
-    "inner_diameter_end",
-)
+    "length", "outer_diameter_begin", "outer_diameter_end", "inner_diameter_begin", "inner_diameter_end",
+)  # fmt: skip
 
 
 class _LeftOut(Exception):
@@ -30,12 +26,10 @@ class _LeftOut(Exception):
 
 
 def read_shafts(draft: Draft, gears: dict[str, Component], validated: Callable[[], GearPair]) -> None:
-    """Read the shafts of both gears, or note in one line what is missing; a file without any says nothing.
+    """Read the shafts of "pinion" and "gear", or note in one line what is missing.
 
-    Parameters
-    ----------
-    gears : "pinion" and "gear" -> component
-    validated : validates all that was read; shafts that it refuses are left out
+    ``validated`` validates all that was read; shafts that it refuses are left out. A file without shafts
+    says nothing.
     """
     carriers = {
         which: draft.model.related(gear, "assembly", "part", "assembly", "shaft")
@@ -71,9 +65,8 @@ def _read_shaft(draft: Draft, path: str, shaft: Component, gear: Component) -> N
             raise _LeftOut(f"{text}, whose mass and forces are not in the pair")
     start = _read_segments(draft, path, shaft)
     begin, width = _needed(draft, gear, "u_coordinate_on_shaft"), _needed(draft, gear, "face_width")
-    middle = begin.si + 0.5 * width.si - start
-    where = f"{begin.where}, and half the face width"
-    draft.put(f"{path}.gear_position", derived_number(middle, "mm"), where)
+    middle = derived_number(begin.si + 0.5 * width.si - start, "mm")
+    draft.put(f"{path}.gear_position", middle, f"{begin.where}, and half the face width")
     _read_bearings(draft, path, shaft, start)
     for material in draft.model.referenced(shaft, "material"):
         draft.take_all(path, material, MATERIAL)
@@ -81,13 +74,13 @@ def _read_shaft(draft: Draft, path: str, shaft: Component, gear: Component) -> N
 
 def _read_segments(draft: Draft, path: str, shaft: Component) -> float:
     """Read the sections in their order on the shaft; return where the first begins [m]."""
-    found = [(_needed(draft, s, "u_coordinate_on_shaft").si, s) for s in _sections(draft, shaft)]
-    if not found:
+    sections = [(_needed(draft, s, "u_coordinate_on_shaft").si, s) for s in _sections(draft, shaft)]
+    if not sections:
         raise _LeftOut(f"{shaft.label} has no shaft_section")
-    found.sort(key=lambda entry: entry[0])
-    start = end = found[0][0]
+    sections.sort(key=lambda entry: entry[0])
+    start = end = sections[0][0]
     rows = []
-    for begin, section in found:
+    for begin, section in sections:
         if abs(begin - end) > _GAP:
             raise _LeftOut(f"{section.label} does not begin where the section before it ends")
         length, outer, outer_end, inner, inner_end = (_needed(draft, section, name) for name in _SECTION)
@@ -111,9 +104,10 @@ def _read_bearings(draft: Draft, path: str, shaft: Component, start: float) -> N
             if bearing.type not in BEARINGS:
                 raise _LeftOut(f"{bearing.label} is of a type that is not read")
             middle = _needed(draft, bearing, f"u_coordinate_on_shaft_{side}_side")
-            radial = _needed(draft, bearing, "radial_stiffness")
             row = {"position": Reading(middle.si - start, middle.where)}
-            row |= {"loa_stiffness": radial, "oloa_stiffness": radial}
+            row |= dict.fromkeys(
+                ("loa_stiffness", "oloa_stiffness"), _needed(draft, bearing, "radial_stiffness")
+            )
             if (tilt := draft.number(bearing, "bending_stiffness")) is not None:
                 row["tilt_stiffness"] = tilt
             rows.append(row)
@@ -134,7 +128,6 @@ def _put_rows(draft: Draft, path: str, rows: list[dict[str, Reading]]) -> None:
 
 
 def _needed(draft: Draft, component: Component, attribute: str) -> Reading:
-    found = draft.number(component, attribute)
-    if found is None:
+    if (result := draft.number(component, attribute)) is None:
         raise _LeftOut(f"{component.label} states no {attribute}")
-    return found
+    return result

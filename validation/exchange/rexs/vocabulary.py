@@ -13,71 +13,51 @@ from lumped.fields.units import to_si, to_stated
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "2.0.0")
 #: Versions that can be written. The XML form of 2.0.0 (with or without a namespace) could not be settled.
 WRITTEN = VERSIONS[:-1]
-
 BEARINGS = (
-    "concept_bearing",
-    "rolling_bearing_with_catalog_geometry",
-    "rolling_bearing_with_detailed_geometry",
-)
+    "concept_bearing", "rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry",
+)  # fmt: skip
 #: REXS unit -> (unit of ``lumped.fields.units``, the REXS unit as text for it).
 UNITS = {
-    "none": ("1", ""),
-    "": ("1", ""),
-    "mm": ("mm", "mm"),
-    "mum": ("um", "um"),
-    "deg": ("deg", "deg"),
-    "°": ("deg", "deg"),
-    "rad": ("deg", "rad"),
-    "1 / min": ("rpm", "rpm"),
-    "N m": ("N*m", "N*m"),
-    "N / m": ("N/m", "N/m"),
-    "N mm / rad": ("N*m/rad", "N*mm/rad"),
-    "kg": ("kg", "kg"),
-    "kg / dm^3": ("kg/m**3", "kg/dm**3"),
-    "N / mm^2": ("GPa", "N/mm**2"),
-    "MPa": ("GPa", "MPa"),
-    "mm^2 / s": ("mm**2/s", "mm**2/s"),
-    "C": ("degC", "degC"),
-}
-
-#: REXS unit -> attributes.
+    "none": ("1", ""), "": ("1", ""), "mm": ("mm", "mm"), "mum": ("um", "um"), "deg": ("deg", "deg"),
+    "°": ("deg", "deg"), "rad": ("deg", "rad"), "1 / min": ("rpm", "rpm"), "N m": ("N*m", "N*m"),
+    "N / m": ("N/m", "N/m"), "N mm / rad": ("N*m/rad", "N*mm/rad"), "kg": ("kg", "kg"),
+    "kg / dm^3": ("kg/m**3", "kg/dm**3"), "N / mm^2": ("GPa", "N/mm**2"), "MPa": ("GPa", "MPa"),
+    "mm^2 / s": ("mm**2/s", "mm**2/s"), "C": ("degC", "degC"),
+}  # fmt: skip
+#: (REXS value type, REXS unit) -> attributes.
 _NAMES = {
-    "none": "number_of_gears gear_shift_index reference_component_for_position number_of_teeth "
-    "is_driving_gear addendum_modification_coefficient addendum_coefficient_basic_profile loaded_tooth_flank "
-    "defines_speed transmits_torque defines_torque poisson_ratio shape_of_relief "
-    "addendum_coefficient_reference_profile tip_radius_factor tip_corner_radius_factor_reference_profile",
-    "mm": "support_vector u_axis_vector w_axis_vector center_distance minimum_normal_backlash "
-    "maximum_normal_backlash normal_module face_width tip_diameter root_diameter "
-    "inner_diameter addendum_modification u_coordinate_on_shaft length "
+    ("integer", "none"): "number_of_gears gear_shift_index number_of_teeth",
+    ("reference_component", "none"): "reference_component_for_position",
+    ("boolean", "none"): "is_driving_gear defines_speed defines_torque transmits_torque",
+    ("enum", "none"): "loaded_tooth_flank shape_of_relief",
+    ("floating_point_array", "mm"): "support_vector u_axis_vector w_axis_vector",
+    ("floating_point", "none"): "addendum_modification_coefficient addendum_coefficient_basic_profile "
+    "poisson_ratio addendum_coefficient_reference_profile tip_radius_factor "
+    "tip_corner_radius_factor_reference_profile",
+    ("floating_point", "mm"): "center_distance minimum_normal_backlash maximum_normal_backlash normal_module "
+    "face_width tip_diameter root_diameter inner_diameter addendum_modification u_coordinate_on_shaft length "
     "outer_diameter_begin outer_diameter_end inner_diameter_begin inner_diameter_end "
     "u_coordinate_on_shaft_inner_side u_coordinate_on_shaft_outer_side tip_relief_depth root_relief_depth "
     "tip_relief_datum_diameter tip_relief_evaluation_reference root_relief_datum_diameter "
     "root_relief_evaluation_reference",
-    "mum": "arithmetic_average_roughness_flank averaged_peak_to_valley_height_flank "
+    ("floating_point", "mum"): "arithmetic_average_roughness_flank averaged_peak_to_valley_height_flank "
     "arithmetic_mean_roughness_flank_iso_4287_1997 mean_peak_to_valley_roughness_flank_iso_4287_1997",
-    "deg": "helix_angle_reference_diameter normal_pressure_angle",
-    "1 / min": "rotational_speed",
-    "N m": "torque torque_around_u_axis",
-    "kW": "power",
-    "N / m": "radial_stiffness",
-    "N mm / rad": "bending_stiffness",
-    "N / mm^2": "elastic_modulus",  # the database of 2.0.0 calls the same unit MPa
-    "kg": "mass_of_component",
-    "kg / dm^3": "density density_at_15_degree_celsius",
-    "C": "temperature_lubricant",
-    "mm^2 / s": "operating_viscosity viscosity_at_40_degree_celsius viscosity_at_100_degree_celsius",
+    ("floating_point", "deg"): "helix_angle_reference_diameter normal_pressure_angle",
+    ("floating_point", "1 / min"): "rotational_speed",
+    ("floating_point", "N m"): "torque torque_around_u_axis",
+    ("floating_point", "kW"): "power",
+    ("floating_point", "N / m"): "radial_stiffness",
+    ("floating_point", "N mm / rad"): "bending_stiffness",
+    ("floating_point", "N / mm^2"): "elastic_modulus",  # the database of 2.0.0 calls the same unit MPa
+    ("floating_point", "kg"): "mass_of_component",
+    ("floating_point", "kg / dm^3"): "density density_at_15_degree_celsius",
+    ("floating_point", "C"): "temperature_lubricant",
+    ("floating_point", "mm^2 / s"): "operating_viscosity viscosity_at_40_degree_celsius "
+    "viscosity_at_100_degree_celsius",
 }
-ATTRIBUTES = {name: unit for unit, names in _NAMES.items() for name in names.split()}
-"""Attribute -> its unit in the database."""
-_KINDS = {
-    "integer": "number_of_gears gear_shift_index number_of_teeth",
-    "reference_component": "reference_component_for_position",
-    "floating_point_array": "support_vector u_axis_vector w_axis_vector",
-    "boolean": "is_driving_gear defines_speed defines_torque transmits_torque",
-    "enum": "loaded_tooth_flank shape_of_relief",
-}
-KINDS = {name: kind for kind, names in _KINDS.items() for name in names.split()}
-"""Attribute -> REXS value type, where that is not "floating_point"."""
+#: Attribute -> its unit and its value type in the database.
+ATTRIBUTES = {name: unit for (_, unit), names in _NAMES.items() for name in names.split()}
+KINDS = {name: kind for (kind, _), names in _NAMES.items() for name in names.split()}
 #: Flank modifications that spurcheck has no place for.
 NOT_TAKEN = (
     "end_relief_datum_face", "end_relief_non_datum_face", "helix_crowning", "helix_deviation", "helix_slope",
@@ -87,25 +67,16 @@ NOT_TAKEN = (
 
 
 def si_from_rexs(value: float, unit: str, expected: str, where: str) -> float:
-    """Convert a number of a REXS file to SI.
+    """Convert a number of a file to SI; refuse a unit that is unknown or of another dimension.
 
-    Parameters
-    ----------
-    value, unit : as the file has them; without a unit that of the database holds
-    expected : unit of the database
-    where : component and attribute, for the message
-
-    Raises
-    ------
-    ParameterError : a unit that is unknown or of another dimension
+    ``unit`` is that of the file, "" for that of the database, ``expected``; ``where`` is for the message.
     """
     if expected == "kW":  # power has no unit among the parameters
         return 1e3 * value
-    stated, _ = UNITS[expected]
     _, text = UNITS.get(unit or expected, ("", None))
     try:
         if text is not None:
-            return to_si(f"{value!r} {text}" if text else value, stated)
+            return to_si(f"{value!r} {text}" if text else value, UNITS[expected][0])
     except ValueError:
         pass
     raise refuse(where, f"{value!r} {shown(unit)}", f"a number in {expected}", "Export the file again.")
@@ -119,8 +90,5 @@ def rexs_from_si(si: float, unit: str) -> float:
 
 
 def derived_number(si: float, stated: str) -> float:
-    """Write an SI number that was computed from printed ones: twelve digits in the field's unit.
-
-    The inputs have fifteen digits at most; more than twelve of the result would show rounding.
-    """
+    """Write an SI number that was computed from numbers of fifteen digits: twelve, in the field's unit."""
     return float(f"{to_stated(si, stated):.12g}")
