@@ -31,6 +31,7 @@ def test_where_contact_holds_it_is_the_linear_motion(brake):
     assert not orbit.parts
     span = float(np.ptp(linear.dte.values))
     assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-11 * span)
+    assert orbit.motion.attrs["dte_peak_to_peak"] == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=1e-6)
     for name in ("y_p", "y_g", "bearing_force_y_g", "friction_force"):
         own, wanted = orbit.motion[name].values, linear[name].values[..., :256]
         assert own == pytest.approx(wanted, abs=1e-9 * np.ptp(wanted)), name

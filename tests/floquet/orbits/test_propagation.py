@@ -138,6 +138,8 @@ def test_means_and_samples_are_those_of_the_motion(bouncer):
     pressed += 2.0 / STIFFNESS * (1.0 - np.cos(omega * contact))
     assert run.mean * T == pytest.approx(flown + pressed, rel=1e-12)
     assert run.largest_load == pytest.approx(GRAVITY + np.hypot(GRAVITY, 2.0 * STIFFNESS / omega), rel=1e-12)
+    swing = bouncer().run(np.array([1.4 * rest, 0.0]), 2.0 * np.pi / omega, 1)  # in contact throughout
+    assert swing.least_load == pytest.approx(0.6 * GRAVITY, rel=1e-9)
 
 
 def test_endless_growth_and_wrong_shapes_are_refused(bouncer):
