@@ -13,8 +13,7 @@ from lumped.arguments import one_of, whole_number
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.teeth.monodromy import cycle_maps
-from lumped.teeth.motion import steps_of
+from lumped.teeth.linear import LinearForm, linear_steps
 from lumped.teeth.pairs import period_of
 from lumped.typing import ComplexArray, FloatArray
 
@@ -75,7 +74,7 @@ def revolution_multipliers(
     pair = load_gear_pair(pair)
     one_of("supports", supports, ("springs", "shafts"))
     system = LTVSystem.of(pair.healthy, "mesh" if supports == "springs" else "elastic", supports=supports)
-    steps = 2 * steps_of(system) if steps is None else whole_number("steps", steps, 32, 65536)
+    steps = 4 * linear_steps(system) if steps is None else whole_number("steps", steps, 32, 65536)
     cycles = period_of(pair)
     multipliers, rates = _of_period(pair, system, cycles, steps)
     coarse = _of_period(pair, system, cycles, steps // 2)[1]
@@ -92,7 +91,7 @@ def revolution_multipliers(
 def _of_period(pair: GearPair, system: LTVSystem, cycles: int, steps: int) -> tuple[ComplexArray, FloatArray]:
     """Multipliers, largest first, and their rates; those that are rounding left out."""
     product, logarithm = np.eye(2 * len(system.coordinates)), 0.0
-    for one in cycle_maps(pair, system, steps):
+    for one in LinearForm(pair, system, 1, steps).cycle_maps()[..., : product.shape[0]]:
         product = one @ product
         size = float(np.abs(product).max())
         product, logarithm = product / size, logarithm + np.log(size)

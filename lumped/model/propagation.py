@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -145,7 +145,7 @@ def step_maps(
     """
     grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
     forcings = 1 + extra.shape[1]
-    extra = np.pad(extra, ((0, 0), (0, -(system.size + forcings) % _TOGETHER)))
+    extra = padded(system, extra)
 
     def steps() -> Iterator[Steps]:
         for low in range(0, grid.length.size, _BLOCK):
@@ -167,6 +167,11 @@ def step_maps(
     return StepMaps(grid.edges, grid.times, forcings, maps, steps if kept is None else lambda: kept)
 
 
+def padded(system: LTVSystem, extra: FloatArray) -> FloatArray:
+    """Forcings (n, columns) with columns of zeros behind, so that maps have the width of ``Steps.maps``."""
+    return np.pad(extra, ((0, 0), (0, -(system.size + 1 + extra.shape[1]) % _TOGETHER)))
+
+
 def _steps(
     system: LTVSystem, segment: IntArray, start: FloatArray, h: FloatArray, extra: FloatArray, stages: int
 ) -> Steps:
@@ -182,20 +187,28 @@ def _steps(
     only, so each step solves s equations instead of s m, for all unit states and forcings together.
     """
     m, k = system.size // 2, h.size
+    times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
+    gain = system.gain(times, np.repeat(segment, stages))
+    gains = [values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error)]
+    maps, inside = maps_of_steps(system, h, extra, gains)
+    pairs = gain.pairs
+    teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
+    return Steps(h, maps, inside, teeth.reshape(*teeth.shape[:2], k, stages))
+
+
+def maps_of_steps(
+    system: LTVSystem,
+    h: FloatArray,
+    extra: FloatArray,
+    gains: Sequence[FloatArray],
+) -> tuple[FloatArray, FloatArray]:
+    """``gauss_steps`` of lengths h (k,) with the three gains of the mesh at their stages, (k, s, m) each."""
     # Lengths that differ by the rounding of times are one: few are left where outputs are evenly spaced.
     _, first, which = np.unique(
         np.round(h / (_ROUNDING * system.period)), return_index=True, return_inverse=True
     )
-    lengths = h[first]
-    gauss = gauss_tableau(stages)
-    fixed = _without_mesh(system, lengths, extra, gauss)
-    times = (start[:, None] + h[:, None] * gauss[2]).ravel()
-    gain = system.gain(times, np.repeat(segment, stages))
-    gains = (values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error))
-    maps, inside = gauss_steps(which, *fixed, *gains)
-    pairs = gain.pairs
-    teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
-    return Steps(h, maps, inside, teeth.reshape(*teeth.shape[:2], k, stages))
+    fixed = _without_mesh(system, h[first], extra, gauss_tableau(gains[0].shape[1]))
+    return gauss_steps(which, *fixed, *gains)
 
 
 def _without_mesh(

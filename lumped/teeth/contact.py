@@ -1,8 +1,8 @@
 """Tables of the contact over a mesh cycle: what each place of a tooth pair has, for every kind of pair.
 
-A step of the integration has three nodes: its start, its middle and its end, the ends as limits from inside.
-All laws of a tooth pair repeat with every cycle, except for numbers that its own teeth bring: a constant
-error, the amounts of a profile slope and of more tip relief, and its kind, which is that of its faults.
+A step of the integration has nodes, its ends among them as limits from inside. All laws of a tooth pair
+repeat with every cycle, except for numbers that its own teeth bring: a constant error, the amounts of a
+profile slope and of more tip relief, and its kind, which is that of its faults.
 
 Sources: docs/theory/teeth.md, "Tables".
 """
@@ -10,7 +10,6 @@ Sources: docs/theory/teeth.md, "Tables".
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from lumped.quasi_static.loaded import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
+from lumped.teeth.kernels import Tables
 from lumped.teeth.pairs import first_teeth, own_teeth, period_of
 from lumped.typing import FloatArray, IntArray
 
@@ -30,51 +30,6 @@ from lumped.typing import FloatArray, IntArray
 _INSIDE = 1e-11
 #: Columns of ``Tables.shape``: a gear's constant error, profile slope and tip relief, pinion's then gear's.
 _SHAPES = 6
-
-
-@dataclass(frozen=True, eq=False)
-class Tables:
-    """Contact of every kind of pair (v) at the nodes of a mesh cycle; SI.
-
-    Attributes
-    ----------
-    edges : (steps + 1,) phases of the ends of the steps, 0 and 1 included
-    outputs : (steps,) whether a step starts at an output
-    ahead : (pairs,) whole pitches by which a place is ahead of the pair at A at the cycle's start; falling
-    place : (steps, 3, pairs) xi [m]
-    stiffness, damping : (v, steps, 3, pairs) k [N/m], zero where a pair is not followed, and c [N s/m]
-    friction : (steps, 3, pairs) mu
-    gap, gap_slope : (v, steps, 3, pairs) without corners and errors of single teeth [m], and over xi
-    shape, shape_slope : (steps, 3, pairs, 6) gap per unit of each number of a pair, and over xi
-    ends : (v, 5) L_XA, L_XD, L_XY, base radii, as in ``gap_at`` [m]
-    coupling : (1 or steps, 3, pairs, pairs) w_ij [m/N]
-    kinds : (z1, z2) kind of the pair of two teeth
-    numbers : ((z1, 3), (z2, 3)) error, profile slope, tip relief of the teeth [m]
-    constants : force F, lengthening, softening D, least load N_1, load of the full damper; see ``ContactLaw``
-    eccentric : (2, 5) amplitude, phase at t = 0, teeth, L and cot(alpha_w) of pinion and gear
-    period : mesh cycles until all repeats
-    first : teeth at A at t = 0, from 0
-    """
-
-    edges: FloatArray
-    outputs: IntArray
-    ahead: IntArray
-    place: FloatArray
-    stiffness: FloatArray
-    damping: FloatArray
-    friction: FloatArray
-    gap: FloatArray
-    gap_slope: FloatArray
-    shape: FloatArray
-    shape_slope: FloatArray
-    ends: FloatArray
-    coupling: FloatArray
-    kinds: IntArray
-    numbers: tuple[FloatArray, FloatArray]
-    constants: FloatArray
-    eccentric: FloatArray
-    period: int
-    first: IntArray
 
 
 class Laws:
@@ -164,7 +119,7 @@ class Laws:
         return np.asarray(2.0 * ratio * np.sqrt(k * mass), dtype=np.float64)
 
     def shapes(self, xi: FloatArray) -> FloatArray:
-        """Gap per unit of each number of a pair, (..., 6), see ``Tables.numbers``."""
+        """Gap per unit of each number of a pair, (..., 6), see ``Tables.pinion``."""
         g = self.geometry
         found = np.zeros((*xi.shape, _SHAPES))
         pitch = (g.L_XP, g.L_XY - g.L_XP)
@@ -204,7 +159,9 @@ class Laws:
         return np.array(rows)
 
 
-def tables(laws: Laws, largest_step: float, outputs: int) -> Tables:
+def tables(
+    laws: Laws, largest_step: float, outputs: int, nodes: FloatArray | tuple[float, ...] = (0.0,)
+) -> Tables:
     """Tables on steps that end at outputs and wherever a law jumps or has a kink.
 
     Parameters
@@ -212,6 +169,7 @@ def tables(laws: Laws, largest_step: float, outputs: int) -> Tables:
     laws : of the pair
     largest_step : in mesh cycles
     outputs : evenly spaced in a cycle, the first at its start
+    nodes : places in a step, rising from 0 to 1
     """
     g, pair = laws.geometry, laws.pair
     phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
@@ -233,7 +191,8 @@ def tables(laws: Laws, largest_step: float, outputs: int) -> Tables:
     starts = np.zeros(edges.size - 1, dtype=np.int64)
     starts[np.searchsorted(edges, even[:-1] - _INSIDE)] = 1
     low, high = edges[:-1], edges[1:]
-    tau = np.stack([low + _INSIDE, 0.5 * (low + high), high - _INSIDE], axis=1)
+    at = np.asarray(nodes, dtype=np.float64)
+    tau = np.clip(low[:, None] + (high - low)[:, None] * at, low[:, None] + _INSIDE, high[:, None] - _INSIDE)
     ahead = np.arange(
         int(np.ceil((laws.high - g.L_XA) / g.base_pitch)) - 1,
         int(np.floor((laws.low - g.L_XA) / g.base_pitch)) - 1,
@@ -244,24 +203,26 @@ def tables(laws: Laws, largest_step: float, outputs: int) -> Tables:
 
     def slope(function: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """Over xi, one-sided at the ends of a step."""
-        before = np.array([0.0, -1.0, -1.0])[:, None] * moved
-        after = np.array([1.0, 1.0, 0.0])[:, None] * moved
+        before = np.where(at > 0.0, -moved, 0.0)[:, None]
+        after = np.where(at < 1.0, moved, 0.0)[:, None]
         rise = function(place + after) - function(place + before)
-        return rise / (after - before).reshape((1, 3, 1) + (1,) * (rise.ndim - 3))
+        found: FloatArray = rise / (after - before).reshape((1, at.size, 1) + (1,) * (rise.ndim - 3))
+        return found
 
     kinds = range(len(laws.faults))
     k, c, gap = (np.stack(part) for part in zip(*(laws.of_kind(v, place) for v in kinds), strict=True))
     near = (place >= laws.low) & (place <= laws.high)
     neighbours = laws.mesh.neighbours if laws.loaded else ()
     flat = place.reshape(-1, ahead.size)[:, ::-1], near.reshape(-1, ahead.size)[:, ::-1]
-    coupling = np.zeros((1, 3, ahead.size, ahead.size))
+    coupling = np.zeros((1, at.size, ahead.size, ahead.size))
     if neighbours:
         found = coupled(neighbours, *flat)[:, ::-1, ::-1]
-        coupling = np.ascontiguousarray(found.reshape(edges.size - 1, 3, ahead.size, ahead.size))
-    teeth = own_teeth(pair)
+        coupling = np.ascontiguousarray(found.reshape(edges.size - 1, at.size, ahead.size, ahead.size))
+    pinion, gear = (np.stack([o.error, o.slope, o.relief], axis=1) for o in own_teeth(pair))
     inside = np.clip(place, g.L_XA + _INSIDE * g.base_pitch, g.L_XD - _INSIDE * g.base_pitch)
     return Tables(
         edges=edges,
+        nodes=at,
         outputs=starts,
         ahead=ahead,
         place=place,
@@ -275,9 +236,12 @@ def tables(laws: Laws, largest_step: float, outputs: int) -> Tables:
         ends=np.stack([laws.ends(v) for v in kinds]),
         coupling=coupling,
         kinds=laws.kinds,
-        numbers=tuple(np.stack([one.error, one.slope, one.relief], axis=1) for one in teeth),  # type: ignore[arg-type]
+        pinion=pinion,
+        gear=gear,
         constants=laws.constants(),
         eccentric=laws.eccentric(),
-        period=period_of(pair),
         first=np.array(first_teeth(pair), dtype=np.int64),
+        period=period_of(pair),
+        duration=g.mesh_period,
+        speed=g.omega_pinion * g.base_radius_pinion,
     )

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,57 @@ compiled = Compiler([Path(__file__), Path(quasi_static.__file__)])
 FIXED, FIXED_PUSH, PUSH, LINEAR = 0, 1, 2, 3
 _STEPS = 100
 _SETTLED = 1e-12
+
+
+class Tables(NamedTuple):
+    """Contact of every kind of pair (v) at the nodes of the steps of a mesh cycle; SI.
+
+    Attributes
+    ----------
+    edges : (steps + 1,) phases of the ends of the steps, 0 and 1 included
+    nodes : (nodes,) places in a step, 0 to 1; ends are limits from inside
+    outputs : (steps,) whether a step starts at an output
+    ahead : (pairs,) whole pitches by which a place is ahead of the pair at A at the cycle's start; falling
+    place : (steps, nodes, pairs) xi [m]
+    stiffness, damping : (v, steps, nodes, pairs) k [N/m], zero where a pair is not followed, and c [N s/m]
+    friction : (steps, nodes, pairs) mu
+    gap, gap_slope : (v, steps, nodes, pairs) without corners and errors of single teeth [m], and over xi
+    shape, shape_slope : (steps, nodes, pairs, 6) gap per unit of each number of a pair, and over xi
+    ends : (v, 5) L_XA, L_XD, L_XY, base radii, as in ``gap_at`` [m]
+    coupling : (1 or steps, nodes, pairs, pairs) w_ij [m/N]
+    kinds : (z1, z2) kind of the pair of two teeth
+    pinion, gear : (z1, 3), (z2, 3) error, profile slope, tip relief of the teeth [m]
+    constants : force F, lengthening, softening D, least load N_1, load of the full damper; see ``ContactLaw``
+    eccentric : (2, 5) amplitude, phase at t = 0, teeth, L and cot(alpha_w) of pinion and gear
+    first : teeth at A at t = 0, from 0
+    period : mesh cycles until all repeats
+    duration : of a mesh cycle [s]
+    speed : at which xi grows [m/s]
+    """
+
+    edges: FloatArray
+    nodes: FloatArray
+    outputs: IntArray
+    ahead: IntArray
+    place: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    friction: FloatArray
+    gap: FloatArray
+    gap_slope: FloatArray
+    shape: FloatArray
+    shape_slope: FloatArray
+    ends: FloatArray
+    coupling: FloatArray
+    kinds: IntArray
+    pinion: FloatArray
+    gear: FloatArray
+    constants: FloatArray
+    eccentric: FloatArray
+    first: IntArray
+    period: int
+    duration: float
+    speed: float
 
 
 @compiled
@@ -74,49 +126,64 @@ def gaps_of(
     node: int,
     corners: bool,
     moved: FloatArray,
-    longer: float,
-    ahead: IntArray,
-    place: FloatArray,
-    stiffness: FloatArray,
-    gap: FloatArray,
-    gap_slope: FloatArray,
-    shape: FloatArray,
-    shape_slope: FloatArray,
-    ends: FloatArray,
-    kinds: IntArray,
-    pinion: FloatArray,
-    gear: FloatArray,
-    first: IntArray,
+    own: Tables,
     k: FloatArray,
     kind: IntArray,
     found: FloatArray,
 ) -> None:
-    """Gaps of all places at the approach ``delta``: ``found`` (pairs, 3) is gap, over xi, over delta."""
-    for i in range(ahead.size):
-        number = cycle - ahead[i]
-        p, g = (first[0] + number) % pinion.shape[0], (first[1] + number) % gear.shape[0]
-        v = kinds[p, g]
-        kind[i], k[i] = v, stiffness[v, step, node, i]
+    """Gaps of all places at the approach ``delta``: ``found`` (pairs, 5) is gap, over xi, over delta.
+
+    The last two are the first two without corners, which do not depend on ``delta``.
+    """
+    for i in range(own.ahead.size):
+        number = cycle - own.ahead[i]
+        p, g = (own.first[0] + number) % own.pinion.shape[0], (own.first[1] + number) % own.gear.shape[0]
+        v = own.kinds[p, g]
+        kind[i], k[i] = v, own.stiffness[v, step, node, i]
         if k[i] <= 0.0:
             continue
-        value, slope, own = gap[v, step, node, i], gap_slope[v, step, node, i], 0.0
+        value, slope = own.gap[v, step, node, i] + moved[0], own.gap_slope[v, step, node, i]
         for s in range(3):
-            value += shape[step, node, i, s] * pinion[p, s] + shape[step, node, i, 3 + s] * gear[g, s]
-            slope += shape_slope[step, node, i, s] * pinion[p, s]
-            slope += shape_slope[step, node, i, 3 + s] * gear[g, s]
-        if corners:
-            half, length = 0.5 * (delta + longer), longer + moved[2]
-            xi = place[step, node, i]
-            early = ends[v, 0] - xi + half + ends[v, 4] * moved[3]
-            late = xi - ends[v, 1] + half + ends[v, 3] * moved[4]
-            if early > 0.0:
-                more, rise = corner(early, ends[v, 0] + length, ends[v, 2] + length, ends[v, 3], ends[v, 4])
-                value, slope, own = value + more, slope - rise, own + 0.5 * rise
-            if late > 0.0:
-                line = ends[v, 2] + length
-                more, rise = corner(late, line - ends[v, 1], line, ends[v, 4], ends[v, 3])
-                value, slope, own = value + more, slope + rise, own + 0.5 * rise
-        found[i, 0], found[i, 1], found[i, 2] = value + moved[0], slope, own
+            a, b = own.pinion[p, s], own.gear[g, s]
+            value += own.shape[step, node, i, s] * a + own.shape[step, node, i, 3 + s] * b
+            slope += own.shape_slope[step, node, i, s] * a + own.shape_slope[step, node, i, 3 + s] * b
+        found[i, 0], found[i, 1], found[i, 2], found[i, 3], found[i, 4] = value, slope, 0.0, value, slope
+    if corners:
+        add_corners(delta, step, node, moved, own, k, kind, found)
+
+
+@compiled
+def add_corners(
+    delta: float,
+    step: int,
+    node: int,
+    moved: FloatArray,
+    own: Tables,
+    k: FloatArray,
+    kind: IntArray,
+    found: FloatArray,
+) -> None:
+    """Add what tip corners make of ``gaps_of`` at the approach ``delta``."""
+    longer = own.constants[1]
+    half, length = 0.5 * (delta + longer), longer + moved[2]
+    for i in range(k.size):
+        if k[i] <= 0.0:
+            continue
+        found[i, 0], found[i, 1], found[i, 2] = found[i, 3], found[i, 4], 0.0
+        ends, xi = own.ends[kind[i]], own.place[step, node, i]
+        early = ends[0] - xi + half + ends[4] * moved[3]
+        late = xi - ends[1] + half + ends[3] * moved[4]
+        line = ends[2] + length
+        if early > 0.0:
+            more, rise = corner(early, ends[0] + length, line, ends[3], ends[4])
+            found[i, 0] += more
+            found[i, 1] -= rise
+            found[i, 2] += 0.5 * rise
+        if late > 0.0:
+            more, rise = corner(late, line - ends[1], line, ends[4], ends[3])
+            found[i, 0] += more
+            found[i, 1] += rise
+            found[i, 2] += 0.5 * rise
 
 
 @compiled
@@ -153,20 +220,7 @@ def settled(
     step: int,
     node: int,
     moved: FloatArray,
-    coupling: FloatArray,
-    constants: FloatArray,
-    ahead: IntArray,
-    place: FloatArray,
-    stiffness: FloatArray,
-    gap: FloatArray,
-    gap_slope: FloatArray,
-    shape: FloatArray,
-    shape_slope: FloatArray,
-    ends: FloatArray,
-    kinds: IntArray,
-    pinion: FloatArray,
-    gear: FloatArray,
-    first: IntArray,
+    own: Tables,
     k: FloatArray,
     kind: IntArray,
     gaps: FloatArray,
@@ -176,21 +230,23 @@ def settled(
 ) -> float:
     """Static approach near ``delta`` at which the loads make the force [m], or NaN; see ``gaps_of``."""
     low, high = -math.inf, math.inf
+    coupling, force = own.coupling[step if own.coupling.shape[0] > 1 else 0, node], own.constants[0]
+    gaps_of(delta, cycle, step, node, False, moved, own, k, kind, gaps)
+    away = force / max(k.max(), 1e-300)
     for _ in range(_STEPS):
-        gaps_of(
-            delta, cycle, step, node, True, moved, constants[1], ahead, place, stiffness, gap, gap_slope,
-            shape, shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps,
-        )  # fmt: skip
-        carried(delta, k, coupling, gaps, constants, loads, tangents, alone)
-        total, slope = loads.sum() - constants[0], 0.0
+        add_corners(delta, step, node, moved, own, k, kind, gaps)
+        carried(delta, k, coupling, gaps, own.constants, loads, tangents, alone)
+        total, slope = -force, 0.0
         for i in range(k.size):
+            total += loads[i]
             slope += tangents[i] * (1.0 - gaps[i, 2])
+        if abs(total) <= _SETTLED * force:
+            return delta
         if total < 0.0:
             low = delta
         else:
             high = delta
         # Newton's step; where it leaves the bracket, or nothing touches, bisect or go further.
-        away = constants[0] / max(k.max(), 1e-300)
         following = delta - total / slope if slope > 0.0 else delta + away
         if not low < following < high:
             if low > -math.inf and high < math.inf:
@@ -206,52 +262,68 @@ def settled(
 
 @compiled
 def static_cycles(
-    start: int,
-    cycles: int,
-    edges: FloatArray,
-    eccentric: FloatArray,
-    constants: FloatArray,
-    coupling: FloatArray,
-    ahead: IntArray,
-    place: FloatArray,
-    stiffness: FloatArray,
-    gap: FloatArray,
-    gap_slope: FloatArray,
-    shape: FloatArray,
-    shape_slope: FloatArray,
-    ends: FloatArray,
-    kinds: IntArray,
-    pinion: FloatArray,
-    gear: FloatArray,
-    first: IntArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Static approach (cycles, steps) [m] and loads (pairs, cycles, steps) [N] at the start of every step.
+    start: int, cycles: int, fixed: bool, own: Tables
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Mesh of consecutive cycles about its static state; NaN where no approach carries the force.
 
-    NaN where no approach carries the force.
+    Returns
+    -------
+    approach : (cycles, steps, nodes) static approach [m]
+    each : (4, pairs, cycles, steps) of every place at the first node of each step: static load [N], then the
+        load of small motions, rise delta + damper delta' + constant
+    sums : (cycles, steps, nodes, 14) of N, mu N and mu N xi by delta, by delta', and without motion; then
+        de/dtheta of both gears; then what dampers take, by delta'^2, delta' and without motion
+    ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
     """
-    steps, pairs = edges.size - 1, ahead.size
-    found, all_loads = np.empty((cycles, steps)), np.zeros((pairs, cycles, steps))
+    steps, nodes, pairs = own.edges.size - 1, own.nodes.size, own.ahead.size
+    approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
+    sums = np.zeros((cycles, steps, nodes, 14))
     loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 3)), np.zeros(pairs, np.int64), np.zeros(7)
-    delta = 0.0
+    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(7)
+    static = 0.0
     for c in range(cycles):
         for s in range(steps):
-            eccentric_at(start + c + edges[s], eccentric, moved)
-            w = coupling[s if coupling.shape[0] > 1 else 0, 0]
-            delta = settled(
-                0.0 if math.isnan(delta) else delta, start + c, s, 0, moved, w, constants, ahead, place,
-                stiffness, gap, gap_slope, shape, shape_slope, ends, kinds, pinion, gear, first, k, kind,
-                gaps, loads, tangents, alone,
-            )  # fmt: skip
-            found[c, s] = delta
-            for i in range(pairs):
-                all_loads[i, c, s] = loads[i]
-    return found, all_loads
+            for node in range(nodes):
+                tau = own.edges[s] + own.nodes[node] * (own.edges[s + 1] - own.edges[s])
+                eccentric_at(start + c + tau, own.eccentric, moved)
+                if fixed:
+                    gaps_of(0.0, start + c, s, node, False, moved, own, k, kind, gaps)
+                else:
+                    guess = 0.0 if math.isnan(static) else static
+                    static = settled(
+                        guess, start + c, s, node, moved, own, k, kind, gaps, loads, tangents, alone
+                    )
+                    approach[c, s, node] = static
+                row = sums[c, s, node]
+                row[9], row[10] = moved[5], moved[6]
+                for i in range(pairs):
+                    if k[i] <= 0.0 or not (fixed or loads[i] > 0.0):
+                        continue
+                    rise, part, load = k[i], 1.0, -k[i] * gaps[i, 0]
+                    if not fixed:
+                        part = min(loads[i] / own.constants[4], 1.0)
+                        part *= part * (3.0 - 2.0 * part)
+                        rise, load = tangents[i], loads[i] - tangents[i] * static
+                    c_i = own.damping[kind[i], s, node, i] * part
+                    closing, rolling = 1.0 - gaps[i, 2], gaps[i, 1] * own.speed + moved[1] / own.duration
+                    load -= c_i * rolling
+                    mu, xi = own.friction[s, node, i], own.place[s, node, i]
+                    for column, value in ((0, rise), (3, c_i * closing), (6, load)):
+                        row[column] += value
+                        row[column + 1] += mu * value
+                        row[column + 2] += mu * value * xi
+                    row[11] += c_i * closing**2
+                    row[12] -= 2.0 * c_i * closing * rolling
+                    row[13] += c_i * rolling**2
+                    if node == 0:
+                        each[0, i, c, s] = loads[i]
+                        each[1, i, c, s], each[2, i, c, s], each[3, i, c, s] = rise, c_i * closing, load
+    return approach, each, sums
 
 
 @compiled
 def motion_cycles(
-    form: int,
+    corners: bool,
     start: int,
     cycles: int,
     recorded: int,
@@ -265,55 +337,35 @@ def motion_cycles(
     per_torque: FloatArray,
     bearing: FloatArray,
     sliding: FloatArray,
-    period: float,
-    edges: FloatArray,
-    outputs: IntArray,
-    damping: FloatArray,
-    friction: FloatArray,
-    speed: float,
-    eccentric: FloatArray,
-    constants: FloatArray,
-    coupling: FloatArray,
-    ahead: IntArray,
-    place: FloatArray,
-    stiffness: FloatArray,
-    gap: FloatArray,
-    gap_slope: FloatArray,
-    shape: FloatArray,
-    shape_slope: FloatArray,
-    ends: FloatArray,
-    kinds: IntArray,
-    pinion: FloatArray,
-    gear: FloatArray,
-    first: IntArray,
+    own: Tables,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Motion over mesh cycles by the classical Runge-Kutta method of order 4.
+    """Motion of teeth that push only over mesh cycles by the classical Runge-Kutta method of order 4.
 
-    ``form`` is one of the four above; ``constant`` (m, 2m) acceleration of z per z and z' with the teeth
-    apart, ``per_load`` (3, m) per N, F and F xi, ``per_moment`` (2, m) per moment on pinion and gear,
-    ``torque`` (m,) that of both torques, ``ripple`` (n, 5) shaft, angle a cycle, phase, amplitude, cycles
-    of its turn, ``per_torque`` (2, m) per torque;
+    ``corners``: own gaps and tip corners, else the windows of the tables; ``constant`` (m, 2m) acceleration
+    of z per z and z' with the teeth apart, ``per_load`` (3, m) per N, F and F xi, ``per_moment`` (2, m) per
+    moment on pinion and gear, ``torque`` (m,) that of both torques, ``ripple`` (n, 5) shaft, angle a cycle,
+    phase, amplitude, cycles of its turn, ``per_torque`` (2, m) per torque;
     ``bearing`` (m, m) gives the power of the supports, ``sliding`` (3, m) the sliding velocity per z', as
     constant and per xi: rows pinion, gear, y. Returned are the states (outputs, 2m) and loads (pairs,
     outputs) of the last ``recorded`` cycles, the state at the end, and over these cycles the integrals of
-    sliding, tooth dampers, supports, work of the teeth on both gears, of e's moments [J], and of N [N s].
+    sliding, tooth dampers, supports, and work of the teeth on both gears [J].
     """
-    m, pairs, steps = deflection.size, ahead.size, edges.size - 1
-    count = recorded * outputs.sum()
+    m, pairs, steps = deflection.size, own.ahead.size, own.edges.size - 1
+    count = recorded * own.outputs.sum()
     states, record = np.empty((count, 2 * m)), np.zeros((pairs, count))
-    work = np.zeros(6)
+    work = np.zeros(4)
     x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
-    power = np.zeros(6)
+    power = np.zeros(4)
     loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 3)), np.zeros(pairs, np.int64), np.zeros(7)
-    static, normal = 0.0, np.zeros(pairs)
+    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(7)
+    normal = np.zeros(pairs)
     row = 0
     for c in range(cycles):
         cycle = start + c
         keeps = c >= cycles - recorded
         for s in range(steps):
-            h = (edges[s + 1] - edges[s]) * period
-            w = coupling[s if coupling.shape[0] > 1 else 0]
+            h = (own.edges[s + 1] - own.edges[s]) * own.duration
+            w = own.coupling[s if own.coupling.shape[0] > 1 else 0]
             for stage in range(4):
                 node = (stage + 1) // 2
                 if stage == 0:
@@ -326,25 +378,13 @@ def motion_cycles(
                 for j in range(m):
                     delta += deflection[j] * at[j]
                     closing += deflection[j] * at[m + j]
-                tau = edges[s] + 0.5 * node * (edges[s + 1] - edges[s])
-                eccentric_at(cycle + tau, eccentric, moved)
-                e_rate = moved[1] / period
-                if form == LINEAR:
-                    if stage != 2:  # the middle of a step once
-                        static = settled(
-                            static, cycle, s, node, moved, w[node], constants, ahead, place, stiffness, gap,
-                            gap_slope, shape, shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps,
-                            loads, tangents, alone,
-                        )  # fmt: skip
-                else:
-                    gaps_of(
-                        delta, cycle, s, node, form == PUSH, moved, constants[1], ahead, place, stiffness,
-                        gap, gap_slope, shape, shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps,
-                    )  # fmt: skip
-                    if form == PUSH:
-                        carried(delta, k, w[node], gaps, constants, loads, tangents, alone)
-                sums = 0.0
-                friction_sum, friction_arm = 0.0, 0.0
+                tau = own.edges[s] + own.nodes[node] * (own.edges[s + 1] - own.edges[s])
+                eccentric_at(cycle + tau, own.eccentric, moved)
+                e_rate = moved[1] / own.duration
+                gaps_of(delta, cycle, s, node, corners, moved, own, k, kind, gaps)
+                if corners:
+                    carried(delta, k, w[node], gaps, own.constants, loads, tangents, alone)
+                sums, friction_sum, friction_arm = 0.0, 0.0, 0.0
                 power[:] = 0.0
                 v_p, v_g, v_y = sliding[0, m], sliding[1, m], 0.0
                 for j in range(m):
@@ -355,36 +395,29 @@ def motion_cycles(
                     normal[i] = 0.0
                     if k[i] <= 0.0:
                         continue
-                    c_i = damping[kind[i], s, node, i]
-                    pressing = closing * (1.0 - gaps[i, 2]) - gaps[i, 1] * speed - e_rate
-                    if form <= FIXED_PUSH:
-                        load = k[i] * (delta - gaps[i, 0]) + c_i * pressing
-                        damped = c_i * pressing
-                    else:
+                    c_i = own.damping[kind[i], s, node, i]
+                    pressing = closing * (1.0 - gaps[i, 2]) - gaps[i, 1] * own.speed - e_rate
+                    if corners:
                         if loads[i] <= 0.0:
                             continue
-                        part = min(loads[i] / constants[4], 1.0)
+                        part = min(loads[i] / own.constants[4], 1.0)
                         c_i *= part * part * (3.0 - 2.0 * part)
-                        damped = c_i * pressing
-                        load = loads[i] + damped
-                        if form == LINEAR:
-                            load += tangents[i] * (delta - static)
-                    if form != FIXED and form != LINEAR and load < 0.0:
-                        load = 0.0
-                        damped = 0.0
+                        load = loads[i] + c_i * pressing
+                    else:
+                        load = k[i] * (delta - gaps[i, 0]) + c_i * pressing
+                    if load <= 0.0:
+                        continue
                     normal[i] = load
-                    xi = place[s, node, i]
-                    f = friction[s, node, i] * load
+                    xi = own.place[s, node, i]
+                    f = own.friction[s, node, i] * load
                     sums += load
                     friction_sum += f
                     friction_arm += f * xi
                     power[0] += f * (v_p * xi - v_g * (sliding[2, m] - xi) - v_y)
-                    power[1] += damped * pressing
+                    power[1] += c_i * pressing**2
                 # The moments of e work on the vibration too.
                 v_p, v_g = v_p - sliding[0, m], v_g - sliding[1, m]
                 power[3] = sums * (closing - e_rate - moved[5] * v_p - moved[6] * v_g)
-                power[4] = sums * e_rate
-                power[5] = sums
                 for j in range(m):
                     acceleration = torque[j]
                     acceleration += sums * (
@@ -407,9 +440,9 @@ def motion_cycles(
                         along += bearing[j, n] * at[m + n]
                     power[2] += at[m + j] * along
                 weight = h / (3.0 if 0 < stage < 3 else 6.0)
-                for n in range(6):
+                for n in range(4):
                     work[n] += weight * power[n]
-                if stage == 0 and outputs[s] == 1:
+                if stage == 0 and own.outputs[s] == 1:
                     for j in range(2 * m):
                         states[row, j] = x[j]
                     for i in range(pairs):
@@ -418,69 +451,3 @@ def motion_cycles(
             for j in range(2 * m):
                 x[j] += h / 6.0 * (rate[0, j] + 2.0 * rate[1, j] + 2.0 * rate[2, j] + rate[3, j])
     return states, record, x, work
-
-
-@compiled
-def tangents_of_cycle(
-    cycle: int,
-    static: float,
-    loaded: bool,
-    edges: FloatArray,
-    damping: FloatArray,
-    friction: FloatArray,
-    eccentric: FloatArray,
-    constants: FloatArray,
-    coupling: FloatArray,
-    ahead: IntArray,
-    place: FloatArray,
-    stiffness: FloatArray,
-    gap: FloatArray,
-    gap_slope: FloatArray,
-    shape: FloatArray,
-    shape_slope: FloatArray,
-    ends: FloatArray,
-    kinds: IntArray,
-    pinion: FloatArray,
-    gear: FloatArray,
-    first: IntArray,
-) -> tuple[FloatArray, float]:
-    """Mesh of one cycle about its static state, at the nodes of the steps (steps, 3, 8), and the approach.
-
-    Columns: d of the sums N, F and F xi over delta and over its rate, then de/dtheta of both gears.
-    ``static`` is an approach near that of the first node.
-    """
-    steps, pairs = edges.size - 1, ahead.size
-    found = np.zeros((steps, 3, 8))
-    loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 3)), np.zeros(pairs, np.int64), np.zeros(7)
-    for s in range(steps):
-        w = coupling[s if coupling.shape[0] > 1 else 0]
-        for node in range(3):
-            tau = edges[s] + 0.5 * node * (edges[s + 1] - edges[s])
-            eccentric_at(cycle + tau, eccentric, moved)
-            if loaded:
-                static = settled(
-                    static, cycle, s, node, moved, w[node], constants, ahead, place, stiffness, gap,
-                    gap_slope, shape, shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps, loads,
-                    tangents, alone,
-                )  # fmt: skip
-            else:
-                gaps_of(
-                    0.0, cycle, s, node, False, moved, 0.0, ahead, place, stiffness, gap, gap_slope, shape,
-                    shape_slope, ends, kinds, pinion, gear, first, k, kind, gaps,
-                )  # fmt: skip
-            for i in range(pairs):
-                if k[i] <= 0.0 or (loaded and loads[i] <= 0.0):
-                    continue
-                rise, damper = k[i], damping[kind[i], s, node, i]
-                if loaded:
-                    part = min(loads[i] / constants[4], 1.0)
-                    rise = tangents[i]
-                    damper *= part * part * (3.0 - 2.0 * part) * (1.0 - gaps[i, 2])
-                mu = friction[s, node, i]
-                for column, value in ((0, rise), (3, damper)):
-                    found[s, node, column] += value
-                    found[s, node, column + 1] += mu * value
-                    found[s, node, column + 2] += mu * value * place[s, node, i]
-            found[s, node, 6], found[s, node, 7] = moved[5], moved[6]
-    return found, static

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.errors import NumericalError, refuse
-from lumped.labelling import Variable, provenance
+from lumped.errors import NumericalError
+from lumped.labelling import Variable
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import fastest_frequency
@@ -22,15 +22,13 @@ from lumped.model.steady import periodic_solution
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
-from lumped.teeth.contact import Laws, Tables, tables
-from lumped.teeth.pairs import first_teeth, numbers, period_of
+from lumped.teeth.contact import Laws, tables
+from lumped.teeth.kernels import Tables
+from lumped.teeth.pairs import first_teeth, numbers
 from lumped.typing import FloatArray, IntArray
 
 if TYPE_CHECKING:
     import xarray as xr
-
-#: How the teeth touch in the motion over a period of teeth that differ.
-Touch = Literal["push_only", "linear"]
 
 #: Form of the kernels -> how a result says it.
 FORMS = (
@@ -61,7 +59,7 @@ class OwnMotion:
     time : (k,) [s]
     states : (k, n)
     load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
-    brake_torque : mean torque that holds the mean speed against moments [N m]
+    pinion_torque, brake_torque : mean torques that hold the mean speed against moments [N m]
     powers : mean power of sliding, tooth dampers, supports, and of the gap that closes as the teeth roll [W]
     closure : mismatch of the state after the period, over the largest displacement
     error : difference of the dynamic transmission error to that of steps four times longer, over its
@@ -76,6 +74,7 @@ class OwnMotion:
     time: FloatArray
     states: FloatArray
     load: FloatArray
+    pinion_torque: float
     brake_torque: float
     powers: dict[str, float]
     closure: float
@@ -89,7 +88,7 @@ class OwnMotion:
 
     def balance(self, conservative: bool) -> dict[str, float]:
         """Torques that hold the mean speed [N m] and efficiency, as of ``lumped.model.powers.balance``."""
-        g, torque = self.pair.geometry, self.system.pinion_torque
+        g, torque = self.pair.geometry, self.pinion_torque
         brake = self.brake_torque - (self.powers["rolling"] / g.omega_gear if conservative else 0.0)
         efficiency = brake * g.omega_gear / (torque * g.omega_pinion)
         return {"brake_torque": brake, "pinion_torque": torque, "mesh_efficiency": efficiency}
@@ -123,26 +122,16 @@ class OwnMotion:
         return PairState(repeated(own.place), touches, k, c, mu, gap, np.zeros(gap.shape))
 
 
-def form_of(pair: GearPair, touch: Touch) -> int:
-    """Form of the kernels: by the pair's form of contact, and whether teeth only push."""
-    if touch not in ("push_only", "linear"):
-        raise refuse("touch", touch, "'push_only' or 'linear'", "Choose one of them.")
-    push = touch == "push_only"
-    if pair.mesh.contact == "loaded":
-        return kernels.PUSH if push else kernels.LINEAR
-    return kernels.FIXED_PUSH if push else kernels.FIXED
-
-
 def steps_of(system: LTVSystem) -> int:
     """Steps in a mesh cycle that the fastest vibration asks for."""
     swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
     return max(_LEAST_STEPS, math.ceil(_STEPS * swings))
 
 
-def own_motion(
-    pair: GearPair, samples: int, touch: Touch, supports: Supports = "springs", steps: int | None = None
+def push_motion(
+    pair: GearPair, samples: int, supports: Supports = "springs", steps: int | None = None
 ) -> OwnMotion:
-    """Periodic motion of a pair whose teeth differ.
+    """Periodic motion of a pair whose teeth differ and push only.
 
     Started from the motion of the healthy twin, it is followed until the start has faded, then recorded
     over one period. A first run with coarser steps gives the brake torque, which the common rotation alone
@@ -152,11 +141,10 @@ def own_motion(
     ----------
     pair : a validated gear pair
     samples : outputs a mesh cycle
-    touch : whether teeth push only, or are tied to a linear law
     supports : as of ``periodic_system``
     steps : least number of steps in a mesh cycle; by default by the fastest vibration
     """
-    form = form_of(pair, touch)
+    form = kernels.PUSH if pair.mesh.contact == "loaded" else kernels.FIXED_PUSH
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     laws = Laws(pair)
@@ -167,10 +155,18 @@ def own_motion(
     m = weights.size
     coarse = np.zeros(0)
     for part in (4, 1):
-        own = tables(laws, part / steps, samples)
+        own = tables(laws, part / steps, samples, (0.0, 0.5, 1.0))
         torques = system.pinion_torque * system.torque_pinion + brake * system.torque_gear
         states, load, end, work = run(
-            pair, own, system, form, -settling, settling + own.period, own.period, state, torques
+            pair,
+            own,
+            system,
+            form == kernels.PUSH,
+            -settling,
+            settling + own.period,
+            own.period,
+            state,
+            torques,
         )
         if not np.isfinite(end).all():
             raise NumericalError(
@@ -204,7 +200,19 @@ def own_motion(
     named = {name: float(value) for name, value in powers.items()}
     error /= float(np.abs(coarse).max())
     return OwnMotion(
-        pair, system, own, form, time, states, load, brake, named, closed, error, twin.spectral_radius
+        pair,
+        system,
+        own,
+        form,
+        time,
+        states,
+        load,
+        system.pinion_torque,
+        brake,
+        named,
+        closed,
+        error,
+        twin.spectral_radius,
     )
 
 
@@ -226,7 +234,7 @@ def run(
     pair: GearPair,
     own: Tables,
     system: LTVSystem,
-    form: int,
+    corners: bool,
     start: int,
     cycles: int,
     recorded: int,
@@ -242,7 +250,7 @@ def run(
     sliding[:, m] = g.omega_pinion, g.omega_gear, g.L_XY
     supports = _power_matrix(system)
     return kernels.motion_cycles(
-        form,
+        corners,
         start,
         cycles,
         recorded,
@@ -256,22 +264,8 @@ def run(
         np.stack([system.torque_pinion[m:], system.torque_gear[m:]]),
         supports,
         sliding,
-        system.period,
-        own.edges,
-        own.outputs,
-        own.damping,
-        own.friction,
-        g.omega_pinion * g.base_radius_pinion,
-        *arguments(own),
+        own,
     )
-
-
-def arguments(own: Tables) -> tuple[Any, ...]:
-    """What statics and motion read of the tables, in the order of their arguments."""
-    return (
-        own.eccentric, own.constants, own.coupling, own.ahead, own.place, own.stiffness, own.gap,
-        own.gap_slope, own.shape, own.shape_slope, own.ends, own.kinds, *own.numbers, own.first,
-    )  # fmt: skip
 
 
 def ripples(pair: GearPair) -> FloatArray:
@@ -308,27 +302,22 @@ def _settling(radius: float) -> int:
     return found
 
 
-def static_loads(own: Tables, start: int, cycles: int) -> tuple[FloatArray, FloatArray]:
-    """Static approach (cycles, steps) [m] and loads (pairs, cycles, steps) [N], as the kernel's."""
-    approach, loads = kernels.static_cycles(start, cycles, own.edges, *arguments(own))
-    if not np.isfinite(approach).all():
+def static_mesh(
+    own: Tables, start: int, cycles: int, fixed: bool = False
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """``kernels.static_cycles``, or an error where no approach carries the load."""
+    approach, each, sums = kernels.static_cycles(start, cycles, fixed, own)
+    if not (np.isfinite(approach).all() and np.isfinite(sums).all()):
         raise NumericalError(
             "At some position no tooth pair can carry the load: check stiffness and deviations."
         )
-    return approach, loads
+    return approach, each, sums
 
 
 def default_samples(period: int) -> int:
     """Outputs a mesh cycle: fewer, the more cycles a period has; a power of two."""
     found: int = 2 ** int(math.log2(_ALL_SAMPLES / period))
     return min(max(found, _LEAST_SAMPLES), _MOST_SAMPLES)
-
-
-def own_steady_state(pair: GearPair, samples: int | None, touch: Touch, supports: Supports) -> xr.Dataset:
-    """The result of ``lumped.steady_state`` of a pair whose teeth differ."""
-    count = default_samples(period_of(pair)) if samples is None else samples
-    motion = own_motion(pair, count, touch, supports)
-    return labelled_motion(motion, provenance(pair, samples_per_cycle=count, touch=touch))
 
 
 def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset:

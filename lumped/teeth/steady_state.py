@@ -6,17 +6,23 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque"; docs/
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from lumped.arguments import whole_number
+from lumped.arguments import one_of, whole_number
 from lumped.errors import refuse
+from lumped.labelling import provenance
 from lumped.model.periodic_system import Supports
 from lumped.model.solution import steady_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.teeth.motion import Touch, own_steady_state
+from lumped.teeth.linear import linear_motion
+from lumped.teeth.motion import default_samples, labelled_motion, push_motion
+from lumped.teeth.pairs import period_of
 
 if TYPE_CHECKING:
     import xarray as xr
+
+#: How the teeth touch in the motion over a period of teeth that differ.
+Touch = Literal["push_only", "linear"]
 
 
 def steady_state(
@@ -32,7 +38,7 @@ def steady_state(
     Teeth differ by deviations, an eccentric mounting or faults; a ripple of a torque has a period of its own
     too. Then the motion is that over a revolution or the hunting period, see ``revolution``: every meeting
     pair has its own gap with its own tip corners, its own stiffness, and pushes only. It is settled from
-    the motion of like teeth.
+    the motion of like teeth; the linear form is closed over the period by the maps of its mesh cycles.
 
     Parameters
     ----------
@@ -43,8 +49,7 @@ def steady_state(
         ``bearing_force`` over ``bearing`` and ``direction`` is the force of each bearing on its shaft, and
         ``power_shafts`` what the shafts' damping takes [W]
     touch : of teeth that differ: "push_only", or "linear", the linear form about the own static state of
-        every
-        pair (with prescribed contact: in its fixed windows), which stability and sweeps rest on
+        every pair (with prescribed contact: in its fixed windows), which stability and sweeps rest on
 
     Returns
     -------
@@ -57,14 +62,13 @@ def steady_state(
     largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it.
     Of teeth that differ also ``pinion_tooth`` and ``gear_tooth`` of each ``pair`` and time, counted from 1,
     and the attributes ``period_cycles`` [mesh cycles] and ``touch``, the form of contact that was used;
-    ``error_estimate`` is then the difference to steps four times longer, and ``spectral_radius`` that of
+    ``error_estimate`` is then the difference to longer steps, and ``spectral_radius`` that of
     the twin with like teeth
 
     Raises
     ------
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists; teeth that
-        differ
-        have no motion with their period, or one that settles too slowly
+        differ have no motion with their period, or one that settles too slowly
     """
     pair = load_gear_pair(pair)
     if samples_per_cycle is not None:
@@ -75,4 +79,7 @@ def steady_state(
         )
     if as_printed:
         raise refuse("as_printed", list(as_printed), "() where teeth differ", "Use pair.healthy.")
-    return own_steady_state(pair, samples_per_cycle, touch, supports)
+    one_of("touch", touch, ("push_only", "linear"))
+    count = default_samples(period_of(pair)) if samples_per_cycle is None else samples_per_cycle
+    motion = (linear_motion if touch == "linear" else push_motion)(pair, count, supports)
+    return labelled_motion(motion, provenance(pair, samples_per_cycle=count, touch=touch))

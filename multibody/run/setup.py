@@ -17,7 +17,7 @@ from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
-from lumped.teeth.motion import own_motion
+from lumped.teeth.motion import push_motion
 from lumped.typing import FloatArray
 from multibody.contact import layout as kn
 from multibody.contact.kernels import nominal_friction
@@ -202,7 +202,7 @@ def _on_springs(
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
     if pair.healthy is not pair:
-        own = own_motion(pair, 8, "push_only")
+        own = push_motion(pair, 8)
         balance = replace(balance, states=own.states[:1])
         mean_balance = own.balance(conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]

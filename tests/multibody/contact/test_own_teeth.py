@@ -5,7 +5,7 @@ import pytest
 
 import lumped
 import multibody
-from lumped.teeth.motion import own_motion
+from lumped.teeth.motion import push_motion
 
 CYCLES, SAMPLES = 14, 16
 ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
@@ -32,7 +32,7 @@ def both(pair):
     def of(changes):
         own = pair.with_(changes)
         run = multibody.simulate(own, CYCLES, initial="periodic", samples_per_cycle=SAMPLES)
-        lump = own_motion(own, SAMPLES, "push_only")
+        lump = push_motion(own, SAMPLES)
         dte = lump.states[:, :6] @ lump.system.structure.deflection
         part = slice(6 * SAMPLES, CYCLES * SAMPLES)
         return run.dte.values[part] * 1e6, dte[part] * 1e6
