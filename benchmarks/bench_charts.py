@@ -18,7 +18,7 @@ from scipy import ndimage
 
 from floquet import stability_chart
 from floquet.engine.multipliers import radii_with_bounds, verdicts
-from floquet.engine.refinement import refine
+from floquet.engine.refinement import gaps, refine
 from floquet.gear.axes import speed_range
 from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError, SpurcheckError
@@ -120,11 +120,13 @@ def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
     return pair, axes
 
 
-def at_random(count: int) -> None:
-    rng, rows = np.random.default_rng(34), []
+def at_random(count: int, seed: int, *, damping: bool) -> None:
+    rng, rows = np.random.default_rng(seed), []
     while len(rows) < count:
         try:
             pair, axes = random_chart(rng)
+            if "damping_ratio" in axes and not damping:
+                continue
             got, seconds = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes, rtol=1e-9))
             full, whole = cpu(
                 lambda pair=pair, axes=axes: stability_chart(pair, axes, rtol=1e-9, refine=False)
@@ -139,7 +141,8 @@ def at_random(count: int) -> None:
     total = numbers.sum(axis=0)
     shares = numbers[:, 3]
     print(
-        f"{count} random pairs and axes: {total[0]:.0f} regions, {total[1]:.0f} lost, "
+        f"{count} random pairs and axes{'' if damping else ' other than damping'}: "
+        f"{total[0]:.0f} regions, {total[1]:.0f} lost, "
         f"{total[2]:.0f} wrong verdicts; evaluated {shares.min():.1%} to {shares.max():.1%}, "
         f"median {np.median(shares):.1%}; all evaluated nodes proven in {np.mean(numbers[:, 4] == 1.0):.0%} "
         f"of the charts; {total[5]:.0f} s against {total[6]:.0f} s"
@@ -152,10 +155,11 @@ def closed_forms(n: int) -> None:
 
     def ask(flat: Any) -> Any:
         i, j = np.unravel_index(flat, (n, n))
-        radius, error = radii_with_bounds(*mathieu_many(a[i], q[j]))
-        return radius, verdicts(radius, error).astype(np.intp)
+        values, errors = mathieu_many(a[i], q[j])
+        radius, error = radii_with_bounds(values, errors)
+        return radius, verdicts(radius, error).astype(np.intp), gaps(values)
 
-    got, seconds = cpu(lambda: refine((n, n), np.ones(n), ask, rows=(0, -1)))
+    got, seconds = cpu(lambda: refine((n, n), np.ones(n), ask, rows=(0, n // 2, -1)))
     wrong = thin = 0
     for j in range(1, n):
         unstable, edges = mathieu_unstable(a, float(q[j]))
@@ -176,10 +180,12 @@ def closed_forms(n: int) -> None:
         i, j = np.unravel_index(flat, (n, n))
         half = 0.5 * np.abs(trace(delta[i], epsilon[j]))
         radius = np.where(half > 1.0, half + np.sqrt(np.maximum(half**2 - 1.0, 0.0)), 1.0)
-        return radius, verdicts(radius, np.full(radius.size, 1e-9)).astype(np.intp)
+        angle = np.arccos(np.clip(0.5 * trace(delta[i], epsilon[j]), -1.0, 1.0))
+        values = np.exp(1j * np.stack([angle, -angle], axis=1)) * np.stack([radius, 1.0 / radius], axis=1)
+        return radius, verdicts(radius, np.full(radius.size, 1e-9)).astype(np.intp), gaps(values)
 
     assert abs(trace(3.0, 0.2) - meissner_trace(3.0, 0.2)) < 1e-12
-    got, seconds = cpu(lambda: refine((n, n), np.ones(n), meissner, rows=(0, -1)))
+    got, seconds = cpu(lambda: refine((n, n), np.ones(n), meissner, rows=(0, n // 2, -1)))
     exact = np.abs(trace(delta[:, None], epsilon))
     off = ((got.verdict < 0) != (exact > 2.0)) & (np.abs(exact - 2.0) > 1e-8)
     share = f"{got.known.mean():.2%} evaluated, {seconds:.1f} s"
@@ -189,5 +195,6 @@ def closed_forms(n: int) -> None:
 if __name__ == "__main__":
     warnings.simplefilter("ignore")
     by_size()
-    at_random(int(sys.argv[1]) if len(sys.argv) > 1 else 40)
+    for seed, damping in ((34, True), (35, False), (36, False)):
+        at_random(int(sys.argv[1]) if len(sys.argv) > 1 else 40, seed, damping=damping)
     closed_forms(2000)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort, monodromy
 from floquet.engine.multipliers import Spectrum, radii_with_bounds, verdicts
+from floquet.engine.refinement import gaps
 from floquet.engine.refinement import refine as refined
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import of_type, real_numbers, some_of
@@ -83,6 +84,7 @@ class ChartPoints:
     verdict : (count,) 1 stable, 0 undecided, -1 unstable
     proven : (count,) whether the error is a proven bound
     known : (count,) whether the point was evaluated; the others are interpolated
+    gap : (count,) `gaps` of evaluated points; None where tongues are not searched by them
     multipliers, multiplier_errors : (count, size) the largest modulus first; None without ``everything``
     """
 
@@ -91,17 +93,25 @@ class ChartPoints:
         self.radius, self.error = np.empty(count), np.empty(count)
         self.verdict = np.zeros(count, dtype=np.int8)
         self.proven, self.known = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.gap: FloatArray | None = None
         self.multipliers: ComplexArray | None = None
         self.multiplier_errors: FloatArray | None = None
 
     def put(
-        self, points: IntArray, values: ComplexArray, errors: FloatArray, proven: bool | BoolArray
+        self,
+        points: IntArray,
+        values: ComplexArray,
+        errors: FloatArray,
+        proven: bool | BoolArray,
+        coupled: int | None = None,
     ) -> None:
-        """Take the multipliers (k, size) of some points (k,) and bounds on their errors."""
+        """Take multipliers (k, size) of points (k,), the ``coupled`` first, and bounds on their errors."""
         radius, error = radii_with_bounds(values, errors)
         self.radius[points], self.error[points] = radius, error
         self.verdict[points] = verdicts(radius, error)
         self.proven[points], self.known[points] = proven, True
+        if self.gap is not None:
+            self.gap[points] = gaps(values[:, :coupled])
         if not self.everything:
             return
         if self.multipliers is None or self.multiplier_errors is None:
@@ -114,8 +124,6 @@ class ChartPoints:
 
 #: Charts of no more nodes are evaluated at each of them.
 SMALL = 1024
-#: Rows that seed the search where none is known to have the widest regions.
-_ROWS = 32
 #: Evaluates points by their place in the chart and puts them into its `ChartPoints`.
 Evaluate = Callable[[IntArray], None]
 
@@ -140,7 +148,7 @@ def refine_planes(
     evaluate : of some points
     cycles : cycles in a unit of time at the values of the first axis of the plane; None: equal ones
     lowest_alone : whether regions are widest where the second axis of the plane is lowest: then that row
-        seeds the search, else some `_ROWS` rows do
+        seeds the search, else three rows do, and `gaps`
     progress : told the finished fraction
     """
     names = list(grid)
@@ -149,14 +157,17 @@ def refine_planes(
     index = np.arange(math.prod(shape)).reshape(shape).transpose(order)
     first, second = (np.argsort(grid[name]) for name in plane)
     index = index[first][:, second].reshape(first.size, second.size, -1)
-    rows = (0,) if lowest_alone else (*range(0, second.size, max(1, second.size // _ROWS)), -1)
+    rows = (0,) if lowest_alone else (0, second.size // 2, -1)
+    points.gap = None if lowest_alone else np.zeros(points.radius.size)
     smooth = np.ones(first.size) if cycles is None else cycles[first]
     for k in range(index.shape[2]):
         here = index[:, :, k].ravel()
 
-        def ask(nodes: IntArray, here: IntArray = here) -> tuple[FloatArray, IntArray]:
-            evaluate(here[nodes])
-            return points.radius[here[nodes]], points.verdict[here[nodes]].astype(np.intp)
+        def ask(nodes: IntArray, here: IntArray = here) -> tuple[FloatArray, IntArray, FloatArray]:
+            at = here[nodes]
+            evaluate(at)
+            gap = np.zeros(at.size) if points.gap is None else points.gap[at]
+            return points.radius[at], points.verdict[at].astype(np.intp), gap
 
         def tell(fraction: float, stage: str = "", /, k: int = k) -> None:
             if progress is not None:

@@ -3,7 +3,9 @@
 A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
 cycles in a unit of time, is bilinear in it to the tolerance; else it is cut. Whole rows of the second axis
 are evaluated first to seed the search: the lowest alone of damping, where tongues are widest; of other
-parameters several.
+parameters three. Over those a box is also cut where two multipliers may meet in it, since tongues begin
+there: until their angles change by no more than 1.5 times their decay in a cycle, so that a tongue of any
+order shows at a node.
 
 Both sides of every edge are evaluated. A region can be missed that lies wholly inside a leaf and touches
 neither these rows nor an evaluated node.
@@ -19,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from lumped.typing import BoolArray, FloatArray, IntArray, Progress
+from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progress
 
 #: Largest error of the spectral radius at an interpolated node, above 1 relative to the radius.
 TOLERANCE = 4e-3
@@ -28,9 +30,14 @@ _FIRST = 64
 #: Misfits along both axes within this factor cut a box along both.
 _ALIKE = 2.0
 _LEAST_RADIUS = 1e-12
+#: Largest excess of the radius over 1 in an unstable box that is no longer cut, over the least: near an edge
+#: it falls to 0, and may do so between nodes.
+_EXCESS = 8.0
+#: Change of the `gaps` in a box that is no longer cut for their sake, over the least of them.
+_PER_DECAY = 1.5
 
-#: Flat indices (k,) of nodes -> their spectral radius and verdict (k,).
-Ask = Callable[[IntArray], tuple[FloatArray, IntArray]]
+#: Flat indices (k,) of nodes -> their spectral radius, verdict and `gaps` (k,); gaps of 0 are not followed.
+Ask = Callable[[IntArray], tuple[FloatArray, IntArray, FloatArray]]
 Box = tuple[int, int, int, int]
 
 
@@ -50,6 +57,20 @@ class Refined:
     verdict: IntArray
     known: BoolArray
     misfit: FloatArray
+
+
+def gaps(multipliers: ComplexArray) -> FloatArray:
+    """How near (k,) the two nearest of multipliers (k, n) are to a tongue.
+
+    Of two multipliers the angle between them, or the geometric mean of their decay -ln|.| where that is
+    more: coupled by less than this they are stable however near they are (Hsu 1963).
+    """
+    angle, decay = np.angle(multipliers), -np.log(np.maximum(np.abs(multipliers), _LEAST_RADIUS))
+    root, nearest = np.sqrt(np.maximum(decay, 0.0)), np.full(len(multipliers), np.inf)
+    for j in range(1, multipliers.shape[1]):
+        apart = np.abs((angle[:, :j] - angle[:, j, None] + np.pi) % (2.0 * np.pi) - np.pi)
+        nearest = np.minimum(nearest, np.maximum(apart, root[:, :j] * root[:, j, None]).min(axis=1))
+    return nearest
 
 
 def refine(
@@ -110,7 +131,7 @@ def _nine(box: Box) -> IntArray:
 class _State:
     def __init__(self, shape: tuple[int, int], cycles: FloatArray, ask: Ask) -> None:
         self.ask, self.cycles = ask, cycles
-        self.radius, self.growth = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.radius, self.growth, self.gap = (np.full(shape, np.nan) for _ in range(3))
         self.verdict = np.zeros(shape, dtype=np.intp)
         self.known = np.zeros(shape, dtype=bool)
 
@@ -120,10 +141,10 @@ class _State:
         flat = flat[~self.known.ravel()[flat]]
         if not flat.size:
             return
-        radius, verdict = self.ask(flat)
         places = np.unravel_index(flat, self.known.shape)
-        self.radius[places], self.verdict[places], self.known[places] = radius, verdict, True
-        self.growth[places] = self.cycles[places] * np.log(np.maximum(radius, _LEAST_RADIUS))
+        self.radius[places], self.verdict[places], self.gap[places] = self.ask(flat)
+        self.known[places] = True
+        self.growth[places] = self.cycles[places] * np.log(np.maximum(self.radius[places], _LEAST_RADIUS))
 
     def count(self, box: Box) -> int:
         a, b, c, d = box
@@ -153,30 +174,37 @@ class _State:
             return []
         i, j, error = self.misfit(box)
         verdict = self.verdict[i, j]
-        mixed = bool((verdict != verdict[0]).any())
+        mixed, meeting = bool((verdict != verdict[0]).any()), False
         if not mixed:
             radius = self.radius[i, j]
             allowed = tolerance * np.maximum(radius, 1.0)
             if verdict[0] != 0:
                 allowed = np.minimum(allowed, 0.5 * np.abs(radius - 1.0))
             if (error <= allowed).all():
-                return []
-        along, up = self._ways(box, i, j, error, mixed=mixed)
+                excess, gap = radius - 1.0, self.gap[i, j]
+                meeting = bool(verdict[0] >= 0 and np.ptp(gap) > _PER_DECAY * gap.min())
+                if not (meeting or (verdict[0] < 0 and excess.max() > _EXCESS * excess.min())):
+                    return []
+        along, up = self._ways(box, i, j, error, mixed=mixed, meeting=meeting)
         along, up = (along and wide) or not tall, (up and tall) or not wide
         return _parts(box, along=along and wide, up=up and tall)
 
     def _ways(
-        self, box: Box, i: IntArray, j: IntArray, error: FloatArray, *, mixed: bool
+        self, box: Box, i: IntArray, j: IntArray, error: FloatArray, *, mixed: bool, meeting: bool
     ) -> tuple[bool, bool]:
-        """Whether to cut along the first and along the second axis."""
+        """Whether to cut along the first and along the second axis: by verdicts, gaps or misfits."""
         a, b, c, d = box
         if mixed:
             edges = [self.verdict[i[on], j[on]] for on in (j == c, j == d, i == a, i == b)]
             lower, upper, left, right = (bool((edge != edge[0]).any()) for edge in edges)
             along, up = lower or upper, left or right
             return (along, up) if along or up else (True, True)
-        across = error[(j == c) | (j == d)].max(initial=0.0)
-        upward = error[(i == a) | (i == b)].max(initial=0.0)
+        if meeting:
+            gap = self.gap[np.ix_((a, (a + b) // 2, b), (c, (c + d) // 2, d))]
+            across, upward = (np.abs(np.diff(gap, axis=axis)).max() for axis in (0, 1))
+        else:
+            across = error[(j == c) | (j == d)].max(initial=0.0)
+            upward = error[(i == a) | (i == b)].max(initial=0.0)
         return across * _ALIKE >= upward, upward * _ALIKE >= across
 
     def filled(self, leaves: dict[Box, int], tolerance: float) -> Refined:

@@ -58,8 +58,8 @@ def stability_chart(
 
     Over two axes the chart refines itself: nodes near edges of instability are evaluated, the others
     interpolated. Both sides of every edge are evaluated. An unstable region can only be missed if it lies
-    between evaluated nodes and does not reach the lowest damping (of another second axis: one of some 32 rows
-    that are evaluated whole).
+    between evaluated nodes and does not reach the lowest damping; over other axes curves on which two
+    multipliers meet, where thin tongues lie, are evaluated too.
 
     Parameters
     ----------
@@ -287,4 +287,5 @@ class ChartSlice:
                 np.concatenate([found.multipliers, values], axis=1),
                 np.concatenate([found.errors, errors], axis=1),
                 family.exact,
+                found.multipliers.shape[1],
             )

@@ -29,7 +29,7 @@ def refined(shape, x, radius, verdict):
 
     def ask(flat):
         asked.extend(flat.tolist())
-        return radius.ravel()[flat], verdict.ravel()[flat]
+        return radius.ravel()[flat], verdict.ravel()[flat], np.zeros(flat.size)
 
     return refine(shape, x, ask), asked
 
