@@ -66,16 +66,6 @@ def test_commands_in_running_text_are_understood(page, blocks):
                 raise
 
 
-def test_the_parser_refuses_what_does_not_exist():
-    for line in (
-        "spurcheck report --no-such-option",
-        "spurcheck simulate --cycles many",
-        "spurcheck nothing",
-    ):
-        with pytest.raises((Exception, KeyError)):
-            parsed(line)
-
-
 @pytest.fixture(scope="session")
 def belongings(tmp_path_factory, root, blocks) -> Path:
     """What pages take for granted: the reader's parameter file, his gear program's file, his study."""

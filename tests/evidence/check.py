@@ -10,22 +10,13 @@ from numpy.typing import ArrayLike
 
 @dataclass(frozen=True)
 class Check:
-    """A computed number: ``value`` is an error, or, where ``theory`` is given, an observed order.
+    """A computed number: ``value`` is an error, or, where ``theory`` is given, an observed order."""
 
-    Attributes
-    ----------
-    subject : what is checked
-    exact : what it must equal, and where that comes from
-    value : error, relative where not said otherwise; or an observed order
-    limit : largest error that passes; or largest distance of the order from theory
-    theory : the order that theory gives
-    """
-
-    subject: str
-    exact: str
-    value: float
-    limit: float
-    theory: float | None = None
+    subject: str  # what is checked
+    exact: str  # what it must equal, and where that comes from
+    value: float  # error, relative where not said otherwise; or an observed order
+    limit: float  # largest error that passes; or largest distance of the order from theory
+    theory: float | None = None  # the order that theory gives
 
     @property
     def passes(self) -> bool:

@@ -22,13 +22,7 @@ _RELIEF = {"shape": "linear", "amount": 15.0, "start_roll_angle": 26.0}
 def pairs(fault: Fault | None = None, *, wrong: bool = False) -> Iterator[GearPair]:
     """The default pair without relief, with which it would lose contact, and the asymmetric variant.
 
-    Both have what the fault needs.
-
-    Parameters
-    ----------
-    fault : whose fields are set
-    wrong : whether its wrong input is in the file
-    """
+    Both have what the fault needs."""
     own = {} if fault is None else dict(fault.on) | (dict(fault.input) if wrong else {})
     for changes in ({}, ASYMMETRIC):
         fields = {"mesh.relief": "ignored", **changes, **own}

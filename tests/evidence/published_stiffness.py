@@ -27,20 +27,13 @@ _UNIT = 1e9  # N/(mm um) [N/m^2]
 
 @dataclass(frozen=True)
 class Beside:
-    """A published number and ours.
+    """A published number and ours."""
 
-    Attributes
-    ----------
-    gears, quantity, unit : what it is of
-    source : who published it, and how it was found
-    published, elastic : their number and that of plane elasticity
-    """
-
-    gears: str
+    gears: str  # what it is of
     quantity: str
     unit: str
-    source: str
-    published: float
+    source: str  # who published it, and how it was found
+    published: float  # their number and that of plane elasticity
     elastic: float
 
     @property
@@ -58,12 +51,7 @@ def plain(**changes: object) -> GearPair:
 
 
 def held_rim(rims: tuple[float, float]) -> float:
-    """Stiffness of 17/43 teeth at the pitch point, rims held at their bores, in plane strain [N/(mm um)].
-
-    Parameters
-    ----------
-    rims : thickness below the root circle of pinion and gear [mm]
-    """
+    """Stiffness of 17/43 teeth at the pitch point, rims held at their bores, in plane strain [N/(mm um)]."""
     pair = plain(pinion__teeth=17, gear__teeth=43)
     bores = [2.0 * (1e3 * w.tooth.root_radius - rim) for w, rim in zip(pair.wheels, rims, strict=True)]
     pair = pair.with_(pinion__bore=bores[0], gear__bore=bores[1])
@@ -106,18 +94,11 @@ def published_stiffness() -> Iterator[Beside]:
 
 @dataclass(frozen=True)
 class Framed:
-    """Stiffness of a pair with deflections that count from one place, over ISO 6336-1's.
+    """Stiffness of a pair with deflections that count from one place, over ISO 6336-1's."""
 
-    Attributes
-    ----------
-    gears, frame : the pair, and from where
-    largest, alone, mean : largest of a pair over c' b; mean of the mesh over c_gamma b, pairs alone and with
-        neighbours [-]
-    """
-
-    gears: str
+    gears: str  # the pair, and from where
     frame: str
-    largest: float
+    largest: float  # largest of a pair over c' b; mean of the mesh over c_gamma b
     alone: float
     mean: float
 

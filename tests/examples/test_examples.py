@@ -303,23 +303,6 @@ def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(shown):
     assert unstable.size == 3
 
 
-def test_25_rigid_shafts_are_the_lumped_pair(example):
-    module = example(25)
-    pair = lumped.load_gear_pair("nasa_28_28").with_(
-        friction__law="none", mesh__relief="ignored", mesh__damping_ratio=0.01,
-        operating__pinion_speed="16500 rpm",
-    )  # fmt: skip
-    body, structure = lumped.bodies(pair), lumped.periodic_system(pair, "full").structure
-    M = np.diag([*[body.mass_pinion] * 2, body.inertia_pinion, *[body.mass_gear] * 2, body.inertia_gear])
-    c_p, c_g, k_p, k_g = (*structure.damping[2:4], *structure.stiffness[2:4])
-    C, K = np.diag([c_p, c_p, 0.0, c_g, c_g, 0.0]), np.diag([k_p, k_p, 0.0, k_g, k_g, 0.0])
-    joined = module.joined(pair, M, C, K, np.arange(6).reshape(2, 3), angle=2.0)
-    found, expected = floquet.monodromy(joined), floquet.gear_pair_multipliers(pair)
-    assert found.multipliers.size == 10  # the free turn is gone
-    moduli = np.sort(np.abs(found.multipliers)), np.sort(np.abs(expected.multipliers))
-    np.testing.assert_allclose(*moduli, rtol=1e-8)
-
-
 def test_26_springs_miss_what_the_modes_of_the_shafts_do(example, labelled):
     module = example(26)
     module.SPEEDS = np.array([2750.0, 4875.0])

@@ -30,22 +30,6 @@ def quiet(function, *arguments, **options):
 
 
 @given(data=st.data())
-def test_lengths_of_the_line_of_action(pairs, data):
-    g = geometry(data.draw(pairs))
-    # Every length is a few roundings of the centre distance.
-    close = {"rel_tol": 0.0, "abs_tol": 1e-12 * g.centre_distance}
-    assert math.isclose(g.L_XY, math.sin(g.operating_pressure_angle) * g.centre_distance, **close)
-    assert math.isclose(
-        math.hypot(g.L_XY, g.base_radius_pinion + g.base_radius_gear), g.centre_distance, **close
-    )
-    assert math.isclose(math.hypot(g.base_radius_gear, g.L_XY - g.L_XA), g.tip_radius_gear, **close)
-    assert math.isclose(math.hypot(g.base_radius_pinion, g.L_XD), g.tip_radius_pinion, **close)
-    assert math.isclose(g.L_XP * g.base_radius_gear, (g.L_XY - g.L_XP) * g.base_radius_pinion, **close)
-    assert math.isclose(g.L_XD - g.L_XA, g.contact_ratio * g.base_pitch, **close)
-    assert 0.0 <= g.L_XA < g.L_XP < g.L_XD <= g.L_XY
-
-
-@given(data=st.data())
 def test_contact_positions(pairs, data):
     pair = data.draw(pairs)
     g = geometry(pair)
@@ -125,35 +109,6 @@ def test_multipliers_come_in_conjugate_pairs_and_det_is_liouvilles(pairs, data):
     known = np.prod(sizes + errors) - np.prod(sizes) + 1e-13 * (1.0 - trace) * np.prod(sizes)
     residual = quiet(lambda: found.liouville_residual)
     assert residual * np.prod(np.abs(found.oloa)) <= known + 1e-300
-
-
-@given(data=st.data())
-def test_a_pair_without_friction_and_with_equal_gears_runs_symmetrically(pairs, data):
-    pair = data.draw(pairs)
-    mapping = pair.to_mapping()
-    mapping["gear"] = dict(mapping["pinion"])
-    mapping["friction"] = {"law": "none"}
-    mapping.pop("sources", None)
-    same = quiet(type(pair).model_validate, mapping) if geometry_exists(mapping) else None
-    run = quiet(steady_state, same, samples_per_cycle=32) if same is not None else None
-    if run is None:
-        return
-    # Pinion and gear are pushed apart by the same force on equal masses and bearings.
-    scale = np.abs(run["x_p"].to_numpy()).max()
-    np.testing.assert_allclose(run["x_g"], -run["x_p"], rtol=0, atol=1e-9 * scale)
-    assert np.abs(run["y_p"].to_numpy()).max() == 0.0
-    # The paper's brake pays for friction alone; that of loaded contact for the dampers too.
-    dampers = run.attrs["power_tooth_dampers"] + run.attrs["power_bearings"]
-    driving = run.attrs["pinion_torque"] * same.operating.pinion_speed
-    lost = dampers / driving if same.mesh.contact == "loaded" else 0.0
-    # Losses by place are a quadrature of their own: at a quarter of critical damping 1e-5 of them off.
-    assert math.isclose(1.0 - run.attrs["mesh_efficiency"], lost, rel_tol=1e-4, abs_tol=1e-9)
-
-
-def geometry_exists(mapping):
-    from lumped import load_gear_pair
-
-    return quiet(load_gear_pair, mapping) is not None
 
 
 #: SI unit -> exponents of length, time and force (a mass is force time^2 / length).

@@ -3,7 +3,6 @@
 import ast
 import functools
 import graphlib
-import inspect
 import itertools
 import re
 import subprocess
@@ -106,17 +105,6 @@ def test_general_folders_of_floquet_know_no_gears(folder: str) -> None:
 def test_the_tests_above_see_imports() -> None:
     assert "lumped.model.periodic_system" in imported(ROOT / "floquet" / "gear" / "block.py")
     assert len(FILES) > 200
-
-
-def test_public_names_exist_and_are_described() -> None:
-    for name in floquet.__all__:
-        value = getattr(floquet, name)
-        assert name in dir(floquet)
-        assert not inspect.ismodule(value), name
-        if callable(value):
-            assert inspect.getdoc(value), name
-    with pytest.raises(AttributeError, match="no_such_name"):
-        floquet.no_such_name  # noqa: B018
 
 
 def test_functions_survive_the_import_of_all_modules() -> None:

@@ -70,10 +70,6 @@ def figure(xlabel, ylabel):
     return drawn
 
 
-def test_labels_with_units_pass(tmp_path):
-    figure("pinion speed [rpm]", "stiffness [N/m]").savefig(tmp_path / "a.png")
-
-
 @pytest.mark.parametrize(
     ("labels", "word"),
     [
@@ -85,9 +81,3 @@ def test_labels_with_units_pass(tmp_path):
 def test_missing_labels_and_units_are_found(labels, word, tmp_path):
     with pytest.raises(AssertionError, match=word):
         figure(*labels).savefig(tmp_path / "a.png")
-
-
-def test_names_on_an_axis_need_no_unit(tmp_path):
-    drawn = figure("law", "loss [%]")
-    drawn.axes[0].set_xticks([0.0, 1.0], ["Coulomb", "Xu and Kahraman"])
-    drawn.savefig(tmp_path / "a.png")

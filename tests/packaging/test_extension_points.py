@@ -222,17 +222,6 @@ def registered(text, imported, name, item):
     return "".join([*lines[:end], imported, "\n", *lines[end:]])
 
 
-def test_a_registry_takes_an_item_beside_any_others():
-    text = "import a\nOTHER = 1\nLAWS: dict[str, int] = wrapped(law for law in (A, B,\n  NEW,\n))\n"
-    assert registered(text, "import c", "LAWS", "C").splitlines()[1:5] == [
-        "import c", "OTHER = 1", "LAWS: dict[str, int] = wrapped(law for law in (A, B,", "  NEW, C,",
-    ]  # fmt: skip
-    assert (
-        registered("import a\nAny = A | B\n", "import c", "Any", "C")
-        == "import a\nimport c\nAny = A | B | C\n"
-    )
-
-
 @pytest.fixture(scope="module")
 def ends(tmp_path_factory):
     """How the program of each part ended, in one process and a copy of the packages with all parts."""
@@ -267,14 +256,6 @@ def test_a_new_part_takes_as_few_files_as_stated(ends, part):
 @pytest.mark.parametrize("name", preset_names())
 def test_a_preset_is_named_as_its_file(name):
     assert load_gear_pair(name).name == name
-
-
-def test_the_places_that_contributors_are_sent_to_exist():
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    for target in re.findall(r"\]\((?!http)([^)]+)\)", text):
-        assert (ROOT / target).exists(), target
-    for path in re.findall(r"`((?:floquet|lumped|tests|validation)/[\w/]+\.\w+)`", text):
-        assert (ROOT / path).exists(), path
 
 
 def test_the_version_is_the_same_everywhere():

@@ -13,27 +13,16 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Fault:
-    """One fault.
+    """One fault."""
 
-    Attributes
-    ----------
-    key : stable name
-    words : what is wrong
-    target : function that is changed, "module:name" or "module:Class.name"; empty for a wrong input
-    old, new : text of the function that is replaced; it occurs once
-    on : fields of the gear pair without which the changed line is not in use, path -> value
-    input : fields of the gear pair that are wrong in the file, for a wrong input
-    unseen : why only a measurement can tell; empty for a fault that the verdicts must see
-    """
-
-    key: str
-    words: str
-    target: str = ""
-    old: str = ""
+    key: str  # stable name
+    words: str  # what is wrong
+    target: str = ""  # function that is changed, "module:name" or "module:Class.name"
+    old: str = ""  # text of the function that is replaced; it occurs once
     new: str = ""
     on: Mapping[str, Any] = field(default_factory=dict)
     input: Mapping[str, Any] = field(default_factory=dict)
-    unseen: str = ""
+    unseen: str = ""  # why only a measurement can tell; empty for a fault that the verdicts must see
 
 
 def _read(group: str) -> tuple[Fault, ...]:

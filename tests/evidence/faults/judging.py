@@ -25,20 +25,12 @@ _CYCLES, _SAMPLES = 6, 64
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one fault.
+    """What became of one fault."""
 
-    Attributes
-    ----------
-    size, quantity : largest change of a quantity of the report over its largest value, and which; on the
-        default pair or its unlike twin
-    caught : part of the verdicts -> the checks that fail, the first pair's first
-    seconds : time of the parts
-    """
-
-    size: float
+    size: float  # largest change of a quantity of the report over its largest value, and which
     quantity: str
     caught: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    seconds: float = 0.0
+    seconds: float = 0.0  # time of the parts
 
     @property
     def felt(self) -> bool:
@@ -52,17 +44,7 @@ class Outcome:
 
 
 def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
-    """Put a fault in, ask every part of the verdicts, take it out.
-
-    Parameters
-    ----------
-    fault : out of the catalogue
-    thorough : every part on both pairs; else only until one of them sees the fault
-
-    Raises
-    ------
-    FaultError : the fault does not fit the program
-    """
+    """Put a fault in, ask every part of the verdicts, take it out."""
     with warnings.catch_warnings():
         for kind in (LawRangeWarning, RuntimeWarning):
             warnings.simplefilter("ignore", kind)

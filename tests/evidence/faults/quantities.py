@@ -27,12 +27,7 @@ FELT = 0.01
 
 
 def quantities(pair: GearPair) -> dict[str, FloatArray]:
-    """Every group of numbers by name; a group that cannot be computed is left out.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
+    """Every group of numbers by name; a group that cannot be computed is left out."""
     found: dict[str, FloatArray] = {}
     for compute in (
         _path,

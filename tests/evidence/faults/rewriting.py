@@ -35,12 +35,7 @@ class FaultError(Exception):
 
 @contextlib.contextmanager
 def applied(fault: Fault) -> Iterator[None]:
-    """Run with a fault in the program.
-
-    Raises
-    ------
-    FaultError : the function or its line is not there
-    """
+    """Run with a fault in the program."""
     if not fault.target:  # a wrong input is wrong in the parameter file
         yield
         return
@@ -63,12 +58,7 @@ def applied(fault: Fault) -> Iterator[None]:
 
 
 def fitted(fault: Fault) -> tuple[Any, Any, Any]:
-    """Module or class that holds the function of a fault, the function, and the wrong one, not yet compiled.
-
-    Raises
-    ------
-    FaultError : the function or its line is not there
-    """
+    """Module or class that holds the function of a fault, the function, and the wrong one, uncompiled."""
     owner, name = _place(fault)
     original = vars(owner)[name]
     return owner, original, _rewritten(fault, owner, name, original)

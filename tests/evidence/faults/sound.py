@@ -29,16 +29,7 @@ _STIFFNESS = (
 
 
 def drawn(count: int, seed: str, *, relief: bool = False, loaded: bool = False) -> Iterator[GearPair]:
-    """Random variations of the presets that exist: gears, bearings, teeth, law, relief, speed and load.
-
-    Parameters
-    ----------
-    count : how many
-    seed : text that the numbers come from
-    relief : whether only pairs are taken whose tip relief acts; among all they are rare, because many of them
-        let their teeth separate
-    loaded : whether the pairs are with loaded contact; else they are in the paper's
-    """
+    """Random variations of the presets that exist: gears, bearings, teeth, law, relief, speed and load."""
     rng = random.Random(seed)
     names, found = sorted(preset_names()), 0
     if relief:
@@ -92,13 +83,7 @@ def _varied(base: GearPair, rng: random.Random) -> GearPair:
 def sound_pairs(
     count: int, seed: str, output: Path | None = None, *, relief: bool = False, loaded: bool = False
 ) -> int:
-    """Cross-check random sound pairs and print every one that fails; 1 where there is any.
-
-    Parameters
-    ----------
-    count, seed, relief, loaded : as ``drawn``
-    output : rows as .json, added to those that the file has
-    """
+    """Cross-check random sound pairs and print every one that fails; 1 where there is any."""
     rows: list[dict[str, Any]] = []
     for number, pair in enumerate(drawn(count, seed, relief=relief, loaded=loaded)):
         rows.append(_row(pair, f"{seed}/{number}"))

@@ -18,13 +18,7 @@ _AXIS = re.compile(r" [xy](_[pg])?$")
 
 
 def sample(count: int, seed: str) -> tuple[Fault, ...]:
-    """Some of the faults, chosen by a text such as a commit's name.
-
-    Parameters
-    ----------
-    count : how many
-    seed : the text
-    """
+    """Some of the faults, chosen by a text such as a commit's name."""
     number = int.from_bytes(hashlib.sha256(seed.encode()).digest()[:8], "big")
     return tuple(random.Random(number).sample(list(FAULTS.values()), count))
 

@@ -36,23 +36,13 @@ _RATIOS = np.linspace(0.2, 3.0, 57)
 
 @dataclass(frozen=True)
 class CoulombGearPair:
-    """One-degree-of-freedom gear pair of unity ratio with pairs of constant stiffness.
+    """One-degree-of-freedom gear pair of unity ratio with pairs of constant stiffness."""
 
-    Attributes
-    ----------
-    contact_ratio : 1 <= sigma <= 2
-    damping_ratio : zeta of the mean mesh, c_i = zeta k_i 2/omega, damping in proportion to stiffness
-    friction : mu >= 0
-    pressure_angle : operating pressure angle alpha [rad]
-    sign : "reversing", the friction force turns round at the pitch point, as on real teeth; or "constant",
-        s_i = +1 everywhere, the simplification whose effect the study shows
-    """
-
-    contact_ratio: float = 1.638
-    damping_ratio: float = 0.05
-    friction: float = 0.0
-    pressure_angle: float = np.deg2rad(20.0)
-    sign: FrictionSign = "reversing"
+    contact_ratio: float = 1.638  # 1 <= sigma <= 2
+    damping_ratio: float = 0.05  # zeta of the mean mesh, c_i = zeta k_i 2/omega
+    friction: float = 0.0  # mu >= 0
+    pressure_angle: float = np.deg2rad(20.0)  # operating pressure angle alpha [rad]
+    sign: FrictionSign = "reversing"  # "reversing", the friction force turns round at the pitch point
 
     @property
     def phases(self) -> FloatArray:
@@ -74,12 +64,7 @@ class CoulombGearPair:
         return np.array([approach + recess, approach, recess]) / self.contact_ratio
 
     def system(self, speed_ratio: float) -> PeriodicSystem:
-        """Return the pair for the general engine, states (delta, delta') with time in 1/omega.
-
-        Parameters
-        ----------
-        speed_ratio : mesh frequency over the natural frequency omega of the mean mesh
-        """
+        """Return the pair for the general engine, states (delta, delta') with time in 1/omega."""
         period = 2.0 * np.pi / speed_ratio
         phases, gains, zeta = self.phases, self.gains, self.damping_ratio
 

@@ -36,15 +36,7 @@ _LD = np.longdouble
 def extended_transitions(
     h: LongArray, w: LongArray, wd: LongArray, L: LongArray, D: LongArray, v: LongArray, rate: float
 ) -> LongArray:
-    """Transition matrices (S, 2m, 2m) of z'' + D z' + L z + w (v . z) + wd (v . z') = 0 over steps h (S,).
-
-    Parameters
-    ----------
-    h : (S,) [s], each turning by 1 rad at most
-    w, wd : (S, d+1, m) in powers of the time since the start of each step
-    L, D, v : (m, m), (m, m), (m,)
-    rate : unit of the rates among the states [1/s]
-    """
+    """Transition matrices (S, 2m, 2m) of z'' + D z' + L z + w (v . z) + wd (v . z') = 0 over steps h (S,)."""
     m = v.size
     z = np.zeros((h.size, _TERMS + 2, m, 2 * m), dtype=_LD)
     z[:, 0, :, :m], z[:, 1, :, m:] = np.eye(m), rate * np.eye(m)

@@ -82,18 +82,11 @@ class HsuSystem:
     """z_i'' + 2 c_i z_i' + omega_i^2 z_i + epsilon cos(Omega t) sum_j d_ij z_j = 0.
 
     The system of C. S. Hsu (J. Appl. Mech. 30 (1963) 367-372 and 32 (1965) 373-377). With d symmetric sums
-    of frequencies are unstable, with d skew (circulatory) differences are.
+    of frequencies are unstable, with d skew (circulatory) differences are."""
 
-    Attributes
-    ----------
-    omega : (m,) natural frequencies
-    coupling : (m, m) d
-    damping : (m,) c; zeros for the undamped system
-    """
-
-    omega: FloatArray
-    coupling: FloatArray
-    damping: FloatArray
+    omega: FloatArray  # (m,) natural frequencies
+    coupling: FloatArray  # (m, m) d
+    damping: FloatArray  # (m,) c; zeros for the undamped system
 
     def at(self, excitation: float, epsilon: float) -> PeriodicSystem:
         """Return the system at excitation frequency Omega and strength epsilon."""
@@ -131,24 +124,14 @@ class GearChain:
 
     M x'' + (K_0 + sum_m k_m(t) v_m v_m^T) x = 0 with rectangular waves k_m: the chains of Lin and Parker
     (Mesh stiffness variation instabilities in two-stage gear systems, J. Vib. Acoust. 124 (2002) 68-76), all
-    meshes of one mesh frequency Omega as on an idler gear.
+    meshes of one mesh frequency Omega as on an idler gear."""
 
-    Attributes
-    ----------
-    mass : (n,) M, diagonal
-    ground : (n, n) K_0
-    meshes : (p, n) v_m
-    stiffness : (p,) mean stiffness of each mesh
-    contact_ratio : (p,) sigma_m in 1..2: two pairs for the part sigma_m - 1 of the cycle
-    phase : (p,) parts of a cycle after which double contact of a mesh begins
-    """
-
-    mass: FloatArray
-    ground: FloatArray
-    meshes: FloatArray
-    stiffness: FloatArray
-    contact_ratio: FloatArray
-    phase: FloatArray
+    mass: FloatArray  # (n,) M, diagonal
+    ground: FloatArray  # (n, n) K_0
+    meshes: FloatArray  # (p, n) v_m
+    stiffness: FloatArray  # (p,) mean stiffness of each mesh
+    contact_ratio: FloatArray  # (p,) sigma_m in 1..2: two pairs for the part sigma_m - 1 of the cycle
+    phase: FloatArray  # (p,) parts of a cycle after which double contact of a mesh begins
 
     def modes(self) -> tuple[FloatArray, FloatArray]:
         """Natural frequencies (n,) and mass-normalised modes (n, n) of the mean system."""
@@ -200,17 +183,7 @@ class GearChain:
 def tongue_ends(
     system: HsuSystem | GearChain, predicted: Sequence[float], epsilon: float, *, rtol: float = 1e-11
 ) -> tuple[float, float]:
-    """Ends of the tongue around a predicted one, by root finding on the computed spectral radius.
-
-    Parameters
-    ----------
-    system : the system, stable outside the tongue (|multiplier| = 1 where it is undamped)
-    predicted : (lower, upper) end, good enough that the middle is unstable and half a width beyond is not
-    epsilon : strength of the excitation
-    rtol : of the monodromy matrices. Without damping a radius counts as unstable above 1 + sqrt(rtol), the
-        accuracy of multipliers that meet on the unit circle; since the radius leaves one like a square root,
-        that moves an end by about rtol times the width over (growth per cycle)^2 only.
-    """
+    """Ends of the tongue around a predicted one, by root finding on the computed spectral radius."""
     damped = isinstance(system, HsuSystem) and bool((system.damping > 0.0).any())
     limit = 1.0 if damped else 1.0 + np.sqrt(rtol)
     middle, width = 0.5 * (predicted[0] + predicted[1]), predicted[1] - predicted[0]

@@ -12,10 +12,8 @@ from floquet import (
     PiecewisePolynomial,
     from_second_order,
     monodromy,
-    stability_chart,
 )
 from floquet.engine.proven import proven_product
-from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError, ResolutionWarning
 
 
@@ -93,14 +91,6 @@ def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
     dead = monodromy(PeriodicSystem(KnownMatrix([[-4000.0]]), 0.2))
     assert dead.multiplier_errors[0] >= 5e-324
     assert dead.verdict == "stable"
-
-
-def test_charts_and_motions_say_what_their_errors_are() -> None:
-    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "benedict_kelley"})
-    speeds = {"speed_rpm": [3000.0, 3010.0]}
-    together, alone = stability_chart(pair, speeds), stability_chart(pair, {"speed_rpm": [3000.0]})
-    assert (together.attrs["certificate"], alone.attrs["certificate"]) == ("estimate", "proven")
-    assert together["proven"].values.tolist() == [False, False]
 
 
 def test_what_cannot_be_proven_is_refused() -> None:

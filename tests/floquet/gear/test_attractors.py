@@ -210,14 +210,3 @@ def test_the_spectral_radius_is_that_of_runs_beside_the_motion(bouncing):
     radius = np.abs(np.linalg.eigvals(np.array(columns).T)).max()
     assert size == 6
     assert bouncing.spectral_radius == pytest.approx(radius, rel=1e-5)
-
-
-def test_the_peak_to_peak_of_a_branch_is_that_of_its_motions(found):
-    table = found.dataset
-    rows = [o for branch in found.branches for o in branch.orbits]
-    for j in range(0, len(rows), max(1, len(rows) // 7)):
-        run = rows[j].system.run(
-            rows[j].start, rows[j].period, rows[j].n, rows[j].parameter, samples=np.arange(1024) / 1024
-        )
-        output = run.states[:, : run.start.size // 2] @ rows[j].system.output
-        assert float(table["dte_peak_to_peak"][j]) == pytest.approx(np.ptp(output), rel=2e-4)

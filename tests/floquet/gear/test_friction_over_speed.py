@@ -60,14 +60,6 @@ def test_factors_follow_the_equations() -> None:
     assert slope == pytest.approx(-3.0 * 0.0127 * 1.13 / (1.13 - roughness), rel=1e-9)
 
 
-def test_given_coefficient_does_not_change() -> None:
-    for law in ("none", "coulomb", "smoothed_coulomb"):
-        variation = with_law(law, friction__coefficient=0.06)
-        (family,) = friction_families(variation, SPEEDS)
-        assert (family.factors == 1.0).all()
-        assert family.level is None
-
-
 def test_moving_regimes_are_fitted_apart() -> None:
     # Lambda = 4 falls inside the path near 2500 rpm for this pair: there law V changes from II to III.
     variation = with_law("composite")

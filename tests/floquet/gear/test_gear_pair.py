@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from floquet import gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
 from floquet.gear.axes import GEAR_AXES, GearVariation, vary
@@ -57,26 +56,6 @@ def test_low_speeds_are_proven_too(pair) -> None:
     assert found.spectral_radius + found.error < 1e-90
     with pytest.raises(ParameterError, match="rtol"):
         gear_pair_multipliers(pair, 1e-14)
-
-
-def test_against_an_independent_integrator(pair) -> None:
-    # scipy's DOP853 column by column from switch to switch, on matrices from lumped's own scalar interface.
-    slow = pair.with_(operating__pinion_speed=3000)
-    system = periodic_system(slow, "mesh")
-    edges = system.cycle.edges
-    M = np.eye(6)
-    scale = np.array([1, 1, 1, 1e4, 1e4, 1e4])  # rates are 1e4 rad/s times displacements
-    for a, b in pairwise(edges):
-        inside = 1e-9 * system.period  # where a time is at an edge the value is that of this segment
-
-        def rate(t: float, x: np.ndarray, low: float = a + inside, high: float = b - inside) -> np.ndarray:
-            A = system.matrices([min(max(t, low), high)])[0] * scale[None, :] / scale[:, None]
-            return (A @ x.reshape(6, 6)).ravel()
-
-        M = solve_ivp(rate, (a, b), M.ravel(), method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1].reshape(6, 6)
-    result = gear_pair_multipliers(slow)
-    # 1e-8: the integrator's own global error at rtol 1e-11 over about 30 rad.
-    assert unmatched(result.feedback, np.linalg.eigvals(M)) < 1e-8
 
 
 @pytest.mark.parametrize("factor", [0.0, 0.5, 1.0, 1.7])

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import lumped
-import multibody
 from lumped import load_gear_pair
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
@@ -129,17 +128,6 @@ def test_the_iso_law_from_the_geometry_alone(unequal):
     before, behind = function(np.array([path.L_XP - 1e-4, path.L_XP + 1e-4]))
     assert (-before, behind) == (pytest.approx(mu, rel=1e-12), pytest.approx(mu, rel=1e-12))
     assert path.pitch_line_velocity == pytest.approx(v / (2.0 * math.sin(alpha)), rel=1e-12)
-
-
-def test_the_second_program_has_its_own_iso_coefficient(unequal):
-    """Same equations with the law written twice; a fault of one of them would show as a difference."""
-    pair = unequal.with_(friction__coefficient=0.3)  # of laws I and IV: this law does not read it
-    own = lumped.steady_state(pair, samples_per_cycle=64)
-    other = multibody.simulate(pair, 1, fidelity="linear", initial="periodic", samples_per_cycle=64)
-    for name in ("dte", "y_p"):
-        size = np.ptp(own[name].to_numpy())
-        found = np.interp(own["time"], other["time"], other[name]) - own[name]
-        assert float(np.abs(found).max()) < 1e-6 * size, name
 
 
 def test_film_thickness_names_its_formula_and_what_another_gives(unequal):

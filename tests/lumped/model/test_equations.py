@@ -124,29 +124,6 @@ def test_unknown_form_is_refused(nasa):
         periodic_system(nasa, "modal")
 
 
-def static_torques(pair, xi, mu, as_printed=()):
-    """T_p and T_g per unit normal load of one pair at xi that keep both gears at constant speed."""
-    s = structure(pair, as_printed)
-    per_load = s.normal + mu * s.friction(np.array(xi))
-    return -per_load[0], per_load[1]
-
-
-@pytest.mark.parametrize("pair_name", ["nasa", "unequal", "high_contact"])
-def test_lost_power_is_friction_times_sliding_everywhere_on_the_path(pair_name, request):
-    pair = request.getfixturevalue(pair_name)
-    g = geometry(pair)
-    for xi in np.linspace(g.L_XA, g.L_XD, 41):
-        t_p, t_g = static_torques(pair, xi, 0.05 * np.sign(xi - g.L_XP))
-        sliding = abs(g.omega_pinion * xi - g.omega_gear * (g.L_XY - xi))
-        assert t_p * g.omega_pinion - t_g * g.omega_gear == pytest.approx(0.05 * sliding, abs=1e-9)
-
-
-def test_as_printed_the_gear_would_not_be_driven(nasa):
-    for printed, ratio in (((), 1.0), ((2,), -1.0)):
-        t_p, t_g = static_torques(nasa, 15e-3, 0.0, printed)
-        assert t_g / t_p == pytest.approx(ratio, rel=1e-14)
-
-
 @pytest.mark.parametrize(("number", "axis"), [(7, (2, 3)), (9, (4, 5))])
 def test_per_unit_load_the_forces_on_both_bodies_sum_to_zero_and_as_printed_to_two(nasa, number, axis):
     for printed, residual in (((), 0.0), ((number,), 2.0)):
@@ -177,20 +154,3 @@ def test_given_values_win_one_by_one(nasa):
     disc = bodies(nasa)
     assert (b.mass_pinion, b.inertia_gear) == (0.5, 1e-3)
     assert (b.mass_gear, b.inertia_pinion) == (disc.mass_gear, disc.inertia_pinion)
-
-
-def test_each_gear_has_its_own_disc(unequal):
-    b = bodies(unequal.with_(pinion__mass=None, pinion__inertia=None, gear__mass=None, gear__inertia=None))
-    # At equal width mass grows with the square of the teeth, inertia with the fourth power.
-    assert b.mass_gear / b.mass_pinion == pytest.approx((31 / 25) ** 2, rel=1e-13)
-    assert b.inertia_gear / b.inertia_pinion == pytest.approx((31 / 25) ** 4, rel=1e-13)
-
-
-def test_effective_mass_is_that_of_two_free_rotors(unequal):
-    """Two rotors joined by a spring k on their base circles vibrate at sqrt(k / m_e)."""
-    g, b = geometry(unequal), bodies(unequal)
-    k = 1e8
-    r_p, r_g = g.base_radius_pinion, g.base_radius_gear
-    # J_p theta_p'' = -k r_p (r_p theta_p - r_g theta_g), J_g theta_g'' = +k r_g (r_p theta_p - r_g theta_g)
-    squared = k * (r_p**2 / b.inertia_pinion + r_g**2 / b.inertia_gear)
-    assert k / b.effective_mass == pytest.approx(squared, rel=1e-13)

@@ -13,40 +13,6 @@ def cycle(request):
     return mesh_cycle(request.getfixturevalue(request.param))
 
 
-def inside(cycle, count=7):
-    """Times strictly inside every smooth segment, and the segment of each."""
-    fractions = np.linspace(0.03, 0.97, count)
-    times = cycle.edges[:-1, None] + np.diff(cycle.edges)[:, None] * fractions
-    return times.ravel(), np.repeat(np.arange(cycle.edges.size - 1), count)
-
-
-def test_positions_are_those_of_the_model_page(cycle):
-    g = cycle.geometry
-    n = math.floor(g.contact_ratio)
-    times, _ = inside(cycle)
-    state = cycle.sample(times)
-    assert state.position.shape == (n + 1, times.size)
-    for i in range(n + 1):
-        expected = (
-            g.L_XA
-            + (n - i) * g.base_pitch
-            + np.mod(g.omega_pinion * g.base_radius_pinion * times, g.base_pitch)
-        )
-        # Lengths of 0.03 m by two operations.
-        np.testing.assert_allclose(state.position[i], expected, rtol=1e-14, atol=1e-17)
-
-
-def test_a_pair_carries_between_a_and_d_only(cycle):
-    g = cycle.geometry
-    times, _ = inside(cycle)
-    state = cycle.sample(times)
-    expected = (state.position >= g.L_XA) & (state.position <= g.L_XD)
-    np.testing.assert_array_equal(state.contact, expected)
-    for values in (state.stiffness, state.damping, state.friction):
-        assert np.all(values[~expected] == 0.0)
-    assert np.all(state.stiffness[expected] > 0.0)
-
-
 def test_number_of_pairs_in_contact(cycle):
     """floor(eps) + 1 pairs for the fraction eps - floor(eps) of a cycle, floor(eps) for the rest."""
     g = cycle.geometry
@@ -93,17 +59,6 @@ def test_ends_of_a_segment_are_its_one_sided_limits(cycle):
             a, b = getattr(at, name), getattr(near, name)
             # The largest slope over 1e-9 of a segment.
             np.testing.assert_allclose(a, b, rtol=1e-6, atol=1e-7 * np.abs(a).max())
-
-
-def test_friction_changes_sign_at_the_pitch_point(coulomb_pair):
-    cycle = mesh_cycle(coulomb_pair)
-    j = int(np.argmin(np.abs(cycle.edges - cycle.events["P"])))
-    before = cycle.sample([cycle.edges[j]], j - 1).friction
-    after = cycle.sample([cycle.edges[j]], j).friction
-    passing = np.flatnonzero(before.ravel() != after.ravel())
-    assert passing.size == 1
-    assert before[passing[0], 0] == pytest.approx(-0.05, rel=1e-12)
-    assert after[passing[0], 0] == pytest.approx(0.05, rel=1e-12)
 
 
 class TestManyCycles:

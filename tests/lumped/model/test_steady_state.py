@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from lumped import (
     NumericalError,
@@ -18,21 +17,6 @@ from lumped.model.propagation import step_maps
 from lumped.model.steady import balanced_start, periodic_solution, sample_times
 
 MOTION = ("dte", "x_p", "x_g", "y_p", "y_g")
-
-
-@pytest.mark.parametrize("name", ["coulomb_pair", "unequal", "high_contact"])
-def test_a_long_transient_settles_to_it(name, request):
-    pair = request.getfixturevalue(name).with_(
-        {f"bearings.{g}.{d}_damping_ratio": 0.2 for g in ("pinion", "gear") for d in ("loa", "oloa")}
-    )
-    settled = simulate(pair, 120, samples_per_cycle=64)
-    steady = steady_state(pair, samples_per_cycle=64)
-    last = slice(119 * 64, 120 * 64)
-    for variable in (*MOTION, "dte_dot", "normal_load", "friction_force"):
-        a = settled[variable].to_numpy()[..., last]
-        b = steady[variable].to_numpy()
-        # Bearings at 20 % damping: exp(-0.2 w t) falls below 1e-9 within these cycles.
-        assert np.abs(a - b).max() < 3e-7 * np.abs(b).max(), variable
 
 
 @pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb"])
@@ -62,66 +46,6 @@ def test_a_pair_that_does_not_move_closes(high_contact):
     assert np.ptp(run["dte"].to_numpy()) < 1e-12 * float(run["dte"].mean())
     # Its rates are rounding of nothing; the mismatch is judged by displacement over period.
     assert run.attrs["closure"] < 1e-10
-
-
-@pytest.mark.parametrize("speed", [500, 4000, 4875, 20000])
-@pytest.mark.parametrize("damping", [0.0, 0.05])
-def test_without_friction_nothing_is_lost(nasa, unequal, speed, damping):
-    """Mean torques balance exactly, whatever the dampers do: constant torques do no net work on vibration.
-
-    What the dampers take is fed in by the changing stiffness, not by the drive.
-    """
-    for pair in (nasa, unequal):
-        run = steady_state(
-            pair.with_(friction__law="none", mesh__damping_ratio=damping, operating__pinion_speed=speed),
-            samples_per_cycle=8,
-        )
-        assert run.attrs["mesh_efficiency"] == pytest.approx(1.0, abs=1e-9)  # condition times rounding
-
-
-def test_efficiency_at_creeping_speed_in_closed_form(nasa):
-    """Equal pairs, equal gears, slow: q is in equilibrium at every instant.
-
-    With SUM N_i (1 + s_i mu tan(alpha)) = N_0 from the q equation, pairs share the load equally, so
-    double contact carries N_0 and single contact N_0/(1 + s mu tan(alpha)); the torques are mean moments.
-    """
-    mu = 0.1
-    pair = nasa.with_(friction__law="coulomb", friction__coefficient=mu, mesh__damping_ratio=0.3)
-    pair = pair.with_(
-        {f"bearings.{g}.{d}_damping_ratio": 0.5 for g in ("pinion", "gear") for d in ("loa", "oloa")}
-    )
-    g = geometry(pair)
-    slope = mu * math.tan(g.operating_pressure_angle)
-
-    def sign(xi):
-        return math.copysign(1.0, xi - g.L_XP)
-
-    def single(xi):
-        return 1.0 / (1.0 + sign(xi) * slope)
-
-    def moment(arm):
-        """Mean over the cycle of SUM (r_b + s_i mu arm_i) N_i for N_0 = 1."""
-        total = 0.0
-        for low, high, load in (
-            (g.L_XA, g.L_XB, lambda xi: 0.5),
-            (g.L_XB, g.L_XP, single),
-            (g.L_XP, g.L_XC, single),
-            (g.L_XC, g.L_XD, lambda xi: 0.5),
-        ):
-            part, _ = quad(
-                lambda xi, load=load: (g.base_radius_pinion + sign(xi) * mu * arm(xi)) * load(xi), low, high
-            )
-            total += part
-        return total / g.base_pitch
-
-    expected = moment(lambda xi: g.L_XY - xi) / moment(lambda xi: xi)
-    errors = []
-    for speed in (200, 100):
-        slow = steady_state(pair.with_(operating__pinion_speed=speed), samples_per_cycle=8)
-        errors.append(slow.attrs["mesh_efficiency"] - expected)
-    # What is left is the inertia of slow changes: second order in speed.
-    assert abs(errors[1]) < 1e-6
-    assert errors[1] == pytest.approx(0.25 * errors[0], rel=0.05)
 
 
 @pytest.fixture(scope="module")

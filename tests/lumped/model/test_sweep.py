@@ -64,14 +64,6 @@ def test_how_far_sliding_is_reversed_does_not_depend_on_the_samples(nasa):
     assert few == pytest.approx(many, rel=0.02)  # error of a straight line over a step, of second order
 
 
-def test_labels(sweep):
-    for name in sweep.variables:
-        assert sweep[name].attrs["units"], name
-        assert sweep[name].attrs["long_name"], name
-    assert sweep["speed"].attrs["units"] == "rpm"
-    assert sweep["mesh_efficiency"].attrs["units"] == "1"
-
-
 def test_a_speed_without_periodic_motion_is_marked(nasa):
     """Undamped and on the third subharmonic of the bearing's own frequency: NaN, and said so."""
     pair = nasa.with_(

@@ -101,25 +101,6 @@ def test_static_start_carries_the_given_brake(nasa):
     assert float(run["dte"][0]) * k == pytest.approx(20.0 / g.base_radius_gear, rel=1e-9)
 
 
-def test_mean_stiffness_is_the_mean_of_the_total(high_contact):
-    cycle = mesh_cycle(high_contact)
-    times = (np.arange(20000) + 0.5) * cycle.period / 20000
-    total = cycle.sample(times).stiffness.sum(axis=0).mean()
-    assert cycle.mean_stiffness == pytest.approx(total, rel=1e-4)  # midpoint rule across jumps
-
-
-@pytest.mark.parametrize("name", ["coulomb_pair", "unequal", "high_contact"])
-def test_a_periodic_start_stays_periodic(name, request):
-    pair = request.getfixturevalue(name)
-    run = states(simulate(pair, 6, samples_per_cycle=16, initial="periodic"))
-    first, last = run[:16], run[80:96]
-    scale = np.abs(first).max(axis=0)
-    # Rotations drift by the rounding of their rate: 1e-10 a step over some 500 steps.
-    assert (np.abs(last - first) / scale).max() < 1e-6
-    steady = states(steady_state(pair, samples_per_cycle=16))
-    assert (np.abs(first - steady) / scale).max() < 1e-7
-
-
 def test_progress_is_reported(coulomb_pair):
     seen = []
     simulate(coulomb_pair, 4, samples_per_cycle=8, progress=seen.append)

@@ -40,26 +40,6 @@ def direct(pair, law, xi):
     return LAWS[law].signed(xi, path, settings)
 
 
-@pytest.mark.parametrize("law", EVERY)
-@pytest.mark.parametrize("speed", [300, 2000, 6000])
-@pytest.mark.parametrize("which", ["pair", "unequal"])
-def test_path_function_is_the_law(law, speed, which, request):
-    pair = request.getfixturevalue(which).with_(operating__pinion_speed=speed)
-    function = friction_path_function(pair, law=law)
-    low, high = function.interval
-    g = geometry(pair)
-    assert (low, high) == (g.L_XA, g.L_XD)
-    seed = 20080614
-    rng = np.random.default_rng(seed)
-    uniform = rng.uniform(low, high, 400)
-    near = g.L_XP + rng.choice([-1, 1], 400) * 10 ** rng.uniform(-7, -3, 400)
-    xi = np.concatenate([uniform, near])
-    switches = function.switches
-    if switches.size:  # a switch is a jump: either side of it is right within its own rounding
-        xi = xi[np.abs(xi[:, None] - switches).min(axis=1) > 1e-12]
-    np.testing.assert_allclose(function(xi), direct(pair, law, xi), atol=FIT, rtol=0, err_msg=f"seed {seed}")
-
-
 def test_average_of_coulomb_is_benedict_kelleys(pair):
     # the paper's mu_avg; quadrature of the law itself, with the pitch point and the bounds as end points
     path, g = contact_path(pair), geometry(pair)
@@ -224,12 +204,3 @@ def test_a_law_that_leaves_all_bounds_is_refused_with_its_reason(pair):
         ParameterError, match=r"friction.law = xu_kahraman with mu up to .*viscosity >= 1 mPa s"
     ):
         friction_path_function(thin, law="xu_kahraman")
-
-
-def test_ranges_of_every_law_are_complete_records():
-    for law in LAWS.values():
-        for limits in law.ranges:
-            assert limits.quantity
-            assert limits.unit
-            assert limits.source
-            assert limits.stated or limits.source == "not stated"

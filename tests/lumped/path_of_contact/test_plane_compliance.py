@@ -1,15 +1,12 @@
 """Are the compliances of a mesh those of an independent computation, in the frames that it was made in?"""
 
-import math
-
 import numpy as np
 import pytest
 
 from lumped import ParameterError, load_gear_pair, plane_compliance
 from lumped.quasi_static import static_transmission_error
 from lumped.quasi_static.loaded import StaticMesh
-from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width, self_compliance
-from lumped.stiffness.neighbours import neighbour_compliances
+from lumped.stiffness.finite_elements import elastic_teeth, self_compliance
 
 NEAR, FAR = 0.003, 0.008  # of a mesh with half as many freedoms, between few loads; of other end positions
 
@@ -61,35 +58,6 @@ def test_the_transmission_error_takes_the_whole_matrix(nasa, free):
     approach = mesh.approach(free.position.values[[alone, evenly], 0])
     softer = np.log(2.0) * mesh.law.softening / free.compliance.values[evenly, 0].sum()
     assert approach / found[[alone, evenly]] == pytest.approx([1.0, 1.0 + softer], rel=1e-4)
-
-
-def test_neighbours_move_as_the_fourier_ring_says(nasa):
-    # The ring of the foundation, clamped at a quarter of the root circle and less its twist.
-    teeth = elastic_teeth(nasa, support="untwisted", bore=4.0)
-    g = nasa.geometry
-    (ring,) = neighbour_compliances(nasa)[:1]
-    xi = np.linspace(g.L_XA, g.L_XD - g.base_pitch, 5)
-    moved = sum(
-        tooth.moved(1, behind, ahead)
-        for tooth, behind, ahead in (
-            (teeth[0], xi, xi + g.base_pitch),
-            (teeth[1], g.L_XY - xi - g.base_pitch, g.L_XY - xi),
-        )
-    )
-    assert moved / g.face_width == pytest.approx(ring(xi), rel=0.01)
-
-
-def test_in_plane_strain_the_contact_is_part_of_the_plane_solution(nasa):
-    # (u_c + (2 ln(2/a) + 1 - (1 + nu'))/pi)/E', nu' = nu/(1 - nu): no depth is left in it.
-    teeth = elastic_teeth(nasa, plane="strain")
-    g = nasa.geometry
-    xi, module = np.array([0.4 * g.L_XA + 0.6 * g.L_XD]), nasa.basic_rack.module
-    a, nu = hertz_half_width(nasa, xi) / module, 0.3 / 0.7
-    plane = sum(
-        (tooth.flank.deflection(at / module) + (2.0 * np.log(2.0 / a) - nu) / math.pi) / tooth.modulus
-        for tooth, at in zip(teeth, (xi, g.L_XY - xi), strict=True)
-    )
-    assert self_compliance(nasa, teeth, xi) * g.face_width == pytest.approx(plane, rel=1e-12)
 
 
 def test_a_bore_moves_the_clamped_gear_only(nasa, free):

@@ -29,25 +29,6 @@ def test_tip_relief_of_the_pinion_ends_at_d(shape, half_way):
     assert relief_error(pair, xi) == pytest.approx([0.0, 0.0, half_way * 20e-6, 20e-6], abs=1e-18)
 
 
-def test_tip_relief_of_the_gear_ends_at_a():
-    pair, g = relieved(**{"gear.tip_relief": relief("linear", 20.0, 24.0)})
-    start = g.L_XY - math.radians(24.0) * g.base_radius_gear
-    xi = np.array([g.L_XA, 0.5 * (start + g.L_XA), start, g.L_XD])
-    assert relief_error(pair, xi) == pytest.approx([20e-6, 10e-6, 0.0, 0.0], abs=1e-18)
-
-
-def test_root_relief_ends_where_the_mates_tip_touches():
-    pair, g = relieved(
-        **{
-            "pinion.root_relief": relief("linear", 12.0, 16.0),
-            "gear.root_relief": relief("parabolic", 8.0, 16.0),
-        }
-    )
-    assert relief_error(pair, np.array([g.L_XA, g.L_XP, g.L_XD])) == pytest.approx(
-        [12e-6, 0.0, 8e-6], abs=1e-18
-    )
-
-
 def test_error_function_is_the_relief_and_names_its_kinks():
     pair, g = relieved(
         **{

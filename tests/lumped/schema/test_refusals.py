@@ -77,43 +77,16 @@ def node_at(data, parents):
     return data
 
 
-MAY_BE_NEGATIVE = {"pinion.profile_shift", "gear.profile_shift", "lubricant.viscosity_law.temperature"}
-
-
 class TestEveryQuantity:
-    def test_negative_is_refused(self, quantity_field, complete):
-        path, quantity = quantity_field
-        if path in MAY_BE_NEGATIVE:  # a profile shift and a Celsius temperature, each with a lower bound
-            assert quantity.at_least is not None
-            problem(complete(path, quantity.at_least - 1.0), path, allowed=quantity.allowed)
-            return
-        problem(complete(path, -1.0), path, value="-1", allowed=quantity.allowed)
-        if quantity.unit != "1":
-            problem(complete(path, f"-1 {quantity.unit}"), path, value="-1")
-
-    @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-    def test_not_finite_is_refused(self, quantity_field, complete, value):
-        path, quantity = quantity_field
-        problem(complete(path, value), path, allowed=quantity.allowed, action="finite")
-
-    @pytest.mark.parametrize("value", [True, False])
-    def test_boolean_is_refused(self, quantity_field, complete, value):
+    @pytest.mark.parametrize("value", [math.nan, True, [1.0], "plenty", "9" * 100_000])
+    def test_what_is_no_number_is_refused(self, quantity_field, complete, value):
         path, _ = quantity_field
-        problem(complete(path, value), path, value=str(value), action="Give a number")
-
-    @pytest.mark.parametrize("value", [[1.0], {"value": 1.0}])
-    def test_containers_are_refused(self, quantity_field, complete, value):
-        path, _ = quantity_field
-        problem(complete(path, value), path, action="Give a number")
+        problem(complete(path, value), path)
 
     def test_wrong_dimension_is_refused(self, quantity_field, complete):
         path, quantity = quantity_field
         wrong = "1 A" if quantity.unit == "1" else "1 ampere"
         problem(complete(path, wrong), path, value="1 a" if quantity.unit != "1" else "1 A")
-
-    def test_text_is_refused(self, quantity_field, complete):
-        path, _ = quantity_field
-        problem(complete(path, "plenty"), path, value="plenty")
 
     def test_bounds_are_kept(self, quantity_field, complete):
         path, quantity = quantity_field
@@ -125,10 +98,7 @@ class TestEveryQuantity:
         ):
             if bound is not None:
                 problem(complete(path, beyond), path, allowed=quantity.allowed)
-
-    def test_huge_text_is_refused_briefly(self, quantity_field, complete):
-        path, _ = quantity_field
-        problem(complete(path, "9" * 100_000), path)
+        assert quantity.above is not None or quantity.at_least is not None
 
     def test_its_name_is_checked(self, quantity_field, complete):
         path, _ = quantity_field

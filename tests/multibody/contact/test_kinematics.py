@@ -90,15 +90,6 @@ def test_wrench_is_minus_gradient_of_overlap(teeth, rng, flank):
 
 
 @pytest.mark.parametrize("flank", FLANKS)
-def test_overlap_rate_is_time_derivative(teeth, rng, flank):
-    for _ in range(20):
-        pose, velocity = random_pose(teeth, rng, flank), rng.normal(size=6)
-        line = line_of(teeth, pose, flank)
-        rate = kin.overlap_rate(line, *(velocity[:2] - velocity[3:5]), velocity[2], velocity[5])
-        assert rate == pytest.approx(-wrench(teeth, pose, flank, 1.0, 0.0) @ velocity, abs=1e-12)
-
-
-@pytest.mark.parametrize("flank", FLANKS)
 def test_friction_power_is_force_times_sliding_velocity(teeth, rng, flank):
     """Rigid-body velocities of both bodies at the contact point, written out, give the sliding velocity."""
     for _ in range(20):

@@ -9,7 +9,6 @@ import xarray as xr
 
 import lumped
 from lumped import NumericalError
-from validation.commands import options
 from validation.cross_check import comparison
 from validation.cross_check.verdict import Verdict
 from validation.reporting import Report
@@ -93,12 +92,6 @@ def test_simulate_says_where_its_motion_is_not_to_be_relied_on():
         "is unstable: a disturbance grows 1.081 times"
         in run("simulate", *undamped, *prescribed, "--steady").stderr
     )
-
-
-def test_multibody_runs_from_the_command():
-    result = run("simulate", "--model", "multibody", "--cycles", 1, "--samples", 32, "--initial", "periodic")
-    assert result.exit_code == 0, result.stderr
-    assert "mesh efficiency" in result.stdout
 
 
 def test_simulate_on_shafts(tmp_path, shafted_file):
@@ -204,14 +197,6 @@ def test_a_change_past_its_tolerance_exits_1(asked, tmp_path, fails):
     assert f"2 changed, {int(fails)} past tolerance" in result.stdout
     assert f"{'past tolerance' if fails else 'within'}  response/motion/dte: 1 -> 2 (50 %)" in result.stdout
     assert "within  parameters/mesh/damping_ratio: 0.05 -> 0.06" in result.stdout
-
-
-def test_overrides_reach_the_pair():
-    changed = options.gear_pair("nasa_28_28", "2000", "200 lbf*in", "coulomb", ["mesh.damping_ratio=0.03"])
-    assert changed.operating.pinion_speed == pytest.approx(2000 * 3.141592653589793 / 30)
-    assert changed.operating.pinion_torque == pytest.approx(200 * 0.1129848290276167)  # lbf in -> N m
-    assert changed.friction.law == "coulomb"
-    assert changed.mesh.damping_ratio == 0.03
 
 
 def test_simulate_prints_its_numbers():

@@ -84,17 +84,6 @@ def test_periodic_motion_is_found_where_friction_holds_the_teeth(stiffness):
     assert run.attrs["closure"] < 1e-8
 
 
-@pytest.mark.parametrize("stiffness", ["rectangular", "parabolic"])
-def test_linear_steady_state_is_the_lumped_one(stiffness):
-    pair = BASE.with_(mesh__stiffness={"model": stiffness})
-    run, reference = multibody.steady_state(pair, fidelity="linear", rtol=1e-10), lumped.steady_state(pair)
-    np.testing.assert_array_equal(run["time"], reference["time"])
-    for name in ("dte", "x_p", "y_p", "theta_p", "normal_load"):
-        assert difference(run, reference, name) < 1e-7
-    for key in ("brake_torque", "mesh_efficiency"):
-        assert run.attrs[key] == pytest.approx(reference.attrs[key], rel=1e-9)
-
-
 LAWS = ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
 STIFFNESS = {
     "rectangular": {"model": "rectangular"},

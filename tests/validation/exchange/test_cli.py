@@ -38,11 +38,6 @@ def test_a_pair_comes_back_from_rexs(command, tmp_path):
     assert mapping["operating"]["pinion_speed"] == 1234.0
 
 
-def test_the_version_of_rexs_can_be_chosen(command, tmp_path):
-    assert command("export", "nasa_28_28", "-o", "pair.rexs", "--rexs-version", "1.4")[0] == 0
-    assert '<model version="1.4"' in (tmp_path / "pair.rexs").read_text("utf-8-sig")
-
-
 @pytest.mark.parametrize(("form", "size"), [("elastic", 10), ("mesh", 6)])
 def test_the_linear_model_opens_in_python_control_scipy_and_matlab(command, tmp_path, form, size):
     expected = averaged_state_space(lumped.load_gear_pair("nasa_28_28"), form)

@@ -65,16 +65,6 @@ def test_csv_has_a_column_for_each_law_by_its_name(tmp_path):
     assert [[float(v) for v in row[1:]] for row in rows] == loss.tolist()
 
 
-def test_text_in_csv_is_no_formula(tmp_path):
-    # Spreadsheets run what starts with one of = + - @; an apostrophe marks it as text.
-    laws = ["coulomb", "=cmd|' /C calc'!A0", "@SUM(1)", "-1+2", "+1"]
-    result = xr.Dataset({"mu": ("law_name", np.arange(-2.0, 3.0))}, coords={"law_name": laws})
-    output.write_dataset(result, tmp_path / "laws.csv")
-    rows = list(csv.reader((tmp_path / "laws.csv").read_text().splitlines()))[1:]
-    assert [row[0] for row in rows] == [laws[0], *(f"'{law}" for law in laws[1:])]
-    assert [row[1] for row in rows] == ["-2.0", "-1.0", "0.0", "1.0", "2.0"]
-
-
 def test_netcdf_loses_nothing(dataset, tmp_path):
     output.write_dataset(dataset, tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:

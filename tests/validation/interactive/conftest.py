@@ -66,12 +66,7 @@ def _programs():
 
 
 class Browser:
-    """One tab of Chromium.
-
-    Parameters
-    ----------
-    driver : of selenium
-    """
+    """One tab of Chromium."""
 
     def __init__(self, driver):
         self.driver = driver

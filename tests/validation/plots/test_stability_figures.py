@@ -9,7 +9,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
-from typer.testing import CliRunner
 
 import spurcheck
 from floquet import predicted_lines, stability_chart
@@ -19,7 +18,6 @@ from floquet.gear.regions import label_regions
 from floquet.gear.tongues import StabilityMargins, TongueMargin
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from validation.cli import app
 from validation.plots.stability import campbell_figure, pretty, spread, stability_figure, tongues_figure
 
 
@@ -187,19 +185,6 @@ def test_campbell_diagram_marks_lines_and_range(pair) -> None:
     )
     assert {"2ω₃/2", "operating point", "operating range", "1×"} <= texts(figure)
     assert "[rpm]" in figure.axes[1].get_xlabel()
-
-
-def test_command_names_the_tongues(tmp_path) -> None:
-    path = tmp_path / "chart.svg"
-    result = CliRunner().invoke(
-        app,
-        ["stability", "--tongues", "--law", "none", "--set", "mesh.relief=ignored", "--axis",
-         "speed_rpm=15000:18500:36", "--axis",
-         "damping_ratio=0:0.03:5", "-o", str(path)],
-    )  # fmt: skip
-    assert result.exit_code == 0, result.output
-    assert "2w3/2" in result.output
-    assert path.read_bytes().startswith(b"<?xml")
 
 
 PAIR = "nasa_28_28"

@@ -49,22 +49,6 @@ def test_contact_loss_is_that_of_the_total_mesh_force():
     assert not found.contact_lost
 
 
-def test_numbers_are_those_of_the_motion():
-    pair = loaded("nasa_art_25_31")
-    found = predicted(pair)
-    force = pair.operating.pinion_torque / (
-        0.5 * pair.basic_rack.module * 25 * np.cos(pair.basic_rack.pressure_angle)
-    )
-    total = found.cycle["normal_load"].to_numpy().sum(axis=0)
-    assert found.contact_lost
-    assert found.dynamic_factor == pytest.approx(total.max() / force, rel=1e-12)
-    assert found.tooth_load == pytest.approx(found.cycle["normal_load"].max().item() / force, rel=1e-12)
-    x, y = (found.cycle[f"bearing_force_{line}_p"].to_numpy() for line in "xy")
-    assert found.bearing_rms == pytest.approx(np.sqrt(x.var() + y.var()), rel=1e-12)
-    # Parseval: half the squared amplitudes of all orders are the variance; ten orders hold nearly all.
-    assert 0.5 * np.sum(found.bearing_orders**2) == pytest.approx(x.var() + y.var(), rel=0.15)
-
-
 def test_losses_of_the_motion_with_unilateral_contact_are_those_of_the_linear_one_where_they_agree():
     """With prescribed contact and no relief, at a speed where every pair pushes, both are one motion."""
     pair = loaded("kahraman_blankenship_50_50").with_({"operating.pinion_speed": 700.0})

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from lumped.labelling import labelled_dataset
-from validation.plots.axes import draw_curves, drawn, label_axis, scale_of
+from validation.plots.axes import label_axis, scale_of
 from validation.plots.prediction import over_speed_figure
 from validation.plots.style import one_panel
 
@@ -17,14 +17,6 @@ def curve(values, unit, name="a result", x_unit="rpm"):
         {"y": ("x", np.asarray(values, float), unit, name)},
         {"x": (np.arange(len(values), dtype=float), x_unit, "the place")},
     )
-
-
-def test_an_axis_is_labelled_and_scaled_by_the_result():
-    _, ax = one_panel(2.0)
-    draw_curves(ax, curve([1e-6, 4e-6, 2e-6], "m", "transmission error"), ["y"])
-    assert (ax.get_ylabel(), ax.get_xlabel()) == ("transmission error [µm]", "the place [rpm]")
-    np.testing.assert_allclose(drawn(ax, "y"), [[0.0, 1.0, 2.0], [1.0, 4.0, 2.0]])
-    assert ax.lines[0].get_label() == "transmission error"
 
 
 @pytest.mark.parametrize(("unit", "shown", "factor"), [("1", "-", 1.0), ("%", "%", 1.0), ("N", "kN", 1e3)])

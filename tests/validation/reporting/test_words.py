@@ -3,7 +3,6 @@
 import re
 
 import numpy as np
-import pytest
 
 import lumped
 from lumped.losses import losses_of_laws
@@ -267,19 +266,6 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     )
     assert f"Contact is lost in {lost} of them, {samples.attrs['unstable']} are unstable" in text
     assert said["evidence"] == "Every check of the program passes."
-
-
-@pytest.mark.parametrize(
-    ("field", "words"),
-    [
-        ("bearings.pinion.loa_stiffness", "pinion bearing stiffness, on-line"),
-        ("bearings.gear.oloa_damping_ratio", "gear bearing damping, off-line"),
-        ("operating.pinion_torque", "torque"),
-        ("gear.roughness", "gear roughness"),
-    ],
-)
-def test_inputs_in_words(field, words):
-    assert plain_name(field) == words
 
 
 def test_every_uncertain_input_has_words_of_its_own(written):

@@ -122,16 +122,7 @@ def write_report(
     results: Results | None = None,
     same: Written | None = None,
 ) -> Written:
-    """Write the report of a pair with few samples, and read it.
-
-    Parameters
-    ----------
-    name : key of ``PAIRS``
-    folder : where
-    drawn : whether the figures are drawn into files too
-    results : known already; they are computed again where there are none
-    same : a report of the same results, whose data are taken over
-    """
+    """Write the report of a pair with few samples, and read it."""
     figures: dict[str, Figure] = {}
 
     def keep(figure: Figure, path: Path, *, new: bool = False) -> None:

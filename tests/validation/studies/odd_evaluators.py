@@ -6,14 +6,7 @@ import signal
 
 
 class Odd:
-    """An evaluator that does something odd in one case.
-
-    Parameters
-    ----------
-    inner : evaluator of the other cases
-    what : name of a method
-    at : values of the odd case
-    """
+    """An evaluator that does something odd in one case."""
 
     nan_allowed = False
 

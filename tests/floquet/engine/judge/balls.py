@@ -23,20 +23,12 @@ Coefficients = Callable[[arb, arb, int], list[arb]]
 
 
 class Piece(NamedTuple):
-    """A stretch of time on which every entry of A is analytic.
+    """A stretch of time on which every entry of A is analytic."""
 
-    Attributes
-    ----------
-    start, length : [s]
-    entries : row, column and Taylor coefficients of every entry that is not zero
-    bound : (start, length) -> (B, R): |entries| <= B for complex |s| <= R, B = 0 for polynomials whose degree
-        is below the number of terms
-    """
-
-    start: arb
+    start: arb  # [s]
     length: arb
     entries: Sequence[tuple[int, int, Coefficients]]
-    bound: Callable[[arb, arb], tuple[arb, float]] | None = None
+    bound: Callable[[arb, arb], tuple[arb, float]] | None = None  # (start, length) -> (B, R)
 
 
 def polynomial(poly: arb_poly) -> Coefficients:
@@ -52,12 +44,7 @@ def polynomial(poly: arb_poly) -> Coefficients:
 
 
 def exact_multipliers(pieces: Callable[[], Sequence[Piece]], n: int) -> list[tuple[complex, float]]:
-    """Centre and radius of a disk about each multiplier, with more bits where these do not tell them apart.
-
-    Raises
-    ------
-    ValueError : they are too close together for that, too
-    """
+    """Centre and radius of a disk about each multiplier, with more bits where these do not part them."""
     for bits in (BITS, _MORE_BITS):
         ctx.prec = bits
         try:
@@ -130,12 +117,7 @@ def _flow(piece: Piece, n: int, start: arb, length: arb, terms: int, bits: int) 
 
 
 def multipliers(M: arb_mat) -> list[tuple[complex, float]]:
-    """Midpoint and radius of a disk about each eigenvalue.
-
-    Raises
-    ------
-    ValueError : they are too close together for the number of bits
-    """
+    """Midpoint and radius of a disk about each eigenvalue."""
     found = acb_mat(M).eig(multiple=True)
     disks = []
     for value in found:

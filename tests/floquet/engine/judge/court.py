@@ -17,48 +17,30 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from flint import acb, ctx
 
 from floquet import fast_multipliers, gear_block, gear_pair_multipliers, stability_chart
-from floquet.gear.axes import GearVariation, operating_rpm, vary
-from floquet.gear.block import feedback_system
-from floquet.gear.multipliers import OffLineOfAction
+from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, NumericalError, ParameterError
-from lumped.model.periodic_system import periodic_system
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from balls import BITS, exact_multipliers
+from balls import exact_multipliers
 from findings import Disks, Finding, finding
-from formulas import black_box, formula, matrices
-from gears import MODELS, ball, pieces, random_pair
+from formulas import formula
+from gears import MODELS, pieces, random_pair
 
 SPECIAL = ("tongue edge", "collision", "low speed")
-KINDS = (
-    *MODELS, *SPECIAL, "stiffness variation", "law over speed", "speeds", "bearings",
-    "formula", "black box", "matrices",
-)  # fmt: skip
+KINDS = (*MODELS, *SPECIAL, "formula")
 
 
 def judge(kind: str, seed: int) -> list[Finding]:
-    """Findings on one random system.
-
-    Raises
-    ------
-    ValueError : ball arithmetic does not tell its multipliers apart
-    """
+    """Findings on one random system."""
     rng = np.random.default_rng([seed, KINDS.index(kind)])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
         if kind == "formula":
             return formula(rng)
-        if kind == "matrices":
-            return matrices(rng)
-        if kind == "black box":
-            return black_box(rng)
-        if kind in _OF_PAIRS:
-            return _OF_PAIRS[kind](rng)
         pair = _pair(rng, kind)
         return _routes(kind, pair, exact_multipliers(partial(pieces, pair), 6))
 
@@ -129,78 +111,6 @@ def _of_ten(kind: str, route: str, found: Any, oloa: np.ndarray, truth: Disks) -
     if feedback.sum() != 6:
         return []
     return [finding(kind, route, values[feedback], errors[feedback], truth, certificate)]
-
-
-def _stiffness_variation(rng: np.random.Generator) -> list[Finding]:
-    """A chart over the variation of the total stiffness about its mean."""
-    kind = "stiffness variation"
-    while True:
-        pair, factor = _pair(rng, str(rng.choice(MODELS))), float(rng.uniform(0.0, 1.6))
-        point = {"speed_rpm": operating_rpm(pair), "stiffness_variation": factor}
-        try:
-            chart = stability_chart(
-                pair, {name: [value] for name, value in point.items()}, rtol=1e-8, store="all", refine=False
-            )
-            own = gear_pair_multipliers(vary(pair, point), 1e-9)
-        except NumericalError:  # a stiffness that is not positive
-            continue
-        there = pair.with_({"operating.pinion_speed": point["speed_rpm"]})
-        truth = exact_multipliers(partial(pieces, there, factor=factor), 6)
-        found = chart.isel(speed_rpm=0, stiffness_variation=0)
-        return [*_of_ten(kind, "chart", found, own.oloa, truth), *_of_ten(kind, "pair", own, own.oloa, truth)]
-
-
-def _over_speeds(kind: str, count: int, rng: np.random.Generator) -> list[Finding]:
-    """A chart whose speeds share one friction law: exactly, or for "law over speed" to a tolerance."""
-    while True:
-        pair = _pair(rng, str(rng.choice(MODELS)))
-        if (pair.friction.law in ("none", "coulomb")) == (kind == "speeds"):
-            break
-    rpm = operating_rpm(pair)
-    axes = {"speed_rpm": rpm * np.linspace(0.8, 1.6, count), "damping_ratio": np.linspace(0.0, 0.1, 9)}
-    chart = stability_chart(pair, axes, rtol=1e-8, store="all", refine=False)
-    findings = []
-    for i, j in zip(rng.integers(0, count, 3), rng.integers(0, 9, 3), strict=True):
-        there = pair.with_(
-            {
-                "operating.pinion_speed": float(axes["speed_rpm"][i]),
-                "mesh.damping_ratio": float(axes["damping_ratio"][j]),
-            }
-        )
-        truth = exact_multipliers(partial(pieces, there), 6)
-        found = chart.isel(speed_rpm=i, damping_ratio=j)
-        findings += _of_ten(kind, "chart", found, gear_pair_multipliers(there, 1e-6).oloa, truth)
-    return findings
-
-
-def _bearings(rng: np.random.Generator) -> list[Finding]:
-    """The bearings off the line of action, some of them at critical damping."""
-    pair = _pair(rng, "rectangular")
-    changes = {}
-    for gear in ("pinion", "gear"):
-        changes[f"bearings.{gear}.oloa_stiffness"] = float(10 ** rng.uniform(6.0, 10.0))
-        ratio = float(rng.choice([0.0, 1.0, rng.uniform(0.0, 1.0), 1.0 - 10.0 ** rng.uniform(-14.0, -2.0)]))
-        changes[f"bearings.{gear}.oloa_damping_ratio"] = ratio
-    pair = pair.with_(changes)
-    system = periodic_system(pair, "elastic")
-    ctx.prec, s, truth = BITS, system.structure, []
-    for mass, damping, stiffness in zip(s.mass[4:], s.damping[4:], s.stiffness[4:], strict=True):
-        decay = ball(damping) / (2 * ball(mass))
-        root = acb(decay * decay - ball(stiffness) / ball(mass)).sqrt()
-        truth += [((sign * root - decay) * ball(pair.geometry.mesh_period)).exp() for sign in (1, -1)]
-    disks = [(complex(x.mid()), float((x - acb(complex(x.mid()))).abs_upper())) for x in truth]
-    values, errors = OffLineOfAction.of(feedback_system(GearVariation(pair))).multipliers(
-        np.array([system.period])
-    )
-    return [finding("bearings", "closed form", values[0], errors[0], disks, "proven")]
-
-
-_OF_PAIRS = {
-    "stiffness variation": _stiffness_variation,
-    "law over speed": partial(_over_speeds, "law over speed", 12),
-    "speeds": partial(_over_speeds, "speeds", 130),
-    "bearings": _bearings,
-}
 
 
 def table(findings: Sequence[Finding]) -> str:

@@ -11,23 +11,14 @@ Disks = Sequence[tuple[complex, float]]
 
 
 class Finding(NamedTuple):
-    """One bound against the truth.
+    """One bound against the truth."""
 
-    Attributes
-    ----------
-    kind, route : what was tried, and by which route
-    ratio : error over bound, the multipliers matched best
-    wrong : whether the verdict says the opposite of the truth
-    undecided : whether there is none
-    certificate : "proven", "estimate", or "warned" for an estimate with a warning
-    """
-
-    kind: str
+    kind: str  # what was tried, and by which route
     route: str
-    ratio: float
-    wrong: bool
-    undecided: bool
-    certificate: str
+    ratio: float  # error over bound, the multipliers matched best
+    wrong: bool  # whether the verdict says the opposite of the truth
+    undecided: bool  # whether there is none
+    certificate: str  # "proven", "estimate", or "warned" for an estimate with a warning
 
 
 def finding(

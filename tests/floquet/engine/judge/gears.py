@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from balls import Coefficients, Piece, polynomial  # type: ignore[import-not-found]
-from flint import arb, arb_poly, arb_series, ctx, fmpq
+from balls import Piece, polynomial  # type: ignore[import-not-found]
+from flint import arb, arb_poly, fmpq
 
 from lumped import GearPair, load_gear_pair
 from lumped.model.mesh_cycle import MeshCycle
@@ -32,12 +32,8 @@ def ball(value: fmpq | float) -> arb:
     return arb(q.p) / arb(q.q)
 
 
-def pieces(pair: GearPair, cycle: MeshCycle | None = None, factor: float = 1.0) -> list[Piece]:
-    """x' = A(t) x for x = (q, x_p, x_g, and their rates over a unit that makes both of like size).
-
-    With a factor on the variation of the total stiffness k about its mean, every stiffness goes with
-    f = (mean + factor (k - mean))/k and every damping with sqrt f.
-    """
+def pieces(pair: GearPair, cycle: MeshCycle | None = None) -> list[Piece]:
+    """x' = A(t) x for x = (q, x_p, x_g, and their rates over a unit that makes both of like size)."""
     system = periodic_system(pair, "mesh", cycle=cycle)
     cycle, s = system.cycle, system.structure
     g, laws = cycle.geometry, cycle.elements
@@ -66,27 +62,19 @@ def pieces(pair: GearPair, cycle: MeshCycle | None = None, factor: float = 1.0) 
                 if 0 < phase - i < 1:
                     marks.add(phase - i)
     ordered = sorted(marks)
-    mean = _mean(laws.stiffness, pitch)
     found = []
     for low, high in pairwise(ordered):
         middle = (low + high) / 2
         w, wd = ([arb_poly([0]) for _ in range(3)] for _ in range(2))
-        whole = arb_poly([0])
         for i in pairs:
             if first + (middle + i) * pitch > last:
                 continue
             mu = _over(laws.friction, first, pitch, i, middle)
-            whole += _over(laws.stiffness, first, pitch, i, middle)
             xi = arb_poly([ball(first + i * pitch), ball(pitch)])
             for r in range(3):
                 row = arb_poly([normal[r]]) + mu * (arb_poly([arm0[r]]) + xi * arb_poly([arm1[r]]))
                 w[r] += _over(laws.stiffness, first, pitch, i, middle) * row
                 wd[r] += _over(laws.damping, first, pitch, i, middle) * row
-        if factor != 1.0:
-            wanted = arb_poly([mean]) + (whole - arb_poly([mean])) * arb_poly([ball(factor)])
-            moved = (arb_poly([0, 1 / period]), unit_rate, period, ball(low), ball(high))
-            found += _varied(w, wd, whole, wanted, (supports, dampers, deflection), *moved)
-            continue
         entries = [(r, 3 + r, polynomial(arb_poly([unit_rate]))) for r in range(3)]
         for r in range(3):
             for c in range(3):
@@ -97,76 +85,6 @@ def pieces(pair: GearPair, cycle: MeshCycle | None = None, factor: float = 1.0) 
                     scaled = (total * arb_poly([unit]))(arb_poly([0, 1 / period]))
                     entries.append((3 + r, shift + c, polynomial(scaled)))
         found.append(Piece(ball(low) * period, ball(high - low) * period, entries))
-    return found
-
-
-def _mean(stiffness: PathFunction, pitch: fmpq) -> arb:
-    """Mean over a cycle of the total stiffness: the integral over the path over one pitch."""
-    total = arb(0)
-    for j, (low, high) in enumerate(pairwise(stiffness.breaks)):
-        poly = arb_poly([ball(c) for c in stiffness.coefficients[::-1, j]])
-        total += poly.integral()(ball(exact(high) - exact(low)))
-    return total / ball(pitch)
-
-
-def _varied(
-    w: list[arb_poly],
-    wd: list[arb_poly],
-    whole: arb_poly,
-    wanted: arb_poly,
-    constant: tuple[list[arb], list[arb], tuple[int, int, int]],
-    phase: arb_poly,
-    unit_rate: float,
-    period: arb,
-    low: arb,
-    high: arb,
-) -> list[Piece]:
-    """Pieces with the gains w wanted/whole and wd sqrt(wanted/whole), short enough for their bounds."""
-    supports, dampers, deflection = constant
-    polys = [poly(phase) for poly in (*w, *wd, whole, wanted)]
-    reach = 4.0
-
-    def entry(r: int, c: int, rate: bool) -> Coefficients:
-        own = (dampers if rate else supports)[r] if r == c else arb(0)
-        unit = arb(1) if rate else arb(1) / unit_rate
-
-        def coefficients(start: arb, length: arb, count: int) -> list[arb]:
-            kept, ctx.cap = ctx.cap, count
-            move = arb_poly([start, length])
-            gain, k, new = (arb_series(polys[i](move), count) for i in (r + 3 * rate, 6, 7))
-            f = new / k
-            out = gain * (f.sqrt() if rate else f) * deflection[c] - own
-            ctx.cap = kept
-            return [out[j] * unit for j in range(count)]
-
-        return coefficients
-
-    def bound(start: arb, length: arb) -> tuple[arb, float]:
-        move = arb_poly([start, length])
-        sizes, floors = [], []
-        for poly in polys:
-            here = poly(move)
-            rest = sum((abs(here[j]) * arb(reach) ** j for j in range(1, here.degree() + 1)), arb(0))
-            sizes.append((abs(here[0]) + rest).upper())
-            floors.append((here[0] - rest).lower())
-        if not (floors[6] > 0 and floors[7] > 0):  # both stay right of zero: the root is analytic
-            return arb("inf"), reach
-        f = sizes[7] / floors[6]
-        stiff = (max(sizes[:3], key=float) * f + max(supports, key=float)) / unit_rate
-        damp = max(sizes[3:6], key=float) * f.sqrt() + max(dampers, key=float)
-        return (stiff + damp + arb(unit_rate)).upper(), reach
-
-    entries = [(r, 3 + r, polynomial(arb_poly([unit_rate]))) for r in range(3)]
-    entries += [
-        (3 + r, c + 3 * rate, entry(r, c, rate)) for r in range(3) for c in range(3) for rate in (False, True)
-    ]
-    waiting, found = [(low * period, (high - low) * period)], []
-    while waiting:
-        start, length = waiting.pop()
-        if bound(start, length)[0].is_finite():
-            found.append(Piece(start, length, entries, bound))
-        else:
-            waiting += [(start + length / 2, length / 2), (start, length / 2)]
     return found
 
 

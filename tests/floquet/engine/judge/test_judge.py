@@ -20,17 +20,12 @@ from lumped import GearPair, load_gear_pair
 from lumped.model.mesh_cycle import MeshCycle
 
 
-@pytest.mark.parametrize(
-    "kind", ["rectangular", "wild table", "collision", "formula", "black box", "matrices"]
-)
+@pytest.mark.parametrize("kind", ["rectangular", "wild table", "collision", "formula"])
 def test_a_sample_of_bounds_and_verdicts(kind: str) -> None:
     for finding in judge(kind, 4):
         assert finding.ratio <= 1.0, finding
         assert not finding.wrong, finding
-        assert finding.ratio > 0.0 or finding.kind not in (
-            "formula",
-            "matrices",
-        )  # the truth is not the answer itself
+        assert finding.ratio > 0.0 or finding.kind != "formula"  # the truth is not the answer itself
 
 
 def wild_pair() -> GearPair:
