@@ -4,73 +4,18 @@ import math
 
 import numpy as np
 import pytest
-from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from lumped.elasticity.elements import assembled, plane_law
-from lumped.elasticity.load import flank_load
 from lumped.elasticity.ring import compliances
 
 from .conftest import NU, TEETH, meshed
 
 LENGTHS = np.array([1.6, 3.2])
-PITCH = 2.0 * math.pi / TEETH
 
 
 @pytest.fixture(scope="module")
 def free(coarse):
     return compliances(coarse, NU, TEETH, LENGTHS, TEETH - 1, "free")
-
-
-def whole_gear(mesh):
-    """Nodes, elements and for every tooth the numbers of a pitch's nodes; all pitches side by side."""
-    known, nodes, places = {}, [], []
-    for tooth in range(TEETH):
-        c, s = math.cos(tooth * PITCH), math.sin(tooth * PITCH)
-        numbers = []
-        for point in mesh.nodes @ np.array([[c, s], [-s, c]]):
-            key = tuple(np.round(point * 1e6 + 0.25).astype(int))
-            if key not in known:
-                known[key] = len(nodes)
-                nodes.append(point)
-            numbers.append(known[key])
-        places.append(np.array(numbers))
-    elements = np.concatenate([numbers[mesh.elements] for numbers in places])
-    return np.array(nodes), elements, places
-
-
-@pytest.mark.parametrize("support", ["free", "clamped"])
-def test_joined_pitches_are_the_whole_gear(coarse, free, support):
-    nodes, elements, places = whole_gear(coarse)
-    assert len(nodes) == TEETH * (len(coarse.nodes) - len(coarse.ahead))
-    matrix, heavy = assembled(nodes, elements, NU)
-    freedoms = [np.stack([2 * numbers, 2 * numbers + 1], -1).ravel() for numbers in places]
-    load, read, taken = flank_load(coarse, NU, LENGTHS[1])
-    force = np.zeros(2 * len(nodes))
-    force[freedoms[0]] = load
-    rigid = np.zeros((force.size, 3))
-    rigid[::2, 0] = rigid[1::2, 1] = 1.0
-    rigid[::2, 2], rigid[1::2, 2] = -nodes[:, 1], nodes[:, 0]
-    mass = rigid.T @ heavy
-    fixed = np.unique(
-        [2 * places[0][coarse.bore[0]], 2 * places[0][coarse.bore[0]] + 1, 2 * places[4][0] + 1]
-    )
-    if support == "clamped":
-        fixed = np.unique(
-            np.concatenate([freedoms[t].reshape(-1, 2)[coarse.bore].ravel() for t in range(TEETH)])
-        )
-    else:
-        force -= heavy @ np.linalg.solve(mass, rigid.T @ force)
-    kept = np.setdiff1d(np.arange(force.size), fixed)
-    moved = np.zeros(force.size)
-    moved[kept] = splu(sparse.csc_array(matrix)[kept][:, kept]).solve(force[kept])
-    if support == "free":  # the part that was taken off has a mean motion too
-        moved -= rigid @ np.linalg.solve(mass, heavy.T @ moved + taken)
-    found = free if support == "free" else compliances(coarse, NU, TEETH, LENGTHS, 2, support)
-    for tooth in range(3):
-        c, s = math.cos(tooth * PITCH), math.sin(tooth * PITCH)
-        there = moved[freedoms[tooth]].reshape(-1, 2) @ np.array([[c, -s], [s, c]])
-        assert found[tooth, 1, 1] == pytest.approx(read @ there.ravel(), rel=1e-9)
 
 
 def test_load_and_point_may_change_places(free):

@@ -11,10 +11,8 @@ from hypothesis import strategies as st
 from lumped import load_gear_pair, preset_names
 from lumped.errors import LawRangeWarning, ParameterError
 from lumped.friction import LAWS, benedict_kelley, composite, coulomb, smoothed_coulomb, xu_kahraman
-from lumped.friction.base import graded_breaks
 from lumped.friction.registry import file_name
 from lumped.friction.xu_kahraman import B
-from lumped.path_function import PathFunction
 from lumped.path_of_contact import contact_path, friction_path_function
 
 
@@ -44,14 +42,6 @@ def test_benedict_kelley_names_a_bad_argument(field, arguments):
         benedict_kelley(*arguments)
 
 
-def test_xu_kahraman_powers():
-    # equation (18): V_e, R appear as pure powers b6, b8; R in millimetres would divide mu by 1000^0.390958,
-    # 14.9: too little friction for an elastohydrodynamic contact, which settled the unit
-    base = xu_kahraman(1.0, 0.1, 10, 10, 0.3, 0.008)
-    assert xu_kahraman(1.0, 0.1, 20, 10, 0.3, 0.008) / base == pytest.approx(2**-0.100601, rel=1e-13)
-    assert base / xu_kahraman(1.0, 0.1, 10, 10, 0.3, 8.0) == pytest.approx(1000**0.390958, rel=1e-13)
-
-
 def test_xu_kahraman_vanishes_in_pure_rolling_with_the_power_of_its_regression():
     # SR -> 0: the exponential of f tends to exp(b1 + b5 + b9 exp(S)), so mu ~ |SR|^b3
     small, smaller = xu_kahraman(1.0, np.array([1e-8, 1e-9]), 10, 10, 0.3, 0.008)
@@ -70,15 +60,6 @@ def test_smoothed_coulomb_is_the_derivative_it_claims_to_be():
     step = 1e-30  # complex step: the derivative without subtraction, exact to rounding
     potential = 2 * mu / np.pi * (d + 1j * step) * np.arctan(phi * (d + 1j * step))
     np.testing.assert_allclose(smoothed_coulomb(mu, d, phi), potential.imag / step, rtol=1e-13, atol=1e-18)
-
-
-def test_smoothed_coulomb_tends_to_coulomb():
-    # series at infinity: mu - mu_IV = 4 mu/(3 pi x^3) + O(x^-5), x = Phi d
-    mu, phi, d = 0.06, 50.0, np.array([1.0, 2.0, 4.0])
-    x = phi * d
-    deficit = coulomb(mu, d) - smoothed_coulomb(mu, d, phi)
-    # the next term of the series is 8/(5 x^5): relative 1.2 * 2/x^2 = 1e-3 at x = 50
-    np.testing.assert_allclose(deficit, 4 * mu / (3 * np.pi * x**3), rtol=2e-3)
 
 
 def test_composite_takes_the_law_of_each_regime():
@@ -112,50 +93,6 @@ def test_a_law_is_found_as_tables_and_reports_call_it(nasa, name, spelled):
 def test_any_other_name_is_refused_with_the_list(nasa, text):
     with pytest.raises(ParameterError, match="one of none, coulomb"):
         nasa.with_(friction__law=text)
-
-
-PITCH, LOW, HIGH = 0.0152, 0.0075, 0.0229
-
-
-def graded(law, breaks, tolerance):
-    return PathFunction.fit(law, breaks, tolerance=tolerance, cut=graded_breaks(PITCH))
-
-
-def logarithm(xi):
-    d = np.maximum(np.abs(xi - PITCH), 1e-8)
-    return np.sign(xi - PITCH) * -0.0085 * np.log(d)
-
-
-def power(xi):
-    return np.sign(xi - PITCH) * 6.0 * np.abs(xi - PITCH) ** 1.036
-
-
-def ramp(xi):
-    return 0.03 * np.arctan((xi - PITCH) / 2e-5)
-
-
-@pytest.mark.parametrize(("law", "knots"), [(logarithm, (-1e-8, 0.0, 1e-8)), (power, (0.0,)), (ramp, (0.0,))])
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
-def test_tolerance_is_met_at_every_distance(law, knots, tolerance):
-    breaks = [LOW, *(PITCH + k for k in knots), HIGH]
-    fit = graded(law, breaks, tolerance)
-    d = np.geomspace(1.1e-8, 0.99 * (PITCH - LOW), 4000)
-    for side in (-1.0, 1.0):
-        error = np.abs(fit(PITCH + side * d) - law(PITCH + side * d)).max()
-        # probes see the error of a piece to within its ripple, a factor of two
-        assert error < 2 * tolerance
-    assert fit.breaks.size < 100
-
-
-def test_pieces_grow_like_the_logarithm_of_the_resolution():
-    # graded pieces: each decade of a smaller inner scale adds some pieces, it does not multiply them
-    def ramps(scale):
-        return graded(lambda xi: np.arctan((xi - PITCH) / scale), [LOW, PITCH, HIGH], 1e-9).breaks.size
-
-    sizes = [ramps(1e-4), ramps(1e-5), ramps(1e-6)]
-    # a piece spans a ratio of 1.6 or so in distance: ln 10/ln 1.6 = 5 a decade and side, and slack
-    assert max(np.diff(sizes)) <= 14
-    assert sizes[2] < 80
 
 
 PAIRS = {name: load_gear_pair(name) for name in preset_names()}

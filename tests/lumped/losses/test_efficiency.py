@@ -176,13 +176,6 @@ def test_a_dataset_without_friction_power_is_refused():
         dynamic_losses(load_gear_pair("fzg_c").with_(mesh__contact="prescribed"), xr.Dataset())
 
 
-@pytest.mark.parametrize("name", UP_TO_TWO_PAIRS)
-def test_closed_form_is_the_integral(name):
-    # Derived in ohlendorf's docstring; both are exact, so only rounding may differ.
-    pair = load_gear_pair(name).with_(mesh__contact="prescribed")
-    assert loss_factor(pair) == pytest.approx(ohlendorf_of(pair), rel=1e-13)
-
-
 @pytest.mark.parametrize(
     ("name", "published", "last_place"),
     [

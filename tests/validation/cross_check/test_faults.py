@@ -2,8 +2,6 @@
 
 import dataclasses
 
-import numpy as np
-
 import lumped
 from lumped.model import periodic_system
 from validation.cross_check.comparison import crosscheck
@@ -16,17 +14,6 @@ QUICK = {"cycles": 6, "samples_per_cycle": 64}
 def _swapped(s):
     order = [0, 1, 3, 2, 5, 4]
     return dataclasses.replace(s, stiffness=s.stiffness[order], damping=s.damping[order])
-
-
-def test_a_pitch_point_from_the_wrong_pressure_angle_fails(pair):
-    unlike = asymmetric_variant(pair)
-    g = lumped.geometry(unlike)
-    wrong = unlike.with_({})
-    wrong.__dict__["geometry"] = dataclasses.replace(g, L_XP=g.L_XP * np.tan(0.9) / np.tan(0.85))
-    found = crosscheck(wrong, **QUICK, variant=False)
-    failed = {failure.check for failure in found.failures}
-    assert "conservation: friction takes power, lumped" in failed
-    assert "same equations: y_p" in failed
 
 
 def test_what_symmetry_hides_is_seen_by_the_asymmetric_variant(pair, monkeypatch):
@@ -55,15 +42,6 @@ def test_vibration_that_reverses_sliding_is_no_wrong_sign(check):
     assert float(check.lumped["friction_power"].max()) > 0.0
     [taken] = [j for j in check.conservation if j.check == "conservation: friction takes power, lumped"]
     assert taken.within
-
-
-def test_the_first_law_holds_with_the_source_of_the_contact_counted(check):
-    """The change of stiffness along the path feeds energy in; without it the balance would not close."""
-    own = check.powers["lumped"]
-    assert own["mesh_stiffness"] < 0.0
-    [law] = [j for j in check.conservation if j.check == "conservation: first law, lumped"]
-    assert law.value < 1e-10
-    assert abs(own["mesh_stiffness"]) > 1e3 * law.limit * own["driving"]
 
 
 def test_a_variant_that_loses_contact_is_not_taken(pair):
