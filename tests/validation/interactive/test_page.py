@@ -186,11 +186,6 @@ def test_json_in_the_page_opens_nothing_and_reads_back(value):
     assert json.loads(text) == value
 
 
-def test_json_in_the_page_has_no_infinity():
-    with pytest.raises(ValueError, match="JSON"):
-        script_json([float("inf")])
-
-
 def test_a_speed_without_periodic_motion_is_a_gap(results):
     """NaN is no JSON: the page has null there."""
     sweep = results.sweep.copy(deep=True)
@@ -213,12 +208,6 @@ def test_a_law_that_the_pair_does_not_admit_is_named(pair):
     assert "benedict_kelley" not in found.sweep["law"]
     assert str(found.sweep["law"].values[found.own_law]) == "xu_kahraman"
     assert "Not available for this pair: II Benedict-Kelley" in page.render(found, "x.nc")
-
-
-def test_a_pair_with_three_pairs_in_contact_has_its_page(tmp_path):
-    written = write_interactive_page("high_contact_ratio_29_47", tmp_path / "page.html", sampling=TINY)
-    assert written.is_file()
-    assert written.with_suffix(".nc").is_file()
 
 
 def test_the_same_pair_gives_the_same_page(pair, results):
