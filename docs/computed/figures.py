@@ -7,6 +7,8 @@ from functools import cache
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 import lumped
 from computed import GENERATED
@@ -14,14 +16,29 @@ from computed.agreement import torque_series
 from computed.diagrams import svg
 from floquet import gear_pair_multipliers, stability_chart
 from floquet.gear.tongues import stability_margins
-from lumped import GearPair
+from lumped import GearPair, Geometry
 from lumped.path_of_contact import friction_profile
+from lumped.typing import FloatArray
 from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute
-from validation.plots.mesh import friction_laws_figure, path_figure
 from validation.plots.stability import stability_figure
-from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
+from validation.plots.style import (
+    BLUE,
+    DASHES,
+    GREY,
+    IN_Y,
+    LINES,
+    RED,
+    legend,
+    legend_above,
+    look,
+    mark_switches,
+    new_figure,
+    one_panel,
+    path_marks,
+    write_beside,
+)  # fmt: skip
 
 
 def _pair() -> GearPair:
@@ -34,14 +51,76 @@ def _profile() -> xr.Dataset:
     return friction_profile(_pair())
 
 
+def _path_axis(ax: Axes, g: Geometry, ends: FloatArray | None = None) -> None:
+    """Label an x axis along the path of contact and mark its letters; ``ends`` [mm]: default A and D."""
+    marks = path_marks(g)
+    ax.set_xlabel("distance from X along the line of action [mm]")
+    ax.set_xlim(*((marks["A"], marks["D"]) if ends is None else (ends[0], ends[-1])))
+    mark_switches(ax, marks)
+
+
+def _without_jumps(x: FloatArray, y: FloatArray, largest: float) -> tuple[FloatArray, FloatArray]:
+    """Curve with a gap wherever neighbours differ by more than ``largest``, so that no line joins a jump."""
+    places = np.flatnonzero(np.abs(np.diff(y)) > largest) + 1
+    return np.insert(x, places, np.nan), np.insert(y, places, np.nan)
+
+
+def _path_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...]) -> Figure:
+    """Sliding and entraining velocity and film parameter along the path of contact.
+
+    ``profile``: dataset of ``lumped.path_of_contact.friction_profile``; ``thresholds``: film parameters at
+    which the lubrication regime changes.
+    """
+    figure, axes = new_figure(1, 2, height=2.7)
+    xi, film = 1e3 * profile["xi"].to_numpy(), profile["film_parameter"].to_numpy()
+    left, right = axes[0]
+    left.plot(xi, profile["entraining_velocity"], color=BLUE, linestyle=DASHES[0], label="entraining (sum)")
+    left.plot(xi, profile["sliding_velocity"], color=RED, linestyle=DASHES[1], label="sliding")
+    left.set(ylabel="velocity [m/s]", ylim=(0.0, None))
+    legend_above(left, 2, letters=True)
+    top = 1.25 * float(film.max())
+    right.plot(xi, film, color=BLUE)
+    right.set(ylabel="film parameter [-]", ylim=(0.0, top))
+    edges = (0.0, *thresholds, np.inf)
+    for index, name in enumerate(str(profile["regime"].attrs["flag_meanings"]).split(", ")):
+        low, high = edges[index], min(edges[index + 1], top)
+        if low < top:
+            right.axhspan(low, high, color=GREY, alpha=0.08 * index, linewidth=0)
+            write_beside(right, name, (0.01, high), (0, -2), IN_Y, va="top", fontsize=7.5, color="#404040")
+    for ax in (left, right):
+        _path_axis(ax, g, xi)
+    return figure
+
+
+def _friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figure:
+    """Signed friction coefficient of all laws along the path of contact, the pair's own drawn strongest.
+
+    ``profile``: dataset of ``lumped.path_of_contact.friction_profile``.
+    """
+    figure, ax = one_panel(3.3)
+    xi = 1e3 * profile["xi"].to_numpy()
+    for number, law in enumerate(profile["law"].to_numpy()):
+        mu = profile["mu"].sel(law=law).to_numpy()
+        own = str(law) == chosen
+        title = str(profile["law_title"].sel(law=law).item()) + (" (used)" if own else "")
+        weight, order = (2.4, 3) if own else (1.2, 2)
+        curve = _without_jumps(xi, mu, 0.3 * np.ptp(mu))
+        ax.plot(*curve, **look(number), linewidth=weight, label=title, zorder=order)
+    ax.axhline(0.0, color=GREY, linewidth=0.6)
+    _path_axis(ax, g, xi)
+    ax.set_ylabel("friction coefficient, signed [-]")
+    legend_above(ax, 3, letters=True)
+    return figure
+
+
 def friction_laws() -> str:
     """All laws along the path of contact."""
-    return svg(friction_laws_figure(lumped.geometry(_pair()), _profile(), _pair().friction.law))
+    return svg(_friction_laws_figure(lumped.geometry(_pair()), _profile(), _pair().friction.law))
 
 
 def film() -> str:
     """Velocities and film parameter along the path of contact."""
-    return svg(path_figure(_pair().geometry, _profile(), _pair().friction.thresholds))
+    return svg(_path_figure(_pair().geometry, _profile(), _pair().friction.thresholds))
 
 
 def multipliers() -> str:

@@ -8,7 +8,7 @@ from functools import partial
 import lumped
 from computed.markdown import must_pass, table
 from tests.evidence.refinement import refinements
-from validation.reporting.stored_evidence import stored_evidence
+from validation.reporting.chapters.evidence import stored_evidence
 
 #: File -> kinds of evidence.
 _PARTS = {

@@ -25,7 +25,7 @@ from tests.evidence.published import published
 from tests.evidence.reference_model.checks import reference_model
 from tests.evidence.stability_routes import stability_routes
 from tests.evidence.written_twice import written_twice
-from validation.reporting.stored_evidence import source_hash
+from validation.reporting.chapters.evidence import source_hash
 
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "validation" / "evidence.json"

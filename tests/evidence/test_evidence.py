@@ -9,7 +9,7 @@ from tests.evidence.__main__ import main
 from tests.evidence.check import Check, failing
 from tests.evidence.kinds import KINDS, OF_PAIRS, TARGET
 from tests.evidence.pairs import gear_pairs
-from validation.reporting import stored_evidence as evidence
+from validation.reporting.chapters import evidence
 
 
 @pytest.mark.parametrize("number", range(3), ids=["default", "asymmetric", "loaded"])

@@ -1,9 +1,12 @@
-"""Numbers for readers: significant digits, SI prefixes, powers of ten."""
+"""Numbers for readers: significant digits, SI prefixes, powers of ten; words that stand in TOML files."""
 
 from __future__ import annotations
 
 import math
 import re
+import tomllib
+from importlib.resources import files
+from typing import Any
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MINUS = "\u2212"
@@ -61,3 +64,20 @@ def _plain(match: re.Match[str]) -> str:
         return f"{float(match[0]):.{places}f}"
     factor = "" if mantissa == "1" else f"{mantissa}{_SPACE}×{_SPACE}"
     return f"{factor}10{str(exponent).translate(_SUPERSCRIPT)}"
+
+
+def read_table(folder: str, file: str) -> dict[str, Any]:
+    """Read a TOML file of a package; the lines of every text in it are joined.
+
+    ``folder``: package that the file is in; ``file``: its name.
+    """
+    found: dict[str, Any] = _joined(tomllib.loads((files(folder) / file).read_text(encoding="utf-8")))
+    return found
+
+
+def _joined(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _joined(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_joined(one) for one in value]
+    return " ".join(value.split()) if isinstance(value, str) else value

@@ -10,11 +10,12 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.axes import GEAR_AXES, chart_axes, speed_range, with_point
+from floquet.gear.axes import GEAR_AXES, chart_axes, operating_rpm, speed_range, with_point
 from floquet.gear.chart import stability_chart
+from floquet.gear.jump_map import jump_map
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.regions import LabelledRegion, label_regions
-from floquet.gear.response import ResponseBranches
+from floquet.gear.response import ResponseBranches, response_branches
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
 from lumped.friction.table import TABLE
@@ -24,16 +25,15 @@ from lumped.model.results import LOAD_NOISE
 from lumped.model.sweep import resolved_sweep
 from lumped.path_of_contact import law_range_violations
 from lumped.typing import FloatArray, Progress
-from validation.validity.beyond_contact_loss import (
-    BRANCH_SPEEDS,
-    MAP_SIZE,
-    branches_about_operation,
-    jumps_about_operation,
-)
 from validation.validity.flags import STATES, validity_state
 
 Grid = dict[str, FloatArray]
 
+#: Speeds of the motions beyond contact loss, over the operating speed.
+BRANCH_SPEEDS = (0.8, 1.25)
+#: Torques of the jump map, over the operating torque, and its size: torques, speeds.
+MAP_TORQUES = (0.4, 2.5)
+MAP_SIZE = (7, 61)
 #: Accuracy of the monodromy matrices; the page shows six decimals.
 _RTOL = 1e-7
 #: Factors on the bearing stiffness span what a change of bearing or housing does.
@@ -332,3 +332,43 @@ def branch_dataset(found: ResponseBranches) -> xr.Dataset:
         },
     )
     return xr.merge([data.rename(names | {"branch": "branch", "point": "orbit"}), motions])
+
+
+def branches_about_operation(
+    pair: GearPair, factors: tuple[float, float] = BRANCH_SPEEDS, progress: Progress | None = None
+) -> ResponseBranches | str:
+    """Branches of periodic motions about the operating speed; why they cannot be computed.
+
+    ``factors`` are the slowest and fastest speed over the operating speed, cut to the pair's range.
+    """
+    try:
+        return response_branches(pair, _speeds(pair, factors), seeds=0, progress=progress)
+    except (NumericalError, ParameterError) as error:
+        return str(error)
+
+
+def jumps_about_operation(
+    pair: GearPair,
+    factors: tuple[float, float] = BRANCH_SPEEDS,
+    size: tuple[int, int] = MAP_SIZE,
+    progress: Progress | None = None,
+) -> xr.Dataset | str:
+    """Jump map over speed and torque about the operating point; why it cannot be computed.
+
+    Motions of one mesh cycle, without friction, which hardly moves them and triples the time. ``size`` is the
+    number of torques, in equal ratios, and of speeds.
+    """
+    smooth = pair.with_(friction__law="none")
+    axes = {
+        "speed_rpm": np.linspace(*_speeds(pair, factors), size[1]),
+        "torque": pair.operating.pinion_torque * np.geomspace(*MAP_TORQUES, size[0]),
+    }
+    try:
+        return jump_map(smooth, axes, (1,), progress=progress)
+    except (NumericalError, ParameterError) as error:
+        return str(error)
+
+
+def _speeds(pair: GearPair, factors: tuple[float, float]) -> tuple[float, float]:
+    own, (slowest, fastest) = operating_rpm(pair), speed_range(pair)
+    return max(factors[0] * own, slowest), min(factors[1] * own, fastest)

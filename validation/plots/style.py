@@ -154,14 +154,6 @@ def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True
         write_beside(ax, ", ".join(names), (place, 1.0), (0, 2), IN_X, ha="center", va="bottom", color=GREY)
 
 
-def path_axis(ax: Axes, g: Geometry, ends: FloatArray | None = None) -> None:
-    """Label an x axis along the path of contact and mark its letters; ``ends`` [mm]: default A and D."""
-    marks = path_marks(g)
-    ax.set_xlabel("distance from X along the line of action [mm]")
-    ax.set_xlim(*((marks["A"], marks["D"]) if ends is None else (ends[0], ends[-1])))
-    mark_switches(ax, marks)
-
-
 def mark_operation(ax: Axes, place: float, words: str) -> None:
     """Red line at the operating condition, named above the axes; nothing when outside."""
     low, high = sorted(ax.get_xlim())
@@ -182,12 +174,6 @@ def write_beside(ax: Axes, words: str, place: Point, shift: Point, axes: Any = "
     """
     look = {"fontsize": 8.0} | look
     ax.annotate(words, place, xycoords=axes, xytext=shift, textcoords="offset points", **look)
-
-
-def without_jumps(x: FloatArray, y: FloatArray, largest: float) -> tuple[FloatArray, FloatArray]:
-    """Curve with a gap wherever neighbours differ by more than ``largest``, so that no line joins a jump."""
-    places = np.flatnonzero(np.abs(np.diff(y)) > largest) + 1
-    return np.insert(x, places, np.nan), np.insert(y, places, np.nan)
 
 
 def path_marks(g: Geometry) -> dict[str, float]:

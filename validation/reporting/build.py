@@ -27,14 +27,13 @@ from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
+from validation.reporting.chapters.evidence import source_hash
 from validation.reporting.first_figures import first_figures
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
 from validation.reporting.page_one import Number, PageOne, first_numbers, page_one, title
-from validation.reporting.relations import failed_checks
-from validation.reporting.results import FULL, QUICK, Results
-from validation.reporting.stored_evidence import source_hash
+from validation.reporting.results import FULL, QUICK, Results, failed_checks
 from validation.reporting.tables import write_tables
 
 

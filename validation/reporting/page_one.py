@@ -12,12 +12,10 @@ import xarray as xr
 
 from floquet.gear.response import ResponseBranches
 from lumped.outcomes import Absent
-from validation.files.formatting import number, quantity
-from validation.files.tables import read_table
+from validation.files.formatting import number, quantity, read_table
 from validation.prediction.motion import QUANTITIES, Prediction
 from validation.reporting.first_figures import plain_name
-from validation.reporting.relations import failed_checks
-from validation.reporting.results import Results
+from validation.reporting.results import Results, failed_checks
 
 #: Largest half range of the transmission error, over its median, of a prediction for absolute levels.
 ABSOLUTE = 0.10

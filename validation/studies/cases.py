@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -120,7 +120,6 @@ class StudyEvaluator:
     analysis: AnalysisName
     outputs: tuple[str, ...]
     settings: Settings
-    nan_allowed: ClassVar[bool] = False
 
     @staticmethod
     def of(study: Study) -> StudyEvaluator:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,8 +17,8 @@ from validation.stop_signals import stopping_as_interrupt
 from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.results import RESULTS, results_dataset
 from validation.studies.schema import Study
-from validation.studies.store import STORE, Cases, Status, Store, Table
-from validation.studies.workers import Evaluator, Submit, chunks_of, workers_of
+from validation.studies.store import STORE, Status, Store
+from validation.studies.workers import chunks_of, workers_of
 
 #: Called after every chunk with (cases computed in this run, cases to compute, failed so far).
 Progress = Callable[[int, int, int], None]
@@ -108,12 +107,18 @@ def run_sweep(
         workers_of(workers, executor, scheduler, case_seconds) as (submit, slots),
         _opened(root, cases, resume) as store,
     ):
-        todo = wanted(store.table(), retry_failed)
-        evaluator = StudyEvaluator.of(study)
-        compute(cases, evaluator, store, todo, submit, slots, limit=case_seconds, progress=progress)
+        status = store.table().status
+        todo = np.flatnonzero((status == Status.MISSING) | (retry_failed & (status >= Status.REFUSED)))
+        number, evaluator, done, failed = todo.size, StudyEvaluator.of(study), 0, 0
+        numbers: Iterator[int] = iter(todo.tolist())
+        for chunk in chunks_of(evaluator, cases.values, numbers, number, submit, slots, case_seconds):
+            store.add(chunk)
+            done += len(chunk.rows)
+            failed += sum(code >= Status.REFUSED for _, code, _, _ in chunk.rows)
+            if progress is not None:
+                progress(done, number, failed)
         table = store.table()
         write_dataset(results_dataset(cases, table), root / RESULTS)
-    number = int(np.count_nonzero(todo))
     return Summary(
         cases=cases.count,
         before=cases.count - number,
@@ -123,37 +128,6 @@ def run_sweep(
         seconds=time.perf_counter() - start,
         results=root / RESULTS,
     )
-
-
-def wanted(table: Table, retry_failed: bool = False) -> np.ndarray[Any, np.dtype[np.bool_]]:
-    """Return which cases are to compute, (cases,)."""
-    todo: np.ndarray[Any, np.dtype[np.bool_]] = table.status == Status.MISSING
-    if retry_failed:
-        todo |= table.status >= Status.REFUSED
-    return todo
-
-
-def compute(
-    cases: Cases,
-    evaluator: Evaluator,
-    store: Store,
-    todo: np.ndarray[Any, np.dtype[np.bool_]],
-    submit: Submit,
-    slots: int,
-    *,
-    limit: float | None = None,
-    progress: Progress | None = None,
-) -> None:
-    """Compute the cases where ``todo`` (cases,) is true into a store; the rest is said at ``run_sweep``."""
-    numbers = np.flatnonzero(todo)
-    done = failed = 0
-    listed: Iterator[int] = iter(numbers.tolist())
-    for chunk in chunks_of(evaluator, cases.values, listed, numbers.size, submit, slots, limit):
-        store.add(chunk)
-        done += len(chunk.rows)
-        failed += sum(status >= Status.REFUSED for _, status, _, _ in chunk.rows)
-        if progress is not None:
-            progress(done, numbers.size, failed)
 
 
 def _opened(root: Path, cases: CaseList, resume: bool) -> Store:

@@ -11,14 +11,14 @@ import os
 import platform
 import sqlite3
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cache
 from importlib import metadata
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -26,6 +26,7 @@ import lumped
 from lumped.cache import processor
 from lumped.errors import StorageError, refuse
 from lumped.typing import FloatArray
+from validation.studies.cases import CaseList
 
 STORE = "store.sqlite"
 #: Error texts in the results: those of the failed cases with the lowest numbers.
@@ -84,22 +85,6 @@ def provenance() -> Provenance:
     return Provenance(", ".join(parts), digest.hexdigest(), processor())
 
 
-class Cases(Protocol):
-    """A numbered list of cases: a text that defines them, a hash of their parameters, how many they are."""
-
-    @property
-    def definition(self) -> str: ...
-    @property
-    def sha256(self) -> str: ...
-    @property
-    def count(self) -> int: ...
-    @property
-    def outputs(self) -> tuple[str, ...]: ...
-    def values(self, cases: Sequence[int]) -> Sequence[tuple[Any, ...]]:
-        """Return the parameters of the cases of given numbers."""
-        ...
-
-
 @dataclass(frozen=True)
 class Chunk:
     """Outcomes of some cases, the time that they took [s], and the process that computed them.
@@ -130,7 +115,7 @@ class Table:
 
 
 class Store:
-    """The store of cases in a folder (None: in memory), opened for adding; its lock keeps others out.
+    """The store of cases in a folder, opened for adding; its lock keeps others out.
 
     Raises
     ------
@@ -138,9 +123,9 @@ class Store:
     StoreError : it cannot be used, is damaged, or another process writes to it
     """
 
-    def __init__(self, folder: Path | None, cases: Cases) -> None:
+    def __init__(self, folder: Path, cases: CaseList) -> None:
         self._cases = cases
-        self.path = Path(":memory:") if folder is None else folder / STORE
+        self.path = folder / STORE
         with _translated(self.path):
             self._db = sqlite3.connect(self.path, isolation_level=None, timeout=0.5)
         try:
@@ -196,7 +181,7 @@ def read_definition(folder: Path) -> str:
         return str(dict(db.execute("SELECT key, value FROM about"))["definition"])
 
 
-def read_table(folder: Path, cases: Cases) -> Table:
+def read_table(folder: Path, cases: CaseList) -> Table:
     """Return the outcomes that a store holds, also while another process adds to it."""
     with _reader(folder) as db:
         _check_same(db, folder / STORE, cases)
@@ -230,11 +215,11 @@ def _translated(path: Path) -> Iterator[None]:
         raise StoreError(text) from error
 
 
-def _about(cases: Cases) -> dict[str, str]:
+def _about(cases: CaseList) -> dict[str, str]:
     return {"definition": cases.definition, "cases_sha256": cases.sha256, "outputs": " ".join(cases.outputs)}
 
 
-def _check_same(db: sqlite3.Connection, path: Path, cases: Cases) -> None:
+def _check_same(db: sqlite3.Connection, path: Path, cases: CaseList) -> None:
     """Refuse the store of other cases."""
     known = dict(db.execute("SELECT key, value FROM about"))
     wanted = _about(cases)
@@ -253,7 +238,7 @@ def _runs(db: sqlite3.Connection) -> list[Provenance]:
     return [Provenance(*row) for row in db.execute("SELECT * FROM run ORDER BY rowid")]
 
 
-def _table(db: sqlite3.Connection, cases: Cases) -> Table:
+def _table(db: sqlite3.Connection, cases: CaseList) -> Table:
     table = Table(
         np.full(cases.count, Status.MISSING, np.int8), np.full((cases.count, len(cases.outputs)), np.nan)
     )

@@ -16,11 +16,12 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager, suppress
 from itertools import islice
 from multiprocessing import forkserver
-from typing import Any, Protocol
+from typing import Any
 
 import pebble
 
 from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError, refuse
+from validation.studies.cases import StudyEvaluator
 from validation.studies.store import Chunk, Status, provenance
 
 #: Aim of the time of a chunk [s]: what a killed run loses of each worker.
@@ -41,20 +42,9 @@ class SweepStopped(SpurcheckError):
     """The workers cannot go on; every case that was computed is kept, and the text says how to continue."""
 
 
-class Evaluator(Protocol):
-    """What computes one case: its values to its outputs. Every chunk carries it, pickled.
-
-    ``nan_allowed`` says whether NaN is a result; else a number that is not finite is a failure.
-    """
-
-    @property
-    def outputs(self) -> tuple[str, ...]: ...
-    @property
-    def nan_allowed(self) -> bool: ...
-    def __call__(self, values: tuple[Any, ...]) -> tuple[float, ...]: ...
-
-
-def evaluate_chunk(evaluator: Evaluator, cases: Sequence[int], values: Sequence[tuple[Any, ...]]) -> Chunk:
+def evaluate_chunk(
+    evaluator: StudyEvaluator, cases: Sequence[int], values: Sequence[tuple[Any, ...]]
+) -> Chunk:
     """Evaluate cases one after the other; whatever a case raises becomes its outcome."""
     start = time.perf_counter()
     rows: list[tuple[int, int, bytes | None, str | None]] = []
@@ -73,7 +63,7 @@ def evaluate_chunk(evaluator: Evaluator, cases: Sequence[int], values: Sequence[
     return Chunk(rows, time.perf_counter() - start, provenance())
 
 
-def _evaluate(evaluator: Evaluator, values: tuple[Any, ...]) -> tuple[Status, tuple[float, ...], str]:
+def _evaluate(evaluator: StudyEvaluator, values: tuple[Any, ...]) -> tuple[Status, tuple[float, ...], str]:
     try:
         outputs = evaluator(values)
     except ParameterError as error:
@@ -82,10 +72,9 @@ def _evaluate(evaluator: Evaluator, values: tuple[Any, ...]) -> tuple[Status, tu
         return Status.NUMERICAL, (), f"{type(error).__name__}: {error}"
     except Exception as error:  # noqa: BLE001  (a defect in one case must not end the other cases)
         return Status.UNEXPECTED, (), f"{type(error).__name__}: {error}"
-    if not evaluator.nan_allowed:
-        bad = [name for name, x in zip(evaluator.outputs, outputs, strict=True) if not math.isfinite(x)]
-        if bad:
-            return Status.NUMERICAL, (), "not finite: " + ", ".join(bad)
+    bad = [name for name, x in zip(evaluator.outputs, outputs, strict=True) if not math.isfinite(x)]
+    if bad:
+        return Status.NUMERICAL, (), "not finite: " + ", ".join(bad)
     return Status.OK, outputs, ""
 
 
@@ -176,7 +165,7 @@ def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
 
 
 def chunks_of(
-    evaluator: Evaluator,
+    evaluator: StudyEvaluator,
     values: Callable[[Sequence[int]], Sequence[tuple[Any, ...]]],
     numbers: Iterator[int],
     count: int,

@@ -6,7 +6,6 @@ Sources: docs/theory/validity.md.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -23,7 +22,7 @@ from lumped.quasi_static.contacts import contact_of
 from lumped.ranges import RangeViolation
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
-from validation.files.tables import read_table
+from validation.files.formatting import read_table
 
 if TYPE_CHECKING:
     from floquet.gear.multipliers import GearPairMultipliers
@@ -67,12 +66,6 @@ class Flag:
     detail: str
     meaning: str
     action: str
-
-
-def worst_state(flags: Sequence[Flag]) -> State:
-    """Most serious state among flags."""
-    order: tuple[State, ...] = ("ok", "warning", "violated")
-    return max((flag.state for flag in flags), key=order.index, default="ok")
 
 
 def flag(key: str, state: State, value: float | None, detail: str) -> Flag:

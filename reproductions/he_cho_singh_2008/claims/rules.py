@@ -15,7 +15,7 @@ from typing import Literal
 
 from lumped.model.steady import UNSTABLE
 from reproductions.he_cho_singh_2008.records import Number, Statement
-from validation.files.tables import read_table
+from validation.files.formatting import read_table
 from validation.validity.flags import LOAD_NOISE
 
 Numbers = Mapping[str, float]

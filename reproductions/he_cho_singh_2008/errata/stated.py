@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from reproductions.he_cho_singh_2008.records import Erratum, Evidence
-from validation.files.tables import read_table
+from validation.files.formatting import read_table
 
 _TABLE = read_table("reproductions.he_cho_singh_2008.errata", "errata.toml")
 _WORDS = {row["equation"]: row for row in _TABLE["erratum"]}

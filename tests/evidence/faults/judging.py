@@ -17,8 +17,7 @@ from tests.evidence.kinds import OF_PAIRS
 from tests.evidence.pairs import pairs
 from tests.evidence.refinement import refinements
 from validation.cross_check.comparison import crosscheck
-from validation.reporting.relations import broken_relations
-from validation.reporting.results import QUICK, Results
+from validation.reporting.results import QUICK, Results, broken_relations
 
 _CYCLES, _SAMPLES = 6, 64
 

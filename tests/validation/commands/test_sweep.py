@@ -90,7 +90,7 @@ def test_ctrl_c_is_130_and_says_how_to_go_on(command):
         raise KeyboardInterrupt
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(runner, "compute", interrupt)
+        patch.setattr(runner, "chunks_of", interrupt)
         code, text = command()
     assert code == INTERRUPTED
     assert "--resume" in text

@@ -26,8 +26,7 @@ from validation.cli import app
 from validation.interactive import page, write_interactive_page
 from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
-from validation.interactive.results import Sampling, compute
-from validation.validity.beyond_contact_loss import branches_about_operation
+from validation.interactive.results import Sampling, branches_about_operation, compute
 from validation.validity.flags import contact_loss, sliding_reversal
 
 TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4, branches=None)

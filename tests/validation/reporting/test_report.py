@@ -16,8 +16,7 @@ from tests.validation.reporting.written import PAIRS, SMALL
 from validation.reporting import build
 from validation.reporting.chapters.how_sure import inputs_table
 from validation.reporting.page_one import Verdict, advice_on_inputs
-from validation.reporting.relations import broken_relations
-from validation.reporting.results import Results
+from validation.reporting.results import Results, broken_relations
 
 
 def words(page: str) -> list[str]:
@@ -97,7 +96,7 @@ class TestRelations:
 
     def test_a_broken_relation_is_a_failed_check_and_the_verdict(self, results, tmp_path, monkeypatch):
         monkeypatch.setattr(build, "FULL", SMALL)
-        monkeypatch.setattr("validation.reporting.relations._SAME", -1.0)
+        monkeypatch.setattr("validation.reporting.results._SAME", -1.0)
         made = build.report(PAIRS["calm"](), tmp_path / "r")
         assert made.first.verdict is Verdict.BROKEN
         assert made.failed

@@ -8,8 +8,6 @@ import signal
 class Odd:
     """An evaluator that does something odd in one case."""
 
-    nan_allowed = False
-
     def __init__(self, inner, what, at):
         self.inner, self.what, self.at, self.outputs = inner, what, at, inner.outputs
 

@@ -51,15 +51,15 @@ def test_the_status_codes_are_those_of_the_stores_there_are():
     assert {status.name: int(status) for status in Status} == {n: k - 1 for k, n in enumerate(names.split())}
 
 
-def test_texts_are_bounded_in_length_and_number(cases, monkeypatch):
+def test_texts_are_bounded_in_length_and_number(cases, tmp_path, monkeypatch):
     class Loud:
-        outputs, nan_allowed = ("x", "y"), False
+        outputs = ("x", "y")
 
         def __call__(self, values):
             raise ValueError("\udc80x" * 10**5)
 
     monkeypatch.setattr(stores, "MAX_FAILURES", 3)
-    with Store(None, cases) as store:
+    with Store(tmp_path, cases) as store:
         for case in (9, 3, 5, 1, 7):
             store.add(evaluate_chunk(Loud(), [case], [()]))
         table = store.table()
