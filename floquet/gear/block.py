@@ -291,7 +291,11 @@ class MeshGains:
         )
         self.place = _PLACE * (cycle.end + g.base_pitch)
         self.varied = factor != 1.0
-        degree = max(self.k.degree, self.c.degree) + self.mu.degree + 1
+        # Off the line of action a mesh on springs has no coordinate here.
+        self.apart = system.per_apart if e.tilt is not None else np.zeros(self.normal.size)
+        tilt = e.tilt if e.tilt is not None and self.apart.any() else e.friction.scaled(0.0)
+        self.tilt = _Law.of(tilt, middle, self.touch, g.base_pitch)
+        degree = max(self.k.degree, self.c.degree) + max(self.mu.degree + 1, self.tilt.degree)
         self.count = 1 + degree + (_FACTOR_DEGREE if self.varied else 0)
         # The mean is a sum over the pieces of the law, each to the moduli of its terms.
         rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
@@ -312,7 +316,7 @@ class MeshGains:
             fixed = fixed * most
             for j, law in enumerate((self.k, self.c)):
                 for p in range(self.parts):
-                    reach = self._reach(law.size, self.mu.size, p)[:, segment].sum(axis=0)
+                    reach = self._reach(law.size, self.mu.size, self.tilt.size, p)[:, segment].sum(axis=0)
                     errors[2 * p + j] = off[j] * reach
         for i in range(self.offsets.size):
             if not self.touch[i, segment].any():
@@ -321,6 +325,8 @@ class MeshGains:
             mu, arm = self.mu(xi, i, segment)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
             sign = self.side[i, segment][:, None, None]
             rows = [np.broadcast_to(self.normal, (*xi.shape, self.normal.size))]
+            if self.apart.any():
+                rows[0] = rows[0] + self.tilt(xi, i, segment)[..., None] * self.apart
             if self.levels:
                 rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
             else:
@@ -332,7 +338,7 @@ class MeshGains:
         return groups, errors, fixed
 
     def _row(self, part: int) -> tuple[float, float, float, float]:
-        """Bounds on a row: constant, per unit of |mu|, of levels, and per unit of position and |mu|."""
+        """Bounds on a row without tilt: constant, per |mu|, of levels, and per unit of position and |mu|."""
         root = np.sqrt(self.metric)
         normal = float(np.linalg.norm(self.normal * root))
         arms = [float(np.linalg.norm(a * root)) for a in self.arm]
@@ -345,11 +351,16 @@ class MeshGains:
             (0.0, arm, sum(self.levels), arms[1]) if part == 1 else (0.0, 0.0, self.levels[part - 1], arms[1])
         )
 
-    def _reach(self, size: FloatArray, mu: FloatArray, part: int) -> FloatArray:
-        """Bound on the norm of what one pair adds to a gain, from bounds on its load and on |mu|."""
+    def _apart(self, part: int) -> float:
+        """Bound on a row per unit of tilt."""
+        return float(np.linalg.norm(self.apart * np.sqrt(self.metric))) if part == 0 else 0.0
+
+    def _reach(self, size: FloatArray, mu: FloatArray, tilt: FloatArray, part: int) -> FloatArray:
+        """Bound on the norm of what one pair adds to a gain, from bounds on its load, |mu| and tilt."""
         normal, arm, level, _ = self._row(part)
         full = self._row(1)[1] if self.levels and part else arm
-        return np.asarray(size * (normal + arm * mu + full * level), dtype=float)
+        row = normal + arm * mu + full * level + self._apart(part) * tilt
+        return np.asarray(size * row, dtype=float)
 
     @property
     def jumps(self) -> FloatArray:
@@ -366,13 +377,15 @@ class MeshGains:
         jumps = np.zeros((2 * self.parts, self.edges.size))
         for j, law in enumerate((self.k, self.c)):
             for p in range(self.parts):
-                _, arm, _, tilt = self._row(p)
-                reach = self._reach(law.size, self.mu.size, p)
-                moved = self._reach(law.slope, self.mu.size, p) + law.size * (
-                    arm * self.mu.slope + tilt * (self.mu.size + sum(self.levels))
+                _, arm, _, turn = self._row(p)
+                reach = self._reach(law.size, self.mu.size, self.tilt.size, p)
+                moved = self._reach(law.slope, self.mu.size, self.tilt.size, p) + law.size * (
+                    arm * self.mu.slope
+                    + turn * (self.mu.size + sum(self.levels))
+                    + self._apart(p) * self.tilt.slope
                 )
                 errors[2 * p + j] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
-                near = self._reach(law.near, self.mu.near, p).sum(axis=0)
+                near = self._reach(law.near, self.mu.near, self.tilt.near, p).sum(axis=0)
                 jumps[2 * p + j] = 2.0 * self.slips * self._largest_factor * near
         return errors, jumps
 

@@ -65,7 +65,11 @@ def unilateral_system(
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
     phases = cycle.breaks / cycle.period
-    flanks = [_Flank(rows @ s.normal, rows @ s.friction_arm, base.deflection, 0.0, cycle.offsets, 1.0)]
+    flanks = [
+        _Flank(
+            rows @ s.normal, rows @ s.friction_arm, rows @ s.apart, base.deflection, 0.0, cycle.offsets, 1.0
+        )
+    ]
     if form == "back_side":
         coast = _coast_flank(pair, cycle, rows)
         passes = np.mod((coast.offsets[0] - g.L_XA) / g.base_pitch - cycle.break_phases, 1.0)
@@ -101,6 +105,7 @@ class _Flank:
     ----------
     normal : (n,) acceleration per unit load
     arm : (n, 2) acceleration per unit friction force, arm[:, 0] + arm[:, 1] xi
+    apart : (n,) acceleration per unit force of a tip corner off the flank's line of action
     direction : (m,) the overlap is direction . z - clearance - e
     clearance : [m]
     offsets : (I,) places xi at t = 0 of all pairs that can touch in the cycle [m]
@@ -109,6 +114,7 @@ class _Flank:
 
     normal: FloatArray
     arm: FloatArray
+    apart: FloatArray
     direction: FloatArray
     clearance: float
     offsets: FloatArray
@@ -135,6 +141,7 @@ def _coast_flank(pair: GearPair, cycle: MeshCycle, rows: FloatArray) -> _Flank:
     return _Flank(
         rows @ normal,
         rows @ arm,
+        rows @ np.array([0.0, 0.0, -y, y, x, -x]),
         np.array([-1.0, x, -x, y, -y]),
         g.normal_backlash,
         place + np.arange(first, last + 1) * pitch,
@@ -155,9 +162,13 @@ def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank
     rate = None if elements.gap is None else pitch * law(elements.error_slope)
     e[:, 0] += flank.clearance
     xi = np.stack([start, np.full(start.size, pitch)], axis=1)
-    acceleration = np.pad(flank.arm[:, 0, None] * mu[:, None, :], ((0, 0), (0, 0), (0, 1)))
-    acceleration[:, :, :-1] += flank.arm[:, 1, None] * (mu * xi[:, :1])[:, None, :]
-    acceleration[:, :, 1:] += flank.arm[:, 1, None] * (mu * xi[:, 1:])[:, None, :]
+    # No corner of "mesh" acts on y.
+    tilt = law(elements.tilt) if elements.tilt is not None and flank.apart.any() else np.zeros((1, 1))
+    width = mu.shape[1]
+    acceleration = _widened(flank.arm[:, 0, None] * mu[:, None, :], max(width + 1, tilt.shape[1]))
+    acceleration[:, :, :width] += flank.arm[:, 1, None] * (mu * xi[:, :1])[:, None, :]
+    acceleration[:, :, 1 : width + 1] += flank.arm[:, 1, None] * (mu * xi[:, 1:])[:, None, :]
+    acceleration[:, :, : tilt.shape[1]] += flank.apart[:, None] * tilt[:, None, :]
     acceleration[:, :, 0] += flank.normal
     zeta = pair.mesh.damping_ratio
     sign: tuple[npt.ArrayLike, npt.ArrayLike] | None = None

@@ -32,6 +32,7 @@ class Structure:
     deflection : (6,) u with delta = u . z, the dynamic transmission error
     normal : (6,) generalised force on each coordinate per unit normal load of a pair
     friction_arm : (6, 2) generalised force per unit friction force, a[:, 0] + a[:, 1] * xi
+    apart : (6,) generalised force per unit of the force by which a tip corner pushes the gears apart
     """
 
     mass: FloatArray
@@ -40,6 +41,7 @@ class Structure:
     deflection: FloatArray
     normal: FloatArray
     friction_arm: FloatArray
+    apart: FloatArray
 
     def friction(self, position: FloatArray) -> FloatArray:
         """Generalised force per unit friction force at positions xi (...,) -> (..., 6)."""
@@ -51,7 +53,7 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
 
     Each column of forces reads like the paper: per unit N_i the pinion gets -r_bp (1), the gear +r_bg (2),
     x_p -1 (6), x_g +1 (7); per unit F_i the pinion gets -X_pi (1), the gear +X_gi = L_XY - X_pi (2),
-    y_p +1 (8), y_g -1 (9).
+    y_p +1 (8), y_g -1 (9). The paper has no corners; their moment is path work, which the linear form lacks.
     """
     g, b = pair.geometry, bodies_of(pair)
     printed = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
@@ -78,4 +80,5 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
         deflection=np.array([r_bp, -r_bg, 1.0, -1.0, 0.0, 0.0]),
         normal=np.array([-r_bp, s2 * r_bg, -1.0, s7, 0.0, 0.0]),
         friction_arm=arm,
+        apart=np.array([0.0, 0.0, 0.0, 0.0, -1.0, 1.0]),
     )

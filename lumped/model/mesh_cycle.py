@@ -39,6 +39,7 @@ class PairState:
     position : xi_i, also for a pair out of contact [m]
     contact : whether the pair is where it can touch
     stiffness, damping, friction, error, error_rate : k_i [N/m], c_i [N s/m], mu_i [-], e_i [m], de_i/dt [m/s]
+    tilt : sine of the angle between normal and line of action [-]; None where that is 0
     """
 
     position: FloatArray
@@ -48,6 +49,7 @@ class PairState:
     friction: FloatArray
     error: FloatArray
     error_rate: FloatArray
+    tilt: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +101,8 @@ class MeshCycle:
     @property
     def _laws(self) -> tuple[PathFunction, ...]:
         e = self.elements
-        return e.stiffness, e.damping, e.friction, e.error
+        laws = e.stiffness, e.damping, e.friction, e.error
+        return laws if e.tilt is None else (*laws, e.tilt)
 
     def _times(self, positions: list[FloatArray]) -> FloatArray:
         """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
@@ -116,7 +119,7 @@ class MeshCycle:
 
     @cached_property
     def break_phases(self) -> FloatArray:
-        """Phases in [0, 1) at which a pair passes any break of k, c, mu or e, or A, P or D; as computed."""
+        """Phases in [0, 1) at which a pair passes any break of a law, or A, P or D; as computed."""
         g = self.geometry
         positions = np.concatenate([[g.L_XA, g.L_XP, g.L_XD], *(law.breaks for law in self._laws)])
         return np.asarray(np.unique(np.mod((positions - g.L_XA) / g.base_pitch, 1.0)), dtype=np.float64)
@@ -181,12 +184,12 @@ class MeshCycle:
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
         contact = np.take(self._contact, index, axis=1)
-        k, c, mu, error, slope = (
+        slope, k, c, mu, error, *tilt = (
             law_at(law.breaks, law.coefficients, self.offsets, shift, contact)
-            for law in (*self._laws, self.elements.error_slope)
+            for law in (self.elements.error_slope, *self._laws)
         )
         position = self.offsets[:, None] + speed * tau
-        return PairState(position, contact, k, c, mu, error, error_rate=slope * speed)
+        return PairState(position, contact, k, c, mu, error, slope * speed, tilt[0] if tilt else None)
 
 
 def is_edge(times: FloatArray, edges: FloatArray) -> BoolArray:

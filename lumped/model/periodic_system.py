@@ -148,6 +148,11 @@ class LTVSystem:
         s = self.structure
         return np.vstack([s.normal, s.friction_arm.T]) / s.mass @ self.reduction.T
 
+    @cached_property
+    def per_apart(self) -> FloatArray:
+        """Acceleration (m,) of z per unit of the force by which a tip corner pushes the gears apart."""
+        return np.asarray(self.structure.apart / self.structure.mass @ self.reduction.T, dtype=np.float64)
+
     def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
         """Rank-one feedback of the mesh at times (k,) [s]; ``segment`` as in ``MeshCycle.sample``."""
         pairs = self.cycle.sample(time, segment)
@@ -155,7 +160,10 @@ class LTVSystem:
         def acceleration(load: FloatArray) -> FloatArray:
             friction = pairs.friction * load
             loads = np.stack([v.sum(0) for v in (load, friction, friction * pairs.position)], axis=-1)
-            return loads @ self.per_load
+            found = loads @ self.per_load
+            if pairs.tilt is not None:
+                found += np.multiply.outer((pairs.tilt * load).sum(0), self.per_apart)
+            return found
 
         error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
         return MeshGain(

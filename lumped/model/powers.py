@@ -78,7 +78,7 @@ def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> 
     g = solution.system.pair.geometry
     brake_torque = solution.brake_torque
     if contact_of(solution.system.pair).conservative if conservative is None else conservative:
-        brake_torque -= solution.energy_residual / g.omega_gear
+        brake_torque -= mean_powers(solution).energy_residual / g.omega_gear
     return {
         "brake_torque": brake_torque,
         "pinion_torque": solution.pinion_torque,
@@ -106,7 +106,7 @@ def mean_powers(solution: PeriodicSolution) -> MeanPowers:
         tooth_dampers=float(power[1]),
         bearings=float(power[2]),
         shafts=float(power[3]),
-        energy_residual=solution.energy_residual,
+        energy_residual=solution.energy_residual + float(power[4]),
     )
 
 
@@ -144,8 +144,8 @@ def _accelerations(
 
 
 def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -> FloatArray:
-    """Powers taken by sliding, tooth dampers, bearings and shafts at n states, (4, n) [W]."""
-    from lumped.model.results import response
+    """Powers taken by sliding, tooth dampers, bearings, shafts; work of corners at n states, (5, n) [W]."""
+    from lumped.model.results import corner_force, response
 
     system = solution.system
     values = response(system, times, states)
@@ -158,5 +158,6 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
             (pairs.damping * closing**2).sum(axis=0),
             supports["bearings"],
             supports.get("shafts", np.zeros(times.size)),
+            corner_force(values, pairs) * (values["y_g_dot"] - values["y_p_dot"]),
         ]
     )

@@ -155,6 +155,12 @@ def response(
     return values
 
 
+def corner_force(values: Mapping[str, FloatArray], pairs: PairState) -> FloatArray:
+    """Force by which tip corners push the gears apart off the line of action, of all pairs (k,) [N]."""
+    tilt = np.zeros(1) if pairs.tilt is None else pairs.tilt
+    return np.asarray((tilt * values["normal_load"]).sum(axis=0), dtype=np.float64)
+
+
 def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> float:
     """Largest minus smallest value, extremes between two samples included.
 

@@ -68,7 +68,7 @@ class PeriodicSolution:
 
     @cached_property
     def energy_residual(self) -> float:
-        """Mean power of the losses that no torque balances, see ``StepMaps.energy_residual`` [W]."""
+        """Mean power that the normal loads leave, see ``StepMaps.energy_residual`` [W]."""
         return self._maps.energy_residual(self.cycle_states[0], self._weights)
 
     @property

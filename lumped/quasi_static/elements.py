@@ -40,6 +40,8 @@ class MeshElements:
     friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
     error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
     gap : the gap that closes at the first touch, where e is not that gap (loaded, Hertz) [m]
+    tilt : sine of the angle by which a tip corner beyond A and D turns the normal out of the line of action,
+        so that it pushes the gears apart [-]; None where teeth touch on that line alone
     """
 
     stiffness: PathFunction
@@ -47,6 +49,7 @@ class MeshElements:
     friction: PathFunction
     error: PathFunction
     gap: PathFunction | None = None
+    tilt: PathFunction | None = None
 
     @property
     def error_slope(self) -> PathFunction:

@@ -97,47 +97,52 @@ def shared_loads(
 
 
 @compiled
-def corner_gap_at(
+def corner_at(
     beyond: float, start: float, tangent: float, flank_radius: float, tip_radius: float
-) -> float:
+) -> tuple[float, float]:
     """Gap of a tip corner from the mate's flank [m], ``beyond`` before its first contact at ``start``.
+
+    Beside it the sine of the angle by which the flank's normal at the corner is turned out of the line of
+    action, so that it pushes the gears apart.
 
     Axes with the flank's tangent point as origin, t along the line of action, n away from the flank's centre;
     ``tangent`` is the length of the line of action.
     """
     if beyond <= 0.0:
-        return 0.0
+        return 0.0, 0.0
     corner = tangent - start  # length on the tip's base tangent of its corner
     turn = beyond / tip_radius
     t = tangent - (tip_radius * math.sin(turn) + corner * math.cos(turn))
     n = 2.0 * tip_radius * math.sin(0.5 * turn) ** 2 + corner * math.sin(turn)
     length = math.sqrt(max(t * t + n * (n + 2.0 * flank_radius), 0.0))
     angle = math.atan2(t, n + flank_radius) - math.atan2(length, flank_radius)
-    return length + flank_radius * angle - (start - beyond)
+    return length + flank_radius * angle - (start - beyond), -math.sin(angle)
 
 
 @compiled
-def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatArray) -> float:
+def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatArray) -> tuple[float, float]:
     """Gap of a pair at xi = ``place`` [m], its contact point ``half`` beyond where the tips leave the line.
+
+    Beside it the tilt of its normal, as of ``corner_at``.
 
     ``relief`` is the material missing there, ``longer`` by how much the line of action is longer than nominal
     [m]; ``ends`` are L_XA, L_XD, L_XY and the base radii of pinion and gear [m].
     """
     early, late = ends[0] - place + half, place - ends[1] + half
     length = ends[2] + longer
-    before = corner_gap_at(early, ends[0] + longer, length, ends[3], ends[4])
-    behind = corner_gap_at(late, length - ends[1], length, ends[4], ends[3])
-    return float(relief + before + behind)
+    before, early_tilt = corner_at(early, ends[0] + longer, length, ends[3], ends[4])
+    behind, late_tilt = corner_at(late, length - ends[1], length, ends[4], ends[3])
+    return relief + before + behind, early_tilt + late_tilt
 
 
 @compiled
 def gaps_at(
     place: FloatArray, relief: FloatArray, half: FloatArray, longer: FloatArray, ends: FloatArray
 ) -> FloatArray:
-    """``gap_at`` at n positions, (n,)."""
-    found = np.empty(place.size)
+    """``gap_at`` at n positions, (2, n)."""
+    found = np.empty((2, place.size))
     for i in range(place.size):
-        found[i] = gap_at(place[i], relief[i], half[i], longer[i], ends)
+        found[0, i], found[1, i] = gap_at(place[i], relief[i], half[i], longer[i], ends)
     return found
 
 
@@ -210,7 +215,7 @@ def approaches(
             half = 0.5 * (delta + lengthening)
             for j in range(pairs):
                 if stiffness[i, j] > 0.0:
-                    gaps[j] = gap_at(place[i, j], relief[i, j], half, lengthening, ends)
+                    gaps[j] = gap_at(place[i, j], relief[i, j], half, lengthening, ends)[0]
             shared_loads(
                 delta - gaps, stiffness[i], coupling[i], softening, force, least, loads, tangents, alone
             )

@@ -68,6 +68,7 @@ class Loaded(Contact):
             friction=friction_path_function(pair, interval=contact.stiffness.interval),
             error=contact.error,
             gap=contact.gap,
+            tilt=contact.tilt,
         )
 
     def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
@@ -149,6 +150,7 @@ class LoadedContact:
     stiffness : tangent stiffness k_t(xi), zero where the loaded pair is apart [N/m]
     error : e(xi) with N = k_t (delta - e) [m]
     gap : between flanks and tip corners without deflection [m]
+    tilt : sine of the angle between the normal at a tip corner and the line of action, 0 on the line [-]
     engagement : share of its damper that acts, 0 at the first touch to 1 [-]
     secant : k(xi) of the stiffness model, on which the damper is based [N/m]
     contact : (n, 2) intervals of xi in which the pair carries load [m]
@@ -157,6 +159,7 @@ class LoadedContact:
     stiffness: PathFunction
     error: PathFunction
     gap: PathFunction
+    tilt: PathFunction
     engagement: PathFunction
     secant: PathFunction
     contact: FloatArray
@@ -240,7 +243,13 @@ class StaticMesh:
 
     def gap(self, xi: FloatArray, half: FloatArray, longer: FloatArray) -> FloatArray:
         """Gap of the pair at xi without deflection, (n,) [m]; ``half`` and ``longer`` as in ``gap_at``."""
-        return np.asarray(gaps_at(xi, self.relief(xi), half, longer, self.ends), dtype=np.float64)
+        return np.asarray(gaps_at(xi, self.relief(xi), half, longer, self.ends)[0], dtype=np.float64)
+
+    def tilt(self, xi: FloatArray) -> FloatArray:
+        """Sine of the angle between the normal of the pair at xi and the line of action, (n,) [-]."""
+        longer = np.full(xi.size, self.lengthening)
+        found = gaps_at(xi, np.zeros(xi.size), self.half(xi), longer, self.ends)[1]
+        return np.asarray(found, dtype=np.float64)
 
     def together(
         self, place: FloatArray, compression: FloatArray, near: BoolArray
@@ -331,10 +340,12 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
         return np.asarray(share * share * (3.0 - 2.0 * share), dtype=np.float64)
 
     engaged = PathFunction.fit(engagement, cuts, bends, tolerance=relative, by_length=True)
+    error = fitted(lambda xi: mesh.static(xi).error, deflection)
     return LoadedContact(
         stiffness=restricted(stiffness, contact),
-        error=fitted(lambda xi: mesh.static(xi).error, deflection),
+        error=error,
         gap=fitted(lambda xi: mesh.static(xi).gap, deflection),
+        tilt=PathFunction.fit(mesh.tilt, error.breaks, inside, tolerance=relative, by_length=True),
         engagement=restricted(engaged, contact),
         secant=PathFunction.fit(law.held, pieces, inside, tolerance=_TOLERANCE * largest),
         contact=contact,

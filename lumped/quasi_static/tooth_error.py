@@ -72,7 +72,8 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     g, place = geometry, np.asarray(xi, dtype=float)
     ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
     none = np.zeros(place.size)
-    return np.asarray(gaps_at(place.ravel(), none, none, none, ends).reshape(place.shape), dtype=np.float64)
+    found = gaps_at(place.ravel(), none, none, none, ends)[0]
+    return np.asarray(found.reshape(place.shape), dtype=np.float64)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from lumped.compiler import Compiler
 from lumped.quasi_static import kernels as quasi_static
-from lumped.quasi_static.kernels import corner_gap_at, shared_loads
+from lumped.quasi_static.kernels import corner_at, shared_loads
 from lumped.typing import FloatArray, IntArray
 
 compiled = Compiler([Path(__file__), Path(quasi_static.__file__)])
@@ -80,10 +80,10 @@ class Tables(NamedTuple):
 def corner(
     beyond: float, start: float, tangent: float, flank_radius: float, tip_radius: float
 ) -> tuple[float, float]:
-    """``corner_gap_at``, and its slope over ``beyond``: the flank's normal times the way of the corner."""
+    """The gap of ``corner_at``, its slope over ``beyond``: the flank's normal times the way of the corner."""
     if beyond <= 0.0:
         return 0.0, 0.0
-    gap = corner_gap_at(beyond, start, tangent, flank_radius, tip_radius)
+    gap = corner_at(beyond, start, tangent, flank_radius, tip_radius)[0]
     length = tangent - start
     turn = beyond / tip_radius
     sine, cosine = math.sin(turn), math.cos(turn)

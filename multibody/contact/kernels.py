@@ -288,7 +288,7 @@ def linear_forces(
     delta = q[0] - q[3] - rp * q[2] - rg * q[5]
     rate = v[0] - v[3] - rp * v[2] - rg * v[5]
     count = 0
-    k, c, e = int(p[kn.K_ROWS]), int(p[kn.C_ROWS]), int(p[kn.E_ROWS])
+    k, c, e, gap = int(p[kn.K_ROWS]), int(p[kn.C_ROWS]), int(p[kn.E_ROWS]), int(p[kn.GAP_ROWS])
     loaded = k > 0
     first, last = (table[0, 0], table[k - 1, 1]) if loaded else (p[kn.L_XA], p[kn.L_XD])
     xi = p[kn.L_XA] + advance - pitch * math.floor((p[kn.L_XA] + advance - first) / pitch)
@@ -298,8 +298,10 @@ def linear_forces(
             stiffness, stiffness_slope = law_at(table, int(np.int64(0)), k - 1, xi)
             damping = law_at(table, k, k + c - 1, xi)[0]
             error = law_at(table, k + c, k + c + e - 1, xi)[0]
-            slope = law_at(table, k + c + e, table.shape[0] - 1, xi)[1]
+            slope = law_at(table, k + c + e, k + c + e + gap - 1, xi)[1]
+            tilt = law_at(table, k + c + e + gap, table.shape[0] - 1, xi)[0]
         else:
+            tilt = 0.0
             error, slope = relief_at(p, xi)
             stiffness, stiffness_slope = stiffness_and_slope(table, xi)
             damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
@@ -307,12 +309,12 @@ def linear_forces(
         normal = stiffness * pressed + damping * pressing
         if flags & kn.CONTACT_LOSS and (pressed <= 0.0 or normal < 0.0):
             stiffness = damping = normal = 0.0
-        friction = mu * normal
+        friction, apart = mu * normal, tilt * normal
         wrench[0] -= normal
-        wrench[1] += friction
+        wrench[1] += friction - apart
         wrench[2] += rp * normal + xi * friction
         wrench[3] += normal
-        wrench[4] -= friction
+        wrench[4] -= friction - apart
         wrench[5] += rg * normal + (p[kn.L_XY] - xi) * friction
         record = contacts[count]
         record[kn.XI], record[kn.LOAD], record[kn.FRICTION_FORCE], record[kn.MU] = xi, normal, friction, mu
@@ -326,7 +328,8 @@ def linear_forces(
         error_slope = law_at(table, k + c, k + c + e - 1, xi)[1] if loaded else slope
         elastic = stiffness * pressed
         path = elastic * error_slope + (normal - elastic) * slope
-        record[kn.PATH] = path - 0.5 * stiffness_slope * pressed * pressed
+        path -= 0.5 * stiffness_slope * pressed * pressed
+        record[kn.PATH] = path - apart * (v[4] - v[1]) / speed
         record[kn.PATH_RATE] = speed
         count += 1
         xi += pitch

@@ -218,13 +218,15 @@ def _highest(machine: Machine) -> float:
 
 
 def _loaded_laws(cycle: MeshCycle, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Table of the lumped loaded contact's k, c, e and gap, one below the other, and its switches as phases.
+    """Table of the lumped loaded contact's laws, one below the other, and its switches as phases.
 
     The linear mesh with loaded contact checks the equations alone: it reads the lumped element laws.
     """
     e = cycle.elements
-    laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.error if e.gap is None else e.gap)]
-    p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS]] = [len(law) for law in laws[:3]]
+    assert e.gap is not None
+    assert e.tilt is not None
+    laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.gap, e.tilt)]
+    p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS, kn.GAP_ROWS]] = [len(law) for law in laws[:4]]
     width = max(law.shape[1] for law in laws)
     # Coefficients stand behind both ends, highest power first: pad between them.
     rows = [np.insert(law, [2] * (width - law.shape[1]), 0.0, axis=1) for law in laws]

@@ -30,7 +30,7 @@ from multibody.contact import layout as kn
 from multibody.contact.drawing import circles, masses
 from multibody.contact.elements import coupling_at, gradual, relief_at, shared_loads, stiffness_at
 from multibody.contact.kernels import nominal_friction
-from multibody.contact.kinematics import DRIVE, Line, corners_at
+from multibody.contact.kinematics import DRIVE, Line, add_gradient, corners_at
 from multibody.contact.machine import Machine, machine
 from multibody.run.effects import effect_flags
 from tests.evidence.check import Check, rows
@@ -142,13 +142,17 @@ def _loaded(pair: GearPair) -> Iterator[Check]:
 
 @dataclass(frozen=True)
 class _Equilibrium:
-    """A pair in the static mesh: approach [m], load [N], tangent [N/m], damping [N s/m], compression [m]."""
+    """A pair in the static mesh: approach [m], load [N], tangent [N/m], damping [N s/m], compression [m].
+
+    ``tilt`` is the force of a unit load that pushes the pinion away from the gear, off the line of action.
+    """
 
     approach: float
     load: float
     tangent: float
     damping: float
     pressed: float
+    tilt: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,18 +169,20 @@ class _Mesh:
     def longer(self) -> float:
         return float(self.force * (1.0 / self.machine.bearing_stiffness[:, 0]).sum())
 
-    def pressed(self, places: FloatArray, delta: float) -> FloatArray:
-        """Approach less relief and corner gaps of pairs at places (pairs,) [m]."""
+    def pressed(self, places: FloatArray, delta: float) -> tuple[FloatArray, FloatArray]:
+        """Approach less relief and corner gaps of pairs at places (pairs,) [m], and their tilt."""
         p = self.machine.parameters
         half, length = 0.5 * (delta + self.longer), float(p[kn.L_XY] + self.longer)
         line = Line(1.0, 0.0, length, DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
-        found = np.empty(places.size)
+        found, tilt = np.empty(places.size), np.empty(places.size)
         for i, xi in enumerate(places):
             arms = xi + half, p[kn.L_XY] - xi + half
             corners = corners_at(line, *arms, p[kn.TIP_P], p[kn.TIP_G])
             relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))
-            found[i] = delta - relief - corners.gap
-        return found
+            found[i], wrench = delta - relief - corners.gap, np.zeros(6)
+            add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)
+            tilt[i] = -wrench[1]
+        return found, tilt
 
     def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
@@ -198,16 +204,17 @@ class _Mesh:
         own, places = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0]), places[near]
 
         def missing(delta: float) -> float:
-            return float(self.loads(places, self.pressed(places, delta))[0].sum() - self.force)
+            return float(self.loads(places, self.pressed(places, delta)[0])[0].sum() - self.force)
 
         delta = float(brentq(missing, 0.0, 1e-3, xtol=1e-17, rtol=1e-14))
-        pressed = self.pressed(places, delta)
+        pressed, tilt = self.pressed(places, delta)
         loads, left = self.loads(places, pressed)
         more, less = (self.loads(places, pressed + s * _STEP * delta)[0] for s in (1.0, -1.0))
         share = gradual(float(loads[own]) / (FULL_DAMPING * self.force))
         damping = p[kn.DAMPING] * np.sqrt(stiffness_at(self.machine.table, xi)) * share
         tangent = (more - less)[own] / (2.0 * _STEP * delta)
-        return _Equilibrium(delta, float(loads[own]), float(tangent), float(damping), float(left[own]))
+        values = (loads[own], tangent, damping, left[own], tilt[own])
+        return _Equilibrium(delta, *(float(value) for value in values))
 
 
 def _static_mesh(pair: GearPair) -> Check:
@@ -225,6 +232,7 @@ def _static_mesh(pair: GearPair) -> Check:
         "stiffness": np.array([one.tangent for one in found]),
         "error": np.array([one.approach - one.load / one.tangent for one in found]),
         "damping": np.array([one.damping for one in found]),
+        "tilt": np.array([one.tilt for one in found]),
     }
     delta, found_rows = found[0].approach, []
     for name, values in own.items():

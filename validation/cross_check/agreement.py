@@ -21,6 +21,8 @@ QUANTITIES: tuple[str, ...] = tuple(SAME_EQUATIONS)
 FIDELITIES: tuple[Fidelity, ...] = ("linear", "exact")
 #: A history whose variation is below this share of its size is constant up to rounding.
 _CONSTANT = 1e-13
+#: The same of what another quantity drives, of that one's size: corners whose teeth carry nothing yet.
+_DRIVEN = 1e-9
 #: A sample this close to a switch, in mesh cycles, may lie on either side of the jump by rounding alone.
 _SWITCH_MARGIN = 1e-6
 #: Tooth forces jump where teeth enter and leave and where sliding reverses. Finite motions move these places,
@@ -32,7 +34,7 @@ _FORCE_MARGIN = 0.02
 #: it is a part, where that swings more. Off that line it is measured by its own swing.
 _ALONG_LINE = ("x_p", "x_g")
 #: Quantity whose size scales the difference when the reference does not vary, as y without friction.
-_COMPANION = {"y_p": "x_p", "y_g": "x_g", "friction_force": "normal_load"}
+COMPANION = {"y_p": "x_p", "y_g": "x_g", "friction_force": "normal_load"}
 
 
 @dataclass(frozen=True)
@@ -74,9 +76,13 @@ class Agreement:
         return Judgement(f"{kind}: {self.quantity}", self.difference, self.limit, self.reason)
 
 
-def is_constant(values: FloatArray) -> bool:
-    """Whether a history varies by no more than rounding: measures relative to its span then mean nothing."""
-    return bool(np.ptp(values) <= _CONSTANT * max(float(np.abs(values).max()), np.finfo(float).tiny))
+def is_constant(values: FloatArray, driver: FloatArray | float = 0.0) -> bool:
+    """Whether a history varies by no more than rounding: measures relative to its span then mean nothing.
+
+    ``driver`` is the history of a quantity whose rounding moves it.
+    """
+    own, other = (float(np.abs(x).max()) for x in (values, driver))
+    return bool(np.ptp(values) <= max(_CONSTANT * own, _DRIVEN * other, np.finfo(float).tiny))
 
 
 def off_switch_samples(pair: GearPair, time: FloatArray, margin: float = _SWITCH_MARGIN) -> BoolArray:
@@ -127,8 +133,8 @@ def agreement(
         )
     _, unit, long_name = VARIABLES[quantity]
     scale = float(np.ptp(b))
-    if is_constant(b):
-        companion = history(reference, _COMPANION.get(quantity, quantity))
+    companion = history(reference, COMPANION.get(quantity, quantity))
+    if is_constant(b, companion if quantity in COMPANION else 0.0):
         scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
     if exact and quantity in _ALONG_LINE:
         scale = max(float(np.ptp(b)), float(np.ptp(history(reference, "dte"))))

@@ -19,7 +19,7 @@ import multibody
 from lumped import GearPair
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
-from lumped.model.results import response
+from lumped.model.results import corner_force, response
 from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.quasi_static.contacts import contact_of
 from lumped.typing import FloatArray
@@ -81,12 +81,12 @@ def conservation(
     }
     system = LTVSystem.of(pair, "full")
     powers: dict[str, Mapping[str, float]] = {}
-    histories = _friction_histories(reference)
+    histories = _mesh_histories(pair, reference)
     if not contact_loss:
         times, weights = quadrature(system)
         own = periodic_solution(system, times, estimate_error=False)
         powers["lumped"] = lumped_powers(own, m, weights)
-        histories = _friction_histories(own.values)  # on both sides of every jump
+        histories = _mesh_histories(pair, own.values)  # on both sides of every jump
     for fidelity in runs:
         if periodic if fidelity == "exact" else not contact_loss:
             rtol = 1e-8 if fidelity == "exact" else 1e-10
@@ -99,7 +99,7 @@ def conservation(
         if name != "exact" or periodic:
             found += _action_and_reaction(m, name, motion)
         if name != "exact":
-            found += _mean_bearing_loads(m, name, motion, pair.operating.pinion_torque, variation)
+            found += _mean_bearing_loads(m, name, motion, pair, variation)
     for name, one in powers.items():
         found += _first_law(name, one)
     if "linear" in powers and "lumped" in powers:
@@ -154,12 +154,13 @@ def losses(
     sliding -= (p[kn.OMEGA_G] + rates[:, 1]) * (p[kn.L_XY] - place) + rates[:, 4] - rates[:, 5]
     closing = p[kn.RADIUS_P] * rates[:, 0] - p[kn.RADIUS_G] * rates[:, 1] + rates[:, 2] - rates[:, 3]
     damping = np.sum(pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
+    corners = corner_force(values, pairs) * (rates[:, 5] - rates[:, 4])
     bearings = machine.bearing_damping.T.ravel()  # x_p, x_g, y_p, y_g
     return {
         "friction": float(weights @ np.sum(values["friction_force"] * sliding, axis=0)),
         "bearings": float(weights @ (rates[:, 2:] ** 2 @ bearings)),
         "mesh_damping": float(weights @ damping),
-        "mesh_stiffness": float(weights @ (values["normal_load"].sum(axis=0) * closing - damping)),
+        "mesh_stiffness": float(weights @ (values["normal_load"].sum(axis=0) * closing - damping - corners)),
     }
 
 
@@ -186,10 +187,15 @@ def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
     return tuple(groups.values())
 
 
-def _friction_histories(motion: Mapping[str, FloatArray] | xr.Dataset) -> tuple[FloatArray, FloatArray]:
-    """Moment of friction about the pinion, and its sum over the pairs."""
-    force, place = (np.asarray(motion[name]) for name in ("friction_force", "position"))
-    return (force * place).sum(axis=0), force.sum(axis=0)
+def _mesh_histories(
+    pair: GearPair, motion: Mapping[str, FloatArray] | xr.Dataset
+) -> tuple[FloatArray, FloatArray]:
+    """Moment of friction about the pinion, and the force on it off the line of action, of all pairs."""
+    load, force, place = (np.asarray(motion[name]) for name in ("normal_load", "friction_force", "position"))
+    tilt, across = contact_of(pair).elements(pair).tilt, force
+    if tilt is not None:
+        across = force - tilt(place) * load
+    return (force * place).sum(axis=0), across.sum(axis=0)
 
 
 def _friction_takes_power(m: Machine, name: str, motion: xr.Dataset) -> Judgement:
@@ -248,16 +254,16 @@ def _integral(time: FloatArray, x: FloatArray, v: FloatArray, every: int = 1) ->
 
 
 def _mean_bearing_loads(
-    m: Machine, name: str, motion: xr.Dataset, torque: float, variation: Sequence[float]
+    m: Machine, name: str, motion: xr.Dataset, pair: GearPair, variation: Sequence[float]
 ) -> list[Judgement]:
     """Mean moments of the pinion, and mean forces of each gear off the line of action.
 
     The mean of N even samples of a periodic history is off by no more than its variation over N.
-    ``variation`` is that of the moment of friction and of its sum.
+    ``variation`` is that of both ``_mesh_histories``.
     """
     p, (k_p, k_g) = m.parameters, m.bearing_stiffness
-    moment, total = _friction_histories(motion)
-    load = torque / p[kn.RADIUS_P]
+    moment, total = _mesh_histories(pair, motion)
+    load = pair.operating.pinion_torque / p[kn.RADIUS_P]
     along, across = load - moment.mean() / p[kn.RADIUS_P], total.mean()
     stiffness = {"x_p": -k_p[0], "x_g": k_g[0], "y_p": k_p[1], "y_g": -k_g[1]}
     sampled = {
@@ -269,9 +275,9 @@ def _mean_bearing_loads(
             f"conservation: mean bearing load {axis}, {name}",
             abs(float(k * motion[axis].to_numpy().mean() - (along if axis[0] == "x" else across))) / load,
             sampled[axis[0]] + _missed(motion, axis) * abs(k) / load + 1e-6,
-            "T_p/r_bp less the mean moment of friction, or the mean friction; limit: what even times can "
-            "miss of a history that jumps, its variation in the lumped model over their number, and of the "
-            "displacement",
+            "T_p/r_bp less the mean moment of friction, or mean friction and corners; limit: what even times "
+            "can miss of a history that jumps, its variation in the lumped model over their number, and of "
+            "the displacement",
         )
         for axis, k in stiffness.items()
     ]

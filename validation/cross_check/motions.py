@@ -17,7 +17,7 @@ from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.model.results import LOAD_NOISE
 from lumped.typing import FloatArray
-from validation.cross_check.agreement import Fidelity, is_constant
+from validation.cross_check.agreement import COMPANION, Fidelity, is_constant
 from validation.cross_check.verdict import SAME_EQUATIONS
 from validation.prediction.motion import unilateral_motion
 
@@ -75,7 +75,7 @@ def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]
     limits = [
         SAME_EQUATIONS[name] * float(np.ptp(values[name]))
         for name in ("dte", "x_p", "x_g", "y_p", "y_g")
-        if not is_constant(values[name])
+        if not is_constant(values[name], values[COMPANION[name]] if name in COMPANION else 0.0)
     ]
     share = min(limits, default=np.inf) / (SAME_EQUATIONS["dte"] * max(deflection, np.finfo(float).tiny))
     tighter = float(np.clip(share / _ORDINARY, _TIGHTER, 1.0))

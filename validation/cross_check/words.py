@@ -22,12 +22,6 @@ NAMES = {
     "friction_force": "friction force",
 }
 
-#: docs/theory/contact_energy.md has the forces of the presets.
-_CORNER = (
-    "A tooth corner that touches beyond A or D presses along the flank of its mate, off the line of action. "
-    "The lumped model has no such force."
-)
-
 
 def failed_checks(check: CrossCheck, most: int = 3) -> str:
     """The first checks that fail, with value and limit."""
@@ -89,7 +83,7 @@ def cause_of_difference(check: CrossCheck, found: xr.Dataset | None = None) -> s
     """
     found = attribution(check) if found is None else found
     if found is None:
-        return _CORNER if check.worst("exact").quantity in ("y_p", "y_g") else ""
+        return ""
     name = str(found.attrs["largest"])
     change = float(found["alone"].sel(cause=name, quantity="dte"))
     return f"Most of it comes from one effect: {CAUSES[name]}, alone {percent(change)}."

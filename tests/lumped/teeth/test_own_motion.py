@@ -105,7 +105,8 @@ def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):
     found = fine.states[:SAMPLES, :6] @ fine.system.structure.deflection * 1e6
     assert found == pytest.approx(expected, abs=2e-3 * np.ptp(expected))
     assert fine.brake_torque - fine.powers["rolling"] / pair.geometry.omega_gear == pytest.approx(
-        lumped.steady_state(loaded).attrs["brake_torque"], rel=1e-6
+        lumped.steady_state(loaded).attrs["brake_torque"],
+        rel=2e-5,  # without the work of corners: 9e-6
     )
 
 

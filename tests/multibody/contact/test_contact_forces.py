@@ -158,6 +158,7 @@ def lumped_forces(setup, motion, pair):
     friction, law = np.zeros(load.shape), law_of(pair.friction)
     friction[touch] = load[touch] * law.signed(mesh.position[touch], contact_path(pair), pair.friction)
     force = np.outer(load.sum(0), s.normal) + (friction[..., None] * s.friction(mesh.position)).sum(0)
+    force += np.outer((load * (0.0 if mesh.tilt is None else mesh.tilt)).sum(0), s.apart)
     force -= s.stiffness * q + s.damping * v
     force[:, :2] += setup.machine.torque_pinion, -setup.machine.torque_gear
     return from_lumped_state(np.hstack([force, force]))[0]

@@ -166,7 +166,7 @@ def test_a_small_swing_of_a_centre_is_no_difference_of_the_models():
     gear = next(a for a in found.of("exact") if a.quantity == "x_g")
     swing = float(np.ptp(found.lumped["dte"].to_numpy()))
     assert gear.within
-    # Off the line of action the corner that touches beyond A presses along the flank, in one model only.
-    assert {a.quantity for a in found.of("exact") if not a.within} <= {"y_p", "y_g"}
+    assert found.verdict.word == "agrees"  # y too: corners beyond A and D push off the line of action
+    assert max(a.difference for a in found.of("exact") if a.quantity[0] == "y") < 0.05
     assert gear.scale == pytest.approx(swing, rel=0.02)  # sampled at more times than are kept
     assert gear.difference * gear.scale / gear.peak_to_peak > 0.1
