@@ -22,12 +22,7 @@ def _signals() -> list[signal.Signals]:
 
 
 def interrupt_once() -> dict[signal.Signals, Any]:
-    """Let the first signal raise KeyboardInterrupt; those after it must not interrupt the clean end.
-
-    Returns
-    -------
-    signal -> handler before, of those that are ours to set
-    """
+    """Let the first signal raise KeyboardInterrupt, and none after it; return the handlers before."""
     before = {number: signal.getsignal(number) for number in _signals()}
     before = {number: handler for number, handler in before.items() if handler in _OURS}
 

@@ -87,12 +87,7 @@ class FlankCompliance:
 
 @lru_cache(maxsize=64)
 def flank_compliance(gear: PlaneGear) -> FlankCompliance:
-    """Compliances of a gear over the usable length of its flanks, from two meshes.
-
-    Raises
-    ------
-    NumericalError : the teeth cannot be meshed
-    """
+    """Compliances of a gear over the usable length of its flanks, from two meshes."""
     profile = gear.profile
     bore = bore_radius(gear)
     tip_length = math.sqrt(gear.tip**2 - profile.base_radius**2)
@@ -125,12 +120,7 @@ def bore_radius(gear: PlaneGear) -> float:
 
 
 def meshed(profile: ToothProfile, tip: float, bore: float, size: float) -> Sector:
-    """One pitch of a gear with elements of a size at the surface [modules].
-
-    Raises
-    ------
-    NumericalError : the teeth cannot be meshed
-    """
+    """One pitch of a gear with elements of a size at the surface [modules]; refuse teeth without a mesh."""
     mesh = sector(profile, tip, bore, stations(profile, tip, bore, size))
     corners = mesh.nodes[mesh.elements[:, [0, 6, 8, 2]]]  # round the element
     turn = np.roll(corners, -1, axis=1) - corners

@@ -32,11 +32,8 @@ def flank_load(
     """Right-hand side of u_c for a unit load into the tooth at a length along the base tangent [modules].
 
     chi falls between ``radii`` [modules]; the outer one ends at the cut to the next pitch at the latest.
-
-    Returns
-    -------
-    loads (2 n,), the vector (2 n,) that reads the displacement at the point along the load, and the
-    integrals (3,) of chi u_F along x, along y and times the lever about 0
+    Returned are the loads (2 n,), the vector (2 n,) that reads the displacement at the point along the load,
+    and the integrals (3,) of chi u_F along x, along y and times the lever about 0.
     """
     edge, shapes, point, normal = mesh.edge_at(length)
     reading = np.zeros(2 * len(mesh.nodes))

@@ -53,12 +53,9 @@ def compliances(
     """Motion of points on the flanks by unit loads on tooth 0, both along the line of action.
 
     Young's modulus and thickness are 1, lengths in modules. Loads and points are at ``lengths`` (n,) along
-    the base tangent; ``reach`` teeth ahead are wanted. ``radii`` as in ``flank_load``.
-
-    Returns
-    -------
-    (reach + 1, n, n) for the teeth 0, 1, ...: motion of the point, by the load. On tooth 0 only the smooth
-    part u_c of the motion, see ``flank_load``; it means something on the diagonal
+    the base tangent; ``radii`` as in ``flank_load``. Returned is (reach + 1, n, n) for the teeth 0, 1, ...:
+    motion of the point, by the load. On tooth 0 it is the smooth part u_c alone, which means something on the
+    diagonal.
     """
     options = () if radii is None else (radii,)
     applied, read, taken = (

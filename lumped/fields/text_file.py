@@ -64,13 +64,8 @@ def read_bytes(
     """Return the bytes of an ordinary file (or of one that a link leads to), or refuse it.
 
     A pipe would block for ever and a device never ends, so both are refused before anything is read.
-
-    Parameters
-    ----------
-    path, limit : file, and its largest size [bytes]
-    field, kind : the argument that named it, and the kind of file that is wanted
-    instead : what else could have been named, ", or ..."
-    action : what to do where it does not exist
+    ``field`` named the file, ``kind`` is wanted, ``instead`` (", or ...") could have been named; ``action``
+    is what to do where it does not exist.
     """
     try:
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)

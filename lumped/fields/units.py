@@ -176,12 +176,7 @@ def _registry() -> pint.UnitRegistry[Decimal]:
 
 
 def to_si(value: float | str, unit: str) -> float:
-    """Convert to SI: a number in the stated unit, text with a unit such as ``"200 lbf*in"``, or an `SIValue`.
-
-    Raises
-    ------
-    ValueError : text that is no quantity, has no unit, or has another dimension
-    """
+    """Convert to SI: a number in the stated unit, or text with a unit; ValueError says what is wrong."""
     si, factor, meaning, example = UNITS[unit]
     advice = f"write a number (read as {unit}) or a string such as '{example}'"
     if isinstance(value, SIValue):

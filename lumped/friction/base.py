@@ -117,16 +117,9 @@ class ContactPath:
             self.unit_load * 1e-3, self.radius(xi) * 1e3, self.effective_modulus * 1e-6
         )
 
-    def film_thickness(self, xi: FloatArray) -> FloatArray:
-        """Central film thickness h_c [m], equation (21)."""
-        return self._film(film.film_thickness, xi)
-
-    def film_thickness_hamrock_dowson(self, xi: FloatArray) -> FloatArray:
-        """The film thickness that another published formula gives [m], for comparison."""
-        return self._film(film.film_thickness_hamrock_dowson, xi)
-
-    def _film(self, formula: Callable[..., FloatArray], xi: FloatArray) -> FloatArray:
-        return 1e-6 * formula(
+    def film_thickness(self, xi: FloatArray, formula: str = "dowson_toyoda") -> FloatArray:
+        """Central film thickness h_c [m], equation (21); ``formula`` as of ``film.film_thickness``."""
+        return 1e-6 * film.film_thickness(
             self.unit_load * 1e-3,
             self.radius(xi) * 1e3,
             self.viscosity * 1e3,
@@ -134,6 +127,7 @@ class ContactPath:
             self.effective_modulus * 1e-6,
             pressure_viscosity_k=self.pressure_viscosity_k,
             pressure_viscosity_s=self.pressure_viscosity_s,
+            formula=formula,
         )
 
     def film_parameter(self, xi: FloatArray) -> FloatArray:

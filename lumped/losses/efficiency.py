@@ -186,18 +186,10 @@ def dynamic_losses(pair: AnyPair, solution: xr.Dataset) -> xr.Dataset:
 
 
 def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
-    """Local sliding power of one tooth pair over the path of contact.
+    """Sliding power [W] and normal load [N] of one tooth pair over ``xi`` [m], from a dataset of a motion.
 
-    Every pair in contact at every time of a solution is one point; over one mesh cycle of a periodic solution
-    the pairs together cover the path once.
-
-    Parameters
-    ----------
-    solution : dataset with position, contact, normal_load and a friction power over (pair, time)
-
-    Returns
-    -------
-    xarray.Dataset over ``xi`` [m]: sliding_power [W] (>= 0 where friction opposes sliding), normal_load [N]
+    Every pair in contact at every time is one point; over one mesh cycle of a periodic motion the pairs
+    together cover the path once.
     """
     name = "friction_power_nominal" if "friction_power_nominal" in solution else "friction_power"
     touching = solution["contact"].to_numpy().ravel() > 0.0

@@ -88,6 +88,10 @@ def pressure_viscosity(viscosity: float, k: float = MINERAL_OIL_K, s: float = MI
     return float(k * viscosity**s)
 
 
+#: Formula of the film thickness -> its factor and the powers of G, U and W.
+_FORMULAS = {"dowson_toyoda": (3.06, 0.56, 0.69, -0.10), "hamrock_dowson": (2.69, 0.53, 0.67, -0.067)}
+
+
 def film_thickness(
     unit_load: float,
     radius: FloatArray,
@@ -97,6 +101,7 @@ def film_thickness(
     *,
     pressure_viscosity_k: float = MINERAL_OIL_K,
     pressure_viscosity_s: float = MINERAL_OIL_S,
+    formula: str = "dowson_toyoda",
 ) -> FloatArray:
     """Central film thickness of a line contact [um], H_c = 3.06 G^0.56 U^0.69 W^-0.10, equation (21).
 
@@ -106,57 +111,24 @@ def film_thickness(
     central film thickness formula for elastohydrodynamic line contacts", Proc. 5th Leeds-Lyon Symposium on
     Tribology, 1978; used in AGMA 925-A03.
 
+    With ``formula`` "hamrock_dowson" that of a long ellipse, H_c = 2.69 U^0.67 G^0.53 W^-0.067: how far both
+    differ says how well a film thickness is known. The print's factor 1 - 0.61 exp(-0.73 k) is 1 for the
+    ellipticity k of a line contact, and its load F/(E' rho^2) becomes w/(E' rho). B. J. Hamrock and
+    D. Dowson, "Isothermal elastohydrodynamic lubrication of point contacts, part III", J. Lubr. Technol. 99
+    (1977) 264-276.
+
     >>> modulus = effective_modulus(206e3, 0.3, 206e3, 0.3)
     >>> round(float(film_thickness(100, 8, 10, 10, modulus)), 6)
     0.312115
-    """
-    alpha = pressure_viscosity(viscosity, pressure_viscosity_k, pressure_viscosity_s)
-    material, speed, load = _numbers(
-        unit_load, radius, viscosity, entraining_velocity, effective_modulus, alpha
-    )
-    return np.asarray(3.06 * material**0.56 * speed**0.69 * load**-0.10 * radius * 1e3, dtype=np.float64)
-
-
-def film_thickness_hamrock_dowson(
-    unit_load: float,
-    radius: FloatArray,
-    viscosity: float,
-    entraining_velocity: FloatArray,
-    effective_modulus: float,
-    *,
-    pressure_viscosity_k: float = MINERAL_OIL_K,
-    pressure_viscosity_s: float = MINERAL_OIL_S,
-) -> FloatArray:
-    """Central film thickness of a long ellipse [um], H_c = 2.69 U^0.67 G^0.53 W^-0.067.
-
-    Another formula for what ``film_thickness`` computes, with the same arguments: how far both differ says
-    how well a film thickness is known. The print's factor 1 - 0.61 exp(-0.73 k) is 1 for the ellipticity
-    k of a line contact, and its load F/(E' rho^2) becomes w/(E' rho). B. J. Hamrock and D. Dowson,
-    "Isothermal elastohydrodynamic lubrication of point contacts, part III", J. Lubr. Technol. 99 (1977)
-    264-276.
-
-    >>> modulus = effective_modulus(206e3, 0.3, 206e3, 0.3)
-    >>> round(float(film_thickness_hamrock_dowson(100, 8, 10, 10, modulus)), 6)
+    >>> round(float(film_thickness(100, 8, 10, 10, modulus, formula="hamrock_dowson")), 6)
     0.253352
     """
-    alpha = pressure_viscosity(viscosity, pressure_viscosity_k, pressure_viscosity_s)
-    material, speed, load = _numbers(
-        unit_load, radius, viscosity, entraining_velocity, effective_modulus, alpha
-    )
-    return np.asarray(2.69 * material**0.53 * speed**0.67 * load**-0.067 * radius * 1e3, dtype=np.float64)
-
-
-def _numbers(
-    unit_load: float,
-    radius: FloatArray,
-    viscosity: float,
-    entraining_velocity: FloatArray,
-    modulus: float,
-    alpha: float,
-) -> tuple[float, FloatArray, FloatArray]:
-    """G, U and W of the film formulas."""
-    speed = 1e-6 * viscosity * entraining_velocity / (2.0 * modulus * radius)
-    return alpha * modulus, speed, unit_load / (modulus * radius)
+    factor, of_material, of_speed, of_load = _FORMULAS[formula]
+    material = pressure_viscosity(viscosity, pressure_viscosity_k, pressure_viscosity_s) * effective_modulus
+    speed = 1e-6 * viscosity * entraining_velocity / (2.0 * effective_modulus * radius)
+    load = unit_load / (effective_modulus * radius)
+    thickness = factor * material**of_material * speed**of_speed * load**of_load * radius * 1e3
+    return np.asarray(thickness, dtype=np.float64)
 
 
 def film_parameter(

@@ -251,7 +251,7 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
         },
         {"range_warnings": warnings, "left_out": left_out},
     )
-    other = path.film_thickness_hamrock_dowson(xi) / result["film_thickness"].to_numpy()
+    other = path.film_thickness(xi, "hamrock_dowson") / result["film_thickness"].to_numpy()
     result["film_thickness"].attrs["note"] = film_note(float(other.min()), float(other.max()))
     result["regime"].attrs |= {"flag_values": [0, 1, 2, 3], "flag_meanings": ", ".join(film.REGIMES)}
     return result.assign_coords(law_title=("law", [laws[name].title for name in functions]))

@@ -165,14 +165,9 @@ def _twist(piece: Piece, length: float) -> tuple[FloatArray, FloatArray]:
 
 
 def beam(pieces: Sequence[Piece], places: Sequence[float], omega: float, angle: float) -> Beam:
-    """Assemble a free shaft.
+    """Assemble a free shaft of pieces one after the other from z = 0 on, with nodes at ``places`` too [m].
 
-    Parameters
-    ----------
-    pieces : one after the other from z = 0 on
-    places : where there must be a node beside the ends of the pieces [m]
-    omega : highest angular frequency of interest [rad/s]
-    angle : most that a wave of this frequency may turn in an element [rad]
+    A wave of the highest frequency of interest, ``omega`` [rad/s], may turn by ``angle`` [rad] in an element.
     """
     ends = np.cumsum([0.0, *(piece.length for piece in pieces)])
     marks = np.union1d(ends, np.clip(places, 0.0, ends[-1]))

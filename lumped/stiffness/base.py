@@ -144,12 +144,7 @@ _TERMS = (64, 128)
 
 
 def fitted_series(function: Callable[[FloatArray], FloatArray], ends: tuple[float, float]) -> PathFunction:
-    """Fit a function (n,) -> (n,), analytic over the path, by its Chebyshev series from few evaluations.
-
-    Raises
-    ------
-    NumericalError : the function is not smooth or not finite
-    """
+    """Fit a function (n,) -> (n,), analytic over the path, by its Chebyshev series from few evaluations."""
     for terms in _TERMS:
         series = Chebyshev.interpolate(function, terms - 1, ends)
         tolerance = _TOLERANCE * float(np.abs(series.linspace(terms)[1]).max())

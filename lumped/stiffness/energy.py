@@ -120,11 +120,7 @@ def beam_compliance(
     """Compliances of a tooth loaded at lengths (n,) on the base tangent, at or beyond its form length [m].
 
     ``nodes`` are the Gauss points on the fillet and on the involute to begin with; up to eight times as many
-    are taken.
-
-    Raises
-    ------
-    NumericalError : the finer Gauss rule disagrees by more than ``TOLERANCE`` however many points are taken
+    are taken, until a finer rule agrees to ``TOLERANCE``.
     """
     (bending, area), error = _converged(profile, length, nodes)
     *_, angle = profile.involute_points(length)
@@ -217,10 +213,6 @@ def pair_compliance(
 
     ``hertz`` is the contact: "weber_banaschek" at the load of a single pair under the operating torque, or
     "linear".
-
-    Raises
-    ------
-    NumericalError : the Gauss integration did not converge
     """
     position = np.atleast_1d(np.asarray(xi, dtype=float))
     g = pair.geometry

@@ -77,17 +77,9 @@ def elastic_teeth(
 ) -> tuple[ElasticTooth, ElasticTooth]:
     """Pinion and gear as plane elastic bodies.
 
-    Parameters
-    ----------
-    pair : the gear pair
-    plane : state of stress of the bodies, "stress" for narrow gears, "strain" for wide ones
-    support : "free"; "clamped" at the bore; "untwisted", clamped and less the twist of the ring
-    bore : root over bore radius of both gears, in the place of their own [-]
-
-    Raises
-    ------
-    ParameterError : a solid gear cannot be clamped at its bore
-    NumericalError : the teeth cannot be meshed
+    ``plane`` is the state of stress, "stress" for narrow gears, "strain" for wide ones; ``support`` is
+    "free", "clamped" at the bore (refused without one), or "untwisted", clamped and less the twist of the
+    ring; ``bore`` is root over bore radius of both gears, in the place of their own.
     """
     apart = math.floor(pair.geometry.contact_ratio + 2.0 * REACH)
     result = []

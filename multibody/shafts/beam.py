@@ -172,11 +172,9 @@ def reduce_fields(
 ) -> tuple[tuple[Reduced, ...], int, float]:
     """Raise the order of all fields of a shaft until their kept modes stand, and reduce them.
 
-    highest : modes above this are left out [rad/s]
-    modal_masses : that of every mode of a field, so that modal coordinates have the size of the kept one
-    Returns (reduced, order, error) : the fields, the order of the polynomials, and the largest change of a
-        retained frequency by the last increase of the order, over the highest
-    Raises NumericalError : the modes do not stand up to the last order
+    Modes above ``highest`` [rad/s] are left out; ``modal_masses`` give modal coordinates the size of the kept
+    one. Returned are the fields, the order of the polynomials, and the largest change of a retained frequency
+    by the last increase of the order, over the highest.
     """
     before = [_held(matrices(_FIRST_ORDER), highest)[0] for matrices in fields]
     for order in range(_FIRST_ORDER + 2, _LAST_ORDER + 1, 2):

@@ -87,11 +87,10 @@ def reduced_shaft(
     damping_ratio: float,
     highest: float,
 ) -> ReducedShaft:
-    """Assemble and reduce one shaft.
+    """Assemble and reduce one shaft that turns at ``speed`` [rad/s], counter-clockwise in (x, y) positive.
 
-    speed : of rotation, counter-clockwise in (x, y) positive [rad/s]
-    damping_ratio : of every mode that deforms, teeth apart
-    highest : modes with the gear held are kept up to this [rad/s]
+    ``damping_ratio`` is of every mode that deforms, teeth apart; modes with the gear held are kept up to
+    ``highest`` [rad/s].
     """
     places = [shaft.gear_position, *(bearing.position for bearing in shaft.bearings)]
     if coupled is not None:
@@ -353,11 +352,9 @@ class Train:
 def train(
     pair: GearPair, mass: FloatArray, inertia: FloatArray, speeds: tuple[float, float], enough: float
 ) -> Train:
-    """Both shafts of a pair.
+    """Both shafts of a pair; masses, inertias and positive speeds of pinion and gear, the pinion clockwise.
 
-    mass, inertia, speeds : of pinion and gear; the speeds are positive, and the pinion turns clockwise
-    enough : modes with the gears held are kept up to this where the pair does not say it [Hz]
-    Raises ParameterError : the pair has no shafts
+    Modes with the gears held are kept up to ``enough`` [Hz] where the pair does not say it.
     """
     if pair.shafts is None:
         raise refuse(

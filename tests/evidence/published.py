@@ -35,7 +35,7 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "gear_geometry.tooth_profile": "involute inverse_involute",
         "losses.loss_factor": "ohlendorf",
         "losses.published": "anderson_loewenthal_coefficient",
-        "lubrication.film": "film_thickness film_thickness_hamrock_dowson effective_modulus "
+        "lubrication.film": "film_thickness effective_modulus "
         "hertz_half_width hertz_pressure pressure_viscosity film_parameter regime",
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density "
         "viscosity_index viscosity_at_100 grade_viscosity",

@@ -104,18 +104,9 @@ def agreement(
     reference: xr.Dataset,
     limit: tuple[float, str],
 ) -> Agreement:
-    """Compare one quantity of a multibody motion with the lumped one.
+    """Compare one quantity of a multibody motion with the lumped one at the same times; none may be infinite.
 
-    Parameters
-    ----------
-    pair : whose switches are left out
-    quantity, fidelity : what is compared
-    candidate, reference : multibody and lumped motion at the same times
-    limit : see ``validation.cross_check.verdict.limit_of``
-
-    Raises
-    ------
-    NumericalError : a history is not finite
+    ``pair``: whose switches are left out; ``limit``: see ``verdict.limit_of``.
     """
     exact = fidelity == "exact"
 

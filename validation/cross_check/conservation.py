@@ -61,19 +61,12 @@ def conservation(
     periodic: bool,
     contact_loss: bool,
 ) -> tuple[tuple[Judgement, ...], Powers]:
-    """Check both models.
+    """Check both models; return the checks, and model -> power -> mean over the mesh cycle [W].
 
-    Parameters
-    ----------
-    pair, m : a validated gear pair, and its numbers as the multibody model derives them
-    reference : lumped periodic motion, one mesh cycle without its end
-    runs : fidelity -> motion of the multibody model over whole cycles, the last end included
-    periodic : whether "exact" is a periodic motion
-    contact_loss : whether the motions lose contact; then powers are those of "exact" alone
-
-    Returns
-    -------
-    the checks, and model -> power -> mean over the mesh cycle [W]
+    ``m`` has the pair's numbers as the multibody model derives them. ``reference`` is the lumped periodic
+    motion over one mesh cycle without its end, ``runs`` fidelity -> multibody motion over whole cycles with
+    the last end, ``periodic`` whether "exact" repeats. With ``contact_loss`` powers are those of "exact"
+    alone.
     """
     samples = reference.sizes["time"]
     motions = {"lumped": reference} | {

@@ -33,12 +33,7 @@ _SAMPLES = 4096
 
 
 def asymmetric_variant(pair: GearPair) -> GearPair | None:
-    """Return the variant, or None where every variation is refused, unstable or lets its teeth separate.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
+    """Return the variant, or None where every variation is refused, unstable or lets its teeth separate."""
     for factor in _SPEEDS:
         for changes in _variations(pair):
             speed = pair.operating.pinion_speed * factor * 30.0 / np.pi
@@ -56,10 +51,6 @@ def prediction_holds(pair: GearPair) -> bool:
 
     Teeth that approach each other may press by damping before they touch: in the lumped model alone. In the
     loaded contact, where a pair begins and ends its contact gradually, all pairs together must press.
-
-    Raises
-    ------
-    NumericalError : no periodic motion exists
     """
     motion = periodic_cycle(pair, _SAMPLES)
     pairs, values = motion.system.cycle.sample(motion.time), motion.values

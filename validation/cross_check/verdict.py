@@ -77,13 +77,9 @@ SAME_EQUATIONS: Mapping[str, float] = MappingProxyType(
 
 
 def limit_of(quantity: str, fidelity: str, limit: float = LOAD_LIMIT) -> tuple[float, str]:
-    """Limit of the largest difference over the peak to peak, and why.
+    """Limit of the largest difference over the peak to peak of a quantity at a fidelity, and why.
 
-    Parameters
-    ----------
-    quantity : a key of ``SAME_EQUATIONS``
-    fidelity : "linear" or "exact"
-    limit : at "exact", of quantities that the tooth load drives
+    ``limit`` is that of quantities that the tooth load drives, at "exact".
     """
     by_friction = quantity in _BY_FRICTION
     if fidelity == "linear":

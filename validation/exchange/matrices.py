@@ -64,12 +64,7 @@ class SecondOrderModel:
         variation: float = 1.0,
         damping: float = 1.0,
     ) -> SecondOrderSystem:
-        """Return the periodic system, varied as `FILE_AXES` say; None: as in the file.
-
-        Raises
-        ------
-        ParameterError : both period and frequency
-        """
+        """Return the periodic system, varied as ``FILE_AXES`` say; None: as in the file."""
         if period is not None and frequency is not None:
             raise refuse("frequency", shown(frequency), "one of period and frequency", "Leave one out.")
         T = period or (1.0 / frequency if frequency else self.period)

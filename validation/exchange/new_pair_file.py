@@ -123,15 +123,7 @@ _TEMPERATURE, _VISCOSITY = 70.0, 10.0
 def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
     """Return a complete parameter file; every value says whether the user gave it or why it is assumed.
 
-    Parameters
-    ----------
-    name : of the pair
-    request : ``teeth`` ("19/41"), ``oil`` ("vg220") and field paths -> values; ``gears.`` in front of a field
-        means both gears, ``bearings.stiffness`` and ``bearings.damping_ratio`` all four bearing directions
-
-    Raises
-    ------
-    ParameterError : what is malformed, or a pair that cannot exist
+    ``request``: as the arguments of ``new_pair``, by the full paths of the fields.
     """
     values = _values(request)
     pair = _whole({"name": name}, values)

@@ -62,13 +62,10 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
 
 
 def one_table(result: xr.Dataset) -> tuple[xr.Dataset, tuple[str, ...]]:
-    """Return what fits into one table, that over the axes with the most points, and what does not.
+    """Return what fits into one table, that over the axes with the most points, and the names of the rest.
 
     A sweep, for example, has outputs over its axes, and beside them error texts over its failures.
-
-    Returns
-    -------
-    the dataset of the table, with the coordinates that are no axes as columns; names of what was left out
+    Coordinates that are no axes become columns.
     """
     loose = result.reset_coords([name for name in result.coords if name not in result.sizes])
 

@@ -49,15 +49,7 @@ MEASUREMENT = Kind("measurement.json", "spurcheck-measurement", "evaluation of a
 def check_target(out: Path, *, force: bool, kind: Kind = REPORT) -> Path:
     """Return the absolute output folder after refusing one that must not be written.
 
-    Parameters
-    ----------
-    out : folder, new or empty
-    force : also accept one that holds earlier results of this kind and nothing else
-    kind : what is to be written
-
-    Raises
-    ------
-    ParameterError : a file, a folder with content that is not to be replaced, or a place that is not writable
+    It is new or empty; with ``force`` it may hold earlier results of this kind and nothing else.
     """
     target = Path(os.path.abspath(out))
     if target.is_symlink():

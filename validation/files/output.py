@@ -59,9 +59,9 @@ def not_writable(path: Path, error: OSError) -> ParameterError:
 @contextmanager
 def whole_file(path: Path, *, new: bool = False) -> Iterator[Path]:
     """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
-    On any failure nothing is left behind and an existing file stays as it was.
 
-    ``path``: the file; ``new``: whether a file that has appeared there meanwhile stays, too.
+    On any failure nothing is left behind and an existing file stays as it was; with ``new`` also one that has
+    appeared there meanwhile.
     """
     temporary: Path | None = None
     try:
@@ -207,11 +207,7 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
 
 
 def mat_contents(result: xr.Dataset) -> dict[str, Any]:
-    """Return the variables of the MATLAB file of a dataset.
-
-    Returns one array per variable and axis, and the structs ``units``, ``long_names``, ``dimensions`` and
-    ``attributes``.
-    """
+    """Return an array per variable and axis, and structs units, long_names, dimensions, attributes."""
     contents: dict[str, Any] = {}
     about: dict[str, dict[str, Any]] = {"units": {}, "long_names": {}, "dimensions": {}}
     for key, variable in result.variables.items():

@@ -60,18 +60,9 @@ class ModelError:
 def measured_peak_to_peak(measurement: Measurement, pair: GearPair) -> tuple[float, float]:
     """Return the peak to peak of a record's transmission error, and its standard uncertainty [m].
 
-    Mesh orders are fitted to all samples, which averages noise over the mesh cycles. The rest is noise
-    of variance s^2; a fit of p numbers to n samples errs by s sqrt(p/n), the difference of two by sqrt(2) of
-    it.
-
-    Parameters
-    ----------
-    measurement : with a channel of the quantity ``dte``
-    pair : the gear pair at the operating point of the record
-
-    Raises
-    ------
-    ParameterError : no such channel, another speed or torque, or too few samples
+    Mesh orders are fitted to all samples of the channel ``dte``, which averages noise over the mesh cycles.
+    The rest is noise of variance s^2; a fit of p numbers to n samples errs by s sqrt(p/n), the difference of
+    two by sqrt(2) of it. Refused are records of another speed or torque than the pair's, and too few samples.
     """
     spec = measurement.spec
     channel = next((one for one in spec.channel if one.quantity == "dte"), None)
@@ -105,18 +96,10 @@ def model_error(
     numerical: float,
     uncertainty: xr.Dataset | Absent,
 ) -> ModelError:
-    """Return the comparison of a prediction with a record.
+    """Compare a predicted peak to peak and its numerical error [m] with a record.
 
-    Parameters
-    ----------
-    measurement, pair : see ``measured_peak_to_peak``
-    simulated : peak to peak of the predicted transmission error [m]
-    numerical : its numerical error [m]
-    uncertainty : samples of the uncertain inputs, whose standard deviation is taken; absent: none are known
-
-    Raises
-    ------
-    ParameterError : see ``measured_peak_to_peak``
+    ``uncertainty``: samples of the uncertain inputs, whose standard deviation is taken; absent: none are
+    known.
     """
     measured, record = measured_peak_to_peak(measurement, pair)
     inputs = 0.0 if isinstance(uncertainty, Absent) else float(uncertainty["dte_peak_to_peak"].std(ddof=1))

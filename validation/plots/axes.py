@@ -16,12 +16,7 @@ _AS_IS = frozenset({"rpm", "%", "1/rev", "mesh cycles"})
 
 
 def unit_of(*arrays: xr.DataArray) -> str:
-    """The unit that results share.
-
-    Raises
-    ------
-    ValueError : results of different units on one axis
-    """
+    """The one unit that results share."""
     units = {str(array.attrs["units"]) for array in arrays}
     if len(units) != 1:
         raise ValueError(f"one axis for different units: {', '.join(sorted(units))}")
@@ -37,15 +32,7 @@ def scale_of(*arrays: xr.DataArray) -> tuple[float, str]:
 
 
 def label_axis(ax: Axes, which: str, *arrays: xr.DataArray, text: str = "") -> float:
-    """Label the axis "x" or "y" by name and unit of what is drawn along it; return the divisor of its values.
-
-    Parameters
-    ----------
-    ax : the panel
-    which : "x" or "y"
-    *arrays : results that share the axis
-    text : a common name, where there are several
-    """
+    """Label the axis "x" or "y" by ``text`` or name, and unit of results; return their divisor."""
     factor, unit = scale_of(*arrays)
     name = text or str(arrays[0].attrs["long_name"])
     ax.set(**{f"{which}label": f"{name} [{unit}]"})
@@ -53,15 +40,7 @@ def label_axis(ax: Axes, which: str, *arrays: xr.DataArray, text: str = "") -> f
 
 
 def draw_curves(ax: Axes, data: xr.Dataset, names: list[str], text: str = "", **style: Any) -> None:
-    """Draw results over their common coordinate; labels of axes and curves are those of the results.
-
-    Parameters
-    ----------
-    ax : the panel
-    data : has the curves, each over one dimension with a coordinate
-    names : of its variables, of one unit
-    text : label of the vertical axis where there are several curves
-    """
+    """Draw variables of one unit over their coordinate, labelled by themselves; ``text`` names several."""
     curves = [data[name] for name in names]
     x = data[str(curves[0].dims[0])]
     across, up = label_axis(ax, "x", x), label_axis(ax, "y", *curves, text=text)

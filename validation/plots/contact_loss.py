@@ -49,12 +49,8 @@ _NEAR = 0.06
 def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> Figure:
     """Root mean square of the transmission error over speed, stable and unstable, with multipliers below.
 
-    Arrows are jumps on running up and down; crosses are beats and chaos.
-
-    Parameters
-    ----------
-    branches : ``dataset`` of ``floquet.response_branches``
-    linear : sweep of the linear model, ``lumped.speed_sweep``; None: not drawn
+    Arrows are jumps on running up and down; crosses are beats and chaos. ``branches`` is the ``dataset`` of
+    ``floquet.response_branches``, ``linear`` the sweep of the linear model, if it is to be drawn.
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]

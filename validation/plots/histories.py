@@ -12,15 +12,7 @@ from validation.plots.style import GREY, WIDTH, legend_above, new_figure, one_pa
 def cycle_figure(
     data: xr.Dataset, names: list[str], text: str = "", size: tuple[float, float] = (2.7, WIDTH)
 ) -> Figure:
-    """Curves of one unit over the mesh cycle, or over any common coordinate.
-
-    Parameters
-    ----------
-    data : has the curves over one coordinate
-    names : of the curves
-    text : of the vertical axis, where there are several
-    size : height and width [inch]
-    """
+    """Curves of one unit over their coordinate; ``text`` labels several; ``size`` in inches."""
     figure, ax = one_panel(*size)
     draw_curves(ax, data, names, text=text)
     x = data[str(data[names[0]].dims[0])].to_numpy()
@@ -31,14 +23,7 @@ def cycle_figure(
 
 
 def two_panels_figure(data: xr.Dataset, top: list[str], bottom: list[str], texts: tuple[str, str]) -> Figure:
-    """Curves of two units over a common coordinate, one panel each.
-
-    Parameters
-    ----------
-    data : has the curves
-    top, bottom : names of the curves of each panel
-    texts : of the vertical axes
-    """
+    """Curves of two units over a common coordinate, one panel each; ``texts`` label the vertical axes."""
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     for ax, names, text in zip(axes[:, 0], (top, bottom), texts, strict=True):
         draw_curves(ax, data, names, text=text)
@@ -52,12 +37,7 @@ def two_panels_figure(data: xr.Dataset, top: list[str], bottom: list[str], texts
 
 
 def losses_figure(data: xr.Dataset) -> Figure:
-    """Loss of the mesh by friction law.
-
-    Parameters
-    ----------
-    data : over ``law``: ``loss`` [%]; attributes ``titles`` and ``own``, the place of the pair's law
-    """
+    """Loss of the mesh [%] by friction law; attributes ``titles``, and ``own``, the place of the own law."""
     loss = data["loss"]
     figure, ax = one_panel(0.8 + 0.35 * loss.size)
     label_axis(ax, "x", loss)

@@ -20,15 +20,7 @@ COLOURS = "cividis"
 def map_figure(
     values: xr.DataArray, x: str, y: str, *, log: bool = False, height: float = 3.4
 ) -> tuple[Figure, Axes]:
-    """Return a figure of a result over two of its coordinates, and its panel.
-
-    Parameters
-    ----------
-    values : over ``x`` and ``y``
-    x, y : names of the coordinates
-    log : colours by the logarithm
-    height : of the figure [inch]
-    """
+    """Return a figure of a result over two of its coordinates, and its panel; ``height`` [inch]."""
     figure, ax = one_panel(height)
     values = values.transpose(y, x).sortby([x, y])
     factor, unit = scale_of(values)
@@ -57,11 +49,7 @@ def map_figure(
 def orders_map_figure(data: xr.Dataset, operating_rpm: float, resonances: list[float]) -> Figure:
     """Orders of the bearing force over speed, with the speeds at which an order meets a natural frequency.
 
-    Parameters
-    ----------
-    data : ``amplitude`` over ``speed_rpm`` and ``order``
-    operating_rpm : operating speed [rpm]
-    resonances : speeds at which the first order meets a natural frequency [rpm]
+    ``data``: ``amplitude`` over ``speed_rpm`` and ``order``; ``resonances``: of the first order [rpm].
     """
     figure, ax = map_figure(data["amplitude"], "speed_rpm", "order", log=True)
     low, high = ax.get_xlim()

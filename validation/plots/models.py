@@ -44,14 +44,8 @@ def cross_check_figure(
 ) -> Figure:
     """One quantity of all models over the last mesh cycles, and the differences to the lumped model below.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    quantity, unit : variable of the datasets and its SI unit
-    reference : dataset of the lumped model
-    others : fidelity -> dataset of the multibody model at the same times
-    keep : which times lie off the switches; the others belong to either side of a jump, so no difference is
-        drawn
+    ``others``: fidelity -> multibody motion at the times of ``reference``; ``keep``: which times lie off the
+    switches. The others belong to either side of a jump, so no difference is drawn.
     """
     figure, axes = new_figure(2, 1, height=3.9, sharex=True, height_ratios=(1.6, 1.0))
     top, bottom = axes[:, 0]

@@ -51,14 +51,9 @@ def sweep_figure(
 ) -> Figure:
     """Peak to peak of the transmission error, and largest and smallest tooth load, over pinion speed.
 
-    Crosses mark unstable motions.
-
-    Parameters
-    ----------
-    sweep : dataset of ``lumped.speed_sweep``
-    operating_rpm : operating speed, marked [rpm]
-    static_load : T_p/r_bp, to scale the loads [N]
-    resonances_rpm : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
+    Crosses mark unstable motions. ``sweep`` is of ``lumped.speed_sweep``; loads are over ``static_load``,
+    T_p/r_bp [N]; resonances are where the mesh frequency meets a natural frequency of the averaged pair
+    [rpm].
     """
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     top, bottom = axes[:, 0]

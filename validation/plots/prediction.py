@@ -20,15 +20,11 @@ _COLUMN = 22
 def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float, float] = SMALL) -> Figure:
     """Peak to peak of the transmission error over speed, with its range and the motions beyond contact loss.
 
-    Parameters
-    ----------
-    data : over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``pulling`` (the same motion where a
-        tooth pair pulls, NaN elsewhere), ``low`` and ``high`` where the inputs were varied; over
-        ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over
-        ``jump_speed_rpm``: ``jump_from``, ``jump_to``; over ``roaming_speed_rpm``: ``roaming``, what does not
-        repeat
-    operating_rpm : operating speed [rpm]
-    size : height and width [inch]
+    ``data`` has over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``pulling`` (the same motion
+    where a tooth pair pulls, NaN elsewhere), ``low`` and ``high`` where the inputs were varied; over
+    ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over ``jump_speed_rpm``:
+    ``jump_from``, ``jump_to``; over ``roaming_speed_rpm``: ``roaming``, what does not repeat. ``size``:
+    height and width [inch].
     """
     figure, ax = one_panel(*size)
     speed, linear = data["speed_rpm"], data["linear"]
@@ -79,13 +75,7 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
 
 
 def orders_figure(data: xr.Dataset) -> Figure:
-    """Amplitudes of a force by mesh order, with the range of each where the inputs were varied.
-
-    Parameters
-    ----------
-    data : over ``order``: ``amplitude``, and ``low`` and ``high`` where there are any; the attribute
-        ``mesh_frequency`` [Hz]
-    """
+    """Amplitudes of a force by mesh order; ``low`` and ``high`` where the inputs were varied."""
     figure, ax = one_panel(*SMALL)
     order, amplitude = data["order"], data["amplitude"]
     ends = [data[name] for name in ("low", "high") if name in data]
@@ -104,13 +94,7 @@ def orders_figure(data: xr.Dataset) -> Figure:
 
 
 def swings_figure(data: xr.Dataset) -> Figure:
-    """How far each input alone moves the result: bars from its 5 to its 95 % value, the largest on top.
-
-    Parameters
-    ----------
-    data : over ``input``, largest swing first: ``low`` and ``high``; attribute ``given``, the result with the
-        inputs as given, and ``names``, plain names of the inputs
-    """
+    """How far each input alone moves the result: bars from its 5 to its 95 % value, the largest on top."""
     figure, ax = one_panel(*SMALL)
     low, high = data["low"], data["high"]
     factor = label_axis(ax, "x", low, high, text=str(data.attrs["quantity"]))
@@ -126,13 +110,7 @@ def swings_figure(data: xr.Dataset) -> Figure:
 
 
 def budget_figure(data: xr.Dataset) -> Figure:
-    """Every error of the prediction as a bar on a logarithmic axis.
-
-    Parameters
-    ----------
-    data : over ``row``: ``share``, of the transmission error's peak to peak [%], NaN where it is not known;
-        attribute ``names``
-    """
+    """Every error of the prediction as a bar on a logarithmic axis: ``share`` [%] over ``row``."""
     share = data["share"]
     figure, ax = one_panel(0.6 + 0.32 * share.size)
     label_axis(ax, "x", share)
@@ -153,12 +131,7 @@ def budget_figure(data: xr.Dataset) -> Figure:
 
 
 def overlay_figure(data: xr.Dataset) -> Figure:
-    """One quantity by two programs over a mesh cycle, and their difference below.
-
-    Parameters
-    ----------
-    data : over ``cycle``: ``prediction``, ``second`` and ``difference``, of one unit
-    """
+    """One quantity by two programs over a mesh cycle, and their difference below."""
     from validation.plots.axes import draw_curves
     from validation.plots.style import legend_above, new_figure
 

@@ -66,14 +66,7 @@ _RC: Any = {
 def new_figure(
     rows: int = 1, columns: int = 1, height: float = 2.9, width: float = WIDTH, **options: Any
 ) -> tuple[Figure, NDArray[np.object_]]:
-    """Return an empty figure and its axes (rows, columns), in the house style.
-
-    Parameters
-    ----------
-    rows, columns : panels
-    height, width : of the figure [inch]
-    **options : of ``Figure.subplots``
-    """
+    """Return an empty figure of a size [inch] and its axes (rows, columns), in the house style."""
     with mpl.rc_context(_RC):
         figure = Figure(figsize=(width, height), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, **options)
@@ -164,14 +157,7 @@ def mark_operation(ax: Axes, place: float, words: str) -> None:
 
 
 def write_beside(ax: Axes, words: str, place: Point, shift: Point, axes: Any = "data", **look: Any) -> None:
-    """Write words beside a place.
-
-    Parameters
-    ----------
-    place : in data coordinates, or those that ``axes`` names (``IN_X``, ``IN_Y``)
-    shift : of the words from the place [points]
-    **look : of ``Axes.annotate``
-    """
+    """Write words beside a place, shifted by points; ``axes``: its coordinates, data, IN_X or IN_Y."""
     look = {"fontsize": 8.0} | look
     ax.annotate(words, place, xycoords=axes, xytext=shift, textcoords="offset points", **look)
 

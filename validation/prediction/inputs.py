@@ -68,11 +68,8 @@ class Input:
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     """Return every input of a pair that may be another value than the file has.
 
-    Those of ``[uncertainty]``, and by documented defaults every value whose source says that it is assumed.
-
-    Raises
-    ------
-    ParameterError : a spread that cannot be read, or values that the field cannot have
+    Those of ``[uncertainty]``, and by documented defaults every value whose source says that it is assumed. A
+    spread that cannot be read, or with values that the field cannot have, is refused.
     """
     stated = dict(pair.uncertainty)
     found = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]

@@ -176,16 +176,7 @@ def dynamic_factor(pair: AnyPair) -> float:
 
 
 def predicted(pair: GearPair) -> Prediction:
-    """Return the prediction for a pair at its operating point.
-
-    Parameters
-    ----------
-    pair : a validated gear pair; on its shafts where it has them
-
-    Raises
-    ------
-    NumericalError : no motion was found, or it does not stay bounded
-    """
+    """Return the prediction for a pair at its operating point, on its shafts where it has them."""
     if pair.shafts is not None:
         return _of_cycle(pair, lumped.steady_state(pair, supports="shafts", samples_per_cycle=_SAMPLES))
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
@@ -202,11 +193,7 @@ def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:
     """Return the motion with unilateral contact that a run from the linear motion comes to, and which it is.
 
     It is the one that Newton's method finds from the linear motion, if that is stable; else the one to which
-    a run settles.
-
-    Raises
-    ------
-    NumericalError : the motion does not repeat, or does not stay bounded
+    a run settles. A NumericalError says that the motion does not repeat, or does not stay bounded.
     """
     with suppress(NumericalError):
         orbit = floquet.periodic_orbit(pair)
@@ -222,14 +209,7 @@ def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:
 
 
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
-    """Return the numbers of any motion over one mesh cycle, e.g. of the multibody model.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    cycle : the motion at even times, the end left out
-    motion : which it is
-    """
+    """Return the numbers of any motion over one mesh cycle at even times, as of the multibody model."""
     sliding = -float(cycle["friction_power"].sum("pair").mean())
     attributes = cycle.attrs
     lost = sum(float(attributes[key]) for key in attributes if key in _LOSSES) or sliding

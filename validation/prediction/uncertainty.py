@@ -96,19 +96,7 @@ def uncertainty(
 
 
 def speed_band(pair: GearPair, speeds_rpm: FloatArray, samples: int = 32, seed: int = 1) -> xr.Dataset:
-    """Return the range of the transmission error's peak to peak over speed, linear motion.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    speeds_rpm : (n,) pinion speeds [rpm]
-    samples : of the uncertain inputs
-    seed : of the scrambled Sobol points
-
-    Returns
-    -------
-    xarray.Dataset over ``speed_rpm``: ``low`` and ``high``, the 5 and 95 % of the samples [m]
-    """
+    """Return 5 and 95 % of the linear peak to peak, ``low`` and ``high`` [m], over ``speed_rpm``."""
     inputs = uncertain_inputs(pair)
     found = []
     for point in qmc.Sobol(max(len(inputs), 1), rng=np.random.default_rng(seed)).random(samples):

@@ -86,14 +86,7 @@ def table_of(
     columns: Mapping[str, tuple[str, Callable[[T], Cell]]],
     note: str = "",
 ) -> Table:
-    """Table with one row per item.
-
-    Parameters
-    ----------
-    key, caption, note : of the table
-    items : what the rows are about
-    columns : name in report.json -> heading, and the cell of an item
-    """
+    """Table with one row per item; ``columns``: name in report.json -> heading, and the cell of an item."""
     return Table(
         key,
         caption,

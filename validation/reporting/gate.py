@@ -73,16 +73,11 @@ class Comparison:
 
 
 def compare(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = TOLERANCE) -> Comparison:
-    """Compare two reports.
+    """Compare report.json of two reports.
 
     A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
     ten-thousandth of the largest number of its column. The verdict fails where it gets worse, an entry where
     it is gone. New entries and changed parameters are shown and do not fail.
-
-    Parameters
-    ----------
-    old, new : data of report.json
-    tolerance : relative change of a number that passes
     """
     before, after = dict(_leaves(old)), dict(_leaves(new))
     largest: dict[str, float] = {}
@@ -111,17 +106,7 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = T
 
 
 def load_report(source: str | Path, *, quick: bool) -> dict[str, Any]:
-    """Read report.json of an earlier report.
-
-    Parameters
-    ----------
-    source : the file, or the folder of the report
-    quick : whether the new report samples coarsely; the earlier one must too
-
-    Raises
-    ------
-    ParameterError : no report of this layout and sampling
-    """
+    """Read report.json of an earlier report or its folder; ``quick`` must be that of the new one."""
     path = file_path("--compare", source)
     path = path / REPORT.file if path.is_dir() else path
     try:

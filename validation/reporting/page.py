@@ -34,16 +34,7 @@ def render(
     images: Mapping[str, str],
     data: Mapping[str, Any],
 ) -> str:
-    """Return index.html.
-
-    Parameters
-    ----------
-    first : page 1
-    pictures : its figures
-    chapters : with their content
-    images : key of a picture -> data URI
-    data : report.json
-    """
+    """Return index.html; ``images``: key of a picture -> data URI, ``data``: report.json."""
     parts = tuple(
         Part(chapter.key, number, chapter.title, content.result, content.blocks)
         for number, (chapter, content) in enumerate(chapters, 1)

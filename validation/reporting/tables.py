@@ -34,13 +34,7 @@ def frame(table: Table) -> pd.DataFrame:
 
 
 def write_tables(tables: Sequence[Table], pictures: Sequence[Picture], folder: Path) -> None:
-    """Write each table and the data of each figure as CSV, and all tables as ``tables.xlsx``.
-
-    Parameters
-    ----------
-    tables, pictures : of the report
-    folder : existing folder
-    """
+    """Write each table and the data of each figure as CSV, and all tables as ``tables.xlsx``."""
     with pd.ExcelWriter(folder / "tables.xlsx", engine="openpyxl") as book:
         for table in tables:
             data = frame(table)

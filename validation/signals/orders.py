@@ -62,13 +62,7 @@ class Harmonics:
 
 
 def harmonics(result: xr.Dataset, variable: str, derivative: int) -> Harmonics:
-    """Components of a variable of a result, or of its derivative by time.
-
-    Raises
-    ------
-    ParameterError : no result, a variable that it lacks or that has more dimensions than time, times that are
-        not even or do not cover whole mesh cycles
-    """
+    """Components of a variable over whole cycles of time, or of its derivative; refuse others."""
     of_type("result", result, xr.Dataset, "a dataset, as steady_state returns it")
     scalars = [str(name) for name, one in result.data_vars.items() if one.dims == ("time",)]
     one_of("variable", variable, scalars, "Choose a variable that depends on time alone.")

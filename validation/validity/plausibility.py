@@ -35,12 +35,7 @@ _FAR = 2.0
 
 
 def parameter_warnings(pair: GearPair) -> tuple[str, ...]:
-    """Return one sentence for each value that hardly can be meant: field, value, likely cause.
-
-    Parameters
-    ----------
-    pair : a gear pair
-    """
+    """Return one sentence for each value that hardly can be meant: field, value, likely cause."""
     return (
         *_bearings(pair),
         *_shafts(pair),

@@ -31,13 +31,7 @@ FORMS = {".rexs": "xml", ".rexs.xml": "xml", ".rexsj": "json", ".rexs.json": "js
 
 
 def read_rexs(path: str | Path) -> RexsModel:
-    """Read a REXS file; its content, not its name, decides which form it has.
-
-    Raises
-    ------
-    ParameterError : no such file, too large, an archive that is hostile or has not exactly one model, or not
-        a REXS model
-    """
+    """Read a REXS file, which its content tells and not its name; refuse what is hostile or broken."""
     path = file_path("path", path)
     data = read_bytes(path, MAX_BYTES, field="REXS file")
     if data[:2] == b"PK":

@@ -36,7 +36,7 @@ def write(results: Results) -> Content:
         },
     )
     places = np.linspace(path.L_XA, path.L_XD, 201)
-    film, other = path.film_thickness(places), path.film_thickness_hamrock_dowson(places)
+    film, other = path.film_thickness(places), path.film_thickness(places, "hamrock_dowson")
     parameter = profile["film_parameter"].to_numpy()
     linear = results.linear
     parts = (
