@@ -9,9 +9,8 @@ import pytest
 import floquet
 import lumped
 import multibody
-import spurcheck
 from lumped import friction, losses, quasi_static
-from lumped.errors import ParameterError, SpurcheckError
+from lumped.errors import ParameterError
 from lumped.lubrication import film
 from lumped.model.averaged import averaged_state_space
 from lumped.path_of_contact.friction import friction_profile
@@ -86,31 +85,6 @@ def test_what_can_be_no_argument_is_refused_by_name(within, function, argument):
         assert first.allowed
         assert first.action
         assert len(str(caught.value)) < 1500, kind
-
-
-REQUIRED = [
-    (function, name)
-    for function in (getattr(spurcheck, name) for name in dir(spurcheck))
-    if inspect.isfunction(function)
-    for name, argument in inspect.signature(function).parameters.items()
-    if argument.default is argument.empty and argument.kind is argument.POSITIONAL_OR_KEYWORD
-]
-
-
-@pytest.mark.parametrize(
-    ("function", "argument"), REQUIRED, ids=lambda v: v if isinstance(v, str) else v.__name__
-)
-def test_a_wrong_type_is_refused_by_every_main_function(function, argument, tmp_path):
-    good = {
-        "pair": PAIR, "source": PAIR, "speeds_rpm": [4000.0], "axes": {"speed_rpm": [3000.0, 4000.0]},
-        "path": tmp_path / "new.nc", "folder": tmp_path / "new",
-        "motion": lumped.steady_state(PAIR, samples_per_cycle=8),
-        "result": lumped.steady_state(PAIR, samples_per_cycle=8),
-    }  # fmt: skip
-    names = [name for one, name in REQUIRED if one is function]
-    for value in (1j, object(), [object()]):
-        with pytest.raises(SpurcheckError):
-            function(**{name: good.get(name) for name in names} | {argument: value})
 
 
 @pytest.mark.parametrize("value", [v for kind, v in NOTHING.items() if kind != "a solid"], ids=str)

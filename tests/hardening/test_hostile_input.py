@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
-from lumped.fields.text_file import parse_toml
 from lumped.schema.files import preset_text
 from lumped.schema.pair import field_at
 from validation.measurements import load_measurement
@@ -87,14 +86,8 @@ def _paths():
     from lumped.schema.pair import leaf_paths
 
     return [
-        *leaf_paths(load_gear_pair("fzg_c")),
-        "mesh.stiffness",
-        "pinion",
-        "",
-        "..",
-        "a.b.c",
-        "pinion.teeth.x",
-    ]
+        *leaf_paths(load_gear_pair("fzg_c")), "mesh.stiffness", "pinion", "", "..", "a.b.c", "pinion.teeth.x",
+    ]  # fmt: skip
 
 
 PATHS = _paths()
@@ -211,12 +204,6 @@ def test_the_mark_that_windows_puts_before_utf_8_is_no_text(tmp_path):
     assert load_gear_pair(file).name == "fzg_c"
     file.write_text(preset_text("fzg_c"), encoding="utf-16")
     assert accepted_or_refused(load_gear_pair, file) is None
-
-
-def test_dots_in_comments_and_numbers_are_no_keys(tmp_path):
-    dots = "# " + "." * 200 + "\n" + "# a" + ".a" * 200 + "\n"
-    numbers = "points = [" + ", ".join(["1.5"] * 200) + "]\n"
-    assert parse_toml(dots + numbers, "text") == {"points": [1.5] * 200}
 
 
 @given(data=st.binary(max_size=300))

@@ -70,14 +70,11 @@ def figure(xlabel, ylabel):
     return drawn
 
 
-@pytest.mark.parametrize(
-    ("labels", "word"),
-    [
-        (("", "stiffness [N/m]"), "x axis has no label"),
-        (("speed", "stiffness [N/m]"), "states no unit"),
-        (("pinion speed [rpm]", "stiffness"), "states no unit"),
-    ],
-)
+@pytest.mark.parametrize(("labels", "word"), [
+    (("", "stiffness [N/m]"), "x axis has no label"),
+    (("speed", "stiffness [N/m]"), "states no unit"),
+    (("pinion speed [rpm]", "stiffness"), "states no unit"),
+])  # fmt: skip
 def test_missing_labels_and_units_are_found(labels, word, tmp_path):
     with pytest.raises(AssertionError, match=word):
         figure(*labels).savefig(tmp_path / "a.png")

@@ -180,24 +180,15 @@ def test_there_are_many():
     assert len(TAKING) > 60
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        lumped.bodies,
-        lumped.geometry,
-        lumped.mesh_stiffness,
-        lumped.static_transmission_error,
-        lambda pair: lumped.simulate(pair, 2),
-        lambda pair: lumped.steady_state(pair, samples_per_cycle=16),
-        lambda pair: lumped.speed_sweep(pair, [3000.0], samples_per_cycle=16),
-        lambda pair: multibody.simulate(pair, 1, samples_per_cycle=16),
-        lambda pair: floquet.stability_chart(pair, {"speed_rpm": [3000.0, 4000.0]}),
-        lambda pair: floquet.gear_pair_multipliers(pair).multipliers,
-        lambda pair: floquet.campbell(pair, [3000.0, 4000.0]),
-        losses.loss_factor,
-        quasi_static.mesh_positions,
-    ],
-)
+@pytest.mark.parametrize("call", [
+    lumped.bodies, lumped.geometry, lumped.mesh_stiffness, lumped.static_transmission_error,
+    lambda pair: lumped.simulate(pair, 2), lambda pair: lumped.steady_state(pair, samples_per_cycle=16),
+    lambda pair: lumped.speed_sweep(pair, [3000.0], samples_per_cycle=16),
+    lambda pair: multibody.simulate(pair, 1, samples_per_cycle=16),
+    lambda pair: floquet.stability_chart(pair, {"speed_rpm": [3000.0, 4000.0]}),
+    lambda pair: floquet.gear_pair_multipliers(pair).multipliers,
+    lambda pair: floquet.campbell(pair, [3000.0, 4000.0]), losses.loss_factor, quasi_static.mesh_positions,
+])  # fmt: skip
 def test_a_name_gives_what_the_pair_gives(call):
     by_name, by_pair = call("fzg_c"), call(lumped.load_gear_pair("fzg_c"))
     if hasattr(by_name, "identical"):

@@ -63,18 +63,15 @@ def test_the_multibody_model_has_the_law_of_the_user(pair: spurcheck.GearPair) -
     assert np.abs(a - b).max() < 1e-6 * np.ptp(a)
 
 
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda p: setattr(p.operating, "pinion_speed", 3), r"pair\.with_\(speed=2000\)"),
-        (lambda p: setattr(p, "name", "x"), r"pair\.with_"),
-        (lambda p: spurcheck.GearPair(name="x"), "pinion = missing"),
-        (lambda p: spurcheck.GearPair("nasa_28_28"), "load_gear_pair"),
-        (lambda p: spurcheck.new_pair("19", **DRAWING), "19/41"),
-        (lambda p: spurcheck.plot([spurcheck.steady_state(p), spurcheck.speed_sweep(p, [900])]), "one kind"),
-        (lambda p: spurcheck.plot([spurcheck.steady_state(p)], labels=["a", "b"]), "labels"),
-    ],
-)
+@pytest.mark.parametrize(("wrong", "message"), [
+    (lambda p: setattr(p.operating, "pinion_speed", 3), r"pair\.with_\(speed=2000\)"),
+    (lambda p: setattr(p, "name", "x"), r"pair\.with_"),
+    (lambda p: spurcheck.GearPair(name="x"), "pinion = missing"),
+    (lambda p: spurcheck.GearPair("nasa_28_28"), "load_gear_pair"),
+    (lambda p: spurcheck.new_pair("19", **DRAWING), "19/41"),
+    (lambda p: spurcheck.plot([spurcheck.steady_state(p), spurcheck.speed_sweep(p, [900])]), "one kind"),
+    (lambda p: spurcheck.plot([spurcheck.steady_state(p)], labels=["a", "b"]), "labels"),
+])  # fmt: skip
 def test_a_wrong_guess_is_told_the_right_one(wrong, message: str, pair: spurcheck.GearPair) -> None:
     with pytest.raises(spurcheck.ParameterError, match=message):
         wrong(pair)

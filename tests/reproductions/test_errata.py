@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from floquet import PeriodicSystem, monodromy
 from lumped import bodies, geometry, load_gear_pair, periodic_system
 from lumped.friction import mean_coefficient
 from lumped.path_of_contact import contact_path, friction_path_function
@@ -102,13 +101,6 @@ def test_drift_is_that_of_the_unbalanced_torque(pair):
     assert speed_drift(pair, as_printed=(1,)) == pytest.approx(expected, rel=1e-2)
 
 
-def test_equation_9_touches_neither_transmission_error_nor_multipliers(pair):
-    right, wrong = response(pair), response(pair, as_printed=(9,))
-    np.testing.assert_array_equal(right.cycle["dte"], wrong.cycle["dte"])
-    np.testing.assert_allclose(wrong.cycle["y_g"], -right.cycle["y_g"], atol=1e-20)
-    np.testing.assert_allclose(np.abs(wrong.multipliers), np.abs(right.multipliers), atol=1e-12)
-
-
 def test_equation_5b_holds_up_to_a_contact_ratio_of_2_only(pair):
     phase = np.linspace(0, 1, 11)[:-1]
     for gears, wrong in ((pair, 0.0), (high_contact_ratio(), 1.0)):
@@ -156,44 +148,6 @@ def test_printed_film_powers(pair):
     # H_c ~ U^0.69: 10^(8-3) and 10^(0.69 (-16+6))
     np.testing.assert_allclose(film_thickness_printed(path, xi), right * 10 ** (5 - 6.9), rtol=1e-12)
     np.testing.assert_allclose(film_thickness_printed(path, xi, speed=False), right * 1e5, rtol=1e-12)
-
-
-def test_dimension_checks_say_which_equations_they_can_judge(chapter):
-    def check(number, name):
-        row = evidence(chapter, number, name)
-        return row.printed, row.repaired
-
-    for number, name in (("16", "dimension check of the left side"), ("19", "dimension check of the sum")):
-        printed, repaired = check(number, name)
-        assert printed.startswith("fails")
-        assert repaired == "passes"
-    # x and y are both lengths, and the constant of law II carries units: dimensions pass either way
-    assert check("8", "dimension check") == ("passes", "passes")
-    assert evidence(chapter, "21a, d", "power of ten of U").repaired == pytest.approx(-6.0, abs=1e-12)
-    assert evidence(chapter, "21a, d", "power of ten of the film in µm").repaired == pytest.approx(
-        3.0, abs=1e-12
-    )
-
-
-def test_chapter_states_effects_on_multipliers_from_floquet(chapter, pair):
-    system = periodic_system(pair, "elastic", as_printed=(7,))
-    reference = monodromy(
-        PeriodicSystem(system.matrices, system.period, tuple(system.breakpoints), vectorized=True),
-        method="gauss4",  # its nodes are inside a step: near a jump ``matrices`` gives the value after it
-        rtol=1e-8,
-    )
-    found = evidence(chapter, "7", "largest modulus of the Floquet multipliers").printed
-    # The printed system has a nearly defective pair: its bound is larger than the matrix error.
-    assert found == pytest.approx(reference.spectral_radius, abs=2.0 * reference.error)
-
-
-def test_printed_laws_leave_the_mean_where_they_should(chapter, pair):
-    row = evidence(chapter, "18", "mean of |mu| over the path of contact")
-    own = load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
-    assert row.repaired == pytest.approx(
-        mean_coefficient(friction_path_function(own, law="xu_kahraman")), rel=1e-9
-    )
-    assert row.printed > row.repaired
 
 
 def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
-from lumped import geometry, load_gear_pair, simulate
+from lumped import geometry, load_gear_pair
 from lumped.errors import ParameterError
 from lumped.friction import xu_kahraman
 from lumped.path_of_contact import contact_path
@@ -17,7 +17,7 @@ from reproductions.he_cho_singh_2008.figures.figure2 import regime_switch
 from reproductions.he_cho_singh_2008.figures.figure7 import measured_points
 from reproductions.he_cho_singh_2008.operating_points import FIGURE_4, FIGURE_7
 from reproductions.he_cho_singh_2008.records import ClaimsTable, ErrataChapter, FigureRecord
-from reproductions.he_cho_singh_2008.twins import agreement, continuous_labels, mesh_orders, roll_angle, twins
+from reproductions.he_cho_singh_2008.twins import agreement
 from validation.measurements import predict, synthetic_measurement
 
 
@@ -121,33 +121,6 @@ def test_figure_5_and_6_amplitudes_carry_the_variance(records):
             np.testing.assert_allclose(carried, variance, rtol=2e-3)
 
 
-def test_mesh_orders_of_a_known_history():
-    phase = np.arange(64) / 64
-    values = 5.0 + 2.0 * np.cos(2 * np.pi * phase + 0.3) + 0.25 * np.sin(2 * np.pi * 3 * phase)
-    found = mesh_orders(xr.DataArray(values[None], dims=("law", "phase"), coords={"phase": phase}), 4)
-    np.testing.assert_allclose(found.to_numpy(), [[2.0, 0.0, 0.25, 0.0]], atol=1e-12)
-
-
-def test_continuous_labels_follow_a_tooth_pair(pair):
-    # xi of a labelled pair grows by lambda/k per sample until it starts again at A, every n + 1 cycles.
-    k, g = 32, geometry(pair)
-    run = simulate(pair, 1, samples_per_cycle=k)
-    position = run["position"].to_numpy()[:, :-1]
-    labelled = continuous_labels(position, 4)
-    step = np.diff(labelled, axis=1)
-    np.testing.assert_allclose(labelled[0, : 2 * k], g.L_XA + np.arange(2 * k) * g.base_pitch / k, rtol=1e-9)
-    restarts = step < 0
-    np.testing.assert_array_equal(np.flatnonzero(restarts[0]) + 1, [2 * k])
-    np.testing.assert_array_equal(np.flatnonzero(restarts[1]) + 1, [k, 3 * k])
-    np.testing.assert_allclose(step[~restarts], g.base_pitch / k, rtol=1e-9)
-
-
-def test_roll_angle_at_the_pitch_point_is_the_tangent_of_the_pressure_angle(pair):
-    g = geometry(pair)
-    cycles = np.array([(g.L_XP - g.L_XA) / g.base_pitch])
-    assert roll_angle(pair, cycles)[0] == pytest.approx(np.degrees(np.tan(np.radians(20.0))), rel=1e-12)
-
-
 def test_multibody_twins_are_near_and_settled(pair):
     runs = law_runs(pair)
     assert float(runs["unsettled"].max()) < 1e-6  # closed by Newton's method to ten times rtol 1e-9
@@ -157,19 +130,6 @@ def test_multibody_twins_are_near_and_settled(pair):
     assert found["x_p"] < 0.02
     assert found["y_p"] < 0.1
     assert min(found.values()) > 1e-5  # it is another model
-
-
-def test_a_twin_at_low_speed_is_periodic_and_does_not_slip_in_phase(pair):
-    # Under the torques of the lumped model the twin slows down: after 20 cycles it had slipped by 0.017 of a
-    # cycle and changed by a tenth from one cycle to the next.
-    slow = FIGURE_7[0].of(pair).with_(friction__law="xu_kahraman")
-    runs = twins({"III": slow}, samples=128)
-    assert float(runs["unsettled"].max()) < 1e-6
-    total = runs["normal_load"].sum("pair").isel(variant=0)
-    lumped, twin = (total.sel(model=m).to_numpy() for m in ("lumped", "multibody"))
-    shifts = np.arange(-4, 5)
-    mismatch = [float(np.abs(np.roll(twin, k) - lumped).mean()) for k in shifts]
-    assert shifts[int(np.argmin(mismatch))] == 0
 
 
 def test_an_unstable_motion_is_marked_in_figure_and_numbers(pair):
@@ -206,15 +166,6 @@ def test_measured_points_land_on_their_speed_and_pair(pair):
     axes = DRAW["7"](record7).axes
     drawn = [len(ax.containers) for ax in axes[:4]]
     assert drawn == [0, 2, 0, 2]  # error bars of A and B in the 4000 rpm column only
-
-
-def test_data_are_written_as_netcdf_and_csv(records, tmp_path):
-    records["3"].write(tmp_path)
-    again = xr.load_dataset(tmp_path / "figure3_normalised_laws.nc", engine="h5netcdf")
-    xr.testing.assert_allclose(again, records["3"].data["normalised_laws"])
-    table = (tmp_path / "figure3_normalised_laws_by_law_cycles.csv").read_text().splitlines()
-    assert table[0] == "law,cycles,normalised_mu"
-    assert len(table) == 1 + 4 * again.sizes["cycles"]
 
 
 def test_every_figure_can_be_drawn_and_says_what_it_shows(records):

@@ -20,12 +20,9 @@ from validation.cross_check.comparison import crosscheck
 from validation.cross_check.variant import prediction_holds
 
 _STIFFNESS = (
-    {"model": "rectangular"},
-    {"model": "parabolic"},
-    {"model": "parabolic", "ramp_length": 0.5},
-    {"model": "energy"},
-    {"model": "energy", "hertz": "linear"},
-)
+    {"model": "rectangular"}, {"model": "parabolic"}, {"model": "parabolic", "ramp_length": 0.5},
+    {"model": "energy"}, {"model": "energy", "hertz": "linear"},
+)  # fmt: skip
 
 
 def drawn(count: int, seed: str, *, relief: bool = False, loaded: bool = False) -> Iterator[GearPair]:
@@ -113,14 +110,9 @@ def _row(pair: GearPair, name: str) -> dict[str, Any]:
             }
     worst = max(check.judgements, key=lambda one: one.value / one.limit if one.limit > 0.0 else 0.0)
     return {
-        "name": name,
-        "preset": pair.name,
-        "verdict": check.verdict.word,
+        "name": name, "preset": pair.name, "verdict": check.verdict.word,
         "failures": [f"{f.check}: {f.value:.3g} > {f.limit:.3g}" for f in check.failures],
-        "check": worst.check,
-        "use": worst.value / worst.limit if worst.limit > 0.0 else 0.0,
-        "law": pair.friction.law,
-        "stiffness": pair.mesh.stiffness.model,
-        "relief": pair.mesh.relief,
+        "check": worst.check, "use": worst.value / worst.limit if worst.limit > 0.0 else 0.0,
+        "law": pair.friction.law, "stiffness": pair.mesh.stiffness.model, "relief": pair.mesh.relief,
         "seconds": time.perf_counter() - started,
-    }
+    }  # fmt: skip

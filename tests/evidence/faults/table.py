@@ -27,15 +27,11 @@ def row(fault: Fault, outcome: Outcome) -> dict[str, Any]:
     """One row as plain data."""
     group = next(name for name, faults in GROUPS.items() if fault in faults)
     return {
-        "key": fault.key,
-        "group": group,
-        "words": fault.words,
-        "size": None if math.isinf(outcome.size) else outcome.size,
-        "quantity": outcome.quantity,
+        "key": fault.key, "group": group, "words": fault.words,
+        "size": None if math.isinf(outcome.size) else outcome.size, "quantity": outcome.quantity,
         "caught": {part: list(checks) for part, checks in outcome.caught.items() if checks},
-        "verdict": verdict(fault, outcome),
-        "unseen": fault.unseen,
-    }
+        "verdict": verdict(fault, outcome), "unseen": fault.unseen,
+    }  # fmt: skip
 
 
 def verdict(fault: Fault, outcome: Outcome) -> str:

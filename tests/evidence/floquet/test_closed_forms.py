@@ -21,14 +21,10 @@ extended = pytest.mark.skipif(
     np.finfo(np.longdouble).nmant < 63, reason="long double is no more than double on this platform"
 )
 CHECKS = (
-    closed_forms.check_closed_forms,
-    closed_forms.check_invariants,
-    closed_forms.check_orders,
-    pytest.param(closed_forms.check_random_gears, marks=extended),
-    combinations.check_hsu,
-    combinations.check_gear_chain,
-    coulomb_zones.check_coulomb_gear_pair,
-)
+    closed_forms.check_closed_forms, closed_forms.check_invariants, closed_forms.check_orders,
+    pytest.param(closed_forms.check_random_gears, marks=extended), combinations.check_hsu,
+    combinations.check_gear_chain, coulomb_zones.check_coulomb_gear_pair,
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("function", CHECKS, ids=lambda f: getattr(f, "__name__", None))

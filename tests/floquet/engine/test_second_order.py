@@ -73,19 +73,16 @@ def test_free_vibrations_keep_their_norm():
     assert np.abs(np.abs(found.multipliers) - 1.0).max() <= found.multiplier_errors.max() < 1e-10
 
 
-@pytest.mark.parametrize(
-    ("M", "C", "K", "breaks", "field", "word"),
-    [
-        (np.diag([1.0, 0.0]), np.eye(2), np.eye(2), (), "M", "singular"),
-        (np.ones((2, 3)), np.eye(2), np.eye(2), (), "M", "square"),
-        (np.eye(2), np.eye(3), np.eye(2), (), "C", "square matrix (2, 2)"),
-        (np.eye(2), np.eye(2), PeriodicMatrix(np.eye(3)), (), "K", "that of M"),
-        (np.eye(2), lambda t: np.eye(3), np.eye(2), (), "C(t)", "(3, 3)"),
-        (1.0, 0.0, PeriodicMatrix(1.0, (FourierSeries(2.0, 0.0, [1.0]), 1.0)), (), "K, term 1", "repeats"),
-        (1.0, 0.0, 1.0, (4.0,), "breakpoints", "0 to 3"),
-        (1.0, 0.0, [["1"]], (), "K", "numbers"),
-    ],
-)
+@pytest.mark.parametrize(("M", "C", "K", "breaks", "field", "word"), [
+    (np.diag([1.0, 0.0]), np.eye(2), np.eye(2), (), "M", "singular"),
+    (np.ones((2, 3)), np.eye(2), np.eye(2), (), "M", "square"),
+    (np.eye(2), np.eye(3), np.eye(2), (), "C", "square matrix (2, 2)"),
+    (np.eye(2), np.eye(2), PeriodicMatrix(np.eye(3)), (), "K", "that of M"),
+    (np.eye(2), lambda t: np.eye(3), np.eye(2), (), "C(t)", "(3, 3)"),
+    (1.0, 0.0, PeriodicMatrix(1.0, (FourierSeries(2.0, 0.0, [1.0]), 1.0)), (), "K, term 1", "repeats"),
+    (1.0, 0.0, 1.0, (4.0,), "breakpoints", "0 to 3"),
+    (1.0, 0.0, [["1"]], (), "K", "numbers"),
+])  # fmt: skip
 def test_unusable_matrices_are_refused_by_name(M, C, K, breaks, field, word):
     with pytest.raises(ParameterError) as refused:
         from_second_order(M, C, K, PERIOD, breaks)

@@ -49,18 +49,12 @@ def test_spall_and_chip(nasa):
     )
 
 
-@pytest.mark.parametrize(
-    ("fault", "field", "allowed"),
-    [
-        ({"kind": "crack", "tooth": 1, "depth": 3.5, "angle": 90}, "depth", "half the root"),
-        ({"kind": "chip", "tooth": 1, "roll_angle": 40}, "roll_angle", "deg"),
-        (
-            {"kind": "spall", "tooth": 1, "start_roll_angle": 18, "end_roll_angle": 22, "width": 7},
-            "width",
-            "6.35 mm",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("fault", "field", "allowed"), [
+    ({"kind": "crack", "tooth": 1, "depth": 3.5, "angle": 90}, "depth", "half the root"),
+    ({"kind": "chip", "tooth": 1, "roll_angle": 40}, "roll_angle", "deg"),
+    ({"kind": "spall", "tooth": 1, "start_roll_angle": 18, "end_roll_angle": 22, "width": 7}, "width",
+     "6.35 mm"),
+])  # fmt: skip
 def test_what_does_not_fit_the_tooth_is_refused(nasa, fault, field, allowed):
     with pytest.raises(ValueError, match=rf"pinion\.faults\.0\.{field}.*{allowed}"):
         nasa.with_({"pinion.faults": [fault]})

@@ -172,17 +172,14 @@ def test_a_number_of_few_digits_reads_back_in_its_own_digits(stated):
     assert to_stated(to_si(stated, "rpm"), "rpm") == to_file(to_si(stated, "rpm"), "rpm") == stated
 
 
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda path: None, "that exists"),
-        (lambda path: path.mkdir(), "folder or a device"),
-        (lambda path: path.symlink_to(path), "levels of symbolic links"),
-        (lambda path: path.symlink_to("/dev/zero"), "folder or a device"),
-        (lambda path: path.write_bytes(b"a = 'caf\xe9'"), "byte 8 is no UTF-8"),
-        (lambda path: path.write_bytes(b"x" * 11), "<= 10 bytes"),
-    ],
-)
+@pytest.mark.parametrize(("make", "words"), [
+    (lambda path: None, "that exists"),
+    (lambda path: path.mkdir(), "folder or a device"),
+    (lambda path: path.symlink_to(path), "levels of symbolic links"),
+    (lambda path: path.symlink_to("/dev/zero"), "folder or a device"),
+    (lambda path: path.write_bytes(b"a = 'caf\xe9'"), "byte 8 is no UTF-8"),
+    (lambda path: path.write_bytes(b"x" * 11), "<= 10 bytes"),
+])  # fmt: skip
 def test_files_that_are_no_text_say_why(tmp_path, make, words):
     make(tmp_path / "file")
     with pytest.raises(ParameterError, match=words) as caught:

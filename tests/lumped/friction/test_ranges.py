@@ -30,14 +30,11 @@ def slow():
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("law", "quantity"),
-    [
-        ("benedict_kelley", "mean_coefficient"),
-        ("xu_kahraman", "mean_rolling_velocity"),
-        ("iso_14179", "unit_load"),
-    ],
-)
+@pytest.mark.parametrize(("law", "quantity"), [
+    ("benedict_kelley", "mean_coefficient"),
+    ("xu_kahraman", "mean_rolling_velocity"),
+    ("iso_14179", "unit_load"),
+])  # fmt: skip
 def test_a_slow_small_pair_is_outside_and_the_warning_says_how_far(slow, law, quantity):
     (found,) = (v for v in law_range_violations(slow, law) if v.range.quantity == quantity)
     function, path = friction_path_function(slow, law), contact_path(slow)

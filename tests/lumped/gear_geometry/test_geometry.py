@@ -110,19 +110,12 @@ def swapped(pair):
 def random_pair(teeth, shifts, addendum, angle, spread):
     base = load_gear_pair("nasa_28_28")
     changes = {
-        "pinion.teeth": teeth[0],
-        "gear.teeth": teeth[1],
-        "pinion.profile_shift": shifts[0],
-        "gear.profile_shift": shifts[1],
-        "basic_rack.pressure_angle": angle,
-        "basic_rack.addendum_coefficient": addendum,
-        "basic_rack.dedendum_coefficient": addendum + 0.25,
-        "basic_rack.fillet_radius_coefficient": 0.2,
-        "centre_distance": None,
-        "mesh.backlash": 0.0,
-        "pinion.tip_relief": None,
-        "gear.tip_relief": None,
-    }
+        "pinion.teeth": teeth[0], "gear.teeth": teeth[1], "pinion.profile_shift": shifts[0],
+        "gear.profile_shift": shifts[1], "basic_rack.pressure_angle": angle,
+        "basic_rack.addendum_coefficient": addendum, "basic_rack.dedendum_coefficient": addendum + 0.25,
+        "basic_rack.fillet_radius_coefficient": 0.2, "centre_distance": None, "mesh.backlash": 0.0,
+        "pinion.tip_relief": None, "gear.tip_relief": None,
+    }  # fmt: skip
     try:
         pair = base.with_(changes)
         return pair.with_(centre_distance=f"{geometry(pair).centre_distance * (1 + spread)!r} m")

@@ -77,11 +77,8 @@ def test_the_gap_is_the_turn_that_brings_the_corner_onto_the_flank(end, beyond):
         r_flank, r_tip, start, xi = g.base_radius_pinion, g.base_radius_gear, g.L_XA, g.L_XA - distance
     else:
         r_flank, r_tip, start, xi = (
-            g.base_radius_gear,
-            g.base_radius_pinion,
-            g.L_XY - g.L_XD,
-            g.L_XD + distance,
-        )
+            g.base_radius_gear, g.base_radius_pinion, g.L_XY - g.L_XD, g.L_XD + distance,
+        )  # fmt: skip
     gap = float(corner_gap(g, np.array([xi]))[0])
     assert gap > 0.0
     # The mate seen from its own tangent point: its corner is the point of its involute at the tip's length.

@@ -260,12 +260,9 @@ class TestFaults:
         g = loaded.geometry
         roll = np.degrees(np.array([g.L_XP, g.L_XP + 5e-4, g.L_XD - 1.2e-3]) / g.base_radius_pinion)
         spall = {
-            "kind": "spall",
-            "tooth": 5,
-            "start_roll_angle": roll[0],
-            "end_roll_angle": roll[1],
+            "kind": "spall", "tooth": 5, "start_roll_angle": roll[0], "end_roll_angle": roll[1],
             "pit_depth": 9,
-        }
+        }  # fmt: skip
         chip = {"kind": "chip", "tooth": 5, "roll_angle": roll[2]}
         healthy = np.tile(lumped.static_sharing(loaded, samples_per_cycle=64).transmission_error.values, 28)
         for fault, place in (

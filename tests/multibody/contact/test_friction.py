@@ -14,14 +14,10 @@ from multibody.run.effects import effect_flags
 FIT = 1e-10
 
 
-@pytest.mark.parametrize(
-    "oil",
-    [
-        {"iso_vg": 100, "viscosity_index": 110.0, "temperature": "60 degC"},
-        {"kinematic_viscosity_40": 95.0, "kinematic_viscosity_100": 10.5, "temperature": "75 degC"},
-    ],
-    ids=["grade", "two points"],
-)
+@pytest.mark.parametrize("oil", [
+    {"iso_vg": 100, "viscosity_index": 110.0, "temperature": "60 degC"},
+    {"kinematic_viscosity_40": 95.0, "kinematic_viscosity_100": 10.5, "temperature": "75 degC"},
+], ids=["grade", "two points"])  # fmt: skip
 def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
     changes = {"lubricant.viscosity_law": oil, "friction.law": "benedict_kelley"}
     pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed").with_(changes)

@@ -64,14 +64,11 @@ def test_first_law_holds_with_own_gaps_and_eccentric_base_circles(pair):
     assert abs(balance.residual) < 1e-8 * balance.driving
 
 
-@pytest.mark.parametrize(
-    ("changes", "field"),
-    [
-        ({"pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 1}]}, "pinion.faults"),
-        ({"gear.deviations": {"profile_slope": [1.0] * 28}}, "gear.deviations.profile_slope"),
-        ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, "torque_ripple"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "field"), [
+    ({"pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 1}]}, "pinion.faults"),
+    ({"gear.deviations": {"profile_slope": [1.0] * 28}}, "gear.deviations.profile_slope"),
+    ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, "torque_ripple"),
+])  # fmt: skip
 def test_what_it_does_not_have_is_refused(pair, changes, field):
     with pytest.raises(lumped.ParameterError, match=field):
         multibody.simulate(pair.with_(changes), 1)

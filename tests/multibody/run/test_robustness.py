@@ -169,17 +169,14 @@ def test_arguments_without_sense_are_refused(options, field):
         multibody.simulate(PAIR, **options)
 
 
-@pytest.mark.parametrize(
-    ("call", "field"),
-    [
-        (lambda: multibody.power_balance(PAIR, 0), "cycles"),
-        (lambda: multibody.power_balance(PAIR, 2.5), "cycles"),
-        (lambda: multibody.speed_sweep(PAIR, []), "speeds_rpm"),
-        (lambda: multibody.speed_sweep(PAIR, [3000], cycles=0), "cycles"),
-        (lambda: multibody.speed_sweep(PAIR, [3000], settle=-5), "settle"),
-        (lambda: multibody.simulate(PAIR.with_(operating__pinion_torque=1e7), 1), "pinion_torque"),
-    ],
-)
+@pytest.mark.parametrize(("call", "field"), [
+    (lambda: multibody.power_balance(PAIR, 0), "cycles"),
+    (lambda: multibody.power_balance(PAIR, 2.5), "cycles"),
+    (lambda: multibody.speed_sweep(PAIR, []), "speeds_rpm"),
+    (lambda: multibody.speed_sweep(PAIR, [3000], cycles=0), "cycles"),
+    (lambda: multibody.speed_sweep(PAIR, [3000], settle=-5), "settle"),
+    (lambda: multibody.simulate(PAIR.with_(operating__pinion_torque=1e7), 1), "pinion_torque"),
+])  # fmt: skip
 def test_calls_without_sense_are_refused(call, field):
     """A balance over no cycle closes; a run in which flanks meet the next tooth looks like any other."""
     with pytest.raises(lumped.ParameterError, match=field):

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import lumped
 from lumped.model.averaged import averaged_state_space
 from validation.cli import app
-from validation.exchange import gear_pair_from_rexs, parameter_text, write_rexs
+from validation.exchange import gear_pair_from_rexs, parameter_text
 from validation.studies import load_study, run_sweep
 
 
@@ -79,13 +79,10 @@ AXES = [
 def test_a_sweep_becomes_one_table_with_its_axes_and_says_what_is_left_out(command, tmp_path, method):
     grid = method == "grid"
     study = {
-        "name": "table",
-        "gear_pair": "nasa_28_28",
-        "analysis": "geometry",
-        "outputs": ["contact_ratio"],
+        "name": "table", "gear_pair": "nasa_28_28", "analysis": "geometry", "outputs": ["contact_ratio"],
         "design": {"method": method} | ({} if grid else {"samples": 4}),
         "axes": [axis | ({"count": 2} if grid else {}) for axis in AXES],
-    }
+    }  # fmt: skip
     assert run_sweep(load_study(study), "sweep").failed > 0
     code, text = command("export", "sweep/results.nc", "-o", "table.csv")
     assert code == 0
@@ -170,13 +167,10 @@ def test_the_default_name_is_that_of_the_file_and_dash_prints(xml, save, tmp_pat
     assert "--force" in again.stderr
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (("--stage", "1"), "Give --from-rexs FILE too"),
-        (("--from-rexs", "missing.rexs"), "a file that exists"),
-    ],
-)
+@pytest.mark.parametrize(("options", "message"), [
+    (("--stage", "1"), "Give --from-rexs FILE too"),
+    (("--from-rexs", "missing.rexs"), "a file that exists"),
+])  # fmt: skip
 def test_a_wrong_call_is_refused_with_exit_code_2(options, message):
     result = run("init", *options)
     assert result.exit_code == 2
@@ -188,11 +182,6 @@ def test_the_number_of_the_stage_is_passed_on(xml, save):
     result = run("init", "--from-rexs", save(xml()), "--stage", 2, "-o", "-")
     assert result.exit_code == 2
     assert "a whole number, 1 to 1" in result.stderr
-
-
-def test_the_commented_text_of_every_exported_preset_says_what_was_read(preset, tmp_path):
-    mapping, notes = gear_pair_from_rexs(write_rexs(preset, tmp_path / "pair.rexs"))
-    assert tomllib.loads(parameter_text(mapping, notes)) == {"format": 1} | mapping
 
 
 def test_text_from_elsewhere_cannot_break_out_of_a_comment_or_a_string(xml, save):

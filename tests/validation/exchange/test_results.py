@@ -105,13 +105,6 @@ def test_a_table_needs_an_axis(tmp_path, values):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_packing_attributes_of_strangers_are_not_followed(tmp_path):
-    path = tmp_path / "a.nc"
-    with h5py.File(path, "w") as file:
-        file.create_dataset("a", data=np.arange(3.0)).attrs["scale_factor"] = "abc"
-    assert read_netcdf(path)["a"].to_numpy().tolist() == [0.0, 1.0, 2.0]
-
-
 def test_names_and_texts_that_a_spreadsheet_would_run_are_made_inert(tmp_path):
     result = xr.Dataset({"=1+1": ("@row", ["-2", "@x", "plain"])}, coords={"@row": [0.0, 1.0, 2.0]})
     write_results(result, tmp_path / "a.csv")

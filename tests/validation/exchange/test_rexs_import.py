@@ -106,16 +106,6 @@ def test_backlash_leaves_out_what_the_centre_distance_gives(xml, save):
     assert 0.0 < pair.mesh.backlash < 0.13e-3
 
 
-def test_less_backlash_than_the_centre_distance_gives_is_no_thicker_tooth(xml, save):
-    # The centre distance alone gives 2 um: teeth cannot be thickened to take it away.
-    stage = "".join(
-        f'<attribute id="{key}_normal_backlash" unit="mm">0.001</attribute>' for key in ("minimum", "maximum")
-    )
-    pair = lumped.load_gear_pair(gear_pair_from_rexs(save(xml(stage=stage)))[0])
-    assert pair.mesh.backlash == 0.0
-    assert lumped.geometry(pair).normal_backlash > 0.001e-3
-
-
 def test_the_first_load_case_stands_in_and_the_accumulation_does_not(xml, save):
     def load(torque):
         attribute = f'<attribute id="torque_around_u_axis" unit="N m">{torque}</attribute>'
@@ -199,16 +189,6 @@ def test_tip_relief_becomes_a_roll_angle_and_an_amount_at_the_tip(xml, save, sha
     assert relief["amount"] == pytest.approx(20.0 * carried, rel=1e-11)  # twelve digits are written
 
 
-def test_a_relief_that_the_model_has_no_place_for_is_left_out_with_a_note(xml, save):
-    parts = {
-        "components": _relief("tip_relief", 0.02, 42.0, 44.2, "exponential"),
-        "relations": _ON_BOTH_FLANKS,
-    }
-    mapping, notes = gear_pair_from_rexs(save(xml(**parts)))
-    assert "tip_relief" not in mapping["pinion"]
-    assert any("tip_relief 70 is left out" in note for note in notes)
-
-
 def test_values_that_cannot_be_assumed_are_asked_for_all_at_once(xml, save):
     text = (
         xml().replace('id="face_width"', 'id="custom_width"').replace('id="number_of_teeth"', 'id="custom_z"')
@@ -268,15 +248,6 @@ def test_torque_from_power_over_speed(xml, save):
     pair = lumped.load_gear_pair(gear_pair_from_rexs(save(text))[0])
     # 3500 W at 1500 rpm = 157.0796 rad/s
     assert pair.operating.pinion_torque == pytest.approx(3500.0 / (50.0 * math.pi), rel=1e-14)
-
-
-def test_an_external_torque_on_a_shaft_with_two_gears_is_not_that_of_the_stage(xml, save):
-    refs = '<ref id="31" role="assembly"/><ref id="75" role="part"/>'
-    further = f'<relation id="85" type="assembly">{refs}</relation>'
-    components = '<component id="75" type="cylindrical_gear"/>'
-    mapping, notes = gear_pair_from_rexs(save(xml(relations=further, components=components)))
-    assert mapping["sources"]["operating.pinion_torque"].startswith("assumed")
-    assert any("operating.pinion_torque is not in the file" in note for note in notes)
 
 
 def test_operating_viscosity_is_kinematic(xml, save):

@@ -44,19 +44,6 @@ def test_other_kinds_of_stages_are_refused_with_the_reason(xml, save, old, new, 
     assert refused(save(text.replace(old, new))).startswith(f"model.rexs: stage 1 = {reason}")
 
 
-def test_of_several_stages_none_of_which_is_spur_each_is_named(xml, save):
-    message = refused(
-        save(
-            two_stages(xml, "15").replace(
-                'type="cylindrical_stage" name="first', 'type="worm_stage" name="first'
-            )
-        )
-    )
-    assert message.startswith("model.rexs: 2 problems")
-    assert "stage 1 = a worm stage" in message
-    assert "stage 2 = a helical stage, helix angle 15 deg" in message
-
-
 _SECOND = {
     "relations": '<relation id="80" type="stage"><ref id="11" role="stage"/><ref id="23" role="gear_1"/>'
     '<ref id="24" role="gear_2"/></relation>',
@@ -149,19 +136,6 @@ def test_broken_files_are_refused_in_one_message_with_the_reason(save, content, 
     message = refused(save(content))
     assert message.startswith("REXS file = model.rexs: ")
     assert reason in message
-
-
-def test_tables_of_results_cost_no_memory(xml):
-    cells = "<c>1.0</c>" * 300_000
-    table = f'<attribute id="custom_table" unit="none"><array>{cells}</array></attribute>'
-    data = xml(gear_1=table).encode()
-    tracemalloc.start()
-    document = encodings.from_xml(data, "model.rexs")
-    _, peak = tracemalloc.get_traced_memory()
-    tracemalloc.stop()
-    assert len(document["model"]["components"]) == 12
-    # Skipped cells leave nothing behind; an element tree of them would take more than ten times the text.
-    assert peak < len(data)
 
 
 def test_a_file_beyond_the_bound_is_refused(xml, save, monkeypatch):

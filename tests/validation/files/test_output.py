@@ -54,17 +54,6 @@ def test_csv_of_a_chart_has_one_row_per_point_with_its_own_value(tmp_path):
     ]
 
 
-def test_csv_has_a_column_for_each_law_by_its_name(tmp_path):
-    loss = np.array([[1.0, 2.0], [3.0, 4.0]])
-    result = xr.Dataset(
-        {"loss": (("speed", "law"), loss, {"units": "W"})}, {"speed": [1, 2], "law": ["coulomb", "none"]}
-    )
-    output.write_dataset(result, tmp_path / "loss.csv")
-    heading, *rows = csv.reader((tmp_path / "loss.csv").read_text().splitlines())
-    assert heading == ["speed [1]", "loss_lawcoulomb [W]", "loss_lawnone [W]"]
-    assert [[float(v) for v in row[1:]] for row in rows] == loss.tolist()
-
-
 def test_netcdf_loses_nothing(dataset, tmp_path):
     output.write_dataset(dataset, tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:

@@ -7,7 +7,6 @@ import pytest
 
 from lumped import geometry, load_gear_pair, simulate
 from lumped.errors import NumericalError, ParameterError
-from lumped.path_of_contact import friction_path_function
 from validation.measurements import (
     align,
     identify_friction,
@@ -71,13 +70,6 @@ def test_roll_angle_gives_the_phase(truth):
     np.testing.assert_allclose(mesh_cycles(measurement, truth.pair), np.arange(9), atol=1e-12)
 
 
-def test_times_are_mesh_cycles_at_the_speed_of_the_record(truth):
-    cycles = mesh_cycles(record(truth), truth.pair)
-    np.testing.assert_allclose(cycles, record(truth).abscissa / truth.geometry.mesh_period, rtol=1e-14)
-    other = truth.pair.with_(operating__pinion_speed=3 * 800)
-    np.testing.assert_array_equal(mesh_cycles(record(truth), other), cycles)
-
-
 @pytest.mark.parametrize("start", [0.0, 0.37, 1.9, 2.75])
 def test_alignment_finds_an_unknown_start(truth, start):
     found = align(record(truth, start=start, noise_normal=0.02), truth)
@@ -137,47 +129,12 @@ def test_without_noise_the_truth_comes_back(truth, normal):
     assert found.standard_error < 1e-3 * MU
 
 
-def test_a_scale_on_a_law_comes_back(pair):
-    truth = predict(pair.with_(friction__law="xu_kahraman"), recurrence=3)
-    clean = record(truth, scale=0.7)
-    found = identify_friction(clean, truth, align(clean, truth, shift=0.0), law="xu_kahraman")
-    # 1e-3: F is interpolated between 1024 samples, N and the law are not
-    assert found.estimate == pytest.approx(0.7, rel=1e-3)
-    g = truth.geometry
-    path = np.abs(friction_path_function(truth.pair)(np.linspace(g.L_XA, g.L_XD, 20_001)))
-    assert found.mean_mu == pytest.approx(0.7 * path.mean(), rel=1e-3)
-
-
-def test_samples_whose_sign_is_not_certain_are_left_out(truth):
-    noisy = record(truth, noise_normal=0.2)
-    phase = align(noisy, truth, shift=0.0)
-    in_contact = sum(int(truth.contact(phase.cycles, label).sum()) for label in "AB")
-    for error in (0.0, 0.02):
-        kept = identify_friction(noisy, truth, dataclasses.replace(phase, standard_error=error))
-        reach = 3.0 * error + 1.0 / 100.3  # mesh cycles: three standard errors and one sample
-        # Two pairs of four engagements, both sides of the pitch point; each end falls within a sample.
-        assert in_contact - kept.samples == pytest.approx(16 * reach * 100.3, abs=16)
-
-
 def test_the_interval_is_that_of_students_t_over_engagements(truth):
     noisy = record(truth, noise_friction=0.02)
     found = identify_friction(noisy, truth, align(noisy, truth, shift=0.0))
     assert found.blocks == 8  # four engagements of two pairs
     reach = 2.3646 * found.standard_error  # t of 7 degrees of freedom, 97.5 %
     np.testing.assert_allclose([found.estimate - found.low, found.high - found.estimate], reach, rtol=5e-3)
-
-
-def test_noise_weighs_only_where_every_channel_states_it(truth):
-    noisy = record(truth, noise_normal=0.1, noise_friction=0.02)
-    phase = align(noisy, truth, shift=0.0)
-
-    def estimate(**noise):
-        measured = dataclasses.replace(noisy, noise=noisy.noise | noise)
-        return identify_friction(measured, truth, phase).estimate
-
-    none = dict.fromkeys(noisy.noise)
-    assert estimate(normal_B=None) == estimate(**none)
-    assert estimate(**none) != estimate()
 
 
 def test_noise_on_the_load_biases_plain_least_squares_but_not_the_weighted_one(truth):
@@ -227,11 +184,9 @@ TEN_PERCENT = {"noise_normal": 0.1, "noise_friction": 0.1}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("law", "noise"),
-    [("coulomb", {}), ("coulomb", {"correlation": 0.97}), ("coulomb", TEN_PERCENT), ("xu_kahraman", {})],
-    ids=["white noise 2 %", "correlated noise", "noise 10 %", "scale on law III"],
-)
+@pytest.mark.parametrize(("law", "noise"), [
+    ("coulomb", {}), ("coulomb", {"correlation": 0.97}), ("coulomb", TEN_PERCENT), ("xu_kahraman", {}),
+], ids=["white noise 2 %", "correlated noise", "noise 10 %", "scale on law III"])  # fmt: skip
 def test_interval_covers_the_truth(pair, law, noise):
     estimates, errors, holds = coverage(pair, law, noise, seeds=40)
     # A correct 95 % interval covers 34 to 40 times out of 40 with probability 0.99.
@@ -267,27 +222,6 @@ def test_overlay_metrics_know_a_constant_offset(truth):
     band = overlay(shifted, truth, align(shifted, truth, shift=0.0), bins=16)
     np.testing.assert_allclose((band["measured"] - band["predicted"]).to_numpy(), 12.0, rtol=1e-9)
     np.testing.assert_allclose(band["scatter"], 0.0, atol=1e-4)  # difference of squares of 12 N in doubles
-
-
-def test_a_prediction_without_friction_has_no_scale_for_a_relative_metric(pair, truth):
-    smooth = predict(pair.with_(friction__law="none"), recurrence=3)
-    metrics = overlay_metrics(record(truth), smooth, align(record(truth), smooth))
-    friction = metrics.sel(channel="friction_A")
-    assert friction["rms"] > 10.0
-    for name in ("relative_rms", "relative_rms_low"):
-        assert np.isnan(friction[name])
-        assert np.isfinite(metrics.sel(channel="normal_A")[name])
-
-
-def test_overlay_interval_has_the_width_of_the_noise(truth):
-    noisy = record(truth, engagements=100, noise_normal=0.05, seed=17)
-    metrics = overlay_metrics(noisy, truth, align(noisy, truth, shift=0.0))
-    load = truth.pair.operating.pinion_torque / truth.geometry.base_radius_pinion
-    in_contact = int(truth.contact(align(noisy, truth, shift=0.0).cycles, "A").sum())
-    half = 0.5 * (metrics["bias_high"] - metrics["bias_low"]).sel(channel="normal_A").item()
-    # 1.96 sigma/sqrt(n); 999 bootstrap samples of 100 blocks know it to about 10 %
-    assert half == pytest.approx(1.96 * 0.05 * load / np.sqrt(in_contact), rel=0.3)
-    assert metrics["rms"].sel(channel="normal_A").item() == pytest.approx(0.05 * load, rel=0.05)
 
 
 def test_arguments_that_cannot_be_used_are_refused(truth):

@@ -70,14 +70,11 @@ def test_three_uncertainties_add_as_squares():
     assert found.uncertainty == pytest.approx(3e-7)
 
 
-@pytest.mark.parametrize(
-    ("changes", "match"),
-    [
-        ({"quantity": "x_p"}, "quantity dte"),
-        ({"pinion_speed": "3000 rpm"}, "pinion_speed"),
-        ({"pinion_torque": 80.0}, "pinion_torque"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "match"), [
+    ({"quantity": "x_p"}, "quantity dte"),
+    ({"pinion_speed": "3000 rpm"}, "pinion_speed"),
+    ({"pinion_torque": 80.0}, "pinion_torque"),
+])  # fmt: skip
 def test_a_record_of_something_else_is_refused(changes, match):
     with pytest.raises(ParameterError, match=match):
         measured_peak_to_peak(record(**changes), PAIR)

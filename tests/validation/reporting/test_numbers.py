@@ -228,11 +228,8 @@ def test_the_table_of_jumps(written):
     assert len(table) == motions.sizes["jump"] > 0
     for at, one in enumerate(table):
         columns = {
-            "speed": "speed_rpm",
-            "before": "dte_rms",
-            "after": "dte_rms_after",
-            "load": "largest_load_after",
-        }
+            "speed": "speed_rpm", "before": "dte_rms", "after": "dte_rms_after", "load": "largest_load_after",
+        }  # fmt: skip
         for column, name in columns.items():
             jump = motions[f"jump_{name}"]
             unit = jump.attrs["units"]

@@ -68,16 +68,13 @@ class TestRelations:
     def test_a_sound_report_breaks_none(self, results):
         assert broken_relations(results) == ()
 
-    @pytest.mark.parametrize(
-        ("name", "change", "word"),
-        [
-            ("dynamic_factor", lambda v: 0.9, "dynamic factor"),
-            ("least_force", lambda v: -0.2, "smallest mesh force"),
-            ("efficiency", lambda v: 1.2, "efficiency"),
-            ("bearing_rms", lambda v: 0.1 * v, "orders of the bearing force"),
-            ("dte_peak_to_peak", lambda v: 2.0 * v, "another dte_peak_to_peak"),
-        ],
-    )
+    @pytest.mark.parametrize(("name", "change", "word"), [
+        ("dynamic_factor", lambda v: 0.9, "dynamic factor"),
+        ("least_force", lambda v: -0.2, "smallest mesh force"),
+        ("efficiency", lambda v: 1.2, "efficiency"),
+        ("bearing_rms", lambda v: 0.1 * v, "orders of the bearing force"),
+        ("dte_peak_to_peak", lambda v: 2.0 * v, "another dte_peak_to_peak"),
+    ])  # fmt: skip
     def test_a_wrong_number_is_seen(self, results, name, change, word, monkeypatch):
         prediction, numbers = results.prediction, dict(results.prediction.numbers)
         numbers[name] = change(numbers[name])

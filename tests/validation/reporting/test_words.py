@@ -65,16 +65,11 @@ def test_the_title(written):
     p, (speed, _) = written.parameters, speed_of(written)
     own.assert_says(
         plain(written.result.first.title),
-        r"(\w+): spur gears (\d+)/(\d+), m ([\d.]+), b ([\d.]+) mm, (.*), ([\d.]+) N m \((.*)\)",
-        p["name"],
-        str(p["pinion"]["teeth"]),
-        str(p["gear"]["teeth"]),
-        f"{p['basic_rack']['module']:g}",
-        f"{min(p['pinion']['face_width'], p['gear']['face_width']):g}",
-        (speed, "rpm"),
-        f"{p['operating']['pinion_torque']:g}",
-        (own.power(p), "W"),
-    )
+        r"(\w+): spur gears (\d+)/(\d+), m ([\d.]+), b ([\d.]+) mm, (.*), ([\d.]+) N m \((.*)\)", p["name"],
+        str(p["pinion"]["teeth"]), str(p["gear"]["teeth"]), f"{p['basic_rack']['module']:g}",
+        f"{min(p['pinion']['face_width'], p['gear']['face_width']):g}", (speed, "rpm"),
+        f"{p['operating']['pinion_torque']:g}", (own.power(p), "W"),
+    )  # fmt: skip
 
 
 def test_the_verdict(written):
@@ -236,14 +231,10 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     loss = 100.0 * (1.0 - losses_of_laws(pair_of(written), dynamic=False)["mesh_efficiency"].to_numpy())
     supply = own.power(written.parameters)
     own.assert_says(
-        plain(said["losses"]),
-        r"The mesh loses (.*) of (.*); the friction laws differ from (.*) to (.*) %\.",
-        ((1.0 - written.document["numbers"]["efficiency"]["value"]) * supply, "W"),
-        (supply, "W"),
-        (loss.min(), "1"),
-        (loss.max(), "1"),
-        digits=2,
-    )
+        plain(said["losses"]), r"The mesh loses (.*) of (.*); the friction laws differ from (.*) to (.*) %\.",
+        ((1.0 - written.document["numbers"]["efficiency"]["value"]) * supply, "W"), (supply, "W"),
+        (loss.min(), "1"), (loss.max(), "1"), digits=2,
+    )  # fmt: skip
     samples = written.data("uncertainty")
     low, high = np.percentile(samples["dte_peak_to_peak"].to_numpy(), [5.0, 95.0])
     budget = [one for one in written.table("error_budget") if one["share"] is not None]

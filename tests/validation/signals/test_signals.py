@@ -144,17 +144,14 @@ def test_averaging_divides_noise_by_the_root_of_the_turns() -> None:
     assert float(average.std()) == pytest.approx(1.0 / 20.0, rel=0.1)
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda d: order_spectrum(d, "wheel"), "shaft"),
-        (lambda d: order_spectrum(d, variable="x"), "variable"),
-        (lambda d: order_spectrum(d.isel(time=slice(0, -3))), "whole number of mesh cycles"),
-        (lambda d: order_spectrum(d.isel(time=[0, 1, 2, 4, 5, 6, 7, 8, 9])), "even distances"),
-        (lambda d: residual(d), "time_synchronous_average"),
-        (lambda d: synthetic_record(d, 10**6, variable="dte"), "samples"),
-    ],
-)
+@pytest.mark.parametrize(("call", "message"), [
+    (lambda d: order_spectrum(d, "wheel"), "shaft"),
+    (lambda d: order_spectrum(d, variable="x"), "variable"),
+    (lambda d: order_spectrum(d.isel(time=slice(0, -3))), "whole number of mesh cycles"),
+    (lambda d: order_spectrum(d.isel(time=[0, 1, 2, 4, 5, 6, 7, 8, 9])), "even distances"),
+    (lambda d: residual(d), "time_synchronous_average"),
+    (lambda d: synthetic_record(d, 10**6, variable="dte"), "samples"),
+])  # fmt: skip
 def test_what_cannot_be_analysed_is_refused(call, message: str) -> None:
     with pytest.raises(lumped.ParameterError, match=message):
         call(result_of(tone(1)))

@@ -209,18 +209,6 @@ def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
         run_sweep(study, tmp_path / "out", resume=True)
 
 
-def test_results_can_be_read_while_the_sweep_runs(study, tmp_path):
-    seen = []
-
-    def progress(done, total, failed):
-        result = read_results(tmp_path / "out")
-        seen.append((done, int((result.status != Status.MISSING).sum()), failed))
-
-    run_sweep(study, tmp_path / "out", progress=progress)
-    assert [done for done, found, failed in seen] == [found for done, found, failed in seen]
-    assert seen[-1] == (120, 120, 24)
-
-
 def test_a_sweep_runs_outside_the_main_thread(study, tmp_path, undisturbed):
     thread = threading.Thread(target=run_sweep, args=(study, tmp_path / "out"))
     thread.start()
@@ -312,12 +300,3 @@ def test_text_in_a_study_is_only_text(make_study, tmp_path, monkeypatch):
             make_study(axes=[axes[0] | {"name": name}])
     found = {str(path.relative_to(inner)) for path in tmp_path.rglob("*") if path.is_file()}
     assert found == {f"{n}/{f}" for n in range(len(HOSTILE_NAMES)) for f in ("results.nc", "store.sqlite")}
-
-
-def test_a_link_in_the_place_of_the_result_is_not_followed(study, tmp_path, undisturbed):
-    run_sweep(study, tmp_path / "out")
-    (tmp_path / "out" / "results.nc").unlink()
-    (tmp_path / "precious").write_text("do not touch")
-    (tmp_path / "out" / "results.nc").symlink_to(tmp_path / "precious")
-    assert run_sweep(study, tmp_path / "out", resume=True).results.read_bytes() == undisturbed
-    assert (tmp_path / "precious").read_text() == "do not touch"

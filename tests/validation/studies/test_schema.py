@@ -93,26 +93,15 @@ def test_text_with_a_unit_is_the_number_in_the_stated_unit():
     assert study.axes[0].listed() == (10.0, 12.0, 12.7)
 
 
-@pytest.mark.parametrize(
-    ("axis", "values"),
-    [
-        ({"field": "pinion.teeth", "low": 20, "high": 22, "count": 3}, (20, 21, 22)),
-        ({"field": "pinion.teeth", "values": [28, 30.0]}, (28, 30)),
-        ({"field": "lubricant.viscosity_law.iso_vg", "values": [32, 68.0]}, (32, 68)),
-    ],
-)
+@pytest.mark.parametrize(("axis", "values"), [
+    ({"field": "pinion.teeth", "low": 20, "high": 22, "count": 3}, (20, 21, 22)),
+    ({"field": "pinion.teeth", "values": [28, 30.0]}, (28, 30)),
+    ({"field": "lubricant.viscosity_law.iso_vg", "values": [32, 68.0]}, (32, 68)),
+])  # fmt: skip
 def test_an_axis_of_a_whole_number_has_whole_numbers(axis, values):
     listed = load_study(changed(["axes", 0], axis)).axes[0].listed()
     assert listed == values
     assert all(type(value) is int for value in listed)
-
-
-def test_a_range_of_whole_numbers_ends_where_floats_skip_some():
-    # 2^53 + 1 is no floating-point number.
-    axis = {"field": "pinion.teeth", "low": 2.0**53 - 3, "high": 2.0**53 - 1, "count": 3}
-    assert load_study(changed(["axes", 0], axis)).axes[0].listed() == tuple(2**53 - k for k in (3, 2, 1))
-    with pytest.raises(ParameterError, match="integers"):
-        load_study(changed(["axes", 0], {**axis, "high": 2.0**53}))
 
 
 REFUSED = {

@@ -11,10 +11,8 @@ import pytest
 
 from lumped.errors import ParameterError
 from validation.studies import StoreError, read_results, run_sweep
-from validation.studies import store as stores
 from validation.studies.cases import CaseList
 from validation.studies.store import STORE, Chunk, Status, Store, provenance, read_table
-from validation.studies.workers import MAX_MESSAGE, evaluate_chunk
 
 
 def outputs_of(case):
@@ -49,23 +47,6 @@ def test_what_was_added_comes_back_bit_for_bit_and_the_last_outcome_counts(cases
 def test_the_status_codes_are_those_of_the_stores_there_are():
     names = "MISSING OK OUTSIDE_LAW_RANGE REFUSED NUMERICAL UNEXPECTED WORKER_DIED TIME_LIMIT"
     assert {status.name: int(status) for status in Status} == {n: k - 1 for k, n in enumerate(names.split())}
-
-
-def test_texts_are_bounded_in_length_and_number(cases, tmp_path, monkeypatch):
-    class Loud:
-        outputs = ("x", "y")
-
-        def __call__(self, values):
-            raise ValueError("\udc80x" * 10**5)
-
-    monkeypatch.setattr(stores, "MAX_FAILURES", 3)
-    with Store(tmp_path, cases) as store:
-        for case in (9, 3, 5, 1, 7):
-            store.add(evaluate_chunk(Loud(), [case], [()]))
-        table = store.table()
-    assert list(table.messages) == [1, 3, 5]
-    assert {len(text) for text in table.messages.values()} == {MAX_MESSAGE}
-    assert np.count_nonzero(table.status == Status.UNEXPECTED) == 5
 
 
 def test_a_chunk_that_cannot_be_written_leaves_those_before(cases, tmp_path):

@@ -39,13 +39,10 @@ def test_processes_give_the_same_bytes_whatever_a_library_prints(study, tmp_path
     assert run_sweep(study, tmp_path, workers=2, case_seconds=60.0).results.read_bytes() == undisturbed
 
 
-@pytest.mark.parametrize(
-    ("what", "options", "status", "text"),
-    [
-        ("is_killed", {"workers": 2}, Status.WORKER_DIED, "the worker process died on this case"),
-        ("compiled_loop", {"case_seconds": 1.0}, Status.TIME_LIMIT, "longer than 1 s"),
-    ],
-)
+@pytest.mark.parametrize(("what", "options", "status", "text"), [
+    ("is_killed", {"workers": 2}, Status.WORKER_DIED, "the worker process died on this case"),
+    ("compiled_loop", {"case_seconds": 1.0}, Status.TIME_LIMIT, "longer than 1 s"),
+])  # fmt: skip
 def test_a_case_that_ends_its_worker_costs_itself_alone(
     study, tmp_path, odd, monkeypatch, undisturbed, what, options, status, text
 ):
@@ -78,23 +75,6 @@ def test_workers_of_other_code_stop_the_sweep(study, tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "evaluate_chunk", of_old_code)
     with pytest.raises(SweepStopped, match="install the same code"):
         run_sweep(study, tmp_path)
-
-
-def test_chunks_are_large_for_cheap_cases_and_small_at_the_end(make_study):
-    axis = {"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 10_000}
-    study = make_study(axes=[axis])
-    sizes = []
-
-    def submit(function, evaluator, cases, values):
-        sizes.append(len(cases))
-        rows = [(case, 0, b"", None) for case in cases]
-        return workers._here(lambda: workers.Chunk(rows, 1e-5 * len(cases), provenance()))
-
-    values = CaseList(study).values
-    chunks = workers.chunks_of(StudyEvaluator.of(study), values, iter(range(10_000)), 10_000, submit, 2, None)
-    assert sorted(case for chunk in chunks for case, *_ in chunk.rows) == list(range(10_000))
-    assert max(sizes) > 1000
-    assert sizes[-2:] == [1, 1]
 
 
 #: Run a sweep of the study in argv[1] into argv[2] with argv[3] workers; a case takes 20 ms in this process.
