@@ -90,14 +90,6 @@ def test_fractions_of_single_tokens():
     assert "<mfrac><mi>α</mi><mi>S</mi></mfrac>" in re.sub(r"\s", "", mathml(r"\frac\alpha S", block=True))
 
 
-def test_what_stands_around_a_fraction_is_kept():
-    def plain(latex):
-        return re.sub(r"\s", "", mathml(latex, block=True))
-
-    assert plain(r"x = \sqrt{\frac12 y} + \frac1z u") == plain(r"x = \sqrt{\frac{1}{2} y} + \frac{1}{z} u")
-    assert "<msqrt>" in plain(r"x = \sqrt{\frac12 y}")
-
-
 def test_every_equation_has_mathml(page):
     text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
     for latex in re.findall(r"\$\$(.+?)\$\$", text, re.S):

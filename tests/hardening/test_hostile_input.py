@@ -4,7 +4,6 @@ import copy
 import math
 import pickle
 import string
-import sys
 
 import numpy as np
 import pytest
@@ -256,27 +255,6 @@ def test_a_refusal_survives_the_way_between_processes():
         caught.value.source,
         str(caught.value),
     )
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices")
-@pytest.mark.parametrize("kind", ["pipe", "zero", "folder", "loop"])
-def test_names_that_are_no_files(within, tmp_path, kind):
-    import os
-
-    name = tmp_path / "x.toml"
-    if kind == "pipe":
-        os.mkfifo(name)
-    elif kind == "zero":
-        name.symlink_to("/dev/zero")
-    elif kind == "folder":
-        name.mkdir()
-    else:
-        name.symlink_to(name)
-    data = load_gear_pair("nasa_28_28").to_mapping()
-    data["mesh"]["stiffness"] = {"model": "table", "file": str(name)}
-    for load, source in ((load_gear_pair, name), (load_study, name), (load_gear_pair, data)):
-        with within(SECONDS):
-            assert accepted_or_refused(load, source) is None
 
 
 RECORD = """# strain-gauge record

@@ -7,13 +7,9 @@ import pkgutil
 import re
 import sys
 
-import numpy as np
 import pytest
 
-import floquet
 import lumped
-import multibody
-from lumped import losses, quasi_static
 from lumped.errors import ParameterError
 
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
@@ -178,24 +174,3 @@ def test_what_is_no_pair_is_refused_by_name(function, name, annotation):
 
 def test_there_are_many():
     assert len(TAKING) > 60
-
-
-@pytest.mark.parametrize("call", [
-    lumped.bodies, lumped.geometry, lumped.mesh_stiffness, lumped.static_transmission_error,
-    lambda pair: lumped.simulate(pair, 2), lambda pair: lumped.steady_state(pair, samples_per_cycle=16),
-    lambda pair: lumped.speed_sweep(pair, [3000.0], samples_per_cycle=16),
-    lambda pair: multibody.simulate(pair, 1, samples_per_cycle=16),
-    lambda pair: floquet.stability_chart(pair, {"speed_rpm": [3000.0, 4000.0]}),
-    lambda pair: floquet.gear_pair_multipliers(pair).multipliers,
-    lambda pair: floquet.campbell(pair, [3000.0, 4000.0]), losses.loss_factor, quasi_static.mesh_positions,
-])  # fmt: skip
-def test_a_name_gives_what_the_pair_gives(call):
-    by_name, by_pair = call("fzg_c"), call(lumped.load_gear_pair("fzg_c"))
-    if hasattr(by_name, "identical"):
-        for result in (by_name, by_pair):
-            result.attrs = {}
-        assert by_name.identical(by_pair)
-    elif isinstance(by_name, np.ndarray):
-        assert np.array_equal(by_name, by_pair)
-    else:
-        assert repr(by_name) == repr(by_pair)

@@ -13,7 +13,6 @@ from floquet.engine.multipliers import (
     verdicts,
 )
 from floquet.engine.propagators.one_step import GaussLegendre, Propagator
-from floquet.engine.propagators.registry import propagator
 from tests.evidence.floquet.closed_forms import propagate_fixed
 
 
@@ -183,20 +182,3 @@ def test_order_survives_declared_switches(method, known_system) -> None:
     system, exact = known_system(0.5 * B, 0.6 * S, 7.0, "triangle")
     # 0.3: the next term of the error series.
     assert observed_order(method, system, exact) == pytest.approx(method.order, abs=0.3)
-
-
-@pytest.mark.parametrize("name", PROPAGATORS)
-def test_order_falls_to_one_across_an_undeclared_switch(name: str) -> None:
-    # A jumps at T/3 and nobody says so. The jump cuts a step of size h at the same fraction for N and 4 N
-    # steps (N = 4^k), so the error there is a constant times h.
-    low, high = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([[0.0, 1.0], [-4.0, 0.0]])
-
-    def A(t: np.ndarray) -> np.ndarray:
-        return np.where((t < 1.0 / 3.0)[:, None, None], low, high)
-
-    told = PeriodicSystem(A, 1.0, (1.0 / 3.0,), vectorized=True)
-    untold = PeriodicSystem(A, 1.0, vectorized=True)
-    exact = propagate_fixed(told, propagator("gauss"), 8)
-    coarse, fine = (error(propagator(name), untold, exact, n) for n in (256, 1024))
-    order = np.log(coarse / fine) / np.log(4.0)
-    assert order == pytest.approx(1.0, abs=0.1)  # h = 1/256: the h^2 term is below a few percent

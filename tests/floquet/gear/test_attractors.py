@@ -72,22 +72,6 @@ def test_beats_beside_a_stable_motion_are_found_and_told(found):
     assert table["attractor_dte_rms"].to_numpy() == pytest.approx([point.dte_rms for point in beats.points])
 
 
-def test_what_is_found_does_not_depend_on_the_range(pair, found):
-    """Between 27,000 and 28,500 rpm both ranges show the same jump, and the same beats at the same speeds."""
-    other = floquet.response_branches(pair, (27000.0, 29500.0))
-    for one in (found, other):
-        inside = [jump for jump in one.jumps if 27000.0 <= jump.speed_rpm <= 28500.0]
-        assert [(jump.rising, jump.speed_rpm) for jump in inside] == [(True, pytest.approx(27523.6927))]
-    here, there = ({p.speed_rpm: p for a in one.attractors for p in a.points} for one in (found, other))
-    shared = [rpm for rpm in here if 27000.0 <= rpm <= 28500.0]
-    assert len(shared) == 2
-    for rpm in shared:
-        (point,) = [p for speed, p in there.items() if speed == pytest.approx(rpm, rel=1e-12)]
-        assert point.dte_rms == pytest.approx(here[rpm].dte_rms, rel=0.02)
-    (beats,) = other.attractors
-    assert (beats.low_rpm, beats.high_rpm) == other.speeds_rpm
-
-
 def test_beats_begin_where_the_motion_that_repeats_loses_its_stability(pair):
     """At the Neimark-Sacker point at 33,129.5 rpm the beats shrink to the motion: an end, and no jump."""
     one = floquet.response_branches(pair, (32500.0, 33500.0))

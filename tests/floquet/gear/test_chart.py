@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.special import mathieu_a, mathieu_b
 
 from floquet import PeriodicSystem, Spectrum, label_regions, monodromy, scan, stability_chart
 from floquet.engine.multipliers import radii_with_bounds, verdicts
@@ -137,22 +136,6 @@ def mathieu_point(point: dict[str, float]) -> PeriodicSystem:
 
 def at_point(point: dict[str, float]) -> Spectrum:
     return monodromy(mathieu_point(point), 1e-8)
-
-
-def test_ince_strutt_chart() -> None:
-    # With q > 0 the Mathieu equation is stable exactly for a_m(q) < a < b_(m+1)(q) (DLMF 28.17).
-    q_values, a_values = [0.5, 2.0], np.linspace(-1.0, 9.0, 31)
-    told: list[float] = []
-    result = scan(at_point, {"q": q_values, "a": a_values}, progress=told.append)
-    assert result.spectral_radius.dims == ("q", "a")
-    assert told == pytest.approx(np.arange(1, 63) / 62)
-    for q in q_values:
-        edges = np.sort([mathieu_a(m, q) for m in range(4)] + [mathieu_b(m, q) for m in range(1, 5)])
-        inside = np.searchsorted(edges, a_values) % 2 == 1  # between a_m and b_(m+1)
-        verdict = result.verdict.sel(q=q).values
-        # Conservative: inside the stable bands |multiplier| = 1, which no error bound can call stable.
-        assert (verdict[inside] == 0).all()
-        assert (verdict[~inside] == -1).all()
 
 
 def test_chart_equals_single_points() -> None:

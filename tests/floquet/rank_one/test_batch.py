@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.linalg import eig
 from scipy.optimize import linear_sum_assignment
 
 from floquet import (
@@ -135,24 +134,6 @@ def test_every_disk_holds_as_many_eigenvalues_as_it_says(gap: float) -> None:
         pairs = np.abs(values[0][:, None] - values[0]) <= radii[0][:, None] + radii[0]
         overlapping += int(pairs.sum() > 6)
     assert overlapping > 5 or gap > 1e-3
-
-
-def test_separate_disks_are_of_first_order() -> None:
-    # Well separated, each eigenvalue moves by at most kappa delta to first order when M changes by delta, and
-    # a perturbation that does so exists: y x^H/(|x||y|).
-    rng = np.random.default_rng(18)
-    delta = 1e-9
-    M = rng.normal(size=(40, 6, 6))
-    values, radii = np.empty((40, 6), dtype=complex), np.empty((40, 6))
-    safe = np.empty(40, dtype=bool)
-    spectra(M, np.full(40, delta), values, radii, safe)
-    for i in range(40):
-        lam, left, right = eig(M[i], left=True)
-        kappa = 1.0 / np.abs((left.conj() * right).sum(axis=0))
-        order = [int(np.argmin(np.abs(lam - v))) for v in values[i]]
-        if np.abs(lam[:, None] - lam + 10 * np.eye(6)).min() > 0.05:
-            assert (radii[i] <= 1.03 * delta * kappa[order]).all()  # 1.01, and the second order
-            assert (radii[i] >= delta * kappa[order] * (1.0 - 1e-6)).all()
 
 
 def test_multipliers_do_not_feel_with_which_others_they_are_computed() -> None:

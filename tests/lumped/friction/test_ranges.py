@@ -11,7 +11,6 @@ from lumped import load_gear_pair
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
 from lumped.friction.base import MEAN_COEFFICIENT
-from lumped.lubrication import film
 from lumped.path_of_contact import (
     contact_path,
     friction_path_function,
@@ -125,21 +124,3 @@ def test_the_iso_law_from_the_geometry_alone(unequal):
     before, behind = function(np.array([path.L_XP - 1e-4, path.L_XP + 1e-4]))
     assert (-before, behind) == (pytest.approx(mu, rel=1e-12), pytest.approx(mu, rel=1e-12))
     assert path.pitch_line_velocity == pytest.approx(v / (2.0 * math.sin(alpha)), rel=1e-12)
-
-
-def test_film_thickness_names_its_formula_and_what_another_gives(unequal):
-    modulus = film.effective_modulus(206e3, 0.3, 206e3, 0.3)
-    given = (100.0, np.array(8.0), 10.0, np.array(10.0), modulus)
-    thickness = film.film_thickness(*given, formula="hamrock_dowson")
-    # U = eta v_e/(2 E' rho), G = alpha E', W = w/(E' rho), in SI
-    u = 0.010 * 10.0 / (2.0 * modulus * 1e6 * 8e-3)
-    material, load = 0.010471e-6 * 10.0**0.1348 * modulus * 1e6, 100e3 / (modulus * 1e6 * 8e-3)
-    expected = 8e3 * 2.69 * u**0.67 * material**0.53 * load**-0.067
-    assert float(thickness) == pytest.approx(expected, rel=1e-12)
-    profile, path = friction_profile(unequal), contact_path(unequal)
-    ratio = path.film_thickness(profile.xi.values, "hamrock_dowson") / profile.film_thickness.values
-    assert profile.film_thickness.attrs["note"] == (
-        "central, Dowson and Toyoda (1978); the formula of Hamrock and Dowson (1977) gives "
-        f"{ratio.min():.2f} to {ratio.max():.2f} times as much"
-    )
-    assert ratio.min() > 0.74  # within 26 %

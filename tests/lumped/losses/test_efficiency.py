@@ -1,7 +1,6 @@
 """Do losses balance the power, agree with closed forms and published numbers, and follow from the motion?"""
 
 import itertools
-import math
 
 import numpy as np
 import pytest
@@ -22,7 +21,7 @@ from lumped.losses import (
     quasi_static_losses,
     sliding_power_along_path,
 )
-from lumped.path_of_contact import contact_path, pair_stiffness
+from lumped.path_of_contact import contact_path
 
 
 def coulomb(name, mu, **changes):
@@ -225,23 +224,6 @@ def test_contact_ratio_above_two(high_contact_ratio):
     # exact against adaptive quadrature at 1e-12
     assert loss_factor(high_contact_ratio) == pytest.approx(brute_force(high_contact_ratio), rel=1e-10)
     assert abs(ohlendorf_of(high_contact_ratio) / loss_factor(high_contact_ratio) - 1) > 0.05
-
-
-def test_sharing_by_stiffness():
-    pair = load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
-    g = geometry(pair)
-    # 1 + 2 t (1 - t) over the path, t = 0 at A and 1 at D: stiffest in the middle
-    points = list(np.linspace(0.0, g.contact_ratio, 201))
-    t = np.array(points) / g.contact_ratio
-    table = {
-        "model": "table", "axis": "phase", "points": points, "stiffness": list(1e8 * (1 + 2 * t * (1 - t))),
-    }  # fmt: skip
-    pair = pair.with_(mesh__stiffness=table)
-    curve = pair_stiffness(pair)
-    expected = brute_force(pair, lambda xi: float(curve(min(xi, math.nextafter(g.L_XD, 0.0)))))
-    # the load share is a ratio of polynomials: eight Gauss nodes a stretch leave about 1e-10
-    assert loss_factor(pair, "stiffness") == pytest.approx(expected, rel=1e-8)
-    assert loss_factor(pair, "stiffness") < loss_factor(pair)  # less load where sliding is fast
 
 
 def test_loaded_shares_are_those_of_the_static_transmission_error():

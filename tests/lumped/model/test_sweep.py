@@ -134,24 +134,6 @@ def test_lines_follow_the_curve_better_than_even_steps(reference):
     assert distance(reference, found, "normal_load_max") < 0.01
 
 
-def test_it_is_a_sweep_over_the_range_with_the_operating_speed():
-    seen = []
-    found = resolved_sweep(
-        PAIR, ENDS, most=30, samples_per_cycle=64, progress=lambda done, stage="", /: seen.append(done)
-    )
-    speed = found["speed"].to_numpy()
-    assert speed.size == 30
-    assert (np.diff(speed) > 0.0).all()
-    assert (speed[0], speed[-1]) == ENDS
-    assert np.abs(speed - 30.0 / np.pi * PAIR.operating.pinion_speed).min() < 1e-9
-    again = speed_sweep(PAIR, speed, samples_per_cycle=64)
-    for name in again.data_vars:
-        np.testing.assert_allclose(found[name].to_numpy(), again[name].to_numpy(), rtol=1e-9, err_msg=name)
-    assert found.attrs == again.attrs
-    assert seen == sorted(seen)
-    assert seen[-1] == 1.0
-
-
 def test_it_stops_where_nothing_bends_and_takes_a_range_without_the_operating_speed():
     flat = resolved_sweep(PAIR, (40_000.0, 40_400.0), most=100, samples_per_cycle=64)
     assert flat.sizes["speed"] < 40

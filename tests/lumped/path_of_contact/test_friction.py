@@ -10,8 +10,6 @@ from lumped import geometry, load_gear_pair
 from lumped.errors import LawRangeWarning, ParameterError
 from lumped.friction import LAWS, mean_coefficient
 from lumped.friction.base import PITCH_RESOLUTION
-from lumped.friction.benedict_kelley import friction_number
-from lumped.lubrication.film import regime
 from lumped.path_of_contact import (
     contact_path,
     friction_path_function,
@@ -20,7 +18,6 @@ from lumped.path_of_contact import (
 )
 from lumped.ranges import warn_violations
 
-EVERY = [name for name in LAWS if name != "none"]
 # The fits are asked for 1e-10; between the probes of the fit the error may be a few times that.
 FIT = 1e-9
 
@@ -85,41 +82,6 @@ def test_switches_of_the_simple_laws(pair):
     assert friction_path_function(pair, law="none").switches.size == 0
 
 
-def test_benedict_kelley_switches_where_it_meets_its_upper_bound(pair):
-    # mu = maximum <=> v_s = 29700 w/(eta v_e^2) 10^(-maximum/c), c = 0.0127 * 1.13/(1.13 - S)
-    bounded = pair.with_(friction__maximum=0.08)
-    path = contact_path(bounded)
-    function = friction_path_function(bounded, law="benedict_kelley")
-    below, at, above = function.switches
-    assert at == path.L_XP
-    c = 0.0127 * 1.13 / (1.13 - path.roughness * 1e6)
-    for xi in (below, above):
-        v_e = float(path.entraining_velocity(np.array(xi)))
-        v_s = 29700 * path.unit_load * 1e-3 / (path.viscosity * 1e3 * v_e**2) * 10 ** (-0.08 / c)
-        assert abs(xi - path.L_XP) * (path.omega_pinion + path.omega_gear) == pytest.approx(v_s, rel=1e-11)
-    between = np.linspace(below, above, 12)[1:-1]
-    np.testing.assert_allclose(np.abs(function(between)), 0.08, rtol=1e-12)  # the bound, to rounding
-
-
-def test_benedict_kelley_switches_where_its_logarithm_turns_negative(pair):
-    fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
-    path = contact_path(fast)
-    with pytest.warns(LawRangeWarning, match="friction number"):
-        function = friction_path_function(fast, law="benedict_kelley")
-    first, last = function.switches[[0, -1]]
-    for xi in (first, last):
-        number = friction_number(
-            path.unit_load * 1e-3,
-            path.viscosity * 1e3,
-            path.sliding_velocity(np.array(xi)),
-            path.entraining_velocity(np.array(xi)),
-        )
-        assert number == pytest.approx(1.0, rel=1e-11)
-    np.testing.assert_array_equal(function(np.linspace(path.L_XA, first, 9)[:-1]), 0.0)
-    np.testing.assert_array_equal(function(np.linspace(last, path.L_XD, 9)[1:]), 0.0)
-    assert law_range_violations(fast, "benedict_kelley")[0].range.quantity == "friction_number"
-
-
 def test_composite_answers_for_the_laws_in_force_only(pair):
     # At 30000 rpm the film is thick: law V is III everywhere, and II's negative logarithm does not matter.
     fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
@@ -148,23 +110,6 @@ def test_composite_switches_at_its_film_parameters(unequal):
         crossings = sum(int(np.abs(np.diff(np.sign(values - limit))).sum() / 2) for limit in (1.0, 4.0))
         assert (np.abs(film[:, None] - [1.0, 4.0]).min(axis=1) < 1e-12).sum() == crossings
     assert seen == {1.0, 4.0}
-
-
-def test_profile_is_labelled(pair):
-    profile = friction_profile(pair)
-    assert list(profile.law.values) == EVERY
-    for name in profile.data_vars:
-        assert profile[name].attrs["units"], name
-        assert profile[name].attrs["long_name"], name
-        assert np.isfinite(profile[name].values).all(), name
-    np.testing.assert_array_equal(profile.regime, regime(profile.film_parameter))
-    xi = profile.xi.values
-    np.testing.assert_allclose(
-        profile.mu.sel(law="xu_kahraman"), direct(pair, "xu_kahraman", xi), atol=FIT, rtol=0
-    )
-    assert profile.mean_mu.sel(law="coulomb") == pytest.approx(
-        float(profile.mean_mu.sel(law="benedict_kelley")), rel=1e-10
-    )
 
 
 def test_a_law_that_cannot_take_the_roughness_is_left_out_with_its_reason(pair):

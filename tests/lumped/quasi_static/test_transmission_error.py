@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from lumped import NumericalError, ParameterError, geometry, load_gear_pair, mesh_elements, steady_state
 from lumped.path_of_contact import pair_stiffness
@@ -248,28 +246,6 @@ def test_pairs_that_cannot_touch_carry_nothing():
     assert found.load == pytest.approx(np.array([[10.0, 0.0], [20.0, 0.0]]), rel=1e-14)
     with pytest.raises(NumericalError, match="no tooth pair"):
         share_load([1e8], [np.inf], 1.0)
-
-
-@given(
-    k=st.lists(st.floats(0.3, 3.0), min_size=3, max_size=3),
-    e=st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3),
-    w=st.lists(st.floats(-0.1, 0.15), min_size=3, max_size=3),
-    force=st.floats(0.0, 5.0),
-)
-def test_pairs_that_move_each_other(k, e, w, force):
-    # What is asked of a contact, which has one solution: nobody pulls, nobody is through its mate.
-    coupling = np.zeros((3, 3))
-    coupling[np.triu_indices(3, 1)] = w
-    coupling += coupling.T
-    found = share_load([k], [e], [force], [coupling])
-    load, matrix = found.load[0], coupling + np.diag(1.0 / np.array(k))
-    left = found.transmission_error[0] - np.array(e) - matrix @ load
-    assert load.sum() == pytest.approx(force, abs=1e-11)
-    assert np.all(load >= 0.0)
-    assert np.all(left <= 1e-11)
-    assert np.abs(left * load).max() < 1e-11
-    with pytest.raises(NumericalError, match="no tooth pair"):
-        share_load([k], [[np.inf] * 3], [force], [coupling + 0.01])
 
 
 def test_a_coupling_too_small_to_matter_changes_nothing():

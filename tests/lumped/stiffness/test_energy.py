@@ -8,13 +8,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from lumped import ParameterError, geometry, load_gear_pair, preset_names
+from lumped import ParameterError, geometry, load_gear_pair
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
-from lumped.stiffness.energy import (
-    beam_compliance,
-    local_compliance,
-)
 from lumped.stiffness.foundation import (
     body_twist,
     coefficients,
@@ -25,50 +21,6 @@ from lumped.stiffness.foundation import (
 
 def energy_pair(name="nasa_28_28", hertz="linear", **changes):
     return load_gear_pair(name).with_({"mesh.stiffness": {"model": "energy", "hertz": hertz}, **changes})
-
-
-class Bar:
-    """A prismatic tooth of half thickness h and length l: the beam integrals have closed forms."""
-
-    base_radius, form_length, fillet_range = 1.0, 0.5, (0.0, 1.0)
-    half, foot = 0.1, 0.4
-
-    def fillet_points(self, roll):
-        return self.foot * roll, np.full_like(roll, self.half), np.full_like(roll, self.foot)
-
-    def involute_points(self, length):
-        flat = np.full_like(length, self.half)
-        return self.foot + length - self.form_length, flat, np.ones_like(length), np.full_like(length, 0.3)
-
-
-def test_prismatic_cantilever():
-    # End load F at angle a on the surface of a bar: bending by F cos a at the tip and the couple F sin a h.
-    modulus, poisson, a, h = 2.0e11, 0.3, 0.3, 0.1
-    length = np.array([0.7, 1.1])
-    span = 0.4 + length - 0.5
-    inertia, area, shear_modulus = 2 / 3 * h**3, 2 * h, modulus / 2.6
-    force, couple = math.cos(a), math.sin(a) * h
-    bending = (force**2 * span**3 / 3 - force * couple * span**2 + couple**2 * span) / (modulus * inertia)
-    found = beam_compliance(Bar(), length, modulus, poisson)
-    tight = 1e-13  # polynomials of degree 2 are exact under Gauss; rounding only
-    assert found.bending == pytest.approx(bending, rel=tight)
-    assert found.shear == pytest.approx(1.2 * math.cos(a) ** 2 * span / (shear_modulus * area), rel=tight)
-    assert found.axial == pytest.approx(math.sin(a) ** 2 * span / (modulus * area), rel=tight)
-
-
-@pytest.mark.parametrize("name", preset_names())
-def test_quadrature_error_of_the_presets(name):
-    pair = energy_pair(name)
-    g = geometry(pair)
-    xi = np.linspace(g.L_XA, g.L_XD, 41)
-    gears = (pair.pinion, pair.gear)
-    for wheel, gear, length in zip(pair.wheels, gears, (xi, g.L_XY - xi), strict=True):
-        tooth = (wheel.tooth, length, gear.youngs_modulus, gear.poisson_ratio)
-        found, finest = beam_compliance(*tooth), beam_compliance(*tooth, nodes=64)
-        parts = ((found.bending, finest.bending), (found.shear, finest.shear), (found.axial, finest.axial))
-        true = max(np.abs(one / other - 1).max() for one, other in parts)
-        assert found.quadrature_error < 1e-8  # slender teeth of high contact ratio need the most
-        assert true <= found.quadrature_error + 1e-13  # the estimate bounds the true error, down to rounding
 
 
 def test_foundation_coefficients_stay_in_the_published_ranges():
@@ -88,25 +40,6 @@ def test_the_foundation_is_the_published_formula_without_its_twist():
     twist = 40e-3**2 * ((4 / 39e-3) ** 2 - 39e-3**-2) / (4 * math.pi * 2e11 / 2.6)
     published = published_compliance(40e-3, 39e-3, 4.0, 0.1, angle, 2e11)
     assert found + twist == pytest.approx(published, rel=1e-14)
-
-
-def test_local_compliance_is_the_strain_under_a_hertzian_pressure():
-    # On the axis of an elastic half-plane under p_0 sqrt(1 - x^2/a^2), at the depth z a (Johnson, Contact
-    # Mechanics, eq. 4.46): sigma_y = -p_0/sqrt(1 + z^2), sigma_x = -p_0 ((1 + 2 z^2)/sqrt(1 + z^2) - 2 z).
-    nu, modulus, a, depth = 0.3, 2e11, 0.1e-3, 3e-3
-    load = 1.0
-    p_0 = 2 * load / (math.pi * a)
-
-    def strain(z):
-        root = math.sqrt(1 + z * z)
-        sigma_y, sigma_x = -p_0 / root, -p_0 * ((1 + 2 * z * z) / root - 2 * z)
-        return ((1 - nu**2) * sigma_y - nu * (1 + nu) * sigma_x) / modulus
-
-    shortening = -quad(strain, 0.0, depth / a, epsabs=0.0, epsrel=1e-10, limit=200)[0] * a
-    found = local_compliance(np.array([a]), np.array([depth]), modulus, nu)[0]
-    assert found == pytest.approx(
-        shortening / load, rel=(a / depth) ** 2
-    )  # next term of the expansion in a/h
 
 
 @pytest.mark.parametrize("bore", [1.0, 15.0, 30.0])

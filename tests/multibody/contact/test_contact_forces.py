@@ -10,7 +10,7 @@ from lumped.friction.registry import law_of
 from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
 from multibody.contact import layout as kn
-from multibody.contact.kernels import contact_forces, linear_forces, tooth_forces
+from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 from multibody.run.model import accelerations, from_lumped_state
@@ -124,26 +124,6 @@ def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
     step = p[kn.PITCH] * 0.01 / 2000
     assert entered[0] == pytest.approx(delta / 2, abs=step)
     assert entered[1] == pytest.approx(0.0, abs=step)
-
-
-def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):
-    """It is derived on another way than the exact one, so the two agree to rounding and not to the bit."""
-    numbers = make(PAIR)
-    p, table = numbers.parameters, numbers.table
-    different = 0
-    for t in np.linspace(0.1, 0.9, 9) * numbers.period:
-        q, v = pressed_state(numbers, rng)
-        found, state = np.zeros((2, 6)), np.array([q, v, np.zeros(6)])
-        records = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
-        for wrench, flags in zip(found, (kn.LINEAR, 0), strict=True):
-            tooth_forces(t, state, p, flags, table, records)
-            wrench[:] = state[2]
-        linear_forces(t, state, p, kn.LINEAR, table, records)
-        linear = state[2]
-        np.testing.assert_array_equal(found[0], linear)
-        np.testing.assert_allclose(found[1], linear, rtol=1e-9, atol=1e-9 * np.abs(linear).max())
-        different += not np.array_equal(found[1], linear)
-    assert different > 0
 
 
 def lumped_forces(setup, motion, pair):

@@ -8,12 +8,9 @@ import multibody
 from lumped import PathFunction
 from multibody.contact import layout as kn
 from multibody.contact.events import (
-    ENTRY,
-    EXIT,
     FIRST_TOUCH,
     LAST_TOUCH,
     LET_GO,
-    SLIDING,
     SWITCH,
     event_table,
     time_to_event,
@@ -66,23 +63,6 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(pair, effects, rng
         seen.add(after[0] - before[0])
         assert all(at(tau) == before for tau in np.linspace(0.0, wait - hair, 20))
     assert seen == {-1, 0, 1}  # a pair left, sliding turned, a pair entered
-
-
-def test_which_places_are_events():
-    g = lumped.geometry(JUMPS)
-
-    def events(pair):
-        return {(kind, round(place * 1e3, 3)) for kind, place in machine(pair).events}
-
-    ends, pitch_point = {(ENTRY, 0.0), (EXIT, 0.0)}, (SLIDING, round(g.L_XP * 1e3, 3))
-    assert events(JUMPS) == ends | {pitch_point}
-    assert events(JUMPS.with_(friction__law="none")) == ends
-    # A ramp ends with a jump of curvature, at both of its ends.
-    ramped = events(JUMPS.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0}))
-    assert ramped == ends | {
-        pitch_point,
-        *((SWITCH, round(x * 1e3, 3)) for x in (g.L_XA + 3e-3, g.L_XD - 3e-3)),
-    }
 
 
 @pytest.mark.parametrize("stiffness", ["rectangular", "energy"])

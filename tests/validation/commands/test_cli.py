@@ -208,17 +208,6 @@ def test_simulate_prints_its_numbers():
     assert (result.exit_code, numbers["gear_pair"], numbers["model"]) == (0, "nasa_28_28", "lumped")
 
 
-def test_loads_are_those_of_the_response_over_speed():
-    """With loaded contact pairs begin their contact gradually: what must press is all of them together."""
-    speed = lumped.load_gear_pair("fzg_c").operating.pinion_speed.to("rpm")
-    for form in ("prescribed", "loaded"):
-        pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact=form)
-        result = run("simulate", "fzg_c", "--set", f"mesh.contact={form}", "--json", "--steady")
-        numbers, sweep = json.loads(result.stdout), lumped.speed_sweep(pair, [speed], samples_per_cycle=256)
-        for name in ("normal_load_max", "normal_load_min"):
-            assert numbers[name] == pytest.approx(float(sweep[name][0]), rel=1e-6)
-
-
 def test_stability_and_crosscheck_print_their_verdicts(monkeypatch):
     # The variant is judged in tests/validation/cross_check.
     monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "variant", False)

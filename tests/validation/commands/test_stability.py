@@ -72,23 +72,6 @@ def test_chart_and_traced_boundaries_are_in_one_file(tmp_path):
     assert picture.read_bytes().startswith(b"%PDF")
 
 
-def test_boundaries_over_damping_and_over_another_axis(tmp_path):
-    traced, over = tmp_path / "traced.nc", tmp_path / "over.nc"
-    view = ("--view", "boundaries", *TONGUE[:2], *TONGUE[4:], *SPEEDS)
-    assert run(*view, "-o", traced, "-o", tmp_path / "a.svg").exit_code == 0
-    found = opened(traced)
-    assert float(found["lower"][0, 0]) < float(found["tip_speed"][0]) < float(found["upper"][0, 0])
-    result = run(
-        *view, *TONGUE[2:4], "--axis", "bearing_stiffness=8e7:1.2e8:3", "-o", over, "-o", tmp_path / "b.svg"
-    )
-    assert result.exit_code == 0, result.stderr
-    found = opened(over)
-    assert list(found["label"].to_numpy()) == ["2w3/2"]
-    # Stiffer bearings raise the natural frequencies and with them the tongue.
-    assert (np.diff(found["lower"][0]) > 0).all()
-    assert "2w3/2" in result.stdout
-
-
 def test_a_range_without_a_tongue_says_so_in_place_of_an_empty_table(tmp_path):
     picture = tmp_path / "none.png"
     speeds = ("--axis", "speed_rpm=1000:1500:2", "--axis", "bearing_stiffness=8e7:1.2e8:2")
@@ -169,18 +152,3 @@ def test_stability_on_shafts(tmp_path, shafted_file):
     ):
         assert expected in refused(shafted_file, *on_shafts, *arguments)
     assert "springs for a pair without [shafts]" in refused(*on_shafts)
-
-
-def test_boundaries_on_shafts_are_asked_for(monkeypatch, shafted_file):
-    # They take half a minute; tests/floquet/gear/test_on_shafts.py judges them.
-    asked = {}
-
-    def fail(pair, speeds, axes, **options):
-        asked.update(options, axes=axes)
-        raise lumped.NumericalError("Asked.")
-
-    monkeypatch.setattr("floquet.stability_boundaries", fail)
-    view = ("--view", "boundaries", "--axis", "damping_ratio=0.07:0.08:2")
-    assert run(shafted_file, "--supports", "shafts", *view).exit_code == 3
-    assert asked["supports"] == "shafts"
-    assert list(asked["axes"]) == ["damping_ratio"]

@@ -135,26 +135,3 @@ def test_hover_over_the_jump_map_shows_the_data_file(page, data):
         "contact kept" if one["map_contact_kept"] else "contact loss",
     ]
     assert "; ".join(lines) in page.text("jumps-text")
-
-
-def test_flags_of_the_strip_are_those_of_the_data_file(page, data):
-    """Law I has speeds where the teeth separate; the strip and the text say the same."""
-    index = list(data["law"].to_numpy()).index("coulomb")
-    page.choose("law", index)
-    one = data.isel(law=index)
-    rows = {
-        "instability": one["spectral_radius"] > 1.0,
-        "separation": one["lowest_load"] < -1e-4,
-        "reversal": one["reversal"] > 0.02,
-    }
-    for name, expected in rows.items():
-        shown = page.drawn(
-            "sweep-plot",
-            "plot.data.filter(t => t.yaxis === 'y4')"
-            f".flatMap(t => t.x.filter((_, i) => t.y[i] === '{name}'))",
-        )
-        assert sorted(shown) == six_digits(data["speed"].to_numpy()[expected.to_numpy()]), name
-    assert bool(rows["separation"].any())
-    j = int(np.argmax(rows["separation"].to_numpy()))
-    page.choose("sweep-speed", j)
-    assert "Model violated" in page.text("sweep-text")

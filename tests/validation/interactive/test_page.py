@@ -6,11 +6,9 @@ import hashlib
 import json
 import re
 from html.parser import HTMLParser
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
@@ -21,9 +19,8 @@ from floquet.gear.axes import vary
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import NumericalError
-from lumped.errors import StorageError
 from validation.cli import app
-from validation.interactive import page, write_interactive_page
+from validation.interactive import page
 from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import Sampling, branches_about_operation, compute
@@ -258,16 +255,3 @@ def test_a_failure_leaves_nothing_behind(tiny, tmp_path, monkeypatch):
     assert failed.exit_code == 3
     assert "no such motion" in failed.output
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_file_that_appears_while_the_page_is_computed_stays(tmp_path, monkeypatch):
-    def computing(*_):
-        (tmp_path / "a.nc").write_text("of the user")
-        return SimpleNamespace(dataset=lambda: xr.Dataset({"a": 1.0}))
-
-    monkeypatch.setattr(page, "compute", computing)
-    monkeypatch.setattr(page, "render", lambda *_: "page")
-    with pytest.raises(StorageError, match="appeared meanwhile"):
-        write_interactive_page("nasa_28_28", tmp_path / "a.html", new=True)
-    assert [path.read_text() for path in tmp_path.iterdir()] == ["of the user"]
-    assert write_interactive_page("nasa_28_28", tmp_path / "a.html").read_text() == "page"

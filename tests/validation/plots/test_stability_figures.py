@@ -18,7 +18,7 @@ from floquet.gear.regions import label_regions
 from floquet.gear.tongues import StabilityMargins, TongueMargin
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from validation.plots.stability import campbell_figure, pretty, spread, stability_figure, tongues_figure
+from validation.plots.stability import campbell_figure, pretty, stability_figure, tongues_figure
 
 
 @pytest.fixture(scope="module")
@@ -63,21 +63,6 @@ def test_names_of_tongues_touch_no_other_words(pair) -> None:
     assert names
     assert max(name.x1 for name in names) > 0.95 * ax.bbox.x1
     assert not any(name.overlaps(box) for name in names for box in boxes)
-
-
-def test_names_moved_apart_keep_order_distance_and_mean() -> None:
-    assert np.array_equal(spread([1.0, 5.0, 9.0], 2.0, 0.0, 10.0), [1.0, 5.0, 9.0])  # nothing to do
-    assert np.allclose(spread([4.0, 4.2], 2.0, 0.0, 10.0), [3.1, 5.1])  # about their mean, 4.1
-    rng = np.random.default_rng(3)
-    for count in (1, 2, 7, 20):
-        places = np.sort(rng.uniform(0.0, 10.0, count))
-        moved = spread(places, 0.5, 0.0, 10.0)
-        assert (np.diff(moved) >= 0.5 - 1e-12).all()
-        assert moved[0] >= 0.0
-        assert moved[-1] <= 10.0
-    crowd = spread(np.full(100, 5.0), 0.5, 0.0, 10.0)  # more than fit: evenly, from end to end
-    assert np.allclose(crowd, np.linspace(0.0, 10.0, 100))
-    assert spread([], 0.5, 0.0, 10.0).size == 0
 
 
 def test_no_label_of_a_tongue_covers_another() -> None:
