@@ -8,12 +8,13 @@
     spurcheck.plot(found.cycle).savefig("motion.png")
 
 Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.with_(speed=2000) varies one
-Motion     predict, dynamic_factor, steady_state, simulate, speed_sweep, response_branches, periodic_orbit
+Motion     predict, dynamic_factor, steady_state, simulate, run_up, speed_sweep, response_branches,
+           periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
 Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy
-Signals    order_spectrum, time_synchronous_average; more in spurcheck.validation.signals
+Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
 Studies    load_study, run_sweep, read_results
 Files      plot, write_results, write_rexs, write_interactive_page
 Errors     SpurcheckError: ParameterError (an input), NumericalError (a computation); LawRangeWarning
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
         optimal_relief,
         periodic_system,
         preset_names,
+        run_up,
         simulate,
         speed_sweep,
         static_transmission_error,
@@ -78,7 +80,7 @@ if TYPE_CHECKING:
         write_interactive_page,
     )
     from validation.exchange import gear_pair_from_rexs, new_pair, write_results, write_rexs
-    from validation.signals import order_spectrum, time_synchronous_average
+    from validation.signals import order_spectrum, time_synchronous_average, waterfall
     from validation.studies import load_study, read_results, run_sweep
 
     __version__: str
@@ -132,6 +134,7 @@ __all__ = [
     "report",
     "response_branches",
     "run_sweep",
+    "run_up",
     "simulate",
     "speed_sweep",
     "stability_boundaries",
@@ -143,6 +146,7 @@ __all__ = [
     "uncertainty",
     "validation",
     "validity_flags",
+    "waterfall",
     "write_interactive_page",
     "write_results",
     "write_rexs",

@@ -5,6 +5,7 @@ from lumped.gear_geometry.geometry import Geometry
 from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.run_up import run_up
 from lumped.model.solution import simulate
 from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
@@ -51,6 +52,7 @@ __all__ = [
     "plane_compliance",
     "preset_names",
     "revolution",
+    "run_up",
     "shaft_modes",
     "simulate",
     "speed_sweep",

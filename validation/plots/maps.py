@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -11,10 +12,12 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from validation.plots.axes import label_axis, scale_of
-from validation.plots.style import RED, one_panel
+from validation.plots.style import RED, one_panel, write_beside
 
 #: Perceived alike with every colour vision deficiency, and in print.
 COLOURS = "cividis"
+#: Mesh orders that a waterfall reaches at the highest speed.
+_MESH_ORDERS = 5
 
 
 def map_figure(
@@ -60,4 +63,42 @@ def orders_map_figure(data: xr.Dataset, operating_rpm: float, resonances: list[f
         ax.plot(place[inside], orders[inside], color=RED, linewidth=0.8, marker="o", markersize=2.5)
     ax.axvline(operating_rpm, color="white", linewidth=1.0, linestyle="--")
     ax.set_yticks(orders)
+    return figure
+
+
+def waterfall_figure(data: xr.Dataset, frequencies: Iterable[float] = ()) -> Figure:
+    """Amplitudes of a run-up over frequency and speed; mesh orders are rays, natural frequencies upright.
+
+    Parameters
+    ----------
+    data : of ``validation.signals.waterfall``
+    frequencies : natural frequencies of the averaged pair [Hz]
+    """
+    figure, ax = one_panel(4.2)
+    factor, unit = scale_of(data["amplitude"])
+    shown = data["amplitude"].to_numpy()[:, 1:] / factor
+    hertz, speed = data["frequency"].to_numpy(), data["speed_rpm"].to_numpy()
+    grid = np.broadcast_to(speed[:, None], shown.shape)
+    norm = LogNorm(shown.max() * 1e-3, shown.max(), clip=True)
+    drawn = ax.pcolormesh(hertz[:, 1:] / 1e3, grid, shown, cmap=COLOURS, norm=norm, shading="nearest")
+    drawn.set_rasterized(True)
+    bar = figure.colorbar(drawn, ax=ax, pad=0.01)
+    bar.set_label(f"{data['amplitude'].attrs['long_name']} [{unit}]", fontsize=8.5)
+    bar.outline.set_linewidth(0.5)
+    mesh = float(np.interp(data.attrs["mesh_order"], data["order"], hertz[int(np.argmax(speed))])) / 1e3
+    end = _MESH_ORDERS * mesh
+    for order in range(1, _MESH_ORDERS):
+        write_beside(ax, f"{order}×", (order * mesh, speed.max()), (0, 2), ha="center")
+    for frequency in frequencies:
+        if frequency / 1e3 < end:
+            ax.axvline(frequency / 1e3, color=RED, linewidth=0.8, linestyle="--")
+    across, up = data["frequency"].attrs["long_name"], data["speed_rpm"].attrs["long_name"]
+    ax.set(
+        xlim=(0.0, end),
+        ylim=(speed.min(), speed.max()),
+        xlabel=f"{across} [kHz]; 1×, 2×: mesh orders, red: natural frequencies",
+        ylabel=f"{up} [rpm]",
+    )
+    ax.set_facecolor("#e8e8e8")
+    ax.grid(False)
     return figure

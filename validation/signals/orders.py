@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import CubicSpline
 
 from lumped.arguments import of_type, one_of, whole_number
@@ -127,4 +128,65 @@ def order_spectrum(
         },
         {"order": (found.orders(shaft), "1", f"order of the {shaft}")},
         result.attrs | {"shaft": shaft},
+    )
+
+
+def waterfall(
+    result: xr.Dataset, shaft: Shaft = "mesh", *, variable: str = "dte", turns: int = 1
+) -> xr.Dataset:
+    """Return the amplitudes of a run-up over speed and order.
+
+    The record is even over the angle, so that an order stays in its place while the speed changes. Blocks of
+    whole turns, half of each in the next, are weighted by Hann's window; an amplitude is exact for an order
+    of the pinion that is whole over ``turns``.
+
+    Parameters
+    ----------
+    result : dataset of ``lumped.run_up``
+    shaft : whose orders they are
+    variable : that depends on time alone
+    turns : of the pinion in a block: more resolve orders better and speeds worse
+
+    Returns
+    -------
+    xarray.Dataset over ``speed_rpm`` and ``order``: ``amplitude``, peak, in the variable's unit, and
+    ``frequency`` [Hz]
+
+    Raises
+    ------
+    ParameterError : no run-up, a variable that it lacks, or a run of less than one block
+    """
+    of_type("result", result, xr.Dataset, "a dataset, as run_up returns it")
+    if "running_speed" not in result:
+        raise refuse("result", "no variable 'running_speed'", "a result of run_up", "Give it as computed.")
+    one_of("shaft", shaft, get_args(Shaft))
+    scalars = [str(name) for name, one in result.data_vars.items() if one.dims == ("time",)]
+    one_of("variable", variable, scalars, "Choose a variable that depends on time alone.")
+    pair = load_gear_pair(parse_toml(result.attrs["parameters"], "parameters of the result"))
+    size = round(whole_number("turns", turns, 1, 10_000) / float(result["pinion_turns"][1]))
+    speed, signal = result["running_speed"].to_numpy(), result[variable].to_numpy()
+    if signal.size < size:
+        allowed = f"at most {signal.size * turns / size:.3g} turns, the length of the run"
+        raise refuse("turns", turns, allowed, "Give fewer turns, or a longer run.")
+    first = np.arange(0, signal.size - size + 1, size // 2)
+    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(size) / size)
+    blocks = sliding_window_view(signal, size)[first]
+    amplitude = (
+        2.0 / window.sum() * np.abs(np.fft.rfft((blocks - blocks.mean(axis=1, keepdims=True)) * window))
+    )
+    rpm = sliding_window_view(speed, size)[first].mean(axis=1)
+    order = np.arange(amplitude.shape[1]) / turns
+    teeth = {"pinion": 1.0, "gear": pair.gear.teeth / pair.pinion.teeth, "mesh": 1.0 / pair.pinion.teeth}
+    attributes: dict[Any, Any] = result[variable].attrs
+    words = f"amplitude of: {attributes['long_name']}"
+    return labelled_dataset(
+        {
+            "amplitude": (("speed_rpm", "order"), amplitude, str(attributes["units"]), words),
+            "frequency": (("speed_rpm", "order"), np.outer(rpm / 60.0, order), "Hz", "frequency"),
+        },
+        {
+            "speed_rpm": (rpm, "rpm", "pinion speed"),
+            "order": (order * teeth[shaft], "1", f"order of the {shaft}"),
+        },
+        result.attrs | {"shaft": shaft, "mesh_order": teeth[shaft] * pair.pinion.teeth},
     )
