@@ -94,9 +94,10 @@ def _print(check: CrossCheck) -> None:
     console.print(f"{text} x over that of the transmission error, if larger", soft_wrap=True)
     if check.pulling:
         console.print(check.pulling, soft_wrap=True)
+    cause = cause_of_difference(check) if check.verdict is Verdict.DIFFERS else ""
     told = {
         Verdict.FAILS: f"{failed_checks(check)}.",
-        Verdict.DIFFERS: f"{whole_difference(check)} {cause_of_difference(check)}".rstrip(),
+        Verdict.DIFFERS: f"{whole_difference(check)} {cause}".rstrip(),
         Verdict.AGREES: whole_difference(check),
     }.get(check.verdict, "")
     verdict = check.verdict

@@ -22,6 +22,11 @@ NAMES = {
     "friction_force": "friction force",
 }
 
+_UNILATERAL = (
+    "The lumped motion has the places of contact of the mean load; in the exact contact they follow the "
+    "momentary load, the rotations and the centres."
+)
+
 
 def failed_checks(check: CrossCheck, most: int = 3) -> str:
     """The first checks that fail, with value and limit."""
@@ -56,14 +61,18 @@ def whole_difference(check: CrossCheck) -> str:
     """How much the exact model differs: in the transmission error, and in what uses most of its limit."""
     dte = next(a for a in check.of("exact") if a.quantity == "dte")
     worst = check.worst("exact")
-    own, other = (quantity(value, "m", 3) for value in (dte.peak_to_peak, dte.peak_to_peak_multibody))
+    (own, other), swings = (
+        [quantity(value, a.unit, 3) for value in (a.peak_to_peak, a.peak_to_peak_multibody)]
+        for a in (dte, worst)
+    )
     told = (
         f"The transmission error of the multibody model is {other} peak to peak beside {own}, and differs by "
-        f"at most {percent(dte.difference)} of that"
+        f"at most {share(dte.difference)} of that"
     )
     if worst.quantity == "dte":
         return f"{told}, limit {percent(dte.limit)}."
-    return f"{told}; {NAMES[worst.quantity]} by {percent(worst.difference)}, limit {percent(worst.limit)}."
+    name, limit = NAMES[worst.quantity], percent(worst.limit)
+    return f"{told}; {name}, {swings[1]} beside {swings[0]}, by {share(worst.difference)}, limit {limit}."
 
 
 def attribution(check: CrossCheck) -> xr.Dataset | None:
@@ -77,16 +86,28 @@ def attribution(check: CrossCheck) -> xr.Dataset | None:
 
 
 def cause_of_difference(check: CrossCheck, found: xr.Dataset | None = None) -> str:
-    """The effect of the exact model that explains most of the difference; empty where that is not known.
+    """What explains most of the difference in what uses most of its limit; empty where that is not known.
 
+    That is an effect of the exact model, or where contact is lost what both motions have not in common.
     ``found`` is the ``attribution``, where it is known already.
     """
+    if check.orbit is not None:
+        return _UNILATERAL
     found = attribution(check) if found is None else found
     if found is None:
         return ""
-    name = str(found.attrs["largest"])
-    change = float(found["alone"].sel(cause=name, quantity="dte"))
-    return f"Most of it comes from one effect: {CAUSES[name]}, alone {percent(change)}."
+    name = {"x_p": "x_p", "x_g": "x_p", "y_p": "y_p", "y_g": "y_p"}.get(check.worst("exact").quantity, "dte")
+    parts = found["cause"].values.tolist().index("all")  # what stands below is no part of it
+    alone = found["alone"].sel(quantity=name)[:parts]
+    if alone.isnull().all():  # it does not move without effects
+        alone = found["alone"].sel(quantity="dte")[:parts]
+    cause = str(alone.idxmax("cause").item())
+    return f"Most of it comes from one effect: {CAUSES[cause]}, alone {share(float(alone.max()))}."
+
+
+def share(ratio: float) -> str:
+    """A ratio in percent, one above 1 as a multiple."""
+    return percent(ratio) if ratio <= 1.0 else f"{number(ratio, 2)} times"
 
 
 def percent(ratio: float) -> str:

@@ -24,6 +24,8 @@ from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
+from validation.cross_check.words import share
+from validation.files.formatting import quantity
 from validation.measurements.model_error import ModelError, model_error
 from validation.measurements.record import Measurement
 from validation.prediction.budget import error_budget
@@ -320,10 +322,11 @@ class Results:
         apart = f"{max(100.0 * worst.difference, 0.01):.2g} %"
         if check.verdict is Verdict.AGREES:
             return f"Yes: a second program agrees to {apart}."
-        own = max((a for a in check.of("exact")), key=lambda a: a.difference / a.limit)
+        own = check.worst("exact")
+        swings = (quantity(v, own.unit, 3) for v in (own.peak_to_peak_multibody, own.peak_to_peak))
         return (
-            f"Yes, but the second program, with exact contact, differs: {own.long_name} by "
-            f"{100.0 * own.difference:.2g} %, the transmission error by {apart}."
+            f"Yes, but the second program, with exact contact, differs: {own.long_name}, "
+            f"{' beside '.join(swings)}, by {share(own.difference)}, the transmission error by {apart}."
         )
 
     @cached_property

@@ -12,7 +12,7 @@ from validation.cross_check import comparison
 from validation.cross_check.agreement import QUANTITIES, off_switch_samples
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.verdict import Verdict, limit_of
-from validation.cross_check.words import cause_of_difference, failed_checks, whole_difference
+from validation.cross_check.words import attribution, cause_of_difference, failed_checks, whole_difference
 
 
 def test_progress_goes_on_while_the_variant_is_checked(check, told):
@@ -134,6 +134,12 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
     assert "peak to peak beside" in told
     assert "limit 2 %" in told
     assert "Most of it comes from one effect: teeth touch where the actual flanks meet" in told
+    far = dataclasses.replace(found, agreements=_with(found.agreements, "exact", "y_p", difference=9.2))
+    assert "m, by 9.2 times, limit 20" in whole_difference(far).replace("\u00a0", " ")
+    causes = attribution(far)  # of y, which uses most of its limit, not of the transmission error
+    causes["alone"].loc["sliding_velocity", "y_p"] = 0.5
+    assert "friction follows the actual sliding" in cause_of_difference(far, causes)
+    assert cause_of_difference(dataclasses.replace(far, orbit=far)).startswith("The lumped motion has")
 
 
 def test_a_failure_is_told_with_value_and_limit(check):

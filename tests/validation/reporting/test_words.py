@@ -158,8 +158,8 @@ def test_how_sure(written):
         return
     own.assert_says(
         said,
-        r"Yes, but the second program, with exact contact, differs: (.*) by (.*) %, the transmission error "
-        r"by (.*) %\.",
+        r"Yes, but the second program, with exact contact, differs: (.*), .* beside .*, by (.*) %, the "
+        r"transmission error by (.*) %\.",
         worst["quantity"],
         (100.0 * worst["difference"], "1"),
         (100.0 * dte, "1"),
