@@ -19,7 +19,8 @@ from lumped.arguments import one_of, real_array
 from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
 from lumped.friction import mean_coefficient
-from lumped.friction.base import PITCH_RESOLUTION, ContactPath
+from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw
+from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import Supports
@@ -59,13 +60,12 @@ class GearVariation:
         one_of("supports", supports, get_args(Supports))
         return cls(load_gear_pair(source), supports=supports)
 
-    def cycle(self) -> MeshCycle:
-        """Mesh cycle, with the friction law scaled to ``friction_mean``."""
-        cycle = MeshCycle.of(self.pair)
+    @property
+    def friction_scale(self) -> float:
+        """Factor on the friction law of the pair, by which it has the mean ``friction_mean``."""
         if self.friction_mean is None:
-            return cycle
-        friction = cycle.elements.friction
-        mean = mean_coefficient(friction)
+            return 1.0
+        mean = mean_coefficient(MeshCycle.of(self.pair).elements.friction)
         if mean == 0.0:
             raise refuse(
                 "friction_coefficient",
@@ -73,7 +73,14 @@ class GearVariation:
                 "a law that is not zero along the whole path",
                 'Choose friction.law = "coulomb".',
             )
-        scaled = friction.scaled(self.friction_mean / mean)
+        return self.friction_mean / mean
+
+    def cycle(self) -> MeshCycle:
+        """Mesh cycle, with the friction law scaled."""
+        cycle = MeshCycle.of(self.pair)
+        if self.friction_mean is None:
+            return cycle
+        scaled = cycle.elements.friction.scaled(self.friction_scale)
         return MeshCycle(cycle.geometry, replace(cycle.elements, friction=scaled))
 
 
@@ -244,7 +251,6 @@ class FrictionFamily:
     level : |mu| of the second function, which only changes sign at the pitch point; None where one is enough
     factors : (k, 1) of mu at the reference speed; or (k, 2) of mu less the level, and of the level
     law : the law at other speeds; None where it is the same at all
-    exact : whether the factors follow from the formula of the law, or else from samples along the path
     """
 
     speed_rpm: float
@@ -252,7 +258,6 @@ class FrictionFamily:
     level: float | None
     factors: FloatArray
     law: _Law | None
-    exact: bool
 
     def factors_at(self, speeds_rpm: FloatArray) -> FloatArray | None:
         """Factors (k, 1 or 2) at further speeds; None where these are not all of the family."""
@@ -273,16 +278,16 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     """Group speeds (k,), all different, over which friction needs but one fit.
 
     Where speed only scales a law (III by a power, I and IV by their mean coefficient) all speeds share one
-    fit. Law II, a logarithm, rises and falls as a whole, and law V is each of these as long as its regimes do
-    not move. That is not taken for granted: such a law is evaluated along the path at every speed, and its
-    switches are compared.
+    fit. Law II, a logarithm, rises and falls as a whole as long as its bounds do not move, and law V is each
+    of these where one regime has the whole path. So such a law is also evaluated along the path at every
+    speed, and its switches are compared; the factors are those of the formulas.
     """
     pair, rest = variation.pair, np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):
         for rpm in {speeds_rpm.min(), speeds_rpm.max()}:  # a table is for one speed
             path = contact_path(pair).at_speed(float(rpm) * np.pi / 30.0)
             warn_violations(violations_of(path, pair.friction, pair.friction.law))
-        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None, exact=True)]
+        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
     law, families = _Law(variation), []
     while rest.size:
         reference = float(speeds_rpm[rest[rest.size // 2]])
@@ -290,8 +295,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
         apart = bool(weights[:, 1].any())
         level = (variation.friction_mean or law.mean(reference)) if apart else None
         factors = law.factors(reference, apart, weights)
-        exact = members.size == 1 or law.factor(reference) is not None
-        families.append(FrictionFamily(reference, rest[members], level, factors, law, exact))
+        families.append(FrictionFamily(reference, rest[members], level, factors, law))
         rest = np.delete(rest, members)
     return families
 
@@ -302,41 +306,60 @@ class _Law:
     def __init__(self, variation: GearVariation) -> None:
         self.path, self.settings = contact_path(variation.pair), variation.pair.friction
         self.law, self.to_mean = law_of(self.settings), variation.friction_mean is not None
-        self.positions, self.values = _positions(self.path), cache(self._values)
+        self.ends = MeshCycle.of(variation.pair).elements.friction.interval
+        self.positions = _positions(replace(self.path, L_XA=self.ends[0], L_XD=self.ends[1]))
+        self.values = cache(self._values)
 
     def at(self, rpm: float) -> ContactPath:
         return self.path.at_speed(rpm * np.pi / 30.0)
 
-    def factor(self, rpm: float) -> float | None:
-        """Factor on mu of one fit, where speed only scales mu."""
-        scaled = self.law.over_speed(self.at(rpm), self.settings)
-        return None if scaled is None else scaled[1]
+    def alone(self, rpm: float) -> FrictionLaw | None:
+        """The law in force on the whole path, the law itself unless it is made of others; None: several."""
+        if self.law.parts is None:
+            return self.law
+        parts = self.law.parts(self.positions, self.at(rpm), self.settings)
+        used = [part for part, inside in parts if inside.any()]
+        return used[0] if len(used) == 1 else None
 
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
         """Mu at the positions, and the positions of its switches, at a speed."""
-        there = self.at(rpm)
-        switches = np.sort(self.law.switches(there, self.settings))
-        return self.law.signed(self.positions, there, self.settings), switches
+        there, settings = self.at(rpm), self.settings
+        if settings.coefficient is None:  # mu_avg is that of the path from A to D
+            settings = settings.model_copy(update={"coefficient": average_coefficient(there, settings)})
+        there = replace(there, L_XA=self.ends[0], L_XD=self.ends[1])
+        return self.law.signed(self.positions, there, settings), np.sort(self.law.switches(there, settings))
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
-        unit = self.factor(reference)
-        if unit:
-            ratios = np.array([(self.factor(float(rpm)) or 0.0) / unit for rpm in speeds_rpm])
-            return np.arange(speeds_rpm.size), np.stack([ratios, np.zeros(ratios.size)], axis=1)
-        mu, switches = self.values(reference)
-        basis = np.stack([mu, np.sign(self.positions - self.path.L_XP)], axis=1)
-        near, members, found = _SAME * self.path.L_XY, [], []
-        for i, rpm in enumerate(speeds_rpm):
-            now, others = self.values(float(rpm))
-            one = np.array([now @ mu / (mu @ mu) if mu.any() else 1.0, 0.0])
-            for pair in (one, np.linalg.lstsq(basis, now, rcond=None)[0]):
-                if np.abs(basis @ pair - now).max() <= _SAME * np.abs(now).max():
-                    if switches.shape == others.shape and np.allclose(switches, others, 0.0, near):
-                        members.append(i)
-                        found.append(pair)
-                    break
-        return np.array(members, dtype=np.intp), np.array(found)
+        law, members, found = self.alone(reference), [], []
+        for i, rpm in enumerate(map(float, speeds_rpm)):
+            weights = self._pair(law, reference, rpm)
+            if weights is not None:
+                members.append(i)
+                found.append(weights)
+        return np.array(members, dtype=np.intp), np.array(found).reshape(-1, 2)
+
+    def _pair(self, law: FrictionLaw | None, reference: float, rpm: float) -> tuple[float, float] | None:
+        """Weights at a speed, by the formula of the law in force alone; None: mu is no such sum."""
+        if rpm == reference:
+            return 1.0, 0.0
+        if law is None or self.alone(rpm) is not law:
+            return None
+        before, now = self.at(reference), self.at(rpm)
+        if law.factor is not None:
+            unit = law.factor(before, self.settings)
+            weights = law.factor(now, self.settings) / unit if unit else 1.0, 0.0
+        elif law.shift is not None:
+            weights = 1.0, law.shift(now, self.settings) - law.shift(before, self.settings)
+        else:
+            return None
+        if law.factor is not None and law is self.law:
+            return weights
+        # The formula holds as long as no switch moves.
+        (mu, switches), (other, others) = self.values(reference), self.values(rpm)
+        expected = weights[0] * mu + weights[1] * np.sign(self.positions - self.path.L_XP)
+        same = switches.shape == others.shape and np.allclose(switches, others, 0.0, _SAME * self.path.L_XY)
+        return weights if same and np.abs(expected - other).max() <= _SAME * np.abs(other).max() else None
 
     def factors(self, reference: float, apart: bool, weights: FloatArray) -> FloatArray:
         """Factors of mu, or of mu less its mean and of the mean, from the weights of mu and of the sign.

@@ -23,6 +23,7 @@ from lumped.arguments import real_number
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.path_function import PathFunction
+from lumped.path_of_contact.friction import friction_misfit
 from lumped.schema.files import AnyPair
 from lumped.typing import FloatArray
 
@@ -30,9 +31,9 @@ MODES = 12
 """Modes of a pair on shafts that are coupled at most; the others move each by itself."""
 _EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
 _U = 0.5 * float(np.finfo(np.float64).eps)
-#: Roundings on the way to one value: Horner's rule of degree 8 twice, products and sums over pairs, and
-#: factors on mu by speed.
-_ROUNDINGS = 90.0 * _U
+#: Roundings on the way to one value but for those of Horner's rule and of the sum over pairs: 10 of arm,
+#: level, products and the factor on stiffness, 20 of the factor on mu by speed.
+_ROUNDINGS = 30
 #: The same of a position, relative to the largest one: offset, phase, product, sum, difference.
 _PLACE = 16.0 * _U
 #: Breaks closer than this part of a base pitch may be one segment's end.
@@ -51,24 +52,28 @@ class Feedback:
     metric : (m,) weights of the norm of errors; they make the frictionless mesh symmetric
     separate : decay rates [1/s] and squares of the natural frequencies (k,) of what moves by itself: on
         springs off the line of action, on shafts the modes that count least
+    misfit : (pieces,) bound on the error of the polynomials of mu
     """
 
     system: LTVSystem
     metric: FloatArray
     separate: tuple[FloatArray, FloatArray]
+    misfit: FloatArray
 
 
 def feedback_system(variation: GearVariation) -> Feedback:
     """Return what the mesh couples of a gear pair."""
     system = LTVSystem.of(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
+    interval = system.cycle.elements.friction.interval
+    misfit = variation.friction_scale * friction_misfit(variation.pair, interval)
     if variation.supports == "shafts":
-        return _leading_modes(system)
+        return _leading_modes(system, misfit)
     s = system.structure
     separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
-    return Feedback(system, 1.0 / np.abs(system.per_load[0]), separate)
+    return Feedback(system, 1.0 / np.abs(system.per_load[0]), separate, misfit)
 
 
-def _leading_modes(system: LTVSystem) -> Feedback:
+def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
     """The modes that count most of a pair on shafts, the others apart."""
     m = system.deflection.size
     mesh = system.cycle.mean_stiffness * np.outer(system.deflection, system.deflection)
@@ -77,7 +82,7 @@ def _leading_modes(system: LTVSystem) -> Feedback:
     order = np.argsort(-importance(whole), kind="stable")
     kept, left = (np.sort(part) for part in (order[:MODES], order[MODES:]))
     separate = -0.5 * np.diag(whole.constant[m:, m:])[left], _squares(whole)[left]
-    return Feedback(_in_modes(whole, np.eye(m)[:, kept]), np.ones(kept.size), separate)
+    return Feedback(_in_modes(whole, np.eye(m)[:, kept]), np.ones(kept.size), separate, misfit)
 
 
 def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
@@ -174,7 +179,7 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
     """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`."""
     system, metric, m = feedback.system, feedback.metric, feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
-    mesh = MeshGains(system, factor, levels, metric)
+    mesh = MeshGains(feedback, factor, levels)
     phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
     jumps = np.zeros((phases.size, mesh.jumps.shape[0]))
     jumps[at] = mesh.jumps.T
@@ -205,6 +210,7 @@ class _Law:
     start : (pairs, S) positions [m]
     size, slope : (pairs, S) bounds on |law| and on its derivative there
     near : (pairs, S+1) bound on |law| on both sides of each edge of the segments
+    misfit : (pairs, S) bound on the error of the polynomials
     """
 
     coefficients: FloatArray
@@ -212,9 +218,17 @@ class _Law:
     size: FloatArray
     slope: FloatArray
     near: FloatArray
+    misfit: FloatArray
 
     @classmethod
-    def of(cls, law: PathFunction, middle: FloatArray, touch: npt.NDArray[np.bool_], pitch: float) -> _Law:
+    def of(
+        cls,
+        law: PathFunction,
+        misfit: FloatArray | None,
+        middle: FloatArray,
+        touch: npt.NDArray[np.bool_],
+        pitch: float,
+    ) -> _Law:
         used = np.flatnonzero(np.abs(law.coefficients).max(axis=1))
         rows = law.coefficients[used[0] if used.size else -1 :]
         width = np.diff(law.breaks)
@@ -237,6 +251,7 @@ class _Law:
             size,
             np.where(inside, slope[piece], 0.0),
             near,
+            np.zeros_like(size) if misfit is None else np.where(inside, misfit[piece], 0.0),
         )
 
     @property
@@ -262,10 +277,9 @@ class MeshGains:
 
     Parameters
     ----------
-    system : the feedback form of the gear pair
+    feedback : what the mesh couples
     factor : on the variation of the total stiffness about its mean
     levels : of friction apart; empty where friction goes with the normal loads
-    metric : (m,) of the norm of errors
 
     Attributes
     ----------
@@ -274,10 +288,11 @@ class MeshGains:
     count : see `PolynomialGains`
     """
 
-    def __init__(self, system: LTVSystem, factor: float, levels: Sequence[float], metric: FloatArray) -> None:
+    def __init__(self, feedback: Feedback, factor: float, levels: Sequence[float]) -> None:
+        system = feedback.system
         cycle, g = system.cycle, system.cycle.geometry
         self.normal, self.arm = system.per_load[0], system.per_load[1:]
-        self.metric = metric
+        self.metric = feedback.metric
         self.levels, self.parts = levels, 1 + len(levels)
         self.factor, self.mean = factor, cycle.mean_stiffness
         self.pitch, self.offsets = g.base_pitch, cycle.offsets
@@ -287,16 +302,18 @@ class MeshGains:
         self.side = np.sign(middle - g.L_XP)
         e = cycle.elements
         self.k, self.c, self.mu = (
-            _Law.of(law, middle, self.touch, g.base_pitch) for law in (e.stiffness, e.damping, e.friction)
+            _Law.of(law, misfit, middle, self.touch, g.base_pitch)
+            for law, misfit in ((e.stiffness, None), (e.damping, None), (e.friction, feedback.misfit))
         )
         self.place = _PLACE * (cycle.end + g.base_pitch)
         self.varied = factor != 1.0
         # Off the line of action a mesh on springs has no coordinate here.
         self.apart = system.per_apart if e.tilt is not None else np.zeros(self.normal.size)
         tilt = e.tilt if e.tilt is not None and self.apart.any() else e.friction.scaled(0.0)
-        self.tilt = _Law.of(tilt, middle, self.touch, g.base_pitch)
+        self.tilt = _Law.of(tilt, None, middle, self.touch, g.base_pitch)
         degree = max(self.k.degree, self.c.degree) + max(self.mu.degree + 1, self.tilt.degree)
         self.count = 1 + degree + (_FACTOR_DEGREE if self.varied else 0)
+        self.rounding = (2 * degree + self.offsets.size + _ROUNDINGS) * _U
         # The mean is a sum over the pieces of the law, each to the moduli of its terms.
         rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
         moduli = (rows * width ** np.arange(rows.shape[0], 0, -1)[:, None]).sum() / g.base_pitch
@@ -384,7 +401,8 @@ class MeshGains:
                     + turn * (self.mu.size + sum(self.levels))
                     + self._apart(p) * self.tilt.slope
                 )
-                errors[2 * p + j] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
+                misfit = law.size * arm * self.mu.misfit
+                errors[2 * p + j] = (self.rounding * reach + self.place * moved + misfit).sum(axis=0)
                 near = self._reach(law.near, self.mu.near, self.tilt.near, p).sum(axis=0)
                 jumps[2 * p + j] = 2.0 * self.slips * self._largest_factor * near
         return errors, jumps
@@ -426,7 +444,7 @@ class MeshGains:
         vander = np.polynomial.chebyshev.chebvander
         total, target = self._total(centre, half, segment, high)
         q_high, s_high = q @ vander(high, _FACTOR_DEGREE).T, s @ vander(high, _FACTOR_DEGREE).T
-        slack = series_rounding(high.size) + 4.0 * _FACTOR_DEGREE**2 * _ROUNDINGS
+        slack = series_rounding(high.size) + 4.0 * _FACTOR_DEGREE**2 * self.rounding
 
         def sup(values: FloatArray, scale: FloatArray) -> FloatArray:
             return np.asarray(np.abs(values @ onto.T).sum(axis=1) + slack * scale)
@@ -440,7 +458,7 @@ class MeshGains:
         most = np.abs(q).sum(axis=1)
         size = most * total.max(axis=1) + np.abs(target).max(axis=1)
         # By how much the total is wrong, rounding of its positions included, and what that does.
-        wrong = (_ROUNDINGS * self.k.size + self.place * self.k.slope).sum(axis=0)[segment]
+        wrong = (self.rounding * self.k.size + self.place * self.k.slope).sum(axis=0)[segment]
         made = (most + abs(self.factor)) * wrong + abs(1.0 - self.factor) * self.mean_error
         with np.errstate(divide="ignore", invalid="ignore"):
             floor = least(total) - wrong

@@ -82,9 +82,8 @@ def stability_chart(
     xarray.Dataset over the axes: spectral_radius, error, verdict, proven, known and, with store "all",
     multipliers and multiplier_errors (10 each: the feedback block and the off-line-of-action block, on shafts
     two for each mode; the rigid rotation is no part of them). Where ``known`` is False a node is
-    interpolated; its error is an estimate. Estimates are also the errors over speeds that share friction law
-    II or V to a tolerance. The variable ``proven`` tells for every point; the attribute ``certificate`` is
-    "proven", "estimate" or "mixed". Over ``region`` the unstable regions, the largest first:
+    interpolated; its error is an estimate, and ``proven`` is False too: the attribute ``certificate`` is then
+    "mixed", else "proven". Over ``region`` the unstable regions, the largest first:
     ``region_label``, ``region_width`` in speed (or the first axis), ``region_nodes``, ``region_radius`` and
     ``region_<axis>``, the evaluated node where it is largest. Attributes ``thinnest_width`` of all regions
     and ``nearest_edge_<axis>``, where along an axis the stability changes next to the pair itself; NaN:
@@ -286,6 +285,6 @@ class ChartSlice:
                 places[part],
                 np.concatenate([found.multipliers, values], axis=1),
                 np.concatenate([found.errors, errors], axis=1),
-                family.exact,
+                True,
                 found.multipliers.shape[1],
             )

@@ -101,6 +101,12 @@ class ContactPath:
         """v_e = v_rp + v_rg [m/s], the sum velocity, equation (13)."""
         return self.omega_pinion * xi + self.omega_gear * (self.L_XY - xi)
 
+    @property
+    def still(self) -> float | None:
+        """Where v_e would be 0, beyond the path [m]; None where it is the same everywhere."""
+        apart = self.omega_gear - self.omega_pinion
+        return self.omega_gear * self.L_XY / apart if apart else None
+
     def slide_to_roll(self, xi: FloatArray) -> FloatArray:
         """SR = 2 v_s/v_e [-], equation (17)."""
         return 2.0 * self.sliding_velocity(xi) / self.entraining_velocity(xi)
@@ -189,6 +195,10 @@ class FrictionSettings(Protocol):
         """Results are kept by the settings."""
 
 
+Analytic = Callable[[FloatArray, FloatArray, ContactPath, FrictionSettings], tuple[FloatArray, FloatArray]]
+"""See `FrictionLaw`."""
+
+
 @dataclass(frozen=True)
 class FrictionLaw:
     """Everything that is particular to one law. Files, commands, charts and legends read it from here.
@@ -207,6 +217,10 @@ class FrictionLaw:
     fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
     factor : (path, settings) -> number to which mu is proportional over speed, all else equal; None: speed
         changes the shape of mu too
+    shift : (path, settings) -> number by which |mu| rises as a whole over speed, as long as no switch moves
+    analytic : (low [m], high [m], path, settings) -> for pieces (k,) between switches the ratio r of ellipses
+        in which the formula is analytic, and a bound on |mu| there, see `lumped.friction.misfit`; None: there
+        is no formula, and the fit is the law
     joints : path -> positions where polynomials of a table meet, without jump or kink [m]
     """
 
@@ -223,7 +237,8 @@ class FrictionLaw:
     varies: bool = True
     fluid_film: bool = False
     factor: Callable[[ContactPath, FrictionSettings], float] | None = None
-
+    shift: Callable[[ContactPath, FrictionSettings], float] | None = None
+    analytic: Analytic | None = None
     joints: Callable[[ContactPath], list[float]] = lambda path: []
 
     @property

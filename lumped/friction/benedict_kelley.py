@@ -18,6 +18,7 @@ from lumped.friction.base import (
     fit_signed,
     mean_coefficient,
 )
+from lumped.friction.misfit import Ellipses, entraining
 from lumped.ranges import NOT_STATED, ValidityRange, checked
 from lumped.typing import FloatArray
 
@@ -151,6 +152,24 @@ def _switches(path: ContactPath, settings: FrictionSettings) -> list[float]:
     return [path.L_XP, *bounded, *path.crossings(lambda xi: _level(xi, path))]
 
 
+def _analytic(
+    low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
+) -> tuple[FloatArray, FloatArray]:
+    """Constant where the law is held; else each complex logarithm is at most |log10| and pi/ln 10."""
+    centre, cap = 0.5 * (low + high), max(_cap(path, settings), 0.0)
+    level = _level(centre, path)
+    held = (level <= 0.0) | (level >= cap)
+    around = Ellipses.clear_of(low, high, [p for p in (path.L_XP, path.still) if p is not None])
+    d, v_e = around.distances(path.L_XP), entraining(around, path)
+    with np.errstate(divide="ignore"):
+        logs = [
+            np.maximum(np.abs(np.log10(v[0] / v_0)), np.abs(np.log10(v[1] / v_0))) + np.pi / np.log(10.0)
+            for v, v_0 in ((d, np.abs(centre - path.L_XP)), (v_e, path.entraining_velocity(centre)))
+        ]
+    size = np.abs(level) + _factor(path.roughness * 1e6) * (logs[0] + 2.0 * logs[1])
+    return np.where(held, Ellipses.clear_of(low, high).ratio, around.ratio), np.where(held, cap, size)
+
+
 LAW = FrictionLaw(
     name="benedict_kelley",
     numeral="II",
@@ -159,6 +178,8 @@ LAW = FrictionLaw(
     switches=_switches,
     ranges=RANGES,
     fluid_film=True,
+    shift=lambda path, settings: float(-3.0 * _factor(path.roughness * 1e6) * np.log10(path.omega_pinion)),
+    analytic=_analytic,
 )
 
 

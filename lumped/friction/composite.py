@@ -100,6 +100,16 @@ def _excess(path: ContactPath, threshold: float, xi: FloatArray) -> FloatArray:
     return path.film_parameter(xi) - threshold
 
 
+def _analytic(
+    low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
+) -> tuple[FloatArray, FloatArray]:
+    ratio, size = np.empty_like(low), np.empty_like(low)
+    for law, inside in _parts(0.5 * (low + high), path, settings):
+        if inside.any() and law.analytic is not None:
+            ratio[inside], size[inside] = law.analytic(low[inside], high[inside], path, settings)
+    return ratio, size
+
+
 LAW = FrictionLaw(
     name="composite",
     numeral="V",
@@ -108,4 +118,5 @@ LAW = FrictionLaw(
     switches=_switches,
     ranges=(*BENEDICT_KELLEY.ranges, *XU_KAHRAMAN.ranges, *RANGES),
     parts=_parts,
+    analytic=_analytic,
 )

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import average_coefficient
+from lumped.friction.misfit import constant
 from lumped.ranges import checked
 from lumped.typing import FloatArray
 
@@ -48,4 +49,5 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [path.L_XP],
     coefficient=True,
     factor=average_coefficient,
+    analytic=constant(average_coefficient),
 )

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.misfit import constant
 from lumped.ranges import ValidityRange, checked
 from lumped.typing import FloatArray
 
@@ -89,4 +90,5 @@ LAW = FrictionLaw(
     ranges=RANGES,
     fluid_film=True,
     factor=lambda path, settings: coefficient_of(path),
+    analytic=constant(lambda path, settings: coefficient_of(path)),
 )

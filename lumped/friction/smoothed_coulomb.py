@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import average_coefficient
+from lumped.friction.misfit import Ellipses
 from lumped.ranges import checked
 from lumped.typing import FloatArray
 
@@ -45,6 +46,18 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
     return smoothed_coulomb(average_coefficient(path, settings), xi - path.L_XP, settings.sharpness)
 
 
+def _analytic(
+    low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
+) -> tuple[FloatArray, FloatArray]:
+    """Poles at P +- i/Phi, over which the derivative of arctan is bounded from the middle of a piece on."""
+    phi, pole = settings.sharpness, path.L_XP + 1j / settings.sharpness
+    around = Ellipses.clear_of(low, high, [pole])
+    least = (phi * around.distances(pole)[0]) ** 2  # |1 + Phi^2 d^2|
+    angle = 0.5 * np.pi + phi * around.reach / least
+    size = angle + phi * around.distances(path.L_XP)[1] / least
+    return around.ratio, 2.0 / np.pi * average_coefficient(path, settings) * size
+
+
 LAW = FrictionLaw(
     name="smoothed_coulomb",
     numeral="IV",
@@ -53,4 +66,5 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [],
     coefficient=True,
     factor=average_coefficient,
+    analytic=_analytic,
 )

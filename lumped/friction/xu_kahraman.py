@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.friction.base import MEAN_COEFFICIENT, ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.misfit import Ellipses, entraining
 from lumped.ranges import NOT_STATED, ValidityRange, checked
 from lumped.typing import FloatArray
 
@@ -89,6 +90,30 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
     return np.asarray(np.sign(xi - path.L_XP) * magnitude, dtype=np.float64)
 
 
+def _analytic(
+    low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
+) -> tuple[FloatArray, FloatArray]:
+    """Powers of the distances to P, to both tangent points and to where v_e is 0, from the middle on.
+
+    With s = |SR| p_h log10(eta), s_0 in the middle and |s - s_0| <= m, the exponential changes by a factor of
+    at most exp(|b4| m + b5 exp(-s_0) (exp m - 1)).
+    """
+    _, b2, b3, b4, b5, b6, _, b8, _ = B
+    points = [p for p in (path.L_XP, 0.0, path.L_XY, path.still) if p is not None]
+    around, centre = Ellipses.clear_of(low, high, points), 0.5 * (low + high)
+    v_e, middle = entraining(around, path), path.entraining_velocity(centre)
+    slow, fast = v_e[0] / middle, v_e[1] / middle
+    far = around.distances(path.L_XP)[1] / np.abs(centre - path.L_XP)
+    ends = [around.distances(end) for end in (0.0, path.L_XY)]
+    least, most = (ends[0][k] * ends[1][k] / (centre * (path.L_XY - centre)) for k in (0, 1))
+    shear = path.slide_to_roll(centre) * path.hertz_pressure(centre) * 1e-9 * np.log10(path.viscosity * 1e3)
+    moved = np.abs(shear) * (far / slow / np.sqrt(least) - 1.0)
+    power, curved = b6 - b3, b8 - 0.5 * b2
+    size = far**b3 * np.maximum(slow**power, fast**power) * np.maximum(least**curved, most**curved)
+    size *= np.exp(abs(b4) * moved + b5 * np.exp(-shear) * np.expm1(moved))
+    return around.ratio, np.abs(_signed(centre, path, settings)) * size
+
+
 LAW = FrictionLaw(
     name="xu_kahraman",
     numeral="III",
@@ -99,4 +124,5 @@ LAW = FrictionLaw(
     fluid_film=True,
     # Speed enters by V_e alone, since the slide-to-roll ratio has none.
     factor=lambda path, settings: path.omega_pinion ** B[5],
+    analytic=_analytic,
 )

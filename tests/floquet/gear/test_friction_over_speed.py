@@ -6,7 +6,7 @@ import pytest
 from floquet import gear_block, gear_pair_multipliers, scan, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
 from lumped import load_gear_pair, preset_names
-from lumped.friction import LAWS
+from lumped.friction import LAWS, base
 from lumped.path_of_contact.friction import contact_path, friction_path_function
 
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
@@ -93,18 +93,34 @@ def test_charts_of_presets_are_proven_and_share_the_polynomials_of_single_speeds
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # of some of these laws
 @pytest.mark.parametrize("law", sorted(set(LAWS) - {"none"}))
-def test_only_formulas_that_speed_scales_are_proven(law) -> None:
-    """A law whose shape changes has an estimate; the factor of the others is that of mu at any position."""
+def test_charts_over_speed_rest_on_formulas_and_are_proven(law) -> None:
+    """Factor or shift of a law are those of mu at any position where no bound is in force."""
     pair = load_gear_pair("fzg_c").with_(friction__law=law)
-    chart = stability_chart(pair, {"speed_rpm": [2000.0, 2100.0]})
-    assert chart.certificate == ("estimate" if law in ("benedict_kelley", "composite") else "proven")
+    assert stability_chart(pair, {"speed_rpm": [2000.0, 2100.0]}).certificate == "proven"
     path, record = contact_path(pair), LAWS[law]
+    xi = np.linspace(path.L_XA, path.L_XD, 40)
+    slow, fast = (path.at_speed(omega) for omega in (30.0, 60.0))
+    mu, before = (record.signed(xi, at, pair.friction) for at in (fast, slow))
     if record.factor is not None:
-        xi = np.linspace(path.L_XA, path.L_XD, 40)
-        slow, fast = (path.at_speed(omega) for omega in (30.0, 900.0))
         ratio = record.factor(fast, pair.friction) / record.factor(slow, pair.friction)
-        mu = record.signed(xi, fast, pair.friction)
-        np.testing.assert_allclose(mu, ratio * record.signed(xi, slow, pair.friction), rtol=1e-13)
+        np.testing.assert_allclose(mu, ratio * before, rtol=1e-13)
+    elif record.shift is not None:
+        rise = record.shift(fast, pair.friction) - record.shift(slow, pair.friction)
+        np.testing.assert_allclose(np.abs(mu) - np.abs(before), rise, rtol=1e-11)
+
+
+@pytest.mark.parametrize("law", ["xu_kahraman", "smoothed_coulomb"])
+def test_the_error_of_the_polynomials_is_in_the_bound(law, monkeypatch) -> None:
+    """Polynomials that err by 1e-4 move the multipliers by more than all other errors together."""
+    pair = with_law(law, mesh__damping_ratio=0.01).pair
+    axes = {"friction_coefficient": [0.02, 0.06]}
+    fine = stability_chart(pair, axes)
+    monkeypatch.setattr(base, "FIT_TOLERANCE", 1e-4)  # of a load that no cache knows
+    other = pair.with_(operating__pinion_torque=pair.operating.pinion_torque * (1.0 + 1e-13))
+    coarse = stability_chart(other, axes)
+    off = np.abs(fine.spectral_radius - coarse.spectral_radius)
+    assert (off > 5.0 * fine.error).all()
+    assert (off <= fine.error + coarse.error).all()
 
 
 @pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"])
