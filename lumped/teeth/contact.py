@@ -155,7 +155,7 @@ class Laws:
         for which, one in enumerate(own_teeth(self.pair)):
             z = one.error.size
             start = one.phase + 2.0 * np.pi * first[which] / z
-            rows.append([one.eccentricity, start, z, g.L_XY, 1.0 / np.tan(g.operating_pressure_angle)])
+            rows.append([one.eccentricity, start, z, g.L_XY, 1.0 / np.tan(g.operating_pressure_angle), 0.0])
         return np.array(rows)
 
 

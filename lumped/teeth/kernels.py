@@ -44,7 +44,8 @@ class Tables(NamedTuple):
     kinds : (z1, z2) kind of the pair of two teeth
     pinion, gear : (z1, 3), (z2, 3) error, profile slope, tip relief of the teeth [m]
     constants : force F, lengthening, softening D, least load N_1, load of the full damper; see ``ContactLaw``
-    eccentric : (2, 5) amplitude, phase at t = 0, teeth, L and cot(alpha_w) of pinion and gear
+    eccentric : (2, 6) amplitude, phase at t = 0, teeth, L, cot(alpha_w) of pinion and gear, and way of the
+        common rotation on the base circles per amplitude
     first : teeth at A at t = 0, from 0
     period : mesh cycles until all repeats
     duration : of a mesh cycle [s]
@@ -98,7 +99,7 @@ def corner(
 
 @compiled
 def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> None:
-    """Into ``found``: e, de/dcycles, dL, shift of A and of D, then de/dtheta of pinion and gear."""
+    """Into ``found``: e, de/dcycles, dL, turn of the line (A, D), de/dtheta of both gears, shift of xi."""
     found[:] = 0.0
     for which in range(2):
         size = eccentric[which, 0]
@@ -116,6 +117,7 @@ def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> Non
         found[3] += line  # times the base radius of the gear, and of the pinion
         found[4] += line
         found[5 + which] = -sine
+        found[7] += eccentric[which, 5] * sine
 
 
 @compiled
@@ -147,6 +149,7 @@ def gaps_of(
             a, b = own.pinion[p, s], own.gear[g, s]
             value += own.shape[step, node, i, s] * a + own.shape[step, node, i, 3 + s] * b
             slope += own.shape_slope[step, node, i, s] * a + own.shape_slope[step, node, i, 3 + s] * b
+        value += slope * moved[7]
         found[i, 0], found[i, 1], found[i, 2], found[i, 3], found[i, 4] = value, slope, 0.0, value, slope
     if corners:
         add_corners(delta, step, node, moved, own, k, kind, found)
@@ -170,7 +173,7 @@ def add_corners(
         if k[i] <= 0.0:
             continue
         found[i, 0], found[i, 1], found[i, 2] = found[i, 3], found[i, 4], 0.0
-        ends, xi = own.ends[kind[i]], own.place[step, node, i]
+        ends, xi = own.ends[kind[i]], own.place[step, node, i] + moved[7]
         early = ends[0] - xi + half + ends[4] * moved[3]
         late = xi - ends[1] + half + ends[3] * moved[4]
         line = ends[2] + length
@@ -279,7 +282,7 @@ def static_cycles(
     approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
     sums = np.zeros((cycles, steps, nodes, 14))
     loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(7)
+    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(8)
     static = 0.0
     for c in range(cycles):
         for s in range(steps):
@@ -357,7 +360,7 @@ def motion_cycles(
     x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
     power = np.zeros(4)
     loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(7)
+    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(8)
     normal = np.zeros(pairs)
     row = 0
     for c in range(cycles):

@@ -19,7 +19,7 @@ from lumped.model.steady import balanced_start, periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import OwnMotion, ripples, static_mesh
+from lumped.teeth.motion import OwnMotion, moments, ripples, static_mesh, swinging, without_drift
 from lumped.typing import FloatArray
 
 #: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-7 of that vibration.
@@ -47,6 +47,8 @@ class LinearForm:
         self.pair, self.system = pair, system
         self.laws, self.fixed = Laws(pair), pair.mesh.contact != "loaded"
         self.own = tables(self.laws, 1.0 / steps, samples, gauss_tableau(STAGES)[2])
+        if system.form == "full":
+            self.own = swinging(self.own, system)
         self.lengths = np.diff(self.own.edges) * system.period
         torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
         self.extra = padded(system, torques)
@@ -60,8 +62,8 @@ class LinearForm:
 
     def step_maps(self, first: int, sums: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Maps of the steps of a block, and to delta and its rate inside, as ``model.propagation.Steps``."""
-        system, s = self.system, self.system.structure
-        by_load = system.per_load[0] + sums[..., 9:11] @ (system.reduction[:, :2] / s.mass[:2]).T
+        system = self.system
+        by_load = system.per_load[0] + sums[..., 9:11] @ moments(system)
         gains = [
             sums[..., n : n + 1] * by_load + sums[..., n + 1 : n + 3] @ system.per_load[1:] for n in (0, 3, 6)
         ]
@@ -117,7 +119,8 @@ def linear_motion(
     other = states_along(coarse.cycle_maps(), start, weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
     states, powers = _inside(form, mesh, cycles, weights)
-    outer = tables(form.laws, 1.0, samples)
+    states = without_drift(system, np.arange(states.shape[0]) / samples * system.period, states, 0.0)
+    outer = swinging(tables(form.laws, 1.0, samples), system)
     each = static_mesh(outer, 0, outer.period, form.fixed)[1][..., np.flatnonzero(outer.outputs)]
     _, rise, damper, constant = each.reshape(4, outer.ahead.size, -1)
     load = rise * (states[:, :m] @ dte) + damper * (states[:, m:] @ dte) + constant

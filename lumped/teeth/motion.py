@@ -150,13 +150,13 @@ def push_motion(
     laws = Laws(pair)
     steps = steps_of(system) if steps is None else steps
     settling = _settling(twin.spectral_radius)
-    state, brake = twin.states[0].copy(), twin.brake_torque
+    state, driving, brake = twin.states[0].copy(), twin.pinion_torque, twin.brake_torque
     weights = system.held.common_weights
     m = weights.size
     coarse = np.zeros(0)
     for part in (4, 1):
-        own = tables(laws, part / steps, samples, (0.0, 0.5, 1.0))
-        torques = system.pinion_torque * system.torque_pinion + brake * system.torque_gear
+        own = swinging(tables(laws, part / steps, samples, (0.0, 0.5, 1.0)), system)
+        torques = driving * system.torque_pinion + brake * system.torque_gear
         states, load, end, work = run(
             pair,
             own,
@@ -174,7 +174,10 @@ def push_motion(
             )
         duration = own.period * system.period
         drift = float(weights @ (end - states[0])[m:]) / duration
-        brake -= drift / float(weights @ system.torque_gear[m:])
+        if pair.operating.brake_torque == "balanced":
+            brake -= drift / float(weights @ system.torque_gear[m:])
+        else:
+            driving -= drift / float(weights @ system.torque_pinion[m:])
         # The common rotation has no mean rate of its own: nominal speed is mean speed.
         common = system.held.common / float(weights @ system.held.common)
         until = (settling + 0.5 * own.period) * system.period  # to the middle of the record
@@ -194,7 +197,7 @@ def push_motion(
     work /= duration
     # Sliding at nominal speed: without what a rate of the common rotation that is left adds.
     rates = system.gears[:2] @ (end - states[0])[:m] / duration
-    work[0] -= system.pinion_torque * rates[0] - brake * rates[1]
+    work[0] -= driving * rates[0] - brake * rates[1]
     states = without_drift(system, time, states, drift)
     powers = {"sliding": work[0], "tooth_dampers": work[1], "supports": work[2], "rolling": work[1] - work[3]}
     named = {name: float(value) for name, value in powers.items()}
@@ -207,7 +210,7 @@ def push_motion(
         time,
         states,
         load,
-        system.pinion_torque,
+        driving,
         brake,
         named,
         closed,
@@ -216,8 +219,27 @@ def push_motion(
     )
 
 
+def moments(system: LTVSystem) -> FloatArray:
+    """Accelerations (2, m) of z per unit moment on pinion and gear."""
+    return np.asarray((system.reduction[:, :2] / system.structure.mass[:2]).T, dtype=np.float64)
+
+
+def swinging(own: Tables, system: LTVSystem) -> Tables:
+    """Tables whose contact follows the common rotation as the moments of eccentric gears swing it.
+
+    ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2.
+    """
+    g, held = system.pair.geometry, system.held
+    theta = system.gears[:2] @ held.common / float(held.common_weights @ held.common)
+    way = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
+    omega = np.array([g.omega_pinion, g.omega_gear])
+    eccentric = own.eccentric.copy()
+    eccentric[:, 5] = way * own.constants[0] * (moments(system) @ held.common_weights) / omega**2
+    return own._replace(eccentric=eccentric)
+
+
 def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift: float) -> FloatArray:
-    """States without the acceleration of the common rotation that steps leave, and without its mean rate."""
+    """States without the acceleration of the common rotation that steps leave, its mean rate and mean."""
     held, m = system.held, len(system.coordinates)
     scale = float(held.common_weights @ held.common)
     common = states[:, :m] @ held.common_weights / scale
@@ -225,7 +247,8 @@ def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift
     acceleration = drift / scale
     slope = rate.mean() - acceleration * time.mean()
     states = states.copy()
-    states[:, :m] -= np.outer(common[0] + slope * time + 0.5 * acceleration * time**2, held.common)
+    line = slope * time + 0.5 * acceleration * time**2
+    states[:, :m] -= np.outer((common - line).mean() + line, held.common)
     states[:, m:] -= np.outer(slope + acceleration * time, held.common)
     return states
 
@@ -242,8 +265,7 @@ def run(
     torques: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """``kernels.motion_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
-    g, s, m = system.pair.geometry, system.structure, len(system.coordinates)
-    moments = (system.reduction[:, :2] / s.mass[:2]).T
+    g, m = system.pair.geometry, len(system.coordinates)
     rates = system.gears
     sliding = np.zeros((3, m + 1))
     sliding[0, :m], sliding[1, :m], sliding[2, :m] = rates[0], rates[1], rates[4] - rates[5]
@@ -258,7 +280,7 @@ def run(
         np.ascontiguousarray(system.constant[m:]),
         np.ascontiguousarray(system.deflection),
         np.ascontiguousarray(system.per_load),
-        np.ascontiguousarray(moments),
+        np.ascontiguousarray(moments(system)),
         np.ascontiguousarray(torques[m:]),
         ripples(pair),
         np.stack([system.torque_pinion[m:], system.torque_gear[m:]]),

@@ -20,6 +20,7 @@ from lumped.model.steady import UNSTABLE, periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from multibody.contact.machine import machine
+from multibody.contact.own_teeth import block
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
 from validation.cross_check.conservation import conservation
 from validation.cross_check.motions import (
@@ -29,6 +30,7 @@ from validation.cross_check.motions import (
     repeated,
     unilateral_orbit,
 )
+from validation.cross_check.own_teeth import both_motions
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit_of
 
@@ -47,7 +49,7 @@ class CrossCheck:
 
     Attributes
     ----------
-    pair : the gear pair
+    pair : the gear pair; of teeth that differ counted from the first tooth of the cycles that were run
     agreements : one per quantity and fidelity
     lumped : dataset of the lumped model
     multibody : fidelity -> dataset of the multibody model, at the same times
@@ -126,7 +128,9 @@ def crosscheck(
 
     Parameters
     ----------
-    pair : a validated gear pair; of teeth that differ the twin with like teeth
+    pair : a validated gear pair. Of teeth that differ "exact" compares both models over a revolution of up to
+        64 mesh cycles, else over 6 round the tooth with the largest load; the same equations and the
+        conservation laws are those of the twin with like teeth
     cycles : mesh cycles to simulate, 6 to 100000
     samples_per_cycle : output times per mesh cycle, at least 32; more are compared where the fastest mode
         swings so fast that these would not show it
@@ -142,7 +146,7 @@ def crosscheck(
 
     Raises
     ------
-    ParameterError : arguments out of range
+    ParameterError : arguments out of range, or faults of teeth, which the multibody model does not have
     NumericalError : a model fails; the text says what to try
     """
     whole_number("cycles", cycles, 6, 100_000)
@@ -151,7 +155,10 @@ def crosscheck(
     chosen = some_of("fidelities", fidelities, FIDELITIES)
     if not chosen or len(set(chosen)) != len(chosen):
         raise refuse("fidelities", ", ".join(chosen), "at least one, each once", "Correct the list.")
-    pair = load_gear_pair(pair).healthy
+    given = load_gear_pair(pair)
+    pair = given.healthy
+    if "exact" in chosen:
+        block(given)  # refuses what the multibody model does not have
     other = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
     share = 0.75 if other is not None else 1.0
 
@@ -163,6 +170,8 @@ def crosscheck(
         return tell
 
     found = _compared(pair, cycles, samples_per_cycle, fidelities, limit, told(0.0, share))
+    if given is not pair:
+        found = _with_own_teeth(found, given, samples_per_cycle, limit)
     if other is None:
         return found
     try:
@@ -172,6 +181,27 @@ def crosscheck(
         )
     except SpurcheckError:  # a model refuses the variant or cannot compute it
         return found
+
+
+def _with_own_teeth(found: CrossCheck, pair: GearPair, samples: int, limit: float) -> CrossCheck:
+    """The cross-check of the twin with like teeth, its "exact" replaced by that of the pair itself."""
+    if "exact" not in found.multibody:
+        return replace(found, pair=pair)
+    pair, reference, exact = both_motions(pair, samples)
+    agreements = [
+        agreement(pair, quantity, "exact", exact, reference, limit_of(quantity, "exact", limit))
+        for quantity in QUANTITIES
+    ]
+    return replace(
+        found,
+        pair=pair,
+        agreements=(*found.of("linear"), *agreements),
+        lumped=reference,
+        multibody={**found.multibody, "exact": exact},
+        periodic=True,
+        orbit=None,
+        pulling="",
+    )
 
 
 def _compared(

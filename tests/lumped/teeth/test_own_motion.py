@@ -147,10 +147,10 @@ class TestEccentricGears:
         for which, u in enumerate(
             (eps * np.array([-np.cos(turn), np.sin(turn)]), -eps * np.array([np.cos(turn), np.sin(turn)]))
         ):
-            rows = np.zeros((2, 5))
+            rows = np.zeros((2, 6))
             rows[:, 2] = 25, 31
-            rows[which] = eps, turn, rows[which, 2], g.L_XY, 1.0 / np.tan(g.operating_pressure_angle)
-            found = np.zeros(7)
+            rows[which] = eps, turn, rows[which, 2], g.L_XY, 1.0 / np.tan(g.operating_pressure_angle), 0.0
+            found = np.zeros(8)
             kernels.eccentric_at(0.0, rows, found)
             length, angle = line(u)
             assert found[2] == pytest.approx(length - g.L_XY, rel=1e-5)
@@ -182,7 +182,8 @@ class TestEccentricGears:
             orders = 2.0 * np.abs(np.fft.rfft(te)) / te.size
             assert orders[1] == pytest.approx(20e-6, rel=0.02)
             side[name] = orders[[27, 29]].max()
-        assert side["steps"] > 8.0 * side["turning"]
+        # The moment of the eccentric gear swings the free train too, which adds to the sidebands.
+        assert side["steps"] > 5.0 * side["turning"]
         assert side["harmonic"] < 1.2 * side["turning"]
 
 

@@ -1,13 +1,11 @@
-"""Do gears whose teeth differ move in the multibody model as in the lumped one, and keep the first law?"""
+"""Do gears whose teeth differ keep the first law in the multibody model, and is refused what it has not?"""
 
 import numpy as np
 import pytest
 
 import lumped
 import multibody
-from lumped.teeth.motion import push_motion
 
-CYCLES, SAMPLES = 14, 16
 ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
 OWN = {
     "pinion.deviations": {"index": ERRORS, "first_order": "steps"},
@@ -19,40 +17,9 @@ OWN = {
 
 @pytest.fixture(scope="module")
 def pair():
-    """A quarter of the torque, for what finite motion changes falls with its square."""
     changes = {"mesh.contact": "loaded", "mesh.relief": "ignored", "operating.pinion_torque": 14.0}
     changes |= {"operating.pinion_speed": 1450, "friction.law": "coulomb", "friction.coefficient": 0.0}
     return lumped.load_gear_pair("nasa_28_28").with_(changes)
-
-
-@pytest.fixture(scope="module")
-def both(pair):
-    """Function: DTE over the last 8 cycles of multibody and lumped model, in um."""
-
-    def of(changes):
-        own = pair.with_(changes)
-        run = multibody.simulate(own, CYCLES, initial="periodic", samples_per_cycle=SAMPLES)
-        lump = push_motion(own, SAMPLES)
-        dte = lump.states[:, :6] @ lump.system.structure.deflection
-        part = slice(6 * SAMPLES, CYCLES * SAMPLES)
-        return run.dte.values[part] * 1e6, dte[part] * 1e6
-
-    return of
-
-
-@pytest.mark.parametrize(
-    "changes", [OWN, {**OWN, "mesh.first_teeth": [5, 24]}], ids=["first teeth 1, 1", "first teeth 5, 24"]
-)
-def test_both_models_move_alike(both, changes):
-    exact, lump = both(changes)
-    # Finite rotations alone make 3 per cent of the swing here; another tooth or sign would make 30.
-    assert np.abs(exact - lump).max() < 0.03 * np.ptp(lump)
-
-
-def test_other_teeth_would_be_seen(both):
-    exact, lump = both(OWN)
-    other = both({**OWN, "mesh.first_teeth": [2, 1]})[1]
-    assert np.abs(exact - other).max() > 0.1 * np.ptp(lump)
 
 
 def test_first_law_holds_with_own_gaps_and_eccentric_base_circles(pair):

@@ -1,0 +1,65 @@
+"""Do teeth that differ move alike in both models, round the worst tooth and with every tooth at its place?"""
+
+import numpy as np
+import pytest
+
+import lumped
+import validation
+from validation.cross_check import own_teeth
+from validation.cross_check.verdict import Verdict
+
+ERRORS = np.round(4.0 * np.sin(2.1 * np.arange(28)) + 2.5 * np.cos(5.3 * np.arange(28)), 3)
+
+
+def own(size, **more):
+    lists = {"pinion": ERRORS, "gear": ERRORS[::-1]}
+    changes = {f"{g}.deviations": {"index": list(size * e), "first_order": "steps"} for g, e in lists.items()}
+    mounted = {"pinion.mounting": {"eccentricity": 12 * size, "phase": 70}}
+    mounted |= {"gear.mounting": {"eccentricity": 16 * size}}
+    return changes | mounted | {"operating.pinion_torque": 56.0 * size, **more}
+
+
+@pytest.fixture(scope="module")
+def difference():
+    """Function: largest difference of the DTE over its peak to peak; a window though the period is short."""
+    changes = {"mesh.contact": "loaded", "mesh.relief": "ignored", "operating.pinion_speed": 1450}
+    pair = lumped.load_gear_pair("nasa_28_28").with_(changes)
+
+    def of(changes):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(own_teeth, "_WHOLE", 8)
+            _, lump, exact = own_teeth.both_motions(pair.with_(changes), 16)
+        assert lump.sizes["time"] == exact.sizes["time"] == 6 * 16 + 1
+        a, b = exact.dte.values, lump.dte.values
+        return np.abs(a - b).max() / np.ptp(b)
+
+    return of
+
+
+@pytest.mark.parametrize("more", [{}, {"mesh.first_teeth": [5, 24], "friction.coefficient": 0.0}], ids=str)
+def test_both_models_move_alike(difference, more):
+    # Finite rotations make 0.3 % of the swing; another tooth 10, a free train that does not swing 4.
+    assert difference(own(1.0, **more)) < 0.01
+
+
+def test_the_window_is_round_the_tooth_that_carries_most():
+    one = np.zeros(41)
+    one[16] = 30.0  # a flank of the driven gear further along the count comes early, and carries more
+    changes = {"gear.teeth": 41, "centre_distance": None, "mesh.relief": "ignored"}
+    pair = lumped.load_gear_pair("nasa_28_28").with_(changes)
+    early = pair.with_({"gear.deviations": {"index": list(one), "first_order": "steps"}})
+    assert abs(own_teeth.worst_cycle(early) - 16) <= 1
+
+
+def test_verdict_is_that_of_the_pair_itself_and_what_multibody_lacks_is_refused(difference):
+    pair = lumped.load_gear_pair("nasa_28_28").with_({"operating.pinion_speed": 1450})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(own_teeth, "_WHOLE", 8)
+        check = validation.crosscheck(pair.with_(own(1.0)), cycles=6, samples_per_cycle=32, variant=False)
+    assert check.verdict in (Verdict.AGREES, Verdict.DIFFERS)
+    dte = next(a for a in check.of("exact") if a.quantity == "dte")
+    assert dte.within
+    assert dte.peak_to_peak > 25e-6  # the like teeth of the twin make 12
+    assert not check.failures
+    with pytest.raises(lumped.ParameterError, match=r"pinion\.faults"):
+        validation.crosscheck(pair.with_({"pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 1}]}))
