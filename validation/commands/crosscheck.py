@@ -162,11 +162,10 @@ def _write(check: CrossCheck, target: Path, force: bool) -> None:
     if target.suffix.lower() == ".json":
         write_text(target, json.dumps(_data(check), indent=1, allow_nan=False) + "\n", new=not force)
         return
-    from validation.plots.models import cross_check_figure
+    from validation.plots.motion import cross_check_figure
     from validation.plots.style import save
 
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
-    save(
-        cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), target, new=not force
-    )
+    figure = cross_check_figure(check.pair.geometry, check.lumped, models, keep)
+    save(figure, target, new=not force)

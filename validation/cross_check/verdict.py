@@ -34,15 +34,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Judgement:
-    """A value against its limit.
-
-    Attributes
-    ----------
-    check : what is judged, as "same equations: dte", "conservation: efficiency, lumped", "variant: ..."
-    value : what was found
-    limit : largest value that passes
-    reason : why this limit
-    """
+    """A value against the largest one that passes; ``check`` is as "variant: same equations: dte"."""
 
     check: str
     value: float

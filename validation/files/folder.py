@@ -28,14 +28,7 @@ CONTENTS = "contents.json"
 
 @dataclass(frozen=True)
 class Kind:
-    """What a folder holds.
-
-    Attributes
-    ----------
-    file : JSON file that every folder of this kind has
-    format : its value of "format"
-    noun : for messages
-    """
+    """What a folder holds: the JSON file that each has, its value of "format", and a noun."""
 
     file: str
     format: str

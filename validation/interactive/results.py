@@ -45,16 +45,10 @@ SAMPLES, _MOST = 48, 60
 
 @dataclass(frozen=True)
 class Sampling:
-    """How finely the page samples.
+    """How finely the page samples: nodes of its charts, speeds of the response, and of the jump map.
 
-    Attributes
-    ----------
-    speeds, dampings : nodes of the stability charts
-    slices : values of their third parameter
-    sweep_speeds : of the response over speed, at most
-    branches : slowest and fastest speed of the motions beyond contact loss, over the operating speed; None:
-        without them
-    jumps : torques and speeds of the jump map
+    ``branches`` are the slowest and fastest speed of the motions beyond contact loss over the operating
+    speed; None: without them.
     """
 
     speeds: int = 101
@@ -73,14 +67,10 @@ FINE = Sampling()
 
 @dataclass(frozen=True, eq=False)
 class Slices:
-    """Stability charts over speed and damping at several values of a third parameter.
+    """Stability charts over speed and damping at several values of a third parameter, ``key``.
 
-    Attributes
-    ----------
-    key : name of the third parameter
-    own : index of the value that the pair itself has
-    chart : spectral_radius and verdict over (key, damping_ratio, speed_rpm)
-    tongues : for each value the unstable regions, the largest first
+    ``own`` is the index of the pair's own value; ``chart`` has spectral_radius and verdict over (key,
+    damping_ratio, speed_rpm); ``tongues`` the unstable regions of each value, the largest first.
     """
 
     key: str

@@ -1,19 +1,22 @@
-"""Motion in time, by mesh order and over speed; measured points beside it."""
+"""Motion in time and over speed; the multibody model and measured points beside it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from lumped import Geometry
 from lumped.model.steady import UNSTABLE
 from validation.plots.style import (
+    BLACK,
     BLUE,
+    DASHES,
     GREY,
     LINES,
     RED,
@@ -25,6 +28,9 @@ from validation.plots.style import (
     new_figure,
     scale_y,
 )
+
+#: Mesh cycles of both models that are shown.
+_SHOWN_CYCLES = 2
 
 
 def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
@@ -110,4 +116,35 @@ def overlay_figure(points: xr.Dataset) -> Figure:
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.set(xlim=(0.0, float(np.ceil(10 * x[-1]) / 10)), xlabel="mesh cycles since the pair was at A")
     legend_outside(figure, panels[0].get_legend_handles_labels()[0], 2)
+    return figure
+
+
+def cross_check_figure(
+    g: Geometry, reference: xr.Dataset, others: Mapping[str, xr.Dataset], keep: NDArray[np.bool_]
+) -> Figure:
+    """Transmission error of all models over the last mesh cycles, and the differences to the lumped one.
+
+    ``others``: fidelity -> multibody motion at the times of ``reference``; ``keep``: which times lie off the
+    switches. The others belong to either side of a jump, so no difference is drawn.
+    """
+    figure, axes = new_figure(2, 1, height=3.9, sharex=True, height_ratios=(1.6, 1.0))
+    top, bottom = axes[:, 0]
+    time = reference["time"].to_numpy()
+    shown = time >= time[-1] - (_SHOWN_CYCLES + 1e-9) * g.mesh_period
+    x, base = (time[shown] - time[shown][0]) / g.mesh_period, reference["dte"].to_numpy()[shown]
+    factor = scale_y(top, "transmission error", "m", base)
+    top.plot(x, base / factor, color=BLACK, linewidth=2.6, alpha=0.35, label="lumped")
+    colours, dashes = {"linear": BLUE, "exact": RED}, {"linear": DASHES[2], "exact": DASHES[0]}
+    for name, result in others.items():
+        look_of: dict[str, Any] = {"color": colours[name], "linestyle": dashes[name], "linewidth": 1.2}
+        top.plot(x, result["dte"].to_numpy()[shown] / factor, **look_of, label=f"multibody {name}")
+    # The linear difference is integration error, nine decades down: it is a number in the table, not a curve.
+    drawn = [name for name in others if name != "linear"] or list(others)
+    off = [np.where(keep[shown], others[name]["dte"].to_numpy()[shown] - base, np.nan) for name in drawn]
+    factor = scale_y(bottom, f"{' and '.join(drawn)} -\nlumped", "m", *off)
+    for name, difference in zip(drawn, off, strict=True):
+        bottom.plot(x, difference / factor, color=colours[name], linewidth=1.0)
+    bottom.axhline(0.0, color=BLACK, linewidth=0.5)
+    bottom.set(xlabel="time, last cycles of the run [mesh cycles]", xlim=(0.0, _SHOWN_CYCLES))
+    legend_above(top, 1 + len(others))
     return figure

@@ -56,14 +56,9 @@ class Known(Protocol):
 
 @dataclass(frozen=True)
 class Row:
-    """One error of the prediction.
+    """One error of the prediction: its sizes of ``COLUMNS`` [m, 1, N], NaN where they are not known.
 
-    Attributes
-    ----------
-    key, name : stable name, and words
-    kind : "numerics", "form", "inputs" or "measurement"
-    sizes : of the quantities of ``COLUMNS`` [m, 1, N]; NaN where they are not known
-    note : what it is, or why it is not known
+    ``kind`` is "numerics", "form", "inputs" or "measurement"; ``note`` what it is, or why it is not known.
     """
 
     key: str

@@ -32,16 +32,9 @@ _CHOICES: Mapping[str, tuple[str, ...]] = {"friction.law": tuple(LAWS), "mesh.st
 
 @dataclass(frozen=True)
 class Input:
-    """One value that is not known exactly.
+    """One value that is not known exactly: ends of its range in file units, NaN where it has ``choices``.
 
-    Attributes
-    ----------
-    field : dotted path in the parameter file
-    low, high : ends of its range, in file units; NaN for a choice
-    choices : what it may be instead; empty for a range
-    unit : of the ends
-    written : the spread as the file or the default states it
-    reason : why so far: the default's reason, or that the file states it
+    ``written`` is the spread as the file or the default states it, ``reason`` why so far.
     """
 
     field: str

@@ -61,16 +61,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Table:
-    """A table.
-
-    Attributes
-    ----------
-    key : name in report.json, and of its CSV file
-    caption : what it shows
-    columns : name in report.json -> heading
-    rows : cells, one per column
-    note : remark below
-    """
+    """A table; ``key`` names it in report.json and its CSV file, ``columns`` are name -> heading."""
 
     key: str
     caption: str
@@ -104,15 +95,7 @@ def quantities(key: str, caption: str, *rows: tuple[str, float, str] | tuple[str
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of one dataset.
-
-    Attributes
-    ----------
-    key : file name without suffix, and name in report.json
-    caption : what it shows and what to see in it
-    data : what is drawn; it is written as CSV beside the figure
-    draw : makes the figure from the dataset
-    """
+    """A figure of one dataset, which is written as CSV beside it; ``key`` names both."""
 
     key: str
     caption: str
@@ -137,13 +120,7 @@ Block = Text | Table | Picture
 
 @dataclass(frozen=True)
 class Content:
-    """What a chapter says about one gear pair.
-
-    Attributes
-    ----------
-    result : its result in one sentence
-    blocks : in order
-    """
+    """What a chapter says about one gear pair: its result in one sentence, then blocks."""
 
     result: str
     blocks: tuple[Block, ...]

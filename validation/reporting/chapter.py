@@ -11,14 +11,10 @@ from validation.reporting.results import Results
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter of the report.
+    """A chapter of the report; ``write`` gives None where the report leaves it out.
 
-    Attributes
-    ----------
-    key : anchor in the page and name in report.json
-    title : heading
-    write : computes what the chapter alone needs and writes it; None where the report leaves the chapter out
-    seconds : about how long that takes in a full report, for the progress bar [s]
+    ``key`` is its anchor and its name in report.json; ``seconds`` about what it takes, for the progress bar
+    [s].
     """
 
     key: str

@@ -10,7 +10,7 @@ import xarray as xr
 from floquet.gear.response import ResponseBranches
 from lumped.labelling import Variable, labelled_dataset
 from lumped.outcomes import Absent
-from validation.plots.histories import cycle_figure
+from validation.plots.axes import cycle_figure
 from validation.plots.prediction import SMALL, orders_figure, over_speed_figure, swings_figure
 from validation.reporting.blocks import Picture
 from validation.reporting.chapters.contact_loss import linear_over_speed, motions

@@ -30,15 +30,7 @@ _RANK = {verdict.name: rank for rank, verdict in enumerate(Verdict)}
 
 @dataclass(frozen=True)
 class Change:
-    """One difference between two reports.
-
-    Attributes
-    ----------
-    path : place in report.json
-    old, new : values as text
-    size : relative change of a number; 0 for anything else
-    fails : whether it is past its tolerance
-    """
+    """One difference between two reports, as texts; the relative change of a number, and whether it fails."""
 
     path: str
     old: str
@@ -53,14 +45,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two reports beside each other.
-
-    Attributes
-    ----------
-    old_name : gear pair of the earlier report
-    compared : number of values compared
-    changes : differences, those that fail first, numbers by size
-    """
+    """Two reports beside each other: how many values were compared, the changes, those that fail first."""
 
     old_name: str
     compared: int

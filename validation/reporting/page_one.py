@@ -50,15 +50,9 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Number:
-    """One row of the table of page 1.
+    """One row of the table of page 1: the result in SI, 5 and 95 % of the samples, by the second program.
 
-    Attributes
-    ----------
-    key, label : stable name, and words
-    value, unit : the result, SI; "1" for a ratio, "rpm" for a distance of speeds
-    low, high : 5 and 95 % of the samples; NaN where the inputs were not varied
-    second : by the second program; NaN where it was not computed
-    note : beside the label
+    NaN is what was not computed; the unit is "1" for a ratio, "rpm" for a distance of speeds.
     """
 
     key: str
@@ -107,20 +101,7 @@ class Action:
 
 @dataclass(frozen=True)
 class PageOne:
-    """What the first page says.
-
-    Attributes
-    ----------
-    title : of the pair, in one line
-    verdict, headline : the verdict, and its words
-    reason : one or two sentences
-    numbers : six rows
-    actions : at most three
-    sure : how sure, one line each
-    remark : below the table; may be empty
-    not_modelled : what the numbers leave out
-    warnings : values that hardly can be meant
-    """
+    """What the first page says, in its order."""
 
     title: str
     verdict: Verdict

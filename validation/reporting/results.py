@@ -50,16 +50,9 @@ _SAMPLES = 512
 
 @dataclass(frozen=True)
 class Effort:
-    """How finely the report samples.
+    """How finely the report samples: inputs (0: not varied), speeds of each curve, nodes of the chart.
 
-    Attributes
-    ----------
-    samples : of the uncertain inputs; 0: they are not varied
-    band_samples, band_speeds : of the range over speed
-    sweep_speeds : of the response over speed, at most
-    chart_speeds, chart_dampings : nodes of the stability chart
-    orders_speeds : of the map of orders over speed
-    full : whether the budget has finite elements, and motions beyond contact loss are followed over speed
+    ``full``: the budget has finite elements, and motions beyond contact loss are followed over speed.
     """
 
     samples: int

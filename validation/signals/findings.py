@@ -29,17 +29,7 @@ GEARS: tuple[Gear, Gear] = ("pinion", "gear")
 
 
 class TeethFindings:
-    """Motion of a pair whose teeth differ, and of its twin with like teeth.
-
-    Parameters
-    ----------
-    pair : with deviations, an eccentric mounting, faults, or a torque ripple
-
-    Raises
-    ------
-    ParameterError : a pair whose teeth are alike
-    NumericalError : no motion repeats with the teeth
-    """
+    """Motion of a pair whose teeth differ, and of its twin with like teeth; refused where teeth are alike."""
 
     def __init__(self, pair: GearPair) -> None:
         if pair.healthy is pair:

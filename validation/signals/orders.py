@@ -29,15 +29,7 @@ _WHOLE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Harmonics:
-    """Fourier components of one variable over whole mesh cycles.
-
-    Attributes
-    ----------
-    pair : that made the result
-    cycles : mesh cycles of the result
-    values : complex amplitudes at j/``cycles`` of the mesh frequency, j = 0, 1, ...
-    unit, words : of the values
-    """
+    """Complex amplitudes of one variable at j/``cycles`` of the mesh frequency, over whole mesh cycles."""
 
     pair: GearPair
     cycles: int

@@ -53,13 +53,7 @@ class Settings(Section):
 
 @dataclass(frozen=True)
 class Analysis:
-    """One analysis.
-
-    Attributes
-    ----------
-    compute : the varied pair and the settings to the outputs
-    outputs : name -> (unit, plain name); all are plain numbers
-    """
+    """What is computed of a varied pair and settings; name -> (unit, plain name) of its numbers."""
 
     compute: Callable[[GearVariation, Settings], Values]
     outputs: Labels

@@ -117,10 +117,8 @@ class Table:
 class Store:
     """The store of cases in a folder, opened for adding; its lock keeps others out.
 
-    Raises
-    ------
-    ParameterError : it belongs to other cases, or other code began it
-    StoreError : it cannot be used, is damaged, or another process writes to it
+    Refused is one of other cases, or that other code began; a StoreError says that it cannot be used, is
+    damaged, or another process writes to it.
     """
 
     def __init__(self, folder: Path, cases: CaseList) -> None:

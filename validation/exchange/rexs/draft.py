@@ -28,16 +28,7 @@ class Reading(NamedTuple):
 
 @dataclass
 class Draft:
-    """Collector of one import.
-
-    Attributes
-    ----------
-    model : the file
-    values : field path -> value in file units
-    sources : field path -> component and attribute
-    notes : what a user should know about the import
-    problems : what makes it impossible
-    """
+    """Collector of one import: values in file units and their places in the file by path of the field."""
 
     model: RexsModel
     values: dict[str, Any] = field(default_factory=dict)

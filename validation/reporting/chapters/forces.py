@@ -10,7 +10,7 @@ import xarray as xr
 from lumped.labelling import Variable, labelled_dataset
 from lumped.path_of_contact import contact_path
 from validation.files.formatting import number, quantity
-from validation.plots.histories import cycle_figure, two_panels_figure
+from validation.plots.axes import cycle_figure, two_panels_figure
 from validation.reporting.blocks import Content, Picture, quantities
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results

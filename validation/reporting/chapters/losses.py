@@ -12,7 +12,7 @@ from lumped.losses import iso_14179_mesh_loss, losses_of_laws
 from lumped.outcomes import Absent
 from lumped.path_of_contact import contact_path, friction_profile
 from validation.files.formatting import number, quantity
-from validation.plots.histories import losses_figure
+from validation.plots.axes import losses_figure
 from validation.reporting.blocks import Block, Content, Picture, Text, quantities
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results

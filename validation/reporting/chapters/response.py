@@ -9,7 +9,7 @@ import numpy as np
 from lumped.labelling import labelled_dataset
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from validation.files.formatting import quantity
-from validation.plots.histories import cycle_figure
+from validation.plots.axes import cycle_figure
 from validation.plots.maps import orders_map_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Table, Text, quantities
 from validation.reporting.chapter import Chapter
