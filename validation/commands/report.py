@@ -63,6 +63,12 @@ def report(
     speed_range: opt.Range = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
+    supports: Annotated[
+        opt.SupportsName | None,
+        typer.Option(
+            "--supports", help="springs: leave shafts out. Default: shafts where they are given."
+        ),
+    ] = None,
     force: opt.ForceFolder = False,
 ) -> None:
     """Write the verification report of a gear pair.
@@ -87,6 +93,10 @@ def report(
     required = some_of("--require", require or (), _REQUIRE)
     check_target(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range, own_teeth=True)
+    if supports is not None:
+        opt.check_supports(gear_pair, supports)
+    if supports == "springs" and gear_pair.shafts is not None:
+        gear_pair = gear_pair.with_(shafts=None)
     with progress_bar("report") as bar, compiling(bar) as tell:
         written = write(
             gear_pair,

@@ -153,7 +153,7 @@ def asked(monkeypatch):
     return told
 
 
-def test_options_reach_the_report(asked, tmp_path):
+def test_options_reach_the_report(asked, tmp_path, shafted_file):
     out, old = tmp_path / "out", tmp_path / "old"
     options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--tolerance", "0.01")
     result = run("report", "fzg_c", "-o", out, *options, "--compare", old)
@@ -163,6 +163,9 @@ def test_options_reach_the_report(asked, tmp_path):
     assert asked["pair"].operating.pinion_speed == pytest.approx(100 * math.pi)
     expected = {"out": out, "quick": True, "compare": old, "tolerance": 0.01, "force": False, "name": "fzg_c"}
     assert asked | expected == asked
+    for supports in ((), ("--supports", "springs")):
+        assert run("report", shafted_file, "-o", out, *supports).exit_code == 0
+        assert (asked["pair"].shafts is None) == bool(supports)
 
 
 @pytest.mark.parametrize("bad", [(), ("conservation: efficiency, lumped",)])
