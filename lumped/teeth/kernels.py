@@ -190,6 +190,21 @@ def add_corners(
 
 
 @compiled
+def tilt_of(delta: float, xi: float, ends: FloatArray, moved: FloatArray, longer: float) -> float:
+    """Tilt of the pair at xi at the approach ``delta``, as of ``corner_at``; 0 where no corner is beyond."""
+    half, length = 0.5 * (delta + longer), longer + moved[2]
+    xi += moved[7]
+    early = ends[0] - xi + half + ends[4] * moved[3]
+    late = xi - ends[1] + half + ends[3] * moved[4]
+    line, tilt = ends[2] + length, 0.0
+    if early > 0.0:
+        tilt += corner_at(early, ends[0] + length, line, ends[3], ends[4])[1]
+    if late > 0.0:
+        tilt += corner_at(late, line - ends[1], line, ends[4], ends[3])[1]
+    return tilt
+
+
+@compiled
 def carried(
     delta: float,
     k: FloatArray,
@@ -274,13 +289,14 @@ def static_cycles(
     approach : (cycles, steps, nodes) static approach [m]
     each : (4, pairs, cycles, steps) of every place at the first node of each step: static load [N], then the
         load of small motions, rise delta + damper delta' + constant
-    sums : (cycles, steps, nodes, 14) of N, mu N and mu N xi by delta, by delta', and without motion; then
-        de/dtheta of both gears; then what dampers take, by delta'^2, delta' and without motion
+    sums : (cycles, steps, nodes, 17) of N, mu N and mu N xi by delta, by delta', and without motion; then
+        de/dtheta of both gears; then what dampers take, by delta'^2, delta' and without motion; then the
+        force of tip corners that pushes the gears apart, by delta, by delta' and without motion
     ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
     """
     steps, nodes, pairs = own.edges.size - 1, own.nodes.size, own.ahead.size
     approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
-    sums = np.zeros((cycles, steps, nodes, 14))
+    sums = np.zeros((cycles, steps, nodes, 17))
     loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
     k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(8)
     static = 0.0
@@ -310,11 +326,14 @@ def static_cycles(
                     c_i = own.damping[kind[i], s, node, i] * part
                     closing, rolling = 1.0 - gaps[i, 2], gaps[i, 1] * own.speed + moved[1] / own.duration
                     load -= c_i * rolling
-                    mu, xi = own.friction[s, node, i], own.place[s, node, i]
-                    for column, value in ((0, rise), (3, c_i * closing), (6, load)):
-                        row[column] += value
-                        row[column + 1] += mu * value
-                        row[column + 2] += mu * value * xi
+                    mu, xi, tilt = own.friction[s, node, i], own.place[s, node, i], 0.0
+                    if not fixed:
+                        tilt = tilt_of(static, xi, own.ends[kind[i]], moved, own.constants[1])
+                    for n, value in ((0, rise), (1, c_i * closing), (2, load)):
+                        row[3 * n] += value
+                        row[3 * n + 1] += mu * value
+                        row[3 * n + 2] += mu * value * xi
+                        row[14 + n] += tilt * value
                     row[11] += c_i * closing**2
                     row[12] -= 2.0 * c_i * closing * rolling
                     row[13] += c_i * rolling**2
@@ -335,6 +354,7 @@ def motion_cycles(
     deflection: FloatArray,
     per_load: FloatArray,
     per_moment: FloatArray,
+    per_apart: FloatArray,
     torque: FloatArray,
     ripple: FloatArray,
     per_torque: FloatArray,
@@ -346,12 +366,12 @@ def motion_cycles(
 
     ``corners``: own gaps and tip corners, else the windows of the tables; ``constant`` (m, 2m) acceleration
     of z per z and z' with the teeth apart, ``per_load`` (3, m) per N, F and F xi, ``per_moment`` (2, m) per
-    moment on pinion and gear, ``torque`` (m,) that of both torques, ``ripple`` (n, 5) shaft, angle a cycle,
-    phase, amplitude, cycles of its turn, ``per_torque`` (2, m) per torque;
-    ``bearing`` (m, m) gives the power of the supports, ``sliding`` (3, m) the sliding velocity per z', as
-    constant and per xi: rows pinion, gear, y. Returned are the states (outputs, 2m) and loads (pairs,
-    outputs) of the last ``recorded`` cycles, the state at the end, and over these cycles the integrals of
-    sliding, tooth dampers, supports, and work of the teeth on both gears [J].
+    moment on pinion and gear, ``per_apart`` (m,) per force of tip corners, ``torque`` (m,) that of both
+    torques, ``ripple`` (n, 5) shaft, angle a cycle, phase, amplitude, cycles of its turn, ``per_torque``
+    (2, m) per torque; ``bearing`` (m, m) gives the power of the supports, ``sliding`` (3, m) the sliding
+    velocity per z', as constant and per xi: rows pinion, gear, y. Returned are states (outputs, 2m) and loads
+    (pairs, outputs) of the last ``recorded`` cycles, the state at the end, and over these cycles the
+    integrals of sliding, tooth dampers, supports, and work of the teeth on both gears [J].
     """
     m, pairs, steps = deflection.size, own.ahead.size, own.edges.size - 1
     count = recorded * own.outputs.sum()
@@ -387,7 +407,7 @@ def motion_cycles(
                 gaps_of(delta, cycle, s, node, corners, moved, own, k, kind, gaps)
                 if corners:
                     carried(delta, k, w[node], gaps, own.constants, loads, tangents, alone)
-                sums, friction_sum, friction_arm = 0.0, 0.0, 0.0
+                sums, friction_sum, friction_arm, apart = 0.0, 0.0, 0.0, 0.0
                 power[:] = 0.0
                 v_p, v_g, v_y = sliding[0, m], sliding[1, m], 0.0
                 for j in range(m):
@@ -414,19 +434,22 @@ def motion_cycles(
                     xi = own.place[s, node, i]
                     f = own.friction[s, node, i] * load
                     sums += load
+                    if corners:
+                        apart += load * tilt_of(delta, xi, own.ends[kind[i]], moved, own.constants[1])
                     friction_sum += f
                     friction_arm += f * xi
                     power[0] += f * (v_p * xi - v_g * (sliding[2, m] - xi) - v_y)
                     power[1] += c_i * pressing**2
                 # The moments of e work on the vibration too.
                 v_p, v_g = v_p - sliding[0, m], v_g - sliding[1, m]
-                power[3] = sums * (closing - e_rate - moved[5] * v_p - moved[6] * v_g)
+                power[3] = sums * (closing - e_rate - moved[5] * v_p - moved[6] * v_g) + apart * v_y
                 for j in range(m):
                     acceleration = torque[j]
                     acceleration += sums * (
                         per_load[0, j] + per_moment[0, j] * moved[5] + per_moment[1, j] * moved[6]
                     )
                     acceleration += friction_sum * per_load[1, j] + friction_arm * per_load[2, j]
+                    acceleration += apart * per_apart[j]
                     for n in range(2 * m):
                         acceleration += constant[j, n] * at[n]
                     rate[stage, j], rate[stage, m + j] = at[m + j], acceleration

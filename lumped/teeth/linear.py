@@ -56,7 +56,7 @@ class LinearForm:
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
 
     def mesh(self) -> Iterator[FloatArray]:
-        """``sums`` of ``kernels.static_cycles`` at the stages of each block, (cycles, steps, s, 14)."""
+        """``sums`` of ``kernels.static_cycles`` at the stages of each block, (cycles, steps, s, 17)."""
         for first, count in self.cycles:
             yield static_mesh(self.own, first, count, self.fixed)[2]
 
@@ -67,6 +67,8 @@ class LinearForm:
         gains = [
             sums[..., n : n + 1] * by_load + sums[..., n + 1 : n + 3] @ system.per_load[1:] for n in (0, 3, 6)
         ]
+        for gain, n in zip(gains, (14, 15, 16), strict=True):
+            gain += sums[..., n : n + 1] * system.per_apart
         edges, m = self.own.edges, len(system.coordinates)
         tau = edges[:-1, None] + np.diff(edges)[:, None] * self.own.nodes
         at = first + np.arange(sums.shape[0])[:, None, None] + tau
@@ -160,7 +162,8 @@ def _inside(
 ) -> tuple[FloatArray, dict[str, float]]:
     """States at the outputs, and mean powers that the motion inside the steps tells [W]."""
     system, own = form.system, form.own
-    m, rates, b = len(system.coordinates), system.gears[:2], gauss_tableau(STAGES)[1]
+    m, gears, b = len(system.coordinates), system.gears, gauss_tableau(STAGES)[1]
+    rates = np.vstack([gears[:2], gears[5] - gears[4]])
     outputs, work = [], np.zeros(3)
     g = form.pair.geometry
     for (first, count), sums in zip(form.cycles, mesh, strict=True):
@@ -176,9 +179,10 @@ def _inside(
         turning = states[:, m:] @ rates.T
         along = turning[:-1, None] + own.nodes[:, None] * np.diff(turning, axis=0)[:, None]
         late = n[9] * (g.omega_pinion + along[..., 0]) + n[10] * (g.omega_gear + along[..., 1])
+        corners = (n[14] * delta + n[15] * closing + n[16]) * along[..., 2]
         outside = np.sum(list(system.held.powers(states[:, m:]).values()), axis=0)
         work[0] += lengths @ (taken @ b)
-        work[1] += lengths @ ((load * (closing - late)) @ b)
+        work[1] += lengths @ ((load * (closing - late) - corners) @ b)
         work[2] += 0.5 * (lengths @ (outside[1:] + outside[:-1]))
     dampers, moved, supports = (float(value) for value in work / (own.period * system.period))
     powers = {"tooth_dampers": dampers, "supports": supports, "rolling": dampers - moved}

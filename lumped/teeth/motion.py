@@ -281,6 +281,7 @@ def run(
         np.ascontiguousarray(system.deflection),
         np.ascontiguousarray(system.per_load),
         np.ascontiguousarray(moments(system)),
+        np.ascontiguousarray(system.per_apart),
         np.ascontiguousarray(torques[m:]),
         ripples(pair),
         np.stack([system.torque_pinion[m:], system.torque_gear[m:]]),

@@ -65,9 +65,7 @@ def report(
     settings: opt.Settings = None,
     supports: Annotated[
         opt.SupportsName | None,
-        typer.Option(
-            "--supports", help="springs: leave shafts out. Default: shafts where they are given."
-        ),
+        typer.Option("--supports", help="springs: leave shafts out. Default: shafts where they are given."),
     ] = None,
     force: opt.ForceFolder = False,
 ) -> None:
