@@ -89,14 +89,9 @@ def range_violations(
     values: Mapping[str, ArrayLike],
     friction: ArrayLike = math.nan,
 ) -> tuple[RangeViolation, ...]:
-    """Compare the arguments of a law with its validity ranges.
+    """Compare the arguments of a law, of any shape in the units of its ranges, with its validity ranges.
 
-    Parameters
-    ----------
-    law : its title
-    ranges : of its arguments
-    values : arguments by name, any shape, in the units of the ranges
-    friction : friction coefficient at the same positions [-]; NaN for a law of something else
+    ``friction``: coefficient at the same positions [-]; NaN for a law of something else.
     """
     result = []
     for limits in ranges:

@@ -333,12 +333,7 @@ class PeriodicMatrix(KnownMatrix):
 
 
 def square(field: str, value: npt.ArrayLike, n: int | None = None) -> FloatArray:
-    """Return a square matrix, of n rows where n is given; a number is a matrix of one row.
-
-    Raises
-    ------
-    ParameterError : anything else
-    """
+    """Return a square matrix, of n rows where n is given; a number is a matrix of one row; else refuse it."""
     matrix = real_array(field, value)
     matrix = matrix.reshape(1, 1) if matrix.ndim == 0 else matrix
     rows = n or len(matrix)

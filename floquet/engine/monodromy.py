@@ -118,13 +118,7 @@ def monodromy(
 
 
 def checked_effort(rtol: float, max_substeps: int) -> tuple[float, int]:
-    """Return tolerance and limit of a propagation, checked.
-
-    Raises
-    ------
-    ParameterError
-        One of them is out of range.
-    """
+    """Return tolerance and limit of a propagation, each in its range."""
     advice = "Use 1e-10 for verdicts, 1e-6 for a quick look."
     return (
         real_number("rtol", rtol, 1e-14, 0.1, action=advice),

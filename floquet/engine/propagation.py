@@ -93,17 +93,11 @@ def propagate(
 ) -> Propagation:
     """Transition matrices of one period, each step accurate to rtol h/T of its own norm.
 
-    The norm is taken in the coordinates x_i / d_i of `PeriodicSystem.balancing`.
-
-    Every step is taken once whole and once as two halves. Their difference, which is an estimate of the error
-    of the whole step and so an overestimate (by 2^p - 1 where the method shows its order) of that of the
-    halves, is the local error; the halves are what is kept. Refused steps are cut according to the order of
-    the method, so the grid is fine only where it has to be.
-
-    Raises
-    ------
-    NumericalError
-        Non-finite A, or more than ``max_substeps`` steps are needed.
+    The norm is taken in the coordinates x_i / d_i of ``PeriodicSystem.balancing``. Every step is taken once
+    whole and once as two halves. Their difference, which is an estimate of the error of the whole step and so
+    an overestimate (by 2^p - 1 where the method shows its order) of that of the halves, is the local error;
+    the halves are what is kept. Refused steps are cut according to the order of the method, so the grid is
+    fine only where it has to be.
     """
     d = system.balancing()
     start, end = _initial_grid(system, method, d)

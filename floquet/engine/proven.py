@@ -32,13 +32,7 @@ _FLOOR = 1e-300  # what underflow may take
 def proven_propagation(
     system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substeps: int
 ) -> tuple[Propagation, FloatArray, float]:
-    """Steps of one period, their product in balanced coordinates, and a bound on its Frobenius error.
-
-    Raises
-    ------
-    NumericalError
-        Too many steps, or growth beyond floating point.
-    """
+    """Steps of one period, their product in balanced coordinates, and a bound on its Frobenius error."""
     d = system.balancing()
     ends = np.unique(np.clip([0.0, system.period, *known.breaks], 0.0, system.period))
     start, end = ends[:-1], ends[1:]
@@ -119,11 +113,6 @@ def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, f
 
     With Q_j the computed product before step j and S_j the exact one after it, the error is sum S_j E_j Q_j.
     S_j is known from computed products of 2^k steps each, a binary counter from the last step backwards.
-
-    Raises
-    ------
-    NumericalError
-        The product grows beyond floating point.
     """
     m, n, _ = steps.shape
     rounding = 2.0 * n * _U

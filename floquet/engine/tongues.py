@@ -71,21 +71,12 @@ def combinations(omega: FloatArray) -> Iterator[tuple[int, int, int, float]]:
 
 
 def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> FloatArray:
-    """How much each mode of the mean system takes part in a motion, forwards and backwards.
+    """How much each mode of the mean system takes part in a motion, forwards and backwards; (2, m), sum one.
 
     In the modal states (omega eta, eta') mode i moves as a_i exp(i omega_i t) + b_i exp(-i omega_i t) with
     a_i = (omega eta - i eta')/2 and b_i = (omega eta + i eta')/2. Shares are of the action |.|^2/omega, not
     of the energy: a sum resonance feeds both its modes with equal action (relations of Manley and Rowe),
     however far apart their frequencies are.
-
-    Parameters
-    ----------
-    state : (2m,) complex, (omega eta, eta')
-    omega : (m,) natural frequencies of the mean system
-
-    Returns
-    -------
-    (2, m), shares of the a_i and of the b_i; together they sum to one
     """
     x = np.asarray(state, dtype=complex)
     m = omega.size
@@ -138,18 +129,10 @@ class TongueTip:
 def tongue_tip(
     radius: RadiusAt, window: tuple[float, float], bracket: tuple[float, float], *, xtol: float = 1e-9
 ) -> TongueTip:
-    """Find the damping that closes a tongue: the root of max over the window of radius - 1.
+    """Find the damping that closes a tongue: the root of max over the window of radius - 1, to ``xtol``.
 
-    Parameters
-    ----------
-    radius : spectral radius along the line at a damping
-    window : part of the line that holds this tongue and no other one
-    bracket : damping at which the tongue is open, and one at which it is closed
-    xtol : absolute accuracy of the damping
-
-    Raises
-    ------
-    NumericalError : the tongue is closed at the first damping, or open at the second
+    ``window`` holds this tongue and no other one; ``bracket`` are a damping at which it is open, and one at
+    which it is closed, or else a NumericalError is raised.
     """
     places: dict[float, float] = {}
 
@@ -220,17 +203,11 @@ def seeded_nodes(lines: FloatArray, low: float, high: float, coarse: int, width:
 def unstable_intervals(
     radius: Radius, nodes: FloatArray, *, xtol: float = 1e-9, threshold: float = 1e-9
 ) -> list[UnstableInterval]:
-    """Find the intervals of instability that the nodes meet, with their ends to ``xtol``.
+    """Find the intervals of instability that the nodes (k,) meet, with their ends to ``xtol``, relative.
 
     Every local maximum of the sampled radius that comes near one is first refined, since a narrow peak
-    between two nodes may still exceed one.
-
-    Parameters
-    ----------
-    radius : the spectral radius
-    nodes : (k,) increasing
-    xtol : relative accuracy of the ends
-    threshold : a radius counts as unstable above 1 + threshold, so that rounding makes no intervals
+    between two nodes may still exceed one. Above 1 + threshold a radius counts as unstable, so that rounding
+    makes no intervals.
     """
     nodes, values = _refine_maxima(radius, nodes, radius(nodes))
     unstable = values > 1.0 + threshold

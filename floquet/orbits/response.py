@@ -192,18 +192,11 @@ def find_response(
     seeds: int = 20,
     progress: Progress | None = None,
 ) -> Response:
-    """Return the branches over a range of speeds.
+    """Return the branches of motions of some periods over a range of speeds.
 
     Branches of one cycle are looked for from the motion while all contacts hold, at 12 speeds an octave;
-    those of twice the cycles leave period doublings; isolated ones start from runs that settled, at
-    ``seeds`` speeds an octave, from starts apart and on running up and down from what these came to.
-
-    Parameters
-    ----------
-    member : the system and the range
-    periods : numbers of cycles of the motions wanted
-    seeds : speeds an octave at which runs settle
-    progress : called with the finished fraction
+    those of twice the cycles leave period doublings; isolated ones start from runs that settled, at ``seeds``
+    speeds an octave, from starts apart and on running up and down from what these came to.
     """
     search = _Search(member, set(periods))
     search.explore(seeds, progress)

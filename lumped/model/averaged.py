@@ -105,12 +105,7 @@ def natural_frequencies(pair: AnyPair) -> FloatArray:
 
 
 def modes(pair: GearPair) -> tuple[Mode, ...]:
-    """Natural frequencies, damping and shapes of the averaged pair, by increasing frequency.
-
-    Raises
-    ------
-    NumericalError : a mode of the averaged system is overdamped, so it has no natural frequency
-    """
+    """Natural frequencies, damping and shapes of the averaged pair, by increasing frequency."""
     system = LTVSystem.of(pair, "elastic")
     m = len(system.coordinates)
     values, vectors = np.linalg.eig(averaged_matrix(system))

@@ -160,23 +160,12 @@ def resolved_sweep(
     samples_per_cycle: int = 128,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Periodic motion over a range of speeds, as `speed_sweep`, at speeds that resolve its curves.
+    """Periodic motion over a range of speeds, as ``speed_sweep``, at speeds that resolve its curves.
 
     The first speeds are the ends, the operating speed, those at which a mesh order meets a natural frequency,
-    and others between, closer where the pair runs slowly. Intervals are then halved, the worst first, as long
-    as the straight line between two speeds is further from the curve than can be seen in a figure; its
-    distance is estimated from second differences.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    speeds_rpm : lowest and highest pinion speed [rpm]
-    most : number of speeds at which to stop
-    samples_per_cycle, progress : as `speed_sweep`
-
-    Raises
-    ------
-    ParameterError : as `speed_sweep`
+    and others between, closer where the pair runs slowly. Intervals are then halved, the worst first, up to
+    ``most`` speeds, as long as the straight line between two speeds is further from the curve than can be
+    seen in a figure; its distance is estimated from second differences.
     """
     import xarray as xr
 

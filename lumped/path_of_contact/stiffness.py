@@ -27,12 +27,7 @@ LOADS = (iso6336.LOW_LOAD, 1600.0)
 
 
 def pair_stiffness(pair: GearPair) -> PathFunction:
-    """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m].
-
-    Raises
-    ------
-    ParameterError : the model's parameters do not fit this pair
-    """
+    """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m]."""
     return pair.mesh.stiffness.curve(pair).scaled(pair.mesh.stiffness_factor)
 
 

@@ -71,11 +71,9 @@ def default_effects(contact: str) -> tuple[str, ...]:
 
 
 def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "prescribed") -> int:
-    """Return the kernel's switch bits.
+    """Return the kernel's switch bits of named effects, or of a mapping name -> bool.
 
-    effects : names of the effects that act, or a mapping name -> bool; names that a mapping leaves out, or
-        all of them with None, act if they are ``default_effects`` of ``contact``
-    Raises ParameterError : unknown effect
+    Names that a mapping leaves out, or all with None, act if they are ``default_effects`` of ``contact``.
     """
     default = default_effects(contact)
     if effects is None:

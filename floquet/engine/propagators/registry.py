@@ -19,12 +19,7 @@ PROPAGATORS: dict[str, Propagator] = {
 
 
 def propagator(method: str | Propagator) -> Propagator:
-    """Return the propagator of this name, or the given propagator itself.
-
-    Raises
-    ------
-    ParameterError : the name is not registered
-    """
+    """Return the propagator of this name, or the given propagator itself; refuse other names."""
     if isinstance(method, Propagator):
         return method
     return PROPAGATORS[one_of("method", method, PROPAGATORS, "Choose one of these, or pass a Propagator.")]
