@@ -90,15 +90,6 @@ def test_pairs_two_pitches_apart_move_each_other_too():
     assert abs(far) > 1e-3 * w[0]
 
 
-def test_tangent_of_hertz_contact_is_stiffer_than_its_secant():
-    """k_t = 1/(1/k - D ln(N/N_0) - D): at the full load k/(1 - D k)."""
-    mesh, g = StaticMesh(PAIR), lumped.geometry(PAIR)
-    found = mesh.static(np.array([g.L_XP]))
-    k = mesh.law.held(np.array([g.L_XP]))[0]
-    assert found.load[0] == pytest.approx(mesh.force, rel=1e-12)
-    assert found.tangent[0] == pytest.approx(k / (1.0 - mesh.law.softening * k), rel=1e-5)
-
-
 def test_corner_contact_grows_with_the_root_of_the_load():
     """The gap of a corner is a parabola; what deflection shifts goes with the load itself and is small."""
     g, beyond = lumped.geometry(PAIR), []
@@ -227,13 +218,3 @@ def test_the_damper_follows_the_gap_and_not_the_error_of_the_tangent():
     assert e.error_slope(xi) == pytest.approx(slope, rel=1e-7)
     # Hertz's contact: the tangent's error falls with the load.
     assert abs(e.error.slope(xi) / slope - 1.0) > 0.01
-
-
-def test_the_damper_takes_hold_with_the_load():
-    e = mesh_elements(PAIR)
-    start, end = loaded_contact(PAIR).contact[0]
-    assert e.damping([start, np.nextafter(end, 0.0)]) == pytest.approx(
-        [0.0, 0.0], abs=1e-9 * float(e.damping(0.0152))
-    )
-    ratio = e.damping(0.0152) / (2 * PAIR.mesh.damping_ratio * np.sqrt(lumped.bodies(PAIR).effective_mass))
-    assert ratio**2 == pytest.approx(float(loaded_contact(PAIR).secant(0.0152)), rel=1e-9)
