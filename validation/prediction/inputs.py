@@ -79,16 +79,25 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
             spread = default["spread"]
             if isinstance(spread, list):
                 spread = list(dict.fromkeys([_chosen(pair, field), *spread]))
-            found.append(_input(pair, field, spread, default["reason"]))
+            if (value := _by_default(pair, field, spread, default["reason"])) is not None:
+                found.append(value)
     return tuple(found)
 
 
-def given_and_assumed(pair: GearPair) -> tuple[int, int]:
-    """Number of values of a pair that a source states, and of those that are assumed."""
+def given_and_assumed(pair: GearPair) -> tuple[int, int, str]:
+    """Number of values of a pair that a source states, of all others, and what these are, in words."""
     sources = dict(pair.sources)
-    fields = [field for field in leaf_paths(pair) if field not in ("name", "description")]
-    assumed = sum("assumed" in (_source(field, sources) or "assumed") for field in fields)
-    return len(fields) - assumed, assumed
+    values = {path: v for path, v in leaf_paths(pair).items() if path not in ("name", "description")}
+    found = {path: _source(path, sources) for path in values}
+    assumed = sum(source is None or "assumed" in source for source in found.values())
+    stated = any(found[path] is None and not _is_default(path, value) for path, value in values.items())
+    return len(found) - assumed, assumed, "assumed or without a source" if stated else "assumed"
+
+
+def _is_default(path: str, value: object) -> bool:
+    """Whether a value is the one that the program assumes where a file has none."""
+    default, unit = field_at(path).default, stated_unit(path)
+    return bool(value == (to_si(default, unit) if unit and isinstance(default, (int, float)) else default))
 
 
 @functools.cache
@@ -122,6 +131,29 @@ def _chosen(pair: GearPair, field: str) -> str:
     return pair.mesh.stiffness.model if field == "mesh.stiffness" else pair.friction.law
 
 
+def _by_default(pair: GearPair, field: str, spread: object, reason: str) -> Input | None:
+    """An assumed input with its default spread; an end that the field cannot have is the value itself.
+
+    None where nothing is left of the spread: a share of zero.
+    """
+    if isinstance(spread, str):
+        unit = str(stated_unit(field))
+        value = to_stated(to_si(leaf_paths(pair)[field], unit), unit)
+        low, high = (
+            end if _allowed(pair, field, end) else value for end in _ends(field, spread, value, unit)
+        )
+        return None if low == high else Input(field, low, high, (), unit, spread, reason)
+    return _input(pair, field, spread, reason)
+
+
+def _allowed(pair: GearPair, field: str, value: float) -> bool:
+    try:
+        pair.with_({field: value})
+    except ParameterError:
+        return False
+    return True
+
+
 def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
     where = f"uncertainty.{field}"
     if isinstance(spread, (list, tuple)):
@@ -138,6 +170,8 @@ def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
     if unit is None or isinstance(value, bool) or value is None or not isinstance(spread, str):
         raise refuse(where, spread, f"a field that has a number, and {_WRITTEN}", "Correct the entry.")
     low, high = _ends(where, spread, float(to_stated(to_si(value, unit), unit)), unit)
+    if not low < high:
+        raise refuse(where, spread, "a lower end below the upper end", "Correct the range.")
     for end in (low, high):
         try:
             pair.with_({field: end})
@@ -173,8 +207,6 @@ def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, floa
         ends = _stated(where, low, unit), _stated(where, high, unit)
     else:
         raise refuse(where, spread, _WRITTEN, "Correct the text.")
-    if not ends[0] < ends[1]:
-        raise refuse(where, spread, "a lower end below the upper end", "Correct the range.")
     return ends
 
 

@@ -228,8 +228,8 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
         return Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {reason[0]}.", reason[1]
     calm = _calm(results)
     found = results.uncertainty
-    given, assumed = results.inputs
-    inputs = f"{assumed} of {given + assumed} inputs are assumed"
+    given, assumed, word = results.inputs
+    inputs = f"{assumed} of {given + assumed} inputs are {word}"
     if isinstance(found, Absent):
         return Verdict.COMPARE, Verdict.COMPARE.value, f"{calm} But {inputs}, and they were not varied."
     low, middle, high = found["dte_peak_to_peak_percentile"].to_numpy()
@@ -343,14 +343,14 @@ def advice_on_inputs(results: Results) -> list[Action]:
 
 
 def _sure(results: Results) -> tuple[str, ...]:
-    given, assumed = results.inputs
+    given, assumed, word = results.inputs
     measured, compared = results.measured_error, "no"
     if measured is not None:
         error, size = quantity(measured.error, "m", 2), quantity(2.0 * measured.uncertainty, "m", 2)
         compared = f"yes, the prediction less the record is {error}, known to ±{size}"
     return (
         f"Solved right? {results.second_words}",
-        f"Inputs: {given} given, {assumed} assumed.",
+        f"Inputs: {given} given, {assumed} {word}.",
         f"Compared with a measurement? {compared[0].upper()}{compared[1:]}.",
     )
 

@@ -168,8 +168,8 @@ class Results:
         return uncertainty(self.pair, self.effort.samples, progress=stage)
 
     @cached_property
-    def inputs(self) -> tuple[int, int]:
-        """Number of values that are given, and of those that are assumed."""
+    def inputs(self) -> tuple[int, int, str]:
+        """Number of values that are given, of those that are assumed, and the word for these."""
         return given_and_assumed(self.pair)
 
     @cached_property
@@ -305,7 +305,16 @@ class Results:
 
     @property
     def second_words(self) -> str:
-        """Whether both programs agree, in a sentence."""
+        """Whether both programs agree, in a sentence; on the shafts by the peak to peak."""
+        words = self._second_words
+        if self.pair.shafts is None or isinstance(self.second, Absent):
+            return words
+        more = self.second.peak_to_peak / self.prediction.peak_to_peak - 1.0
+        size = f"{100.0 * abs(more):.2g} % {'larger' if more > 0.0 else 'smaller'}"
+        return f"{words[:-1]} on springs; on the shafts its transmission error is {size}."
+
+    @property
+    def _second_words(self) -> str:
         check = self.check
         if check.verdict is Verdict.NOT_CHECKED:
             return "The equations are; the second program has no motion to compare."

@@ -67,18 +67,21 @@ def _bearings(pair: GearPair) -> Iterator[str]:
 
 
 def _shafts(pair: GearPair) -> Iterator[str]:
-    """Springs of the 6-DOF model that the shafts contradict."""
+    """Springs of the 6-DOF model that the shafts contradict, in one sentence about the worst."""
     if pair.shafts is None:
         return
-    condensed = condensed_bearings(pair)
+    condensed, found = condensed_bearings(pair), []
     for name in ("pinion", "gear"):
         for field in ("loa_stiffness", "oloa_stiffness"):
             given, static = (getattr(getattr(one.bearings, name), field) for one in (pair, condensed))
-            if not 1.0 / _FAR < given / static < _FAR:
-                yield (
-                    f"bearings.{name}.{field} = {given:.3g} N/m, but on its shaft the gear has "
-                    f"{static:.3g} N/m. Take those of lumped.condensed_bearings, or correct the shafts."
-                )
+            found.append((abs(math.log(given / static)), f"bearings.{name}.{field}", given, static))
+    ratio, field, given, static = max(found)
+    if ratio > math.log(_FAR):
+        yield (
+            f"The springs of [bearings] are not those of the shafts: {field} = {given:.3g} N/m, but on its shaft "
+            f"the gear has {static:.3g} N/m. Results on springs (stability, sweeps) are of another machine. "
+            "Take lumped.condensed_bearings, or correct the shafts."
+        )
 
 
 def _squared_frequencies(pair: GearPair) -> Iterator[float]:

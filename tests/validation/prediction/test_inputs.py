@@ -95,7 +95,9 @@ def test_ranges_survive_the_parameter_file():
 
 
 def test_every_value_is_given_or_assumed():
-    given, assumed = given_and_assumed(PAIR)
+    given, assumed, word = given_and_assumed(PAIR)
+    assert word == "assumed"
+    assert given_and_assumed(PAIR.with_({"sources": {}}))[2] == "assumed or without a source"
     assert assumed == sum("assumed" in text for text in _sources().values())
     assert given + assumed == len(_sources())
 

@@ -6,6 +6,7 @@ from scipy.stats import binom
 
 import lumped
 from lumped.errors import ParameterError
+from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.uncertainty import percentile_interval, speed_band, uncertainty
 
 #: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
@@ -88,3 +89,21 @@ def test_the_band_over_speed_is_about_the_sweep():
     middle = lumped.speed_sweep(pair, speeds)["dte_peak_to_peak"].to_numpy()
     np.testing.assert_allclose(band["low"], middle * 0.964, rtol=0.01)
     np.testing.assert_allclose(band["high"], middle * 1.036, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "low", "high"),
+    [
+        ("friction.coefficient", 0.0, None, None),  # a share of nothing
+        ("friction.coefficient", 0.9, 0.63, 0.9),  # 1.17 is no coefficient of the schema
+        ("pinion.tip_relief.amount", 1.0, 1.0, 3.0),
+        ("pinion.tip_relief.amount", 5.0, 3.0, 7.0),
+    ],
+)
+def test_a_default_spread_never_refuses_a_value_of_the_file(field, value, low, high):
+    """An end that the field cannot have is the value; a shaft's bearing without tilt stiffness has none."""
+    pair = LINEAR.with_({"uncertainty": {}, "pinion.tip_relief": {"amount": 5.0, "start_roll_angle": 25.0}})
+    pair = pair.with_({field: value})
+    found = {one.field: one for one in uncertain_inputs(pair.with_({"sources": {field: "assumed"}}))}
+    ends = (found[field].low, found[field].high) if field in found else (None, None)
+    assert ends == pytest.approx((low, high)) if low is not None else ends == (None, None)

@@ -1,6 +1,7 @@
 """Every number in the sentences of the report, and of page 1 as printed, against the numbers they are of."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -8,9 +9,10 @@ import lumped
 from lumped.losses import losses_of_laws
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import nearest_hazard, of_motion, pair_of
-from tests.validation.reporting.written import plain
+from tests.validation.reporting.written import SMALL, pair, plain
 from validation.files.formatting import prose
 from validation.reporting.first_figures import plain_name
+from validation.reporting.results import Results
 
 
 def speed_of(written):
@@ -269,3 +271,18 @@ def test_every_uncertain_input_has_words_of_its_own(written):
         if "bearings" in str(field):
             assert name.endswith("off-line" if "oloa" in str(field) else "on-line")
     assert lumped.load_gear_pair(written.parameters).name == written.document["gear_pair"]
+
+
+def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
+    """Agreement on springs says nothing about another machine."""
+    own = pair("shafts", "19/41", 1450.0, 80.0)
+    ends = [{"position": at, "loa_stiffness": 2e8, "oloa_stiffness": 2e8} for at in (10, 210)]
+    one = {"segments": [{"length": 220, "diameter": 30}], "gear_position": 110, "bearings": ends}
+    results = Results(own.with_({"shafts": {"damping_ratio": 0.03, "pinion": one, "gear": one}}), SMALL)
+    monkeypatch.setattr(Results, "_second_words", "Yes: a second program agrees to 2.7 %.")
+    results.__dict__ |= {"prediction": SimpleNamespace(peak_to_peak=5e-6)}
+    for size, words in ((5.5e-6, "10 % larger"), (4e-6, "20 % smaller")):
+        results.__dict__["second"] = SimpleNamespace(peak_to_peak=size)
+        assert results.second_words == (
+            f"Yes: a second program agrees to 2.7 % on springs; on the shafts its transmission error is {words}."
+        )

@@ -20,16 +20,16 @@ def write(results: Results) -> Content:
     pair, g = results.pair, results.pair.geometry
     values = {path: v for path, v in leaf_paths(pair).items() if path not in ("name", "description")}
     spreads = {one.field: one.written for one in uncertain_inputs(pair)}
-    given, assumed = results.inputs
+    given, assumed, word = results.inputs
     table = table_of(
         "parameters",
-        f"All values: {given} given, {assumed} assumed.",
+        f"All values: {given} given, {assumed} {word}.",
         list(values),
         {
             "field": ("field", lambda path: path),
             "value": ("value", lambda path: _shown(values[path])),
             "unit": ("unit", lambda path: _unit(path, values[path])),
-            "source": ("source", lambda path: source_of(pair, path) or "given without a source"),
+            "source": ("source", lambda path: source_of(pair, path) or "none stated"),
             "range": ("range", lambda path: spreads.get(path, "")),
             "state": (
                 "",
@@ -52,7 +52,7 @@ def write(results: Results) -> Content:
         ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", "all pairs in contact"),
         ("effective mass", b.effective_mass, "kg", "of both gears on the line of action"),
     )
-    return Content(f"{assumed} of {given + assumed} values are assumed.", (derived, table))
+    return Content(f"{assumed} of {given + assumed} values are {word}.", (derived, table))
 
 
 def _shown(value: Any) -> Cell:
