@@ -78,9 +78,9 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     ratio, field, given, static = max(found)
     if ratio > math.log(_FAR):
         yield (
-            f"The springs of [bearings] are not those of the shafts: {field} = {given:.3g} N/m, but on its shaft "
-            f"the gear has {static:.3g} N/m. Results on springs (stability, sweeps) are of another machine. "
-            "Take lumped.condensed_bearings, or correct the shafts."
+            f"The springs of [bearings] are not those of the shafts: {field} = {given:.3g} N/m, but on its "
+            f"shaft the gear has {static:.3g} N/m. Results on springs (stability, sweeps) are of "
+            "another machine. Take lumped.condensed_bearings, or correct the shafts."
         )
 
 

@@ -283,6 +283,5 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
     results.__dict__ |= {"prediction": SimpleNamespace(peak_to_peak=5e-6)}
     for size, words in ((5.5e-6, "10 % larger"), (4e-6, "20 % smaller")):
         results.__dict__["second"] = SimpleNamespace(peak_to_peak=size)
-        assert results.second_words == (
-            f"Yes: a second program agrees to 2.7 % on springs; on the shafts its transmission error is {words}."
-        )
+        ends = f"to 2.7 % on springs; on the shafts its transmission error is {words}."
+        assert results.second_words == f"Yes: a second program agrees {ends}"
