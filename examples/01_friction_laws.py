@@ -1,6 +1,6 @@
 """
-Friction laws over the path of contact
-======================================
+How do the friction laws differ?
+================================
 
 Which coefficient does each law give the same pair, and what happens at the pitch point? I jumps there, II
 rises until its bound stops it, III vanishes, IV turns over a short length, and V is II at this thin film:

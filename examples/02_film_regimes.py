@@ -1,6 +1,6 @@
 """
-Film regimes over speed
-=======================
+At which speed does the oil film separate the flanks?
+=====================================================
 
 At which speed does the contact of the 28/28 pair leave mixed lubrication? Near
 2500 rpm at 22.6 N m, where the film parameter passes 4 and law V changes from II to III.

@@ -1,6 +1,6 @@
 """
-Dynamic transmission error over speed
-=====================================
+Where must I not run?
+=====================
 
 Where are the resonances of the periodic motion, and which mode do they belong to? The largest stands where
 the mesh frequency meets the highest mode of the averaged pair, the next where twice the mesh frequency

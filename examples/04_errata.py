@@ -1,6 +1,6 @@
 """
-A wrong sign in the print
-=========================
+What does one wrong sign in the equations do?
+=============================================
 
 What does the printed sign of eq. 1 do to the pair? It turns friction into a source of power in recess.
 """

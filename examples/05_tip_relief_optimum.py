@@ -1,6 +1,6 @@
 """
-Tip relief for a design torque
-==============================
+Which relief for my torque?
+===========================
 
 How much tip relief, and over which length, makes the static transmission error smallest at one torque?
 And what does it do at others (Harris map)? Relief serves one torque: well below that it makes things worse.

@@ -1,6 +1,6 @@
 """
-The jump at the primary resonance
-=================================
+Why does the vibration jump at resonance?
+=========================================
 
 A lightly damped 50/50 pair answers differently when the speed rises and when it falls: falling, it keeps
 the large motion, in which teeth separate, to speeds at which a rising sweep has not met it. The linear

@@ -1,6 +1,6 @@
 """
-What a tooth pair's stiffness is made of
-========================================
+What is my tooth stiffness made of?
+===================================
 
 How much of the compliance is contact, tooth and gear body, and how far is the sum from ISO 6336-1? Gear
 bodies and teeth yield about alike, the contact half as much, and the sum lies in the scatter that the

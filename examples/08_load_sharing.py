@@ -1,6 +1,6 @@
 """
-Load sharing under torque
-=========================
+How do two tooth pairs share the load?
+======================================
 
 How do two tooth pairs share the load, and how much longer does deflection make the contact? By halves in
 the middle of double contact; and the contact lengthens with about the root of the torque, so that the

@@ -1,6 +1,6 @@
 """
-Harris map of a relieved pair
-=============================
+At which torques does my relief help?
+=====================================
 
 What does the static transmission error of a pair with tip relief look like below, at and above the torque
 that the relief is made for? Flat at that torque; below, the relief itself is the error, above, the

@@ -1,6 +1,6 @@
 """
-Mesh losses of the FZG type C gears
-===================================
+How much power does the mesh lose?
+==================================
 
 What does each friction law make of the mesh efficiency, beside the closed form and with vibration? The law
 decides: III loses less than half of what the others do. Vibration moves the loss by less than a hundredth.

@@ -1,6 +1,6 @@
 """
-Lumped against multibody over torque
-====================================
+Up to which torque is the linear model right?
+=============================================
 
 Two models that agree must differ by what only one of them has. Finite deflections move the contact points, an
 effect proportional to force times deflection: the difference grows with the square of the torque.

@@ -1,6 +1,6 @@
 """
-Tongues of instability over speed and damping
-=============================================
+At which speeds is the motion unstable?
+=======================================
 
 A stiffness that varies with the mesh frequency drives a mode where that frequency is (ω_i + ω_j)/k. How
 wide are those ranges of speed, and how much damping closes them? Only the widest, 2ω_3/2, survives 1 %.

@@ -1,6 +1,6 @@
 """
-Critical damping over contact ratio
-===================================
+How much damping does my contact ratio need?
+============================================
 
 Two levels of stiffness drive the tongue 2 w3/2, except at one contact ratio: where the times in double and in
 single contact are each half a period of the mode at that stiffness, which returns every motion unchanged.

@@ -1,6 +1,6 @@
 """
-Which parameter moves the stability margin
-==========================================
+Which parameter moves the stability margin?
+===========================================
 
 What brings a pair beside a tongue closer to it? Speed, then bearing stiffness: they move the tongue.
 Damping matters less by far. Central differences of the largest multiplier, whose error is 1e-12.

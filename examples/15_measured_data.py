@@ -1,6 +1,6 @@
 """
-Friction coefficient from measured tooth forces
-===============================================
+Which friction coefficient do my measurements show?
+===================================================
 
 A record of normal and friction forces is aligned by mesh phase and laid over the prediction; the coefficient
 comes with a confidence interval. The record is synthetic, with 2 % noise, so that the truth is known; yours

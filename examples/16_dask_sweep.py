@@ -1,6 +1,6 @@
 """
-A sweep on a Dask cluster
-=========================
+How do I run a sweep on a cluster?
+==================================
 
 The same study runs in one process, on all cores or on a cluster, and gives the same file. Here the cluster is
 this machine; elsewhere, give its scheduler: ``spurcheck sweep study.toml --scheduler tcp://head:8786``.

@@ -1,6 +1,6 @@
 """
-The form of the contact
-=======================
+Which form of the contact fits my gears?
+========================================
 
 How does a tooth pair begin its contact? Prescribed contact begins at A, with a stiffness that jumps. Loaded
 contact begins where the static load has closed the gap of the tip corner. The multibody model, whose contact

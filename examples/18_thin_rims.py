@@ -1,6 +1,6 @@
 """
-Bore, rim and neighbour
-=======================
+What do bore and rim do to the tooth stiffness?
+===============================================
 
 What do a bore, a thin rim and a loaded neighbour do to the stiffness of the mesh and to the transmission
 error? A free gear hardly feels a bore until its rim bends between the teeth. The neighbour shares the body:

@@ -1,6 +1,6 @@
 """
-Where a pair can jump
-=====================
+At which torques can my pair jump?
+==================================
 
 Tip relief is cut for one torque, here some 70 N m. Far below it contact is lost in the gap that relief
 leaves, far above it where the stiffness changes. There two motions exist at one speed, and the pair jumps

@@ -1,6 +1,6 @@
 """
-Two motions, one of them chaotic
-================================
+Can one pair run both quietly and chaotically?
+==============================================
 
 At 5250 rpm the lightly damped 50/50 pair has a quiet periodic motion that keeps contact. Started six static
 deflections away, it loses contact and strikes, never twice the same: looked at once each mesh cycle it is a

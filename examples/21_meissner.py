@@ -1,6 +1,6 @@
 """
-Meissner's equation and its exact trace
-=======================================
+Does Meissner's equation come out exactly?
+==========================================
 
 x″ + (δ ± ε) x = 0, the sign changing every half period: two harmonic motions in turn. So the trace of the
 monodromy matrix is known by hand, and where it is beyond ±2 vibration grows.

@@ -1,6 +1,6 @@
 """
-A rotor whose shaft bends more easily one way
-=============================================
+Between which speeds is a shaft of two stiffnesses unstable?
+============================================================
 
 A flat or a keyway gives a shaft two stiffnesses that turn with it. Seen from the ground its stiffness changes
 twice a turn, and between its two critical speeds a disc without damping whirls ever wider.

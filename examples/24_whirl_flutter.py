@@ -1,6 +1,6 @@
 """
-Whirl flutter of a propeller with two blades
-============================================
+When does a propeller with two blades flutter?
+==============================================
 
 A propeller on a soft nacelle can whirl ever wider. With two blades only its equations are periodic.
 """

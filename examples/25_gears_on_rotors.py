@@ -1,6 +1,6 @@
 """
-A gear mesh between two rotors of ROSS
-======================================
+What does a gear mesh do to my ROSS rotors?
+===========================================
 
 ROSS makes finite elements of shafts on bearings. A mesh joins two of them and excites the mode at 4544 Hz.
 """

@@ -1,6 +1,6 @@
 """
-Four springs or two shafts
-==========================
+Are four springs enough for my shafts?
+======================================
 
 The 6-DOF model hangs each gear on two springs. Where do they come from, and are they enough? The default
 pair on stiff and on slender shafts, each in two bearings, with motor and load behind couplings; all sizes are

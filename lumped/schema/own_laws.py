@@ -72,13 +72,22 @@ def is_own(path: str, value: object) -> bool:
     """Whether a value of a field is a law of the user, to be sampled."""
     if path not in ("friction.law", "mesh.stiffness"):
         return False
-    array = hasattr(value, "__array__") or hasattr(value, "columns") or isinstance(value, (list, tuple))
+    if isinstance(value, str):
+        return path == "mesh.stiffness"
+    array = (
+        isinstance(value, (int, float))
+        or hasattr(value, "__array__")
+        or hasattr(value, "columns")
+        or isinstance(value, (list, tuple))
+    )
     return callable(value) or array or (isinstance(value, Mapping) and "model" not in value)
 
 
 def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
     """Fields of a pair with a friction law of the user, sampled at the operating point of its contact."""
     name, field = "table", "friction.law"
+    if isinstance(law, (int, float)):
+        return {"friction.coefficient": law, "friction.law": "coulomb"}
     made_at: dict[str, Any] = {
         "speed": path.omega_pinion * 30.0 / math.pi,
         "unit_load": path.unit_load * 1e-3,
@@ -109,6 +118,10 @@ def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
 def own_stiffness(g: Geometry, stiffness: object) -> dict[str, Any]:
     """The field of a pair with a stiffness of the user."""
     field = "mesh.stiffness"
+    if isinstance(stiffness, str):
+        return {field: {"model": stiffness}}
+    if isinstance(stiffness, (int, float)):
+        stiffness = np.full(5, float(stiffness))
     phase = np.linspace(0.0, 1.0, _CYCLE + 1)
     table: dict[str, Any] = {"kind": "total", "axis": "phase"}
     if callable(stiffness):

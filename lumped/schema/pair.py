@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
@@ -276,6 +276,14 @@ class GearPair(Section, metaclass=_InOurWords):
             **{name: getattr(self, name) for name in GearPair.model_fields} | gears | {"operating": steady}
         )
 
+    if not TYPE_CHECKING:  # a checker knows the fields
+
+        def __getattr__(self, name: str) -> Any:
+            """Say where a value is that ``with_`` takes by a short name."""
+            if name in SHORT_NAMES:
+                raise AttributeError(f"a pair has no {name!r}: read pair.{SHORT_NAMES[name]}")
+            return super().__getattr__(name)
+
     def __repr__(self) -> str:
         """Return the pair in one line; ``to_toml()`` says every field."""
         pinion, gear, at = self.pinion, self.gear, self.operating
@@ -325,10 +333,12 @@ class GearPair(Section, metaclass=_InOurWords):
         ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
         into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
 
+        - law as a number: that of Coulomb with this coefficient.
         - law as a function: magnitude of mu of any of ``xi`` (position from X [m]), ``radius`` [m],
           ``sliding_velocity``, ``entraining_velocity`` [m/s], ``slide_to_roll``, ``hertz_pressure`` [Pa],
           ``film_thickness`` [m], ``film_parameter``; called with numbers at the operating point.
         - law as an array: mu at equal distances from A to D.
+        - stiffness as a text: the name of a model; as a number: that of the mesh, constant [N/m].
         - stiffness as a function: of ``xi``, one pair from A to D, or of ``phase`` from 0 to 1, all pairs
           over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included.
         - columns: a mapping or DataFrame such as ``{"position [mm]": ..., "coefficient": ...}``,

@@ -26,7 +26,7 @@ def example():
 def labelled():
     def check(figure):
         for axes in figure.axes:
-            assert axes.get_xlabel()
+            assert axes.get_xlabel() or axes.get_label() == "<colorbar>"
             assert axes.get_ylabel()
 
     return check

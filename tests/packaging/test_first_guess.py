@@ -63,7 +63,22 @@ def test_the_multibody_model_has_the_law_of_the_user(pair: spurcheck.GearPair) -
     assert np.abs(a - b).max() < 1e-6 * np.ptp(a)
 
 
+def test_laws_and_stiffness_are_what_one_writes_first(pair: spurcheck.GearPair) -> None:
+    assert pair.with_(law=0.06).friction.law == "coulomb"
+    assert pair.with_(law=0.06).friction.coefficient == 0.06
+    assert pair.with_(stiffness="rectangular").mesh.stiffness.model == "rectangular"
+    mesh = spurcheck.mesh_stiffness(pair.with_(stiffness=3e8, mesh__contact="prescribed"))
+    assert mesh["mesh_stiffness"].to_numpy() == pytest.approx(3e8, rel=1e-9)
+    own = spurcheck.new_pair("19/41", **DRAWING, changes={"law": lambda xi: 0.05})
+    assert own.friction.table == pair.with_(law=lambda xi: 0.05).friction.table
+
+
 @pytest.mark.parametrize(("wrong", "message"), [
+    (lambda p: p.with_(stiffness="enrgy"), "energy"),
+    (lambda p: spurcheck.run_up(p, (500, 900), "0.3 s"), "seconds = 0.3 s"),
+    (lambda p: spurcheck.waterfall(spurcheck.steady_state(p)), "a result of run_up"),
+    (lambda p: spurcheck.plot(p), "a dataset, as simulate returns it"),
+    (lambda p: p.with_(oil="vg220"), "oil = unknown key"),
     (lambda p: setattr(p.operating, "pinion_speed", 3), r"pair\.with_\(speed=2000\)"),
     (lambda p: setattr(p, "name", "x"), r"pair\.with_"),
     (lambda p: spurcheck.GearPair(name="x"), "pinion = missing"),
@@ -75,6 +90,11 @@ def test_the_multibody_model_has_the_law_of_the_user(pair: spurcheck.GearPair) -
 def test_a_wrong_guess_is_told_the_right_one(wrong, message: str, pair: spurcheck.GearPair) -> None:
     with pytest.raises(spurcheck.ParameterError, match=message):
         wrong(pair)
+
+
+def test_a_short_name_says_where_its_value_is(pair: spurcheck.GearPair) -> None:
+    with pytest.raises(AttributeError, match=r"read pair\.operating\.pinion_speed"):
+        pair.speed  # noqa: B018
 
 
 def test_several_results_share_one_axes(pair: spurcheck.GearPair) -> None:

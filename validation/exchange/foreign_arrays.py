@@ -11,6 +11,7 @@ import os
 import subprocess
 import sys
 import zipfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -56,8 +57,9 @@ def _main(path: str) -> None:
     except ImportError:  # no such limits on Windows
         pass
     else:
-        resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY, _MOST_MEMORY))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        with suppress(ValueError, OSError):  # macOS has the names, and refuses some of the limits
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY, _MOST_MEMORY))
     found = _numpy(path) if path.lower().endswith(".npz") else _matlab(path)
     content = io.BytesIO()
     np.savez(content, **found)  # objects become pickles, which the other side refuses

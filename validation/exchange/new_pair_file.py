@@ -16,6 +16,7 @@ from lumped.errors import ParameterError, refuse
 from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
+from lumped.schema.own_laws import is_own
 from lumped.schema.pair import FORMAT, SHORT_NAMES, GearPair, leaf_paths, stated_unit
 
 GIVEN = "given by the user"
@@ -74,9 +75,9 @@ def new_pair(
     face_width : of both gears [mm]
     speed : of the pinion [rpm]
     torque : on the pinion [N m]
-    changes : what else is known: ``oil`` ("vg220"), ``law``, and field paths -> values,
-        ``{"pinion.profile_shift": 0.4}``; ``gears.`` in front means both gears, ``bearings.stiffness`` and
-        ``bearings.damping_ratio`` all four bearing directions
+    changes : what else is known: ``oil`` ("vg220"), ``law``, ``stiffness`` (as ``pair.with_``), and
+        field paths -> values, ``{"pinion.profile_shift": 0.4}``; ``gears.`` in front means both gears,
+        ``bearings.stiffness`` and ``bearings.damping_ratio`` all four bearing directions
     name : of the pair; default from the numbers of teeth
 
     Raises
@@ -92,8 +93,10 @@ def new_pair(
         **(changes or {}),
     }
     named = name or f"pair_{re.sub('[^0-9]+', '_', str(teeth))}"
-    text = new_pair_text(named, {SHORT_NAMES.get(path, path): value for path, value in request.items()})
-    return load_gear_pair(tomllib.loads(text))
+    fields = {SHORT_NAMES.get(path, path): value for path, value in request.items()}
+    own = {path: fields.pop(path) for path in list(fields) if is_own(path, fields[path])}
+    pair = load_gear_pair(tomllib.loads(new_pair_text(named, fields)))
+    return pair.with_(own) if own else pair
 
 
 #: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened

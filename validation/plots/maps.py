@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable
 from typing import Any
 
@@ -18,6 +19,8 @@ from validation.plots.style import RED, one_panel, write_beside
 COLOURS = "cividis"
 #: Mesh orders that a waterfall reaches at the highest speed.
 _MESH_ORDERS = 5
+#: Letters in a line beside a colour bar.
+_BAR_WIDTH = 44
 
 
 def map_figure(
@@ -83,7 +86,8 @@ def waterfall_figure(data: xr.Dataset, frequencies: Iterable[float] = ()) -> Fig
     drawn = ax.pcolormesh(hertz[:, 1:] / 1e3, grid, shown, cmap=COLOURS, norm=norm, shading="nearest")
     drawn.set_rasterized(True)
     bar = figure.colorbar(drawn, ax=ax, pad=0.01)
-    bar.set_label(f"{data['amplitude'].attrs['long_name']} [{unit}]", fontsize=8.5)
+    words = f"{data['amplitude'].attrs['long_name']} [{unit}]"
+    bar.set_label(textwrap.fill(words, _BAR_WIDTH), fontsize=8.5)
     bar.outline.set_linewidth(0.5)
     mesh = float(np.interp(data.attrs["mesh_order"], data["order"], hertz[int(np.argmax(speed))])) / 1e3
     end = _MESH_ORDERS * mesh
