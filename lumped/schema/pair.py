@@ -333,7 +333,6 @@ class GearPair(Section, metaclass=_InOurWords):
         ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
         into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
 
-        - law as a number: that of Coulomb with this coefficient.
         - law as a function: magnitude of mu of any of ``xi`` (position from X [m]), ``radius`` [m],
           ``sliding_velocity``, ``entraining_velocity`` [m/s], ``slide_to_roll``, ``hertz_pressure`` [Pa],
           ``film_thickness`` [m], ``film_parameter``; called with numbers at the operating point.

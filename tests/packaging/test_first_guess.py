@@ -64,8 +64,6 @@ def test_the_multibody_model_has_the_law_of_the_user(pair: spurcheck.GearPair) -
 
 
 def test_laws_and_stiffness_are_what_one_writes_first(pair: spurcheck.GearPair) -> None:
-    assert pair.with_(law=0.06).friction.law == "coulomb"
-    assert pair.with_(law=0.06).friction.coefficient == 0.06
     assert pair.with_(stiffness="rectangular").mesh.stiffness.model == "rectangular"
     mesh = spurcheck.mesh_stiffness(pair.with_(stiffness=3e8, mesh__contact="prescribed"))
     assert mesh["mesh_stiffness"].to_numpy() == pytest.approx(3e8, rel=1e-9)
@@ -74,6 +72,7 @@ def test_laws_and_stiffness_are_what_one_writes_first(pair: spurcheck.GearPair) 
 
 
 @pytest.mark.parametrize(("wrong", "message"), [
+    (lambda p: p.with_(law=0.05), "For a constant mu: law='coulomb', friction__coefficient=0.05"),
     (lambda p: p.with_(stiffness="enrgy"), "energy"),
     (lambda p: spurcheck.run_up(p, (500, 900), "0.3 s"), "seconds = 0.3 s"),
     (lambda p: spurcheck.waterfall(spurcheck.steady_state(p)), "a result of run_up"),
