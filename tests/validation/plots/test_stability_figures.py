@@ -129,12 +129,13 @@ def test_what_is_undecided_is_dotted_and_not_hatched() -> None:
 
 
 def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
-    x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.0, 0.01, 0.05])
-    values = np.array([[0.3, 0.3, 0.3], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2]])
+    x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.01, 0.05, 0.0])
+    values = np.array([[0.3, 0.4, 0.35], [0.1, 0.15, 0.12], [0.2, 0.28, 0.25]])
     ax = stability_figure(over_speed_and_damping(x, y, values)).axes[0]
     assert ax.figure.axes[1].get_ylabel().endswith("\nerror bounds: partly proven")
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
-    assert np.allclose(mesh.get_array()[0], np.log([0.1, 0.2, 0.3]))  # growth of one period
+    rows = [[0.12, 0.25, 0.35], [0.1, 0.2, 0.3], [0.15, 0.28, 0.4]]
+    assert np.allclose(mesh.get_array(), np.log(rows))  # growth of one period, y upwards
     assert ax.get_xlim() == (1000.0, 3000.0)
 
 
