@@ -5,8 +5,10 @@ import pytest
 
 import floquet
 import lumped
-from floquet.gear.unilateral import unilateral_family, unilateral_system
+from floquet.gear.unilateral import _coast_flank, unilateral_family, unilateral_system
 from lumped import NumericalError, ParameterError
+from lumped.model.equations import structure
+from lumped.model.mesh_cycle import MeshCycle
 
 
 @pytest.fixture(scope="module")
@@ -146,6 +148,16 @@ def test_a_jump_leads_from_one_branch_to_another(branches):
     assert up.speed_rpm == pytest.approx(
         max(b.speed_rpm for b in branches.bifurcations if b.kind == "fold" and b.n == 1)
     )
+
+
+def test_back_sides_push_as_the_mirror_image_of_the_driving_flanks_in_the_line_of_centres(frictionless):
+    pair = frictionless.with_(centre_distance=90.0)
+    angle, cycle, drive = pair.geometry.operating_pressure_angle, MeshCycle.of(pair), structure(pair)
+    centres = np.array([np.sin(angle), np.cos(angle)])
+    mirror, coast = 2.0 * np.outer(centres, centres) - np.eye(2), _coast_flank(pair, cycle, np.eye(6))
+    for own, image in ((drive.normal, coast.normal), (drive.apart, coast.apart)):
+        for gear in ([2, 4], [3, 5]):
+            assert image[gear] == pytest.approx(mirror @ own[gear], abs=1e-12)
 
 
 def test_with_back_sides_a_motion_larger_than_the_backlash_is_another(frictionless):
