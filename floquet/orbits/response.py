@@ -359,8 +359,8 @@ class _Search:
         singles = [branch for branch in self.branches if branch.n == 1]
         for n in sorted(self.periods - {1}):
             for branch in singles:
-                parting = [o for o in branch.orbits if o.parts and n / o.period <= self.limits.fastest]
-                for single in parting[:: max(1, len(parting) // _SUBHARMONICS)]:
+                beyond = [o for o in branch.orbits if o.parts and n / o.period <= self.limits.fastest]
+                for single in beyond[:: max(1, len(beyond) // _SUBHARMONICS)]:
                     half = single.start.size // 2
                     start = single.start * np.repeat([1.0, 1.0 / n], half)
                     period = single.period / n

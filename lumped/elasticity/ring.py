@@ -156,7 +156,7 @@ def _condensed(
     )
 
 
-def _joined(a: Chain, b: Chain, turn: float) -> Chain:
+def _connected(a: Chain, b: Chain, turn: float) -> Chain:
     """Two chains of accelerations in a row, the second turned against the first."""
     half = len(a.stiffness) // 2
     t = _turn(turn)
@@ -181,9 +181,9 @@ def _row(one: Chain, count: int, pitch: float) -> Chain:
     result, found_count, power, power_count = None, 0, one, 1
     while True:
         if count & power_count:
-            result = power if result is None else _joined(result, power, found_count * pitch)
+            result = power if result is None else _connected(result, power, found_count * pitch)
             found_count += power_count
         if found_count == count:
             assert result is not None
             return result
-        power, power_count = _joined(power, power, power_count * pitch), 2 * power_count
+        power, power_count = _connected(power, power, power_count * pitch), 2 * power_count

@@ -75,7 +75,7 @@ class Segment:
         return q, v
 
     @classmethod
-    def joined(cls, parts: list[Segment]) -> Segment:
+    def concatenated(cls, parts: list[Segment]) -> Segment:
         """Join parts of one interval, each of which starts with the last row of the one before."""
         rows = [slice(None)] + [slice(1, None)] * (len(parts) - 1)
         return cls(
@@ -179,15 +179,15 @@ def _interval(
             until = t + wait - swing * min(0.5 * ahead, short)
             if not until < stop:  # or no event at all
                 break
-            part, step = _towards(model, s, q, v, a, t, until, step, bent=bent)
+            part, step = _steps_until(model, s, q, v, a, t, until, step, bent=bent)
             bent = False
         parts.append(part)
         t, q, v, a = float(part.times[-1]), part.q[-1], part.v[-1], part.a[-1]
-    part, step = _towards(model, s, q, v, a, t, stop, step, bent=bent)
-    return Segment.joined([*parts, part]), step
+    part, step = _steps_until(model, s, q, v, a, t, stop, step, bent=bent)
+    return Segment.concatenated([*parts, part]), step
 
 
-def _towards(
+def _steps_until(
     model: ExudynModel,
     s: exu.SimulationSettings,
     q: FloatArray,
@@ -223,7 +223,7 @@ def _towards(
         start, q, v = float(parts[-1].times[-1]), parts[-1].q[-1], parts[-1].v[-1]
         share = 1.5 - share  # where it stands still, the other of a half and the whole
     ti.absoluteTolerance = atol
-    return Segment.joined(parts), step
+    return Segment.concatenated(parts), step
 
 
 def _middle_step(part: Segment, default: float) -> float:

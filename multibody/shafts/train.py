@@ -258,17 +258,17 @@ class Train:
     @cached_property
     def mass(self) -> FloatArray:
         """(n, n)."""
-        return self._joined("mass")
+        return self._assembled("mass")
 
     @cached_property
     def stiffness(self) -> FloatArray:
         """(n, n) of shafts, bearings and couplings."""
-        return self._joined("stiffness")
+        return self._assembled("stiffness")
 
     @cached_property
     def damping(self) -> FloatArray:
         """(n, n) with gyroscopic terms."""
-        return self._joined("damping")
+        return self._assembled("damping")
 
     @cached_property
     def inverse(self) -> FloatArray:
@@ -342,7 +342,7 @@ class Train:
         found = np.linalg.solve(scaled, np.append(force / scale[:n] / unit, 0.0))
         return np.asarray(found[:n] / scale[:n])
 
-    def _joined(self, name: str) -> FloatArray:
+    def _assembled(self, name: str) -> FloatArray:
         matrix = np.zeros((self.size, self.size))
         for shaft, own in zip(self.shafts, self.places, strict=True):
             matrix[np.ix_(own, own)] = getattr(shaft, name)

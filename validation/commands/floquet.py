@@ -22,24 +22,18 @@ def floquet(
         Path,
         typer.Argument(
             metavar="FILE",
-            help="Matrices: .npz or .mat with M, K, period [s]; if wanted C, G (times 2 pi/period in C), "
+            help="Matrices: .npz or .mat with M, K, period in s; if wanted C, G (times 2 pi/period in C), "
             "periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.",
         ),
     ],
-    output: Annotated[
-        list[Path] | None,
-        opt.output(
-            "Result file of a chart, as often as needed: .nc, .csv or .mat for data, .png, .svg or .pdf for "
-            "the figure."
-        ),
-    ] = None,
+    output: opt.ResultFiles = None,
     axes: Annotated[
         list[str] | None,
         typer.Option(
             "--axis",
             metavar="NAME=FROM:TO:COUNT",
-            help="Axis of a chart: period [s], frequency [Hz] (1/period), variation (factor on the periodic "
-            "terms), damping (factor on C). Give it twice for a chart of two axes.",
+            help="Axis of a chart: period in s, frequency in Hz (1/period), variation (factor on the "
+            "periodic terms), damping (factor on C). Give it twice for a chart of two axes.",
         ),
     ] = None,
     rtol: Annotated[float, typer.Option(help="Wanted error of the monodromy matrix.")] = 1e-10,

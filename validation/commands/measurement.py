@@ -34,7 +34,7 @@ def measurement(
     ] = None,
     shift: Annotated[
         float | None,
-        typer.Option("--shift", help="Known mesh phase [mesh cycles]; default: found from the record."),
+        typer.Option("--shift", help="Known mesh phase in mesh cycles; default: found from the record."),
     ] = None,
     law: opt.Law = None,
     settings: opt.Settings = None,

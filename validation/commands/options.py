@@ -30,6 +30,12 @@ DEFAULT_PAIR = "nasa_28_28"
 _READ_BY_LAWS = re.compile(r"^(friction\.(?!law$)|lubricant\.)|\.(roughness$|(tip|root)_relief)")
 _LARGEST_COUNT = 5000
 
+
+def output(help: str) -> Any:
+    """Return the option that names the file or folder to write; ``help`` says what can be written."""
+    return typer.Option("--output", "-o", help=help)
+
+
 PairArgument = Annotated[
     str | None,
     typer.Argument(
@@ -38,8 +44,8 @@ PairArgument = Annotated[
         show_default=DEFAULT_PAIR,
     ),
 ]
-Speed = Annotated[str | None, typer.Option("--speed", help="Pinion speed [rpm], or '200 rad/s'.")]
-Torque = Annotated[str | None, typer.Option("--torque", help="Pinion torque [N m], or '200 lbf*in'.")]
+Speed = Annotated[str | None, typer.Option("--speed", help="Pinion speed in rpm, or '200 rad/s'.")]
+Torque = Annotated[str | None, typer.Option("--torque", help="Pinion torque in N m, or '200 lbf*in'.")]
 Range = Annotated[
     str | None,
     typer.Option(
@@ -61,16 +67,15 @@ Settings = Annotated[
         help="Change any parameter, as often as needed: --set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
+_DATA_OR_FIGURE = ".nc, .csv or .mat for data, .png, .svg or .pdf for the figure."
+ResultFile = Annotated[Path | None, output(f"Result file: {_DATA_OR_FIGURE}")]
+ResultFiles = Annotated[list[Path] | None, output(f"Result file, as often as needed: {_DATA_OR_FIGURE}")]
+DataFile = Annotated[Path | None, output("File for all numbers: .nc (NetCDF), .mat (MATLAB) or .csv.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON (SI units) and nothing else.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
 ForceFolder = Annotated[
     bool, typer.Option("--force", help="Replace what this command wrote into that folder earlier.")
 ]
-
-
-def output(help: str) -> Any:
-    """Return the option that names the file or folder to write; ``help`` says what can be written."""
-    return typer.Option("--output", "-o", help=help)
 
 
 def gear_pair(

@@ -31,10 +31,7 @@ _VALUES = 26
 @guarded
 def response(
     pair: opt.PairArgument = None,
-    output: Annotated[
-        Path | None,
-        opt.output("Result file: .nc, .csv or .mat for data, .png, .svg or .pdf for the figure."),
-    ] = None,
+    output: opt.ResultFile = None,
     periods: Annotated[int, typer.Option(help="Look for motions that repeat after 1 to so many cycles.")] = 3,
     seeds: Annotated[
         int | None,
@@ -48,7 +45,7 @@ def response(
         typer.Option(
             "--map",
             metavar="NAME[=FROM:TO:COUNT]",
-            help="Map the jumps over speed and torque [N m], damping_ratio (mesh) or tip_relief [um], and "
+            help="Map the jumps over speed and torque (N m), damping_ratio (mesh) or tip_relief (um), and "
             f"find what removes them; default {_VALUES} values around the pair's own.",
         ),
     ] = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import typer
@@ -18,10 +17,7 @@ Start = Literal["static", "periodic"]
 @guarded
 def simulate(
     pair: opt.PairArgument = None,
-    output: Annotated[
-        Path | None,
-        opt.output("Result file: .nc (NetCDF), .csv, .mat (MATLAB), .png or .svg; the suffix chooses."),
-    ] = None,
+    output: opt.ResultFile = None,
     model: Annotated[Model, typer.Option(help="Which model to run.")] = "lumped",
     fidelity: Annotated[Fidelity, typer.Option(help="Of the multibody model.")] = "exact",
     cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 20,

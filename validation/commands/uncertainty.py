@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, progress_bar, stderr, stdout, table
-
-_SUFFIXES = (".csv", ".nc", ".mat")
 
 
 @guarded
@@ -22,9 +19,7 @@ def uncertainty(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
-    output: Annotated[
-        Path | None, opt.output("File for all samples: .nc (NetCDF), .mat (MATLAB) or .csv.")
-    ] = None,
+    output: opt.DataFile = None,
     force: opt.Force = False,
 ) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
@@ -42,11 +37,11 @@ def uncertainty(
 
     from validation.exchange.results import write_results
     from validation.files.formatting import number, quantity
-    from validation.files.output import check_file
+    from validation.files.output import DATA_SUFFIXES, check_file
     from validation.prediction.motion import QUANTITIES
     from validation.prediction.uncertainty import uncertainty as run
 
-    target = None if output is None else check_file(output, _SUFFIXES, force=force)
+    target = None if output is None else check_file(output, DATA_SUFFIXES, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("uncertain inputs") as tell:
         found = run(gear_pair, samples, seed, progress=tell)

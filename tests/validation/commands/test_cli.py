@@ -6,9 +6,11 @@ import re
 
 import pytest
 import xarray as xr
+from typer.main import get_command
 
 import lumped
 from lumped import NumericalError
+from validation.cli import app
 from validation.cross_check import comparison
 from validation.cross_check.verdict import Verdict
 from validation.reporting import Report
@@ -26,6 +28,13 @@ def test_every_command_explains_itself_with_an_example(command):
     text = run(command, "--help").stdout
     assert "Example" in text
     assert f"spurcheck {command}" in text
+
+
+def test_no_unit_in_a_help_text_is_taken_for_markup():
+    """Rich drops "[rpm]": what it takes for a tag begins with a small letter."""
+    for command in get_command(app).commands.values():
+        text = " ".join(parameter.help or "" for parameter in command.params)
+        assert not re.search(r"(?<!\\)\[[a-z#@/]", text), command.name
 
 
 def test_version():
