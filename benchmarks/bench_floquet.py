@@ -32,7 +32,7 @@ from floquet import fast_multipliers, gear_block, stability_chart
 from lumped.errors import LawRangeWarning
 from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
-from tests.evidence.floquet.extended import extended_monodromy, stress_test
+from tests.evidence.floquet.extended import extended_matrix, stress_test
 
 CORES = os.cpu_count() or 1
 SPEEDS = (500.0, 20000.0)
@@ -169,7 +169,7 @@ def by_solver(
 def baselines(per_point: float, points: int) -> None:
     speeds = SPEEDS[0] + (SPEEDS[1] - SPEEDS[0]) * (np.arange(points) + 0.5) / points  # as in the chart
     pairs = [PAIR.with_(operating__pinion_speed=float(rpm)) for rpm in speeds]
-    exact = [np.linalg.eigvals(extended_monodromy(pair)) for pair in pairs]
+    exact = [np.linalg.eigvals(extended_matrix(gear_block(pair)).astype(float)) for pair in pairs]
 
     def worst(multipliers: list[np.ndarray]) -> float:
         return max(

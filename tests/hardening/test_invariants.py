@@ -9,7 +9,7 @@ from hypothesis import event, given
 from hypothesis import strategies as st
 
 from floquet.gear.multipliers import gear_pair_multipliers
-from lumped import geometry, load_gear_pair, mesh_cycle, steady_state
+from lumped import load_gear_pair, steady_state
 from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 from lumped.fields.units import UNITS, to_si
 from lumped.schema.pair import leaf_paths, stated_unit
@@ -27,33 +27,6 @@ def quiet(function, *arguments, **options):
             return None
     event(f"{name} answered")
     return result
-
-
-@given(data=st.data())
-def test_contact_positions(pairs, data):
-    pair = data.draw(pairs)
-    g = geometry(pair)
-    cycle = quiet(mesh_cycle, pair)
-    if cycle is None:
-        return
-    times = np.linspace(0.0, g.mesh_period, 41)[:-1]
-    sample = cycle.sample(times)
-    # The path of contact reaches from A to D; with loaded contact deflections move both ends.
-    loaded = pair.mesh.contact == "loaded"
-    start, end = (cycle.start, cycle.end) if loaded else (g.L_XA, g.L_XD)
-    assert max(abs(start - g.L_XA), abs(end - g.L_XD)) < 0.5 * g.base_pitch
-    first, last = (math.floor((at - g.L_XA) / g.base_pitch) for at in (start, end))
-    # Positions of the pairs are a base pitch apart and move with the pinion's base circle.
-    pitches = np.arange(first, last + 1)[::-1, None]
-    expected = g.L_XA + pitches * g.base_pitch + g.omega_pinion * g.base_radius_pinion * times
-    np.testing.assert_allclose(sample.position, expected, rtol=0, atol=1e-12 * g.centre_distance)
-    inside = (sample.position >= start) & (sample.position <= end)
-    edge = np.abs(sample.position - end) < 1e-9 * g.base_pitch
-    if loaded:  # else A is a switch, where the value is the one behind it
-        edge |= np.abs(sample.position - start) < 1e-9 * g.base_pitch
-    assert (np.asarray(sample.contact, dtype=bool) == inside)[~edge].all()
-    assert (sample.stiffness[~inside & ~edge] == 0.0).all()
-    assert (sample.stiffness[inside & ~edge] > 0.0).all()
 
 
 @given(data=st.data())

@@ -9,7 +9,6 @@ from lumped.path_of_contact import contact_path, friction_path_function
 from reproductions.he_cho_singh_2008.errata.catalogue import errata_chapter
 from reproductions.he_cho_singh_2008.errata.laws import derivative_residual
 from reproductions.he_cho_singh_2008.errata.printed_laws import (
-    film_thickness_printed,
     law_ii_printed,
     law_iii_printed,
     law_iv_printed,
@@ -141,15 +140,6 @@ def test_law_iv_is_a_derivative_only_as_repaired(pair):
     assert found == pytest.approx((phi - sigma) / (np.pi * phi), rel=1e-3)  # 4001 points see the peak to 1e-3
 
 
-def test_printed_film_powers(pair):
-    path = contact_path(pair)
-    xi = np.array([path.L_XP])
-    right = path.film_thickness(xi)
-    # H_c ~ U^0.69: 10^(8-3) and 10^(0.69 (-16+6))
-    np.testing.assert_allclose(film_thickness_printed(path, xi), right * 10 ** (5 - 6.9), rtol=1e-12)
-    np.testing.assert_allclose(film_thickness_printed(path, xi, speed=False), right * 1e5, rtol=1e-12)
-
-
 def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
     # Lambda is 4.4 to 4.6 at the preset's point, and 10^(5 - 6.9) times that as printed: below 1, so
     # law V is law IV instead of law III.
@@ -159,17 +149,6 @@ def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
         assert value == pytest.approx(mean_coefficient(friction_path_function(own, law=law)), rel=1e-9)
     y = evidence(chapter, "21a, d", "law V: peak to peak of y_g")
     assert y.printed > 2.0 * y.repaired  # y goes with the coefficient
-
-
-def test_the_energy_residual_is_what_bearings_and_tooth_dampers_take(chapter):
-    """Without friction nothing else takes power: the loss of the repaired efficiency, and of the books."""
-    (row,) = (e for e in chapter.errata if e.equation == "3")
-    found = {e.quantity: e for e in row.evidence}
-    assert found["efficiency without friction"].printed == pytest.approx(1.0, abs=1e-12)
-    assert 0.99 < found["efficiency without friction"].repaired < 0.9999
-    books = found["driving power less brake and all losses, without friction"]
-    assert books.printed < -10.0
-    assert abs(books.repaired) < 1e-5
 
 
 def test_the_chapter_has_every_row_with_numbers_and_text_on_motion_and_multipliers(chapter):

@@ -12,9 +12,15 @@ from multibody.contact import friction
 from multibody.run.linear_motion import mesh_wrench
 from multibody.run.setup import prepare
 from tests.evidence.check import failing
-from tests.evidence.reference_model.blanks import blanks
-from tests.evidence.reference_model.checks import PAIR, reference_model
-from tests.evidence.reference_model.frozen_modes import frozen_modes, held, linearised, modes_of
+from tests.evidence.reference_model.checks import (
+    PAIR,
+    blanks,
+    frozen_modes,
+    held,
+    linearised,
+    modes_of,
+    reference_model,
+)
 
 
 def test_every_number_keeps_its_limit():

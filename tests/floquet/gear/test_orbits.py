@@ -223,27 +223,6 @@ def test_what_a_jump_map_cannot_vary_is_refused(frictionless):
             floquet.jump_map(frictionless, axes)
 
 
-def test_jumps_are_removed_at_one_ratio_of_torque_to_relief():
-    """Lengths and forces in proportion are the same motions: jumps depend on torque over relief alone."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed", friction__law="none", operating__pinion_torque=200.0
-    )
-    found = floquet.response_branches(pair, (13500.0, 16500.0), (1,), seeds=0)
-    assert [b.kind for b in found.bifurcations].count("fold") == 1
-    (less,) = floquet.jumps_removed_by(found, "torque", (90.0, 200.0))
-    (more,) = floquet.jumps_removed_by(found, "tip_relief", (23.0, 50.0))
-    assert (less.direction, more.direction) == ("smaller", "larger")
-    assert less.value * more.value == pytest.approx(
-        200.0 * 23.0, abs=less.error * more.value + more.error * less.value
-    )
-    assert less.value < 120.0
-    assert max(less.error / less.value, more.error / more.value) < 2e-3
-    (never,) = floquet.jumps_removed_by(found, "torque", (190.0, 200.0))
-    assert not never.found
-    with pytest.raises(ParameterError, match="around the pair's own value"):
-        floquet.jumps_removed_by(found, "torque", (10.0, 20.0))
-
-
 def test_contact_is_kept_where_all_motions_and_all_runs_keep_it(frictionless):
     held = floquet.response_branches(frictionless, (4400.0, 4600.0), (1,), seeds=2)
     assert held.contact_kept

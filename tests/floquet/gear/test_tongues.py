@@ -2,13 +2,10 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
 
 from floquet import PeriodicSystem, monodromy, stability_margins
-from floquet.engine.tongues import Tongue, label_tongue, mode_shares, tongue_tip
+from floquet.engine.tongues import Tongue, label_tongue, mode_shares
 from lumped import load_gear_pair
-from lumped.errors import NumericalError
-from tests.evidence.floquet.reference_systems import meissner_trace
 
 
 def coupled(omega: np.ndarray, coupling: np.ndarray, excitation: float, damping: float = 0.0):
@@ -68,27 +65,6 @@ def test_shares_of_a_pure_rotation() -> None:
     shares = mode_shares(state, OMEGA)
     assert shares.tolist() == [[0, 1, 0], [0, 0, 0]]
     assert mode_shares(state.conj(), OMEGA)[1].tolist() == [0, 1, 0]
-
-
-def test_tip_of_a_damped_meissner_tongue() -> None:
-    # x = exp(-c t) y takes the damping out (delta -> delta - c^2), so the tongue closes at the largest growth
-    # rate of the undamped equation, arccosh(|tr M|/2)/T, wherever it is; tr M is in closed form.
-    T, epsilon = 2.0 * np.pi, 0.1
-
-    def growth(delta: float) -> float:
-        return float(np.arccosh(max(1.0, abs(meissner_trace(delta, epsilon)) / 2)) / T)
-
-    top = minimize_scalar(lambda d: -growth(d), bounds=(0.2, 0.3), method="bounded", options={"xatol": 1e-9})
-
-    def radius(delta: np.ndarray, c: float) -> np.ndarray:
-        return np.array([np.exp(T * (growth(d - c**2) - c)) for d in delta])
-
-    tip = tongue_tip(radius, (0.16, 0.36), (0.01, 0.2))
-    # 1e-8: the top of the peak is sampled to 1e-9 of its height, the root taken to 1e-9.
-    assert tip.damping == pytest.approx(-top.fun, abs=1e-8)
-    assert tip.place == pytest.approx(top.x + top.fun**2, abs=1e-3)  # a flat top: place to its square root
-    with pytest.raises(NumericalError, match="does not close"):
-        tongue_tip(radius, (0.16, 0.36), (0.01, 0.02))
 
 
 @pytest.fixture(scope="module")

@@ -43,24 +43,6 @@ def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact(bouncer):
     assert np.linalg.det(one.derivative[:2, :2]) == pytest.approx(1.0, rel=1e-11)  # Liouville
 
 
-def test_derivatives_are_those_of_differences(gearlike):
-    """Through gaps, strikes, recovering contacts, clearances that move, and both damped."""
-    x, T, p = np.array([0.4, -0.2, 1.0, -2.5]), 5.0, 0.3
-    run = gearlike.run(x, T, 3, p, derivatives=True, logged=100)
-    kinds = set(run.events[:, 2])
-    assert kinds == {0.0, 1.0, 2.0}, "the motion does not meet every kind of event"
-    step = 1e-6
-
-    def end(x, T, p):
-        run = gearlike.run(x, T, 3, p)
-        return np.concatenate([run.end, run.accumulated])
-
-    columns = [(end(x + step * e, T, p) - end(x - step * e, T, p)) / (2 * step) for e in np.eye(4)]
-    columns += [(end(x, T + step, p) - end(x, T - step, p)) / (2 * step)]
-    columns += [(end(x, T, p + step) - end(x, T, p - step)) / (2 * step)]
-    assert run.derivative == pytest.approx(np.array(columns).T, rel=1e-7, abs=1e-7 * np.abs(columns).max())
-
-
 def test_a_contact_that_opens_under_its_dampers_load_jumps_back():
     """Where the damper sees another rate than that of the gap, its load goes at once."""
     contact = Contact([1.0], [-1.0], 1.0, 1.0, clearance=[[0.0, 0.3]], clearance_rate=0.0)

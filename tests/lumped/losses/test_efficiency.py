@@ -16,7 +16,6 @@ from lumped.losses import (
     iso_14179_mesh_loss,
     iso_14179_of,
     loss_factor,
-    losses_of_laws,
     ohlendorf_of,
     quasi_static_losses,
     sliding_power_along_path,
@@ -113,25 +112,6 @@ def test_power_along_the_path_is_the_power_over_the_cycle():
     mean = np.trapezoid(along["sliding_power"].to_numpy(), xi) / g.base_pitch
     # trapezia across the two jumps of the load share: first order in 1/4096
     assert mean == pytest.approx(run.attrs["power_loss"], rel=1e-3)
-
-
-def test_losses_of_all_laws_side_by_side():
-    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
-    table = losses_of_laws(pair)
-    assert list(table.law.values) == [law for law in LAWS if law != "none"]
-    for name in ("coulomb", "xu_kahraman"):
-        single = quasi_static_losses(pair, name).attrs
-        assert float(table.mesh_efficiency.sel(law=name)) == single["mesh_efficiency"]
-    # I and IV share mu_avg and differ within a fiftieth of a millimetre of P, where nothing slides
-    assert float(table.power_loss.sel(law="smoothed_coulomb")) == pytest.approx(
-        float(table.power_loss.sel(law="coulomb")), rel=1e-3
-    )
-    assert (np.abs(table.mesh_efficiency_dynamic - table.mesh_efficiency) < 1e-3).all()
-    rough = pair.with_(pinion__roughness=1.2, gear__roughness=1.2)
-    left = losses_of_laws(rough, dynamic=False)
-    # I and IV need law II's average, and V is III at the composite roughness that the preset gives
-    assert list(left.law.values) == ["xu_kahraman", "composite", "iso_14179"]
-    assert len(left.attrs["left_out"]) == 3
 
 
 def test_iso_mean_coefficient_on_fzg_c():

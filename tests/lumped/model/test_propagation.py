@@ -5,11 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.linalg import expm
 
 from lumped import geometry, periodic_system
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model import propagation
 from lumped.model.periodic_system import MeshGain
 from lumped.model.propagation import fastest_frequency, step_maps
 
@@ -99,31 +97,6 @@ def test_tableau_meets_the_simplifying_assumptions(stages):
         np.testing.assert_allclose((b * c ** (k - 1)) @ a, b * (1 - c**k) / k, rtol=1e-9, atol=1e-13)
 
 
-def test_constant_coefficients_give_the_matrix_exponential():
-    rng = np.random.default_rng(3)
-    lower = -np.hstack([np.diag([40.0, 90.0, 10.0]), np.diag([0.3, 0.2, 0.4])])
-    a = np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), lower])
-    force = np.concatenate([np.zeros(3), rng.normal(size=3)])
-    alone = system_of(a, lambda t: (np.zeros((t.size, 3)),) * 3, np.zeros(3), [0.0, 2.0])
-    alone.torque_pinion, alone.pinion_torque = 0.5 * force, 2.0
-    # The same with one deflection and its rate fed back to all coordinates, which couples them.
-    deflection, by_k, by_c = (rng.normal(size=3) for _ in range(3))
-    coupled = a.copy()
-    coupled[3:] += np.hstack([np.outer(by_k, deflection), np.outer(0.1 * by_c, deflection)])
-
-    def gain(t):
-        return tuple(np.repeat(v[None], t.size, axis=0) for v in (by_k, 0.1 * by_c, force[3:]))
-
-    feedback = system_of(a, gain, deflection, [0.0, 2.0])
-    for system, matrix in ((alone, a), (feedback, coupled)):
-        augmented = np.zeros((7, 7))
-        augmented[:6, :6], augmented[:6, 6] = 2.0 * matrix, 2.0 * force
-        exact = expm(augmented)[:6]
-        found = np.hstack(step_maps(system, np.zeros((6, 0)), step_angle=0.4).over_all())
-        # Order 8 at 0.4 rad a step: 1e-12 a step, about 50 steps.
-        np.testing.assert_allclose(found, exact, atol=1e-9 * np.abs(exact).max())
-
-
 def test_a_jump_at_an_edge_costs_no_order():
     """z'' + w(t)^2 z with w = 3 then 5: the map is the product of two rotations."""
 
@@ -177,20 +150,3 @@ class TestSteps:
             times = np.linspace(0.0, system.period, 1000)
             fastest = np.abs(np.linalg.eigvals(system.matrices(times))).max()
             assert fastest <= fastest_frequency(system) <= 1.3 * fastest
-
-    def test_intervals_and_blocks_only_group_the_steps(self, unequal, monkeypatch):
-        system = periodic_system(unequal.with_(operating__pinion_speed=300), "full")
-        x, outputs = np.linspace(-1e-5, 1e-5, 12), np.array([0.0, 0.1, 0.15, 0.8]) * system.period
-        maps = step_maps(system, np.zeros((12, 0)), outputs=outputs)
-        # Memory goes with the intervals, however many steps a slow cycle takes.
-        assert maps.edges.size > 300
-        assert maps.maps.shape[0] == 4
-        np.testing.assert_allclose(maps.times, [*outputs, system.period], rtol=1e-12)
-        monkeypatch.setattr(propagation, "_BLOCK", 7)
-        monkeypatch.setattr(propagation, "_MOST_KEPT", 0)
-        again = step_maps(system, np.zeros((12, 0)), outputs=outputs)
-        a, b = (m.states(x, np.array([1.0])) for m in (maps, again))
-        # Rounding over some hundred steps.
-        assert np.all(np.abs(a - b) <= 1e-10 * np.abs(a).max(axis=0))
-        kept, anew = (m.energy_residual(x, np.array([1.0])) for m in (maps, again))
-        assert kept == pytest.approx(anew, rel=1e-9)

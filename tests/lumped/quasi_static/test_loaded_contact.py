@@ -23,21 +23,6 @@ FORMS = {
 }
 
 
-def gap_of_a_corner(beyond, flank, length, radius):
-    """Between two equal gears whose bearings have given way: the corner's involute against the mate's.
-
-    The corner stands on the tangent of the mate's base circle at the length of the arc that it would unwind.
-    ``flank`` is the length of the corner's own tangent, ``length`` that of the line of action.
-    """
-    turn = beyond / radius
-    across, along = flank * np.sin(turn), flank * np.cos(turn)
-    corner = np.array([length - radius * np.sin(turn) - along, radius * (1 - np.cos(turn)) + across])
-    from_centre = corner + np.array([0.0, radius])
-    tangent = np.sqrt(from_centre @ from_centre - radius**2)
-    turned = np.arctan2(*from_centre) - np.arctan2(tangent, radius)
-    return tangent + radius * turned - (length - flank - beyond)
-
-
 def solution(pair):
     return periodic_solution(periodic_system(pair, "full"), np.zeros(1), estimate_error=False)
 
@@ -52,28 +37,6 @@ def test_the_loads_of_the_fitted_laws_make_the_mean_load(name):
     load = (state.stiffness * (delta - state.error)).sum(axis=0)
     assert np.abs(load / mesh.force - 1.0).max() < 1e-8
     assert state.contact.any(axis=0).all()
-
-
-@pytest.mark.parametrize("relief", [0.0, 2.0])
-def test_contact_begins_beyond_a_where_the_corner_has_closed_its_gap(relief):
-    """The gap is the corner's, where deflection shifts it, the neighbour's, and relief as at the tip."""
-    amounts = {f"{gear}.tip_relief.amount": relief for gear in ("pinion", "gear")}
-    soft = {"bearings.pinion.loa_stiffness": 3e7, "bearings.gear.loa_stiffness": 7e7}
-    pair = FORMS["linear"].with_({"mesh.relief": "static"} | amounts | soft)
-    mesh, g = StaticMesh(pair), lumped.geometry(pair)
-    start, end = loaded_contact(pair).contact[0]
-    assert start < g.L_XA
-    assert end > g.L_XD
-    delta = mesh.approach(np.array([start, end]))
-    longer = mesh.force * (1 / pair.bearings.pinion.loa_stiffness + 1 / pair.bearings.gear.loa_stiffness)
-    # The other pair carries the load alone and moves this one: at either end it is a pitch further inside.
-    moved = mesh.neighbours[0]([start, end - g.base_pitch]) * mesh.force
-    for way, approach, off in ((g.L_XA - start, delta[0], moved[0]), (end - g.L_XD, delta[1], moved[1])):
-        beyond = way + 0.5 * (approach + longer)  # of the corner, on the tooth that has it
-        gap = gap_of_a_corner(beyond, g.L_XY - g.L_XA, g.L_XY + longer, g.base_radius_pinion)
-        assert gap == pytest.approx(approach - off - 1e-6 * relief, rel=1e-9)
-    # Equal gears: symmetric about the pitch point.
-    assert start + end == pytest.approx(2 * g.L_XP, abs=1e-12)
 
 
 def test_pairs_two_pitches_apart_move_each_other_too():
@@ -97,26 +60,6 @@ def damper_power(torque, rpm):
         operating__pinion_speed=rpm,
     )  # fmt: skip
     return mean_powers(solution(pair)).tooth_dampers, pair
-
-
-def test_a_corner_that_closes_slowly_takes_the_torque_to_the_power_three_halves():
-    """With the gap e both pairs carry (F -+ k e)/2, so their dampers see half the rate at which e closes."""
-    found, pair = damper_power(5.65, 20.0)
-    g, k = lumped.geometry(pair), mesh_elements(pair.with_(mesh__contact="prescribed")).stiffness(0.015)
-    deflection, speed = pair.operating.pinion_torque / g.base_radius_pinion / k, g.omega_pinion
-    speed *= g.base_radius_pinion
-    flank = g.L_XY - g.L_XA
-    beyond = np.linspace(0.0, 1.1, 2001) * np.sqrt(
-        2.0 * deflection / (flank / g.base_radius_gear) ** 2 / (1.0 / flank + 1.0 / g.L_XA)
-    )
-    gap = np.array([gap_of_a_corner(b, flank, g.L_XY, g.base_radius_pinion) for b in beyond])
-    load = np.clip((1.0 - gap / deflection) / 2.0 * 15.0, 0.0, 1.0)
-    both = np.where(gap < deflection, 1.0 + load**2 * (3.0 - 2.0 * load), 0.0)
-    c = 2.0 * pair.mesh.damping_ratio * np.sqrt(k * lumped.bodies(pair).effective_mass)
-    taken = c * speed / 4.0 * np.trapezoid(both * np.gradient(gap, beyond) ** 2, beyond)
-    # Two corners a cycle. Each touch also starts a swing, of which the share grows with speed: 1.2 %.
-    assert found == pytest.approx(2.0 * taken / g.mesh_period, rel=0.02)
-    assert np.log2(found / damper_power(5.65 / 4.0, 20.0)[0]) / 2.0 == pytest.approx(1.5, abs=0.02)
 
 
 def test_a_quarter_of_the_torque_at_half_the_speed_makes_a_quarter_of_the_motion():

@@ -90,23 +90,6 @@ def test_teeth_push_but_do_not_pull(rng):
     assert wrench[0] > 0  # pulled
 
 
-def test_back_sides_touch_after_the_backlash():
-    numbers = make(PAIR)
-    radius = numbers.parameters[kn.RADIUS_P]
-    backlash = lumped.geometry(PAIR).normal_backlash
-    q, v = np.zeros(6), np.zeros(6)
-    for excess, touching in ((-1e-9, False), (1e-6, True)):
-        q[2] = (backlash + excess) / radius
-        wrench, c = forces(numbers, 0.3 * numbers.period, q, v)
-        loads = c[c[:, kn.FLANK] < 0, kn.LOAD]
-        assert (loads.sum() > 0) == touching
-    # The back side pushes the pinion forward (clockwise: negative) along its own line of action.
-    assert wrench[2] < 0
-    assert wrench[2] == pytest.approx(-radius * loads.sum(), rel=0.05)  # and a little friction
-    stiffness = c[c[:, kn.FLANK] < 0, kn.K]
-    np.testing.assert_allclose(loads, stiffness * 1e-6, rtol=1e-6)
-
-
 def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
     """Pressed flanks enter half an overlap later: the gear's flank ends at its tip, xi = L_XA + delta/2."""
     numbers = make(PAIR)

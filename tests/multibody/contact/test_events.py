@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import lumped
-import multibody
 from lumped import PathFunction
 from multibody.contact import layout as kn
 from multibody.contact.events import (
@@ -98,20 +97,3 @@ def test_of_many_switches_only_the_largest_are_events():
     rows = event_table(steps, (), (), 9.4e-3)
     switches = rows[rows[:, 0] == SWITCH, 1]
     np.testing.assert_allclose(np.sort(switches), breaks[-13:-1], rtol=1e-15)
-
-
-@pytest.mark.parametrize("smooth", [False, True], ids=["jumps", "smooth"])
-def test_jumps_cost_neither_accuracy_nor_many_force_evaluations(smooth):
-    """A run through events is as good as one of the linear model, whose switches are known beforehand.
-
-    Without foresight the same run errs by 6e-7 and takes 1.6 times the evaluations.
-    """
-    pair = JUMPS
-    if smooth:
-        pair = pair.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
-    reference = multibody.simulate(pair, 6, rtol=1e-11)
-    runs = {name: multibody.simulate(pair, 6, rtol=1e-8, fidelity=name) for name in ("exact", "linear")}
-    off = float(np.abs(runs["exact"]["dte"] - reference["dte"]).max())
-    assert off < 2e-7 * float(np.ptp(reference["dte"].to_numpy()))
-    calls = {name: run.attrs["force_evaluations"] for name, run in runs.items()}
-    assert calls["exact"] < 1.15 * calls["linear"]

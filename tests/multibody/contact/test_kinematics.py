@@ -136,23 +136,5 @@ def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
         np.testing.assert_allclose(drawn(best.x)[:, 0], point, atol=5e-7)
 
 
-def test_backlash_is_the_room_between_both_flanks(teeth, rng):
-    """Drive and coast overlap add up to minus the normal backlash; at standard distance that is the thinning.
-
-    Opening the centres by da opens the backlash by 2 R (inv alpha' - inv alpha), the standard backlash
-    formula.
-    """
-    pose = random_pose(teeth, rng, kin.DRIVE)
-    a, base = np.hypot(*(pose[3:5] - pose[:2])), teeth.radius_p + teeth.radius_g
-    angle = math.acos(base / a)
-    room = -kin.wrap(overlap(teeth, pose, kin.DRIVE) + overlap(teeth, pose, kin.COAST), teeth.pitch)
-    thick = sum(
-        r * (chi - math.pi)
-        for r, chi in zip((teeth.radius_p, teeth.radius_g), teeth.chi[kin.COAST], strict=True)
-    )
-    expected = teeth.pitch + 2 * base * (math.tan(angle) - angle) - thick
-    assert room == pytest.approx(expected, abs=2e-15 * 20)
-
-
 def test_overlapping_base_circles_give_nan():
     assert math.isnan(kin.line_of_action(0.08, -0.0835, 0.0, 0.0835, kin.DRIVE)[2])

@@ -24,23 +24,6 @@ JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
 SMOOTH = JUMPS.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
 
 
-@pytest.mark.slow
-def test_causes_of_the_difference():
-    """With smooth stiffness the actual sliding velocity is the cause; jumps add the shift of the contact.
-
-    Without friction there is no sliding to matter, and every cause that is left is far smaller.
-    """
-    smooth = multibody.attribution(SMOOTH)
-    assert smooth.attrs["largest"] == "sliding_velocity"
-    dte = smooth["alone"].sel(quantity="dte")
-    assert float(dte.sel(cause="sliding_velocity")) == pytest.approx(float(dte.sel(cause="all")), rel=0.02)
-    jumps = multibody.attribution(JUMPS)["alone"].sel(quantity="dte")
-    assert float(jumps.sel(cause="contact")) > 100 * float(dte.sel(cause="contact"))
-    still = multibody.attribution(SMOOTH.with_(friction__law="none"))["alone"]
-    assert float(still.sel(cause="all", quantity="dte")) < 0.05 * float(dte.sel(cause="all"))
-    assert np.isnan(still.sel(cause="all", quantity="y_p"))
-
-
 #: What each effect adds to every quantity of a made-up motion of span 10: all sums differ.
 MADE_UP = {
     "rotation_phase": 1.0, "moving_line": 2.0, "sliding_velocity": -4.0, "entry_shift": 0.5,

@@ -1,4 +1,4 @@
-"""Does the cross-check tell agreement from disagreement, and does the verdict follow from the numbers?"""
+"""Does the cross-check tell agreement from disagreement, and sound pairs from what symmetry hides?"""
 
 import dataclasses
 
@@ -8,9 +8,11 @@ import pytest
 import lumped
 import multibody
 from lumped import ParameterError
+from lumped.model import periodic_system
 from validation.cross_check import comparison
 from validation.cross_check.agreement import QUANTITIES, off_switch_samples
 from validation.cross_check.comparison import crosscheck
+from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import Verdict, limit_of
 from validation.cross_check.words import attribution, cause_of_difference, failed_checks, whole_difference
 
@@ -165,3 +167,47 @@ def test_a_failure_is_told_with_value_and_limit(check):
 def test_arguments_out_of_range_are_refused_before_any_work(pair, arguments):
     with pytest.raises(ParameterError):
         crosscheck(pair, **arguments)
+
+
+QUICK = {"cycles": 6, "samples_per_cycle": 64}
+
+
+def _swapped(s):
+    order = [0, 1, 3, 2, 5, 4]
+    return dataclasses.replace(s, stiffness=s.stiffness[order], damping=s.damping[order])
+
+
+def test_what_symmetry_hides_is_seen_by_the_asymmetric_variant(pair, monkeypatch):
+    """The default pair has equal bearings: swapped ones change nothing but in the variant."""
+    true = periodic_system.structure
+    monkeypatch.setattr(periodic_system, "structure", lambda *a, **k: _swapped(true(*a, **k)))
+    found = crosscheck(pair, **QUICK)
+    assert found.verdict is Verdict.FAILS
+    assert all(failure.check.startswith("variant: ") for failure in found.failures)
+
+
+def test_a_sound_pair_and_its_variant_obey_the_conservation_laws(check):
+    assert check.failures == ()
+    assert check.variant is not None
+    for found in (check, check.variant):
+        checks = [j.check for j in found.conservation]
+        assert len(set(checks)) == len(checks) > 25
+    pinion, gear = check.variant.pair.bearings.pinion, check.variant.pair.bearings.gear
+    values = [getattr(b, f"{axis}_stiffness") for b in (pinion, gear) for axis in ("loa", "oloa")]
+    assert len(set(values)) == 4
+    assert check.variant.pair.pinion.teeth != check.variant.pair.gear.teeth
+
+
+def test_vibration_that_reverses_sliding_is_no_wrong_sign(check):
+    """The lumped friction feeds power in where vibration turns the sliding: a limit of validity, stated."""
+    assert float(check.lumped["friction_power"].max()) > 0.0
+    [taken] = [j for j in check.conservation if j.check == "conservation: friction takes power, lumped"]
+    assert taken.within
+
+
+def test_a_variant_that_loses_contact_is_not_taken(pair):
+    slow = pair.with_({"operating.pinion_torque": 5.0, "operating.pinion_speed": 8500.0})
+    found = asymmetric_variant(slow)
+    assert (
+        found is None or float(lumped.steady_state(found, samples_per_cycle=64)["normal_load"].min()) >= 0.0
+    )

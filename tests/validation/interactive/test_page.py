@@ -23,7 +23,7 @@ from validation.cli import app
 from validation.interactive import page
 from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
-from validation.interactive.results import Sampling, branches_about_operation, compute
+from validation.interactive.results import Sampling, compute
 from validation.validity.flags import contact_loss, sliding_reversal
 
 TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4, branches=None)
@@ -131,19 +131,6 @@ def test_the_page_has_the_motions_of_teeth_that_push_only(data, pair, text):
     assert float(one["branch_largest_load"]) == pytest.approx(found.largest_load, rel=1e-6)
     assert float(one["branch_spectral_radius"]) == pytest.approx(found.spectral_radius, rel=1e-6)
     assert shown["n"] == found.n == 1
-
-
-def test_a_pair_without_such_motions_has_its_page_without_them(results, pair):
-    assert payload(results)["sweep"]["branches"] == []
-    assert "unilateral contact" not in _static(page.render(results, "x.nc"))
-    none = dataclasses.replace(results, branches=branches_about_operation(pair, (30.0, 40.0)))
-    assert payload(none)["sweep"]["branches"] == []
-    assert "No motions with unilateral contact: speeds" in _static(page.render(none, "x.nc"))
-
-
-def _static(text):
-    """What stands before the scripts."""
-    return text[: text.index("page-data")]
 
 
 def test_every_variable_of_the_data_file_has_a_unit_and_a_name(data):

@@ -1,11 +1,16 @@
-"""Is the list of cases the one that the study describes, and always the same?"""
+"""Are the cases those of the study, and the indices those of a function whose indices are known?"""
 
+import dataclasses
 import itertools
+import math
 
 import numpy as np
 import pytest
 
+from validation.studies import read_results, run_sweep
+from validation.studies.analyses import ANALYSES
 from validation.studies.cases import CaseList
+from validation.studies.results import indices
 
 SAMPLED = [
     {"field": "operating.pinion_torque", "low": 10.0, "high": 90.0},
@@ -85,3 +90,104 @@ def test_the_seed_decides_the_samples(make_study):
     assert one.sha256 == same.sha256
     assert one.values(range(32)) == same.values(range(32))
     assert one.sha256 != other.sha256
+
+
+SAMPLES = 512
+A, B = 7.0, 0.1
+AXES = [
+    {"field": "operating.pinion_torque", "name": "x1", "low": 10.0, "high": 90.0},
+    {"field": "mesh.damping_ratio", "name": "x2", "low": 0.0, "high": 0.1},
+    {"field": "centre_distance", "name": "x3", "low": 88.9, "high": 89.4},
+]
+
+
+def ishigami(variation, settings):
+    """Ishigami and Homma's function of the three axes, each stretched to (-pi, pi)."""
+    pair = variation.pair
+    given = (pair.operating.pinion_torque, pair.mesh.damping_ratio, pair.centre_distance * 1e3)
+    x = [
+        math.pi * (2.0 * (value - axis["low"]) / (axis["high"] - axis["low"]) - 1.0)
+        for value, axis in zip(given, AXES, strict=True)
+    ]
+    value = math.sin(x[0]) + A * math.sin(x[1]) ** 2 + B * x[2] ** 4 * math.sin(x[0])
+    return {"contact_ratio": value, "mesh_frequency": 3.0}
+
+
+def expected():
+    """First-order and total indices by integration (Ishigami and Homma 1990)."""
+    v1 = 0.5 * (1.0 + B * math.pi**4 / 5.0) ** 2
+    v2 = A**2 / 8.0
+    v13 = B**2 * math.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
+    v = v1 + v2 + v13
+    return np.array([v1, v2, 0.0]) / v, np.array([v1 + v13, v2, v13]) / v
+
+
+@pytest.fixture(scope="module")
+def result(make_study, tmp_path_factory):
+    out = tmp_path_factory.mktemp("ishigami") / "out"
+    design = {"method": "sobol", "samples": SAMPLES, "seed": 1, "sensitivity": True}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(ANALYSES, "geometry", dataclasses.replace(ANALYSES["geometry"], compute=ishigami))
+        run_sweep(make_study(design=design, axes=AXES), out)
+    return read_results(out)
+
+
+def test_indices_of_the_ishigami_function(result):
+    assert result.sizes["case"] == SAMPLES * 5
+    first, total = expected()
+    at = result.sel(output="contact_ratio")
+    assert list(at.axis.to_numpy()) == ["x1", "x2", "x3"]
+    # 512 quasi-random points: the error is below that of plain sampling, 1/sqrt(512) = 4 %.
+    np.testing.assert_allclose(at.sobol_first, first, atol=0.03)
+    np.testing.assert_allclose(at.sobol_total, total, atol=0.03)
+    for name, exact in (("sobol_first", first), ("sobol_total", total)):
+        low, high = at[f"{name}_ci_low"], at[f"{name}_ci_high"]
+        assert (low < high).all()
+        # The bootstrap takes the points as random, so its 95 % interval holds the smaller quasi-random error.
+        assert ((low <= exact) & (exact <= high)).all()
+
+
+def test_a_constant_output_has_no_indices_and_says_so(result):
+    assert result.sel(output="mesh_frequency").sobol_first.isnull().all()
+    assert "not defined for the constant mesh_frequency" in result.attrs["sensitivity"]
+
+
+def test_a_failed_case_leaves_the_indices_out_and_says_so(make_study, tmp_path):
+    axes = [*AXES[:2], {**AXES[2], "low": 88.0}]  # below 88.9 mm the teeth wedge
+    design = {"method": "sobol", "samples": 8, "sensitivity": True}
+    summary = run_sweep(make_study(design=design, axes=axes), tmp_path / "out")
+    result = read_results(tmp_path / "out")
+    assert summary.failed > 0
+    assert "sobol_first" not in result
+    assert result.attrs["sensitivity"].startswith(f"no indices: {summary.failed} of 40 cases failed")
+
+
+def test_before_the_last_case_there_are_no_indices(make_study, tmp_path):
+    seen = []
+
+    def progress(done, total, failed):
+        result = read_results(tmp_path / "out")
+        seen.append((done, total - done, "sobol_first" in result, result.attrs["sensitivity"]))
+
+    design = {"method": "sobol", "samples": 8, "sensitivity": True}
+    run_sweep(make_study(design=design, axes=AXES), tmp_path / "out", progress=progress)
+    assert "sobol_first" in read_results(tmp_path / "out")
+    done, missing, found, text = seen[0]
+    assert (done, missing, found) == (1, 39, False)
+    assert text.endswith("39 are not computed yet")
+
+
+def test_indices_do_not_depend_on_the_unit():
+    rng = np.random.default_rng(2)
+    values = rng.random((1, 5 * 64))
+    one, other = indices(values, 3, 0), indices(1e-9 * values + 5.0, 3, 0)
+    # A range of 1e-9 about 5 keeps 16 - 10 = 6 digits; the estimators square differences of it.
+    np.testing.assert_allclose(one["sobol_total"], other["sobol_total"], rtol=1e-5)
+    for scale in (1e-200, 1e200):  # where squares vanish and overflow
+        scaled = indices(scale * values, 3, 0)
+        # The estimators are differences of means of 64 numbers of order 1.
+        np.testing.assert_allclose(one["sobol_total"], scaled["sobol_total"], rtol=0, atol=1e-12)
+
+
+def test_where_every_output_is_constant_no_index_is_a_number():
+    assert all(np.isnan(array).all() for array in indices(np.full((2, 5 * 8), 3.0), 3, 0).values())
