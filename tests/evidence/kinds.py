@@ -13,11 +13,12 @@ from tests.evidence.check import Check
 from tests.evidence.elasticity import elasticity
 from tests.evidence.floquet.closed_forms import (
     check_closed_forms,
+    check_gear_chain,
+    check_hsu,
     check_invariants,
     check_orders,
     check_random_gears,
 )
-from tests.evidence.floquet.combinations import check_gear_chain, check_hsu
 from tests.evidence.floquet.coulomb_zones import check_coulomb_gear_pair
 from tests.evidence.mechanics import mechanics
 from tests.evidence.pairs import gear_pairs

@@ -9,7 +9,6 @@ from lumped.path_of_contact import contact_path, friction_path_function
 from reproductions.he_cho_singh_2008.errata.catalogue import errata_chapter
 from reproductions.he_cho_singh_2008.errata.laws import derivative_residual
 from reproductions.he_cho_singh_2008.errata.printed_laws import (
-    law_ii_printed,
     law_iii_printed,
     law_iv_printed,
 )
@@ -108,16 +107,6 @@ def test_equation_5b_holds_up_to_a_contact_ratio_of_2_only(pair):
         np.testing.assert_allclose(printed, wrong * g.base_pitch, atol=1e-15)
         repaired = pinion_arms(g, phase) + gear_arms(g, phase, printed=False)
         np.testing.assert_allclose(repaired, g.L_XY, atol=1e-15)
-
-
-def test_printed_law_ii_is_the_law_with_both_velocities_the_same(pair):
-    path = contact_path(pair)
-    xi = np.array([0.25, 0.4, 0.7, 0.9]) * (path.L_XD - path.L_XA) + path.L_XA
-    v = path.sliding_velocity(xi)
-    number = 29700 * path.unit_load * 1e-3 / (10.0 * v * v**2)
-    s = path.roughness * 1e6
-    expected = np.clip(0.0127 * 1.13 / (1.13 - s) * np.log10(number), 0, 0.2) * np.sign(xi - path.L_XP)
-    np.testing.assert_allclose(law_ii_printed(pair)(xi), expected, atol=1e-7)
 
 
 def test_printed_law_iii_differs_by_powers_of_its_exponents(pair):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from floquet import PROPAGATORS, monodromy
-from tests.evidence.floquet import closed_forms, combinations, coulomb_zones
+from tests.evidence.floquet import closed_forms, coulomb_zones
 from tests.evidence.floquet.closed_forms import (
     constant_error,
     mathieu_error,
@@ -22,8 +22,8 @@ extended = pytest.mark.skipif(
 )
 CHECKS = (
     closed_forms.check_closed_forms, closed_forms.check_invariants, closed_forms.check_orders,
-    pytest.param(closed_forms.check_random_gears, marks=extended), combinations.check_hsu,
-    combinations.check_gear_chain, coulomb_zones.check_coulomb_gear_pair,
+    pytest.param(closed_forms.check_random_gears, marks=extended), closed_forms.check_hsu,
+    closed_forms.check_gear_chain, coulomb_zones.check_coulomb_gear_pair,
 )  # fmt: skip
 
 
@@ -68,7 +68,7 @@ def test_methods_are_symplectic_as_registered(method: str) -> None:
 
 
 def test_an_order_beside_theory_fails() -> None:
-    centre = next(combinations.check_hsu())
+    centre = next(closed_forms.check_hsu())
     assert dataclasses.replace(centre, value=2.09).passes
     assert not dataclasses.replace(centre, value=1.0).passes
     assert not dataclasses.replace(centre, value=np.nan).passes

@@ -73,15 +73,12 @@ def test_angle_speed_and_time_belong_together():
     assert float(run["running_speed"][-1]) == pytest.approx(1000, rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("speeds", "seconds", "message"),
-    [
-        ((0, 3000), 1, "speeds_rpm = .* > 0"),
-        ((500,), 1, "1 numbers: allowed two"),
-        ((500, 600), 1e-5, "0 mesh cycles"),
-        ((500, 60000), 1e4, "allowed 1 to 93750 mesh cycles"),
-    ],
-)
+@pytest.mark.parametrize(("speeds", "seconds", "message"), [
+    ((0, 3000), 1, "speeds_rpm = .* > 0"),
+    ((500,), 1, "1 numbers: allowed two"),
+    ((500, 600), 1e-5, "0 mesh cycles"),
+    ((500, 60000), 1e4, "allowed 1 to 93750 mesh cycles"),
+])  # fmt: skip
 def test_runs_that_cannot_be_are_refused(speeds, seconds, message):
     with pytest.raises(ParameterError, match=message):
         run_up(PAIR, speeds, seconds)

@@ -114,20 +114,6 @@ def test_nothing_is_written_where_a_view_fails(tmp_path):
     assert existing.read_text() == "mine"
 
 
-def test_ends_of_an_axis_may_carry_a_unit(tmp_path):
-    # 100 Hz = 6000 rpm; 30 rad/s = 900/pi rpm
-    for ends, first, last in (
-        ("100Hz:7000:3", 6000.0, 7000.0),
-        ("6000 rpm:700 rad/s:3", 6000.0, 21000.0 / np.pi),
-    ):
-        data = tmp_path / f"{first + last:.0f}.nc"
-        run("--law", "I", "--axis", f"speed_rpm={ends}", "--axis", "torque=20:200 lbf*in:2", "-o", data)
-        chart = opened(data)
-        assert chart["speed_rpm"].to_numpy()[[0, -1]] == pytest.approx([first, last], rel=1e-12)
-        # 200 lbf in = 200 * 4.4482216152605 N * 0.0254 m
-        assert chart["torque"].to_numpy() == pytest.approx([20.0, 22.596965805523342], rel=1e-12)
-
-
 def test_a_marked_range_may_carry_a_unit():
     assert _range("50Hz:8000") == pytest.approx((3000.0, 8000.0), rel=1e-12)
 

@@ -1,9 +1,18 @@
-"""Which folders may results replace, what stays the user's, and what is left after success and failure?"""
+"""Are result files and folders whole, which may they replace, and what is left after success and failure?"""
 
+import csv
+import os
+import signal
+import subprocess
+import sys
+
+import numpy as np
 import pytest
+import xarray as xr
 
 from lumped import ParameterError
 from lumped.errors import StorageError
+from validation.files import output
 from validation.files.folder import CONTENTS, Kind, check_target, whole_folder
 
 
@@ -142,3 +151,157 @@ def test_a_link_to_a_folder_is_not_followed(tmp_path):
     (tmp_path / "link").symlink_to(tmp_path, target_is_directory=True)
     with pytest.raises(ParameterError, match="This is a link"):
         check_target(tmp_path / "link", force=True)
+
+
+@pytest.fixture
+def dataset():
+    rng = np.random.default_rng(7)
+    return xr.Dataset(
+        {
+            "dte": ("time", rng.normal(size=4) * 1e-6, {"units": "m"}),
+            "load": (("pair", "time"), rng.normal(size=(2, 4)), {"units": "N"}),
+            "periodic": ("time", np.array([True, False, True, True])),
+            "response": ("time", rng.normal(size=4) + 1j * rng.normal(size=4), {"units": "m"}),
+        },
+        coords={"time": ("time", np.arange(4) * 1e-4, {"units": "s"}), "pair": [0, 1]},
+        attrs={"warnings": ["one", "two"], "flag": True, "name": "n"},
+    )
+
+
+def test_csv_gives_every_number_back_bit_for_bit_with_its_unit(dataset, tmp_path):
+    path = tmp_path / "run.csv"
+    output.write_dataset(dataset, path)
+    rows = list(csv.reader(path.read_text().splitlines()))
+    headings = ["time [s]", "dte [m]", "load_pair0 [N]", "load_pair1 [N]", "periodic [1]"]
+    assert rows[0] == [*headings, "response_real [m]", "response_imag [m]"]
+    read = {heading: [row[i] for row in rows[1:]] for i, heading in enumerate(rows[0])}
+    assert [float(v) for v in read["dte [m]"]] == dataset["dte"].to_numpy().tolist()
+    assert [float(v) for v in read["load_pair1 [N]"]] == dataset["load"].to_numpy()[1].tolist()
+    assert [float(v) for v in read["response_imag [m]"]] == dataset["response"].to_numpy().imag.tolist()
+
+
+def test_csv_of_a_chart_has_one_row_per_point_with_its_own_value(tmp_path):
+    radius = np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]])
+    chart = xr.Dataset(
+        {"radius": (("speed", "damping"), radius)}, coords={"speed": [1, 2], "damping": [3, 4, 5]}
+    )
+    output.write_dataset(chart, tmp_path / "chart.csv")
+    rows = list(csv.reader((tmp_path / "chart.csv").read_text().splitlines()))[1:]
+    assert [(int(a), int(b), float(c)) for a, b, c in rows] == [
+        (s, d, radius[i, j]) for i, s in enumerate((1, 2)) for j, d in enumerate((3, 4, 5))
+    ]
+
+
+def test_netcdf_loses_nothing(dataset, tmp_path):
+    output.write_dataset(dataset, tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:
+        back = opened.load()
+    np.testing.assert_array_equal(back["load"], dataset["load"])
+    np.testing.assert_array_equal(back["response_real"] + 1j * back["response_imag"], dataset["response"])
+    np.testing.assert_array_equal(back["periodic"], [1, 0, 1, 1])
+    assert back["dte"].attrs["units"] == "m"
+    assert back.attrs == {"warnings": "one; two", "flag": 1, "name": "n"}
+
+
+def _fail_while_writing(path):
+    with output.whole_file(path) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+
+
+def test_a_failure_while_writing_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "run.txt"
+    path.write_text("old")
+    with pytest.raises(RuntimeError):
+        _fail_while_writing(path)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes of POSIX systems")
+def test_a_file_may_be_read_by_whom_the_user_lets(tmp_path):
+    before = os.umask(0o027)
+    try:
+        output.write_text(tmp_path / "run.txt", "x")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "run.txt").stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize(
+    ("error", "words"), [(OSError(30, "Read-only file system"), "Read-only"), (OSError(), "OSError")]
+)
+def test_a_folder_that_cannot_be_written_is_refused_with_the_reason(tmp_path, monkeypatch, error, words):
+    def failing(**options):
+        raise error
+
+    monkeypatch.setattr(output.tempfile, "TemporaryFile", failing)
+    with pytest.raises(ParameterError, match=rf"cannot be written \({words}"):
+        output.check_file(tmp_path / "run.nc", output.DATA_SUFFIXES, force=False)
+
+
+def test_a_file_that_appears_while_the_result_is_computed_stays(tmp_path):
+    path = output.check_file(tmp_path / "run.txt", (".txt",), force=False)
+    path.write_text("of the user")
+    with pytest.raises(StorageError, match="appeared meanwhile"):
+        output.write_text(path, "result", new=True)
+    assert path.read_text() == "of the user"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_output_files_are_refused_before_any_work(tmp_path):
+    existing = tmp_path / "old.nc"
+    existing.write_text("")
+    link = tmp_path / "link.nc"
+    link.symlink_to(tmp_path / "nowhere.nc")
+    with pytest.raises(ParameterError, match="--force"):
+        output.check_file(link, output.DATA_SUFFIXES, force=False)
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(ParameterError, match="add a file name"):
+        output.check_file(tmp_path / "folder.nc", output.DATA_SUFFIXES, force=True)
+    for path, reason in (
+        (tmp_path / "run.xlsx", r"\.nc, \.csv"),
+        (existing, "--force"),
+        (tmp_path, "ending in"),
+        (tmp_path / "missing" / "run.nc", "Make the folder"),
+    ):
+        with pytest.raises(ParameterError, match=reason):
+            output.check_file(path, output.DATA_SUFFIXES, force=False)
+    assert output.check_file(existing, output.DATA_SUFFIXES, force=True) == existing
+
+
+def limited():
+    """A file may grow to 4 kB: writing more fails as on a full disk, at any place."""
+    import resource  # POSIX
+
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+
+#: Runs the command for each file, and ends with the exit codes.
+RUNS = """
+import sys
+from validation.cli import main
+for out in sys.argv[1:]:
+    sys.argv = ["spurcheck", "simulate", "--cycles", "1", "-o", out]
+    try:
+        main()
+    except SystemExit as stop:
+        print("exit code", stop.code, file=sys.stderr)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="limits of a process are POSIX")
+def test_a_result_that_does_not_fit_is_told_and_leaves_nothing(tmp_path):
+    # HDF5 alone ends the process with a segmentation fault here.
+    outs = [str(tmp_path / f"run.{suffix}") for suffix in ("nc", "csv", "mat", "png")]
+    # Without compiling: its cache could not be written either.
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "MPLBACKEND": "Agg"}
+    command = [sys.executable, "-c", RUNS, *outs]
+    run = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, env=environment)
+    assert run.returncode == 0, run.stderr
+    told = run.stderr.split("exit code 3")
+    assert len(told) == len(outs) + 1
+    assert [out in text for out, text in zip(outs, told, strict=False)] == [True] * len(outs)
+    assert "Traceback" not in run.stderr
+    assert list(tmp_path.iterdir()) == []
