@@ -70,6 +70,11 @@ def test_roll_angle_gives_the_phase(truth):
     np.testing.assert_allclose(mesh_cycles(measurement, truth.pair), np.arange(9), atol=1e-12)
 
 
+def test_times_are_mesh_cycles_at_the_speed_of_the_record(truth):
+    other, expected = truth.pair.with_(speed=3 * 800), record(truth).abscissa / truth.geometry.mesh_period
+    np.testing.assert_allclose(mesh_cycles(record(truth), other), expected, rtol=1e-14)
+
+
 @pytest.mark.parametrize("start", [0.0, 0.37, 1.9, 2.75])
 def test_alignment_finds_an_unknown_start(truth, start):
     found = align(record(truth, start=start, noise_normal=0.02), truth)
