@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 import lumped
 import multibody
 from lumped.errors import ParameterError
-from lumped.schema.shafts import CoupledInertia, Shaft, ShaftBearing, ShaftSegment
 from lumped.stiffness.foundation import body_twist
 from multibody.contact import layout as kn
 from multibody.contact.kernels import tooth_forces
@@ -17,7 +16,7 @@ from multibody.contact.layout import MAX_PAIRS
 from multibody.run.linear_motion import state_scale
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
-from multibody.shafts.train import Disc, disc, reduced_shaft
+from multibody.shafts.train import disc
 
 
 def bearing(position, loa, oloa, **damping):
@@ -208,32 +207,3 @@ def test_refusals():
     damped = PAIR.with_({"shafts.pinion.bearings.0.loa_damping": 1e9})
     with pytest.raises(ParameterError, match="a damper that answers within"):
         multibody.simulate(damped, 1, supports="shafts")
-
-
-def test_a_light_inertia_does_not_stall():
-    """On a coupling it would swing at 1e9 Hz."""
-    light, heavy = (
-        CoupledInertia.model_construct(
-            position=0.2, inertia=inertia, coupling_stiffness=1e6, coupling_damping=0.0
-        )
-        for inertia in (1e-12, 1e-3)
-    )
-    bearings = tuple(
-        ShaftBearing.model_construct(
-            position=at, loa_stiffness=3e8, oloa_stiffness=3e8, loa_damping=0.0, oloa_damping=0.0,
-            tilt_stiffness=0.0,
-        ) for at in (0.0, 0.2)
-    )  # fmt: skip
-    segment = ShaftSegment.model_construct(length=0.2, diameter=0.03, bore=0.0)
-    shaft = Shaft.model_construct(
-        segments=(segment,), gear_position=0.1, bearings=bearings, youngs_modulus=206e9, poisson_ratio=0.3,
-        density=7850.0,
-    )  # fmt: skip
-    disc = Disc(0.8, 1.3e-3, 0.9e-3)
-    options = {"speed": 0.0, "damping_ratio": 0.0, "highest": 1e5}
-    one, two = (reduced_shaft(shaft, disc, motor, **options) for motor in (light, heavy))
-    alone = reduced_shaft(shaft, disc, None, **options)
-    assert one.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-12, rel=1e-12)
-    assert two.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-3, rel=1e-9)
-    assert one.torque[2] == pytest.approx(1.0, rel=1e-9)
-    assert two.size == alone.size + 1 == one.size + 1

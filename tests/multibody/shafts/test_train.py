@@ -1,0 +1,35 @@
+"""Does a light inertia on a coupling turn with its station, where a heavy one swings itself?"""
+
+import pytest
+
+from lumped.schema.shafts import CoupledInertia, Shaft, ShaftBearing, ShaftSegment
+from multibody.shafts.train import Disc, reduced_shaft
+
+
+def test_a_light_inertia_does_not_stall():
+    """On a coupling it would swing at 1e9 Hz."""
+    light, heavy = (
+        CoupledInertia.model_construct(
+            position=0.2, inertia=inertia, coupling_stiffness=1e6, coupling_damping=0.0
+        )
+        for inertia in (1e-12, 1e-3)
+    )
+    bearings = tuple(
+        ShaftBearing.model_construct(
+            position=at, loa_stiffness=3e8, oloa_stiffness=3e8, loa_damping=0.0, oloa_damping=0.0,
+            tilt_stiffness=0.0,
+        ) for at in (0.0, 0.2)
+    )  # fmt: skip
+    segment = ShaftSegment.model_construct(length=0.2, diameter=0.03, bore=0.0)
+    shaft = Shaft.model_construct(
+        segments=(segment,), gear_position=0.1, bearings=bearings, youngs_modulus=206e9, poisson_ratio=0.3,
+        density=7850.0,
+    )  # fmt: skip
+    disc = Disc(0.8, 1.3e-3, 0.9e-3)
+    options = {"speed": 0.0, "damping_ratio": 0.0, "highest": 1e5}
+    one, two = (reduced_shaft(shaft, disc, motor, **options) for motor in (light, heavy))
+    alone = reduced_shaft(shaft, disc, None, **options)
+    assert one.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-12, rel=1e-12)
+    assert two.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-3, rel=1e-9)
+    assert one.torque[2] == pytest.approx(1.0, rel=1e-9)
+    assert two.size == alone.size + 1 == one.size + 1
