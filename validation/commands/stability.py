@@ -211,7 +211,8 @@ def _chart(
         + f"\n{int(stable.sum())} of {stable.size} points are stable; "
         + f"largest multiplier {float(worst):.6f} at "
         + ", ".join(f"{name} {float(worst[name]):.5g}" for name in grid)
-        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}"
+        + f"\n{float(chart['known'].mean()):.2%} of the points are evaluated, with an error of at "
+        + f"most {float(chart['error'].where(chart['known']).max()):.1e}"
     )  # fmt: skip
     data = chart
     regions: Sequence[TongueMargin | LabelledRegion] = ()

@@ -87,12 +87,3 @@ def test_small_charts(shape):
     got, _ = refined(shape, x, radius, verdict)
     assert (got.verdict == verdict).all()
     assert np.isfinite(got.radius).all()
-
-
-def test_an_edge_between_two_evaluated_nodes_is_where_the_whole_grid_has_it():
-    shape = (401, 81)
-    x, radius, verdict = chart(shape, [3.0, 6.0], [0.4, 0.1])
-    got, _ = refined(shape, x, radius, verdict)
-    along = verdict[:-1] != verdict[1:]
-    assert got.known[:-1][along].all()
-    assert got.known[1:][along].all()
