@@ -46,6 +46,20 @@ def test_mathieu_tongues_end_on_the_characteristic_values(mathieu) -> None:
     assert np.abs(np.array(sorted(computed)) - np.array(inside)).max() < 1e-7
 
 
+def test_a_thin_tongue_near_its_line_is_not_lost() -> None:
+    # Far narrower than the even grid, and displaced from its line by damping.
+    line = 3141.0
+    centre, half = line * 0.99997, 1.4e-5 * line
+
+    def radius(x: np.ndarray) -> np.ndarray:
+        return 0.999 + 0.01 * np.sqrt(np.clip(1 - ((x - centre) / half) ** 2, 0, None))
+
+    (found,) = unstable_intervals(radius, seeded_nodes(np.array([line]), 500.0, 20000.0, 100))
+    reach = half * np.sqrt(1 - 0.1**2)  # 0.01 sqrt(1 - s^2) = 0.001
+    assert (found.lower, found.upper) == pytest.approx((centre - reach, centre + reach), rel=1e-8)
+    assert not unstable_intervals(radius, np.linspace(500.0, 20000.0, 100))  # the even grid alone loses it
+
+
 def test_a_peak_above_one_between_two_samples_below_one_is_found() -> None:
     def radius(x: np.ndarray) -> np.ndarray:
         return 0.999 + 0.002 * np.exp(-np.square(x - 5.0))

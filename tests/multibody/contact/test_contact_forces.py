@@ -213,3 +213,20 @@ def test_actual_rolling_velocities_belong_to_the_sliding_velocity():
     assert mu(on, 1.0) == pytest.approx(nominal_friction(p, xi), rel=1e-12)
     assert mu(0, 2.0) == mu(0, 1.0)
     assert mu(on, 2.0) < 0.7 * mu(on, 1.0)
+
+
+def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
+    """Both gears turn by a half faster than nominal: in the contact core the law of that speed acts."""
+    pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed", friction__law="xu_kahraman")
+    faster = pair.with_(operating__pinion_speed=1.5 * pair.operating.pinion_speed * 30.0 / np.pi)
+    numbers, flags = machine(pair), effect_flags({"sliding_velocity"})
+    p = numbers.parameters
+    state, contacts = np.zeros((3, 6)), np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    state[0, 5] = -6e-5 / p[kn.RADIUS_G]  # presses the flanks
+    state[1, [2, 5]] = -0.5 * p[kn.OMEGA_P], 0.5 * p[kn.OMEGA_G]
+    count = contact_forces(0.3 * numbers.period, state, p, flags, numbers.table, contacts)
+    found = contacts[:count]
+    expected = lumped.mesh_elements(faster).friction(found[:, kn.XI])
+    nominal = lumped.mesh_elements(pair).friction(found[:, kn.XI])
+    np.testing.assert_allclose(found[:, kn.MU], expected, rtol=0.0, atol=FIT)
+    assert (np.abs(expected - nominal) > 5e-4).all()

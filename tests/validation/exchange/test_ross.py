@@ -14,14 +14,10 @@ STEEL = SimpleNamespace(E=206e9, Poisson=0.3, rho=7850.0)
 ANGLE = np.deg2rad(20)
 #: The pair of ``mesh`` with the method of ROSS.
 CHANGES = {
-    "gears.bore": 20,
-    "gears.youngs_modulus": 206,
-    "gears.poisson_ratio": 0.3,
-    "mesh.stiffness": {"model": "energy", "hertz": "linear"},
-    "mesh.contact": "prescribed",
-    "mesh.relief": "ignored",
-    "basic_rack.fillet_radius_coefficient": float(0.25 / (1 - np.sin(ANGLE))),
-}
+    "gears.bore": 20, "gears.youngs_modulus": 206, "gears.poisson_ratio": 0.3,
+    "mesh.stiffness": {"model": "energy", "hertz": "linear"}, "mesh.contact": "prescribed",
+    "mesh.relief": "ignored", "basic_rack.fillet_radius_coefficient": float(0.25 / (1 - np.sin(ANGLE))),
+}  # fmt: skip
 
 
 def gear(teeth: int) -> SimpleNamespace:

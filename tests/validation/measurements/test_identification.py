@@ -229,6 +229,17 @@ def test_overlay_metrics_know_a_constant_offset(truth):
     np.testing.assert_allclose(band["scatter"], 0.0, atol=1e-4)  # difference of squares of 12 N in doubles
 
 
+def test_overlay_interval_has_the_width_of_the_noise(truth):
+    noisy = record(truth, engagements=100, noise_normal=0.05, seed=17)
+    metrics = overlay_metrics(noisy, truth, align(noisy, truth, shift=0.0))
+    load = truth.pair.operating.pinion_torque / truth.geometry.base_radius_pinion
+    in_contact = int(truth.contact(align(noisy, truth, shift=0.0).cycles, "A").sum())
+    half = 0.5 * (metrics["bias_high"] - metrics["bias_low"]).sel(channel="normal_A").item()
+    # 1.96 sigma/sqrt(n); 999 bootstrap samples of 100 blocks know it to about 10 %
+    assert half == pytest.approx(1.96 * 0.05 * load / np.sqrt(in_contact), rel=0.3)
+    assert metrics["rms"].sel(channel="normal_A").item() == pytest.approx(0.05 * load, rel=0.05)
+
+
 def test_arguments_that_cannot_be_used_are_refused(truth):
     clean = record(truth)
     phase = align(clean, truth, shift=0.0)
