@@ -1,6 +1,13 @@
 """Spur gear pairs with sliding friction: schema, kinematics, stiffness, friction laws and the LTV model."""
 
-from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
+from lumped.errors import (
+    FieldProblem,
+    LawRangeWarning,
+    LikeTeethWarning,
+    NumericalError,
+    ParameterError,
+    SpurcheckError,
+)
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
@@ -30,6 +37,7 @@ __all__ = [
     "Geometry",
     "LTVSystem",
     "LawRangeWarning",
+    "LikeTeethWarning",
     "MeshCycle",
     "MeshElements",
     "NumericalError",

@@ -116,5 +116,9 @@ class LawRangeWarning(UserWarning):
         self.subject, self.largest = subject, largest
 
 
+class LikeTeethWarning(UserWarning):
+    """A function that has like teeth alone was given a pair whose teeth differ: the result is the twin's."""
+
+
 class ResolutionWarning(UserWarning):
     """A function that can only be sampled has features narrower than the samples that were taken first."""

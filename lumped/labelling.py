@@ -57,6 +57,7 @@ def provenance(pair: Described, **settings: Any) -> dict[str, Any]:
         "gear_pair": pair.name,
         "parameters": text,
         "parameters_sha256": _sha256(text),
+        "teeth": "alike",
         "versions": _versions(),
         "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),
     }

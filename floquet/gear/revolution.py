@@ -57,7 +57,8 @@ def revolution_multipliers(
 
     Perturbations see the tangent of the contact about the own static state of every meeting pair. The maps of
     the mesh cycles are multiplied one after the other and scaled, so that a hunting period of thousands of
-    cycles neither overflows nor underflows.
+    cycles neither overflows nor underflows. The error is an estimate and no bound: a pair of teeth comes into
+    contact where its own gap closes, inside a step, and there the tangent of the contact jumps.
 
     Parameters
     ----------

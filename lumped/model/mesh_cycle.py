@@ -6,6 +6,7 @@ Sources: Abbas Al-Zubaidi 2008, eqs. 5a and 5b; docs/theory/equations.md, "Frame
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
@@ -13,6 +14,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.kernels import law_at
 from lumped.path_function import PathFunction
@@ -66,7 +68,10 @@ class MeshCycle:
 
     @classmethod
     def of(cls, pair: GearPair) -> Self:
-        """The mesh cycle of a gear pair in its own form of contact."""
+        """The mesh cycle of a gear pair in its own form of contact, with like teeth."""
+        if pair.healthy is not pair:
+            text = f"{pair.name}: teeth that differ are taken as alike here, as pair.healthy has them."
+            warnings.warn(LikeTeethWarning(text), stacklevel=4)
         return cls(pair.geometry, contact_of(pair).elements(pair))
 
     @property

@@ -355,6 +355,7 @@ def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset
     attributes |= {
         "model": "lumped",
         "period_cycles": motion.period,
+        "teeth": "as given",
         "touch": FORMS[motion.form],
         "power_sliding": motion.powers["sliding"],
         "power_tooth_dampers": motion.powers["tooth_dampers"],

@@ -137,7 +137,7 @@ def prepare(
     if flags & kn.LINEAR and pair.healthy is not pair:
         allowed = "'exact' where teeth differ"
         raise refuse("fidelity", fidelity, allowed, "Use it with its effects, or pair.healthy.")
-    system = LTVSystem.of(pair, "full")
+    system = LTVSystem.of(pair.healthy, "full")
     numbers = machine(pair, flags, supports, system.cycle)
     call_limit = _call_limit(numbers)
     if pair.mesh.contact == "loaded":
@@ -173,6 +173,7 @@ def prepare(
     )
     attributes |= mean_balance | {
         "model": "multibody",
+        "teeth": "alike" if pair.healthy is pair else "as given",
         "fidelity": fidelity,
         "supports": supports,
         "effects": ", ".join(names),

@@ -25,7 +25,7 @@ def uncertainty(
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
     Inputs vary as the section \\[uncertainty] of the file states, and by documented defaults where the source
-    of a value says that it is assumed.
+    of a value says that it is assumed. Teeth of a tolerance class are drawn anew in every sample.
 
     [bold]Examples[/bold]
 
@@ -39,15 +39,18 @@ def uncertainty(
     from validation.files.formatting import number, quantity
     from validation.files.output import DATA_SUFFIXES, check_file
     from validation.prediction.motion import QUANTITIES
+    from validation.prediction.uncertainty import TEETH
     from validation.prediction.uncertainty import uncertainty as run
 
     target = None if output is None else check_file(output, DATA_SUFFIXES, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=True)
     with progress_bar("uncertain inputs") as tell:
         found = run(gear_pair, samples, seed, progress=tell)
     console = stdout()
     shown = table(f"{gear_pair.name}: results", "result", ">as given", ">5 %", ">50 %", ">95 %")
-    for name, (unit, words) in QUANTITIES.items():
+    for name, (unit, words) in (QUANTITIES | TEETH).items():
+        if f"given_{name}" not in found.attrs:
+            continue
         ends = found[f"{name}_percentile"].to_numpy()
         given = float(found.attrs[f"given_{name}"])
         shown.add_row(words, *(quantity(float(v), unit, 3) for v in (given, *ends)))

@@ -90,7 +90,7 @@ def off_switch_samples(pair: GearPair, time: FloatArray, margin: float = _SWITCH
 
     ``margin`` is in mesh cycles.
     """
-    cycle = MeshCycle.of(pair)
+    cycle = MeshCycle.of(pair.healthy)
     phase = np.mod(time / cycle.period, 1.0)
     nearest = np.abs(phase[:, None] - cycle.edges / cycle.period).min(axis=1)
     return np.asarray(nearest > margin, dtype=np.bool_)

@@ -26,6 +26,8 @@ _FACTORS = re.compile(rf"([*/])\s*{_NUMBER}\s*\.\.\s*([*/])\s*{_NUMBER}\s*")
 _WRITTEN = "'0.02 .. 0.10', '+- 2 um', '+- 10 %', '/ 2 .. * 2', or a list of choices"
 #: A range whose upper end is at least this many times the lower one is log-uniform.
 _WIDE = 2.0
+#: Seeds of random gears of a tolerance class run from 1 to here.
+_SEEDS = 2**31
 #: Field -> the names that a choice may have.
 _CHOICES: Mapping[str, tuple[str, ...]] = {"friction.law": tuple(LAWS), "mesh.stiffness": tuple(MODELS)}
 
@@ -47,6 +49,8 @@ class Input:
 
     def at(self, share: float) -> float | str:
         """The value that a share of the distribution lies below, in file units."""
+        if self.field.endswith(".seed"):
+            return int(self.low + (self.high - self.low) * share)
         if self.choices:
             return self.choices[min(int(share * len(self.choices)), len(self.choices) - 1)]
         if self.low > 0.0 and self.high >= _WIDE * self.low:
@@ -62,10 +66,17 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     """Return every input of a pair that may be another value than the file has.
 
     Those of ``[uncertainty]``, and by documented defaults every value whose source says that it is assumed. A
-    spread that cannot be read, or with values that the field cannot have, is refused.
+    spread that cannot be read, or with values that the field cannot have, is refused. Of random teeth of a
+    tolerance class the seed is an input.
     """
     stated = dict(pair.uncertainty)
     found = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
+    for gear in ("pinion", "gear"):
+        deviations = getattr(pair, gear).deviations
+        if deviations is not None and deviations.tolerance_class is not None:
+            words = f"class {deviations.tolerance_class}"
+            reason = "the class says how large errors are, and not which: every seed is another gear of it"
+            found.append(Input(f"{gear}.deviations.seed", 1, _SEEDS, (), "1", words, reason))
     values, sources = leaf_paths(pair), dict(pair.sources)
     candidates = [*values, "mesh.stiffness", "mesh.stiffness_factor"]
     for field in dict.fromkeys(candidates):

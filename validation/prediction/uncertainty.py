@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 from scipy.stats import binom, qmc, rankdata
 
+import lumped
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
@@ -23,6 +24,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 from validation.prediction.inputs import Input, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, predicted
+from validation.signals.averages import GEARS, sidebands
 
 #: Percentiles that are told; the swing of an input runs between the first and the last.
 PERCENTILES = (5.0, 50.0, 95.0)
@@ -33,6 +35,12 @@ _LEAST = 0.5
 #: Times in a mesh cycle, and largest angle of a step [rad], of motions over speed. Twice the step of other
 #: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range.
 _TIMES, _STEP_ANGLE = 32, 1.0
+#: Further quantities of teeth that differ: unit and words; in the linear form, with so many samples a cycle.
+TEETH = {
+    "revolution_dte_peak_to_peak": ("m", "transmission error over the period of the teeth, peak to peak"),
+    "sideband_ratio": ("1", "largest sideband of the mesh frequency in the transmission error, over it"),
+}
+_TEETH_SAMPLES = 32
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 
 
@@ -55,8 +63,9 @@ def uncertainty(
     ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it lies with
     a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of a choice
     the smallest and largest result; ``q_rank_correlation`` (input), Spearman's. ``value`` (input, sample)
-    holds the inputs, a choice by its number. Attributes: ``refused``, ``contact_lost``, ``unstable`` (counts
-    of samples), ``seed``, and the result with the inputs as given, ``given_q``
+    holds the inputs, a choice by its number. Of teeth that differ also the quantities ``TEETH``; teeth of a
+    tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``
+    (counts of samples), ``seed``, and the result with the inputs as given, ``given_q``
 
     Raises
     ------
@@ -159,13 +168,23 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
-            found = predicted(_varied(pair, changes))
+            varied = _varied(pair, changes)
+            found, own = predicted(varied.healthy), _of_teeth(varied)
     except SpurcheckError:
         return None
     orders = np.zeros(ORDERS)
     orders[: found.bearing_orders.size] = found.bearing_orders
     flags = [float(found.contact_lost), float(not found.stable)]
-    return np.array([*found.numbers.values(), *orders, *flags])
+    return np.array([*found.numbers.values(), *orders, *own, *flags])
+
+
+def _of_teeth(pair: GearPair) -> list[float]:
+    """The quantities ``TEETH``; none of like teeth."""
+    if pair.healthy is pair:
+        return []
+    motion = lumped.steady_state(pair, samples_per_cycle=_TEETH_SAMPLES, touch="linear")
+    beside = [sidebands(motion, gear, most=3)["ratio"][0].drop_sel(sideband=0) for gear in GEARS]
+    return [float(motion.attrs["dte_peak_to_peak"]), max(float(one.max()) for one in beside)]
 
 
 def _dataset(
@@ -179,10 +198,12 @@ def _dataset(
     samples: int,
     seed: int,
 ) -> xr.Dataset:
-    names = [*QUANTITIES, *_ORDER_NAMES]
-    units = [unit for unit, _ in QUANTITIES.values()] + ["N"] * ORDERS
+    own = {} if pair.healthy is pair else TEETH
+    names = [*QUANTITIES, *_ORDER_NAMES, *own]
+    units = [unit for unit, _ in QUANTITIES.values()] + ["N"] * ORDERS + [unit for unit, _ in own.values()]
     texts = [text for _, text in QUANTITIES.values()]
     texts += [f"force on the pinion bearings, mesh order {m}" for m in range(1, ORDERS + 1)]
+    texts += [text for _, text in own.values()]
     places = [percentile_interval(len(table), p) for p in PERCENTILES]
     ordered = np.sort(table, axis=0)
     ranks = rankdata(points, axis=0)

@@ -22,6 +22,7 @@ from lumped.typing import BoolArray, FloatArray
 from validation.signals.orders import Harmonics, harmonics
 
 Gear = Literal["pinion", "gear"]
+GEARS: tuple[Gear, Gear] = ("pinion", "gear")
 #: Distance from a whole order that is rounding.
 _WHOLE = 1e-6
 #: Share of the average's root mean square below which a signal is rounding: no indicator divides by it.

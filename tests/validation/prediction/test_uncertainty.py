@@ -107,3 +107,17 @@ def test_a_default_spread_never_refuses_a_value_of_the_file(field, value, low, h
     found = {one.field: one for one in uncertain_inputs(pair.with_({"sources": {field: "assumed"}}))}
     ends = (found[field].low, found[field].high) if field in found else (None, None)
     assert ends == pytest.approx((low, high)) if low is not None else ends == (None, None)
+
+
+def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
+    pair = LINEAR.with_({"pinion.deviations": {"tolerance_class": 6}})
+    found = uncertainty(pair, samples=16)
+    assert np.unique(found.value.sel(input="pinion.deviations.seed")).size == 16
+    swings = found.revolution_dte_peak_to_peak.values
+    # Torque alone moves it by 8 %; the class allows indices of 28 um.
+    assert swings.max() > 1.2 * swings.min()
+    assert swings.max() < 28e-6 + 1.1 * torque.dte_peak_to_peak.values.max()
+    assert "sideband_ratio" in found
+    assert "sideband_ratio" not in torque
+    with pytest.warns(lumped.LikeTeethWarning):
+        assert lumped.simulate(pair, 1).attrs["teeth"] == "alike"
