@@ -8,6 +8,7 @@ import xarray as xr
 
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import geometry, load_gear_pair, steady_state
+from lumped.path_of_contact import contact_path
 from reproductions.he_cho_singh_2008.claims import numbers
 from reproductions.he_cho_singh_2008.claims.judge import ACCURACY, claims, judged
 from reproductions.he_cho_singh_2008.claims.rules import RULES
@@ -64,6 +65,21 @@ def test_load_spread_is_of_the_total():
     largest, rms = numbers.load_spread(cycles(normal_load=load))
     assert largest == pytest.approx(0.1 / 2.025, rel=1e-12)
     assert rms == pytest.approx(0.1 / 2.025, rel=1e-12)
+
+
+def test_regime_change_is_where_half_of_the_path_has_changed(pair):
+    found = numbers.regime_change(pair)
+    speed, width = found["switch_speed"], found["switch_width"]
+    at = pair.with_(operating__pinion_torque=22.6)
+    g = geometry(at)
+    xi = np.linspace(g.L_XA, g.L_XD, 4001)
+
+    def changed(rpm):
+        return float(np.mean(contact_path(at.with_(operating__pinion_speed=rpm)).film_parameter(xi) >= 4.0))
+
+    # 1/2000 of the path in the percentile, steep in speed
+    assert changed(speed) == pytest.approx(0.5, abs=2e-3)
+    assert changed(speed * (1 - width)) < 0.5 < changed(speed * (1 + width))
 
 
 def test_the_motions_behind_the_claims_are_judged_by_their_worst(pair, stated):

@@ -250,6 +250,15 @@ def test_torque_from_power_over_speed(xml, save):
     assert pair.operating.pinion_torque == pytest.approx(3500.0 / (50.0 * math.pi), rel=1e-14)
 
 
+def test_an_external_torque_on_a_shaft_with_two_gears_is_not_that_of_the_stage(xml, save):
+    refs = '<ref id="31" role="assembly"/><ref id="75" role="part"/>'
+    further = f'<relation id="85" type="assembly">{refs}</relation>'
+    components = '<component id="75" type="cylindrical_gear"/>'
+    mapping, notes = gear_pair_from_rexs(save(xml(relations=further, components=components)))
+    assert mapping["sources"]["operating.pinion_torque"].startswith("assumed")
+    assert any("operating.pinion_torque is not in the file" in note for note in notes)
+
+
 def test_operating_viscosity_is_kinematic(xml, save):
     oil = (
         '<component id="71" type="lubricant">'
