@@ -21,6 +21,7 @@ from floquet.rank_one.piecewise import fit_pieces, series_rounding, to_series
 from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import real_number
 from lumped.errors import NumericalError
+from lumped.friction.registry import law_of
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.friction import friction_misfit
@@ -36,6 +37,8 @@ _U = 0.5 * float(np.finfo(np.float64).eps)
 _ROUNDINGS = 30
 #: The same of a position, relative to the largest one: offset, phase, product, sum, difference.
 _PLACE = 16.0 * _U
+#: Error of a switch that is a root, see `ContactPath.crossings`, relative to L_XY.
+_SEARCH = 1e-14
 #: Breaks closer than this part of a base pitch may be one segment's end.
 _MERGED = 1e-12
 #: Degree of the polynomials in place of the factor on stiffness and of its root.
@@ -318,7 +321,10 @@ class MeshGains:
         rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
         moduli = (rows * width ** np.arange(rows.shape[0], 0, -1)[:, None]).sum() / g.base_pitch
         self.mean_error = (width.size + 60.0) * _U * float(moduli)
-        self.slips = _slips(cycle.break_phases, self.edges, 8.0 * _U * (1.0 + g.contact_ratio))
+        rounding = 8.0 * _U * (1.0 + g.contact_ratio)
+        if law_of(system.pair.friction).parts is not None:  # mu jumps where a search has found it
+            rounding += _SEARCH * g.L_XY / g.base_pitch
+        self.slips = _slips(cycle.break_phases, self.edges, rounding)
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
