@@ -13,8 +13,10 @@ import xarray as xr
 import lumped
 from lumped import GearPair
 from lumped.model.equations import COORDINATES
+from lumped.model.periodic_system import LTVSystem
 from lumped.schema.bodies import bodies_of
-from lumped.teeth.motion import default_samples
+from lumped.teeth.contact import Laws, tables
+from lumped.teeth.motion import default_samples, swinging
 from lumped.teeth.pairs import period_of
 from lumped.typing import FloatArray
 from multibody.run.model import build, from_lumped_state
@@ -60,7 +62,8 @@ def _at_mean_speed(pair: GearPair, reference: xr.Dataset, samples: int) -> xr.Da
     """Multibody run that starts as the lumped motion, with its own brake torque.
 
     Under the lumped one it would turn faster or slower, and the phase of contact with it: a first run tells
-    by how much the common rotation leaves the lumped one, and with which acceleration.
+    by how much the common rotation leaves the swing that the lumped contact follows, and how it accelerates.
+    What friction adds over many turns of a free train is no phase of the lumped contact.
     """
     names = (*COORDINATES, *(f"{name}_dot" for name in COORDINATES))
     state = np.array([float(reference[name][0]) for name in names])
@@ -73,9 +76,16 @@ def _at_mean_speed(pair: GearPair, reference: xr.Dataset, samples: int) -> xr.Da
         turned = np.stack([motion[name].to_numpy() for name in ("theta_p", "theta_g")])
         return np.asarray(inertia / radii @ turned / mass, dtype=np.float64)
 
+    time = reference["time"].to_numpy()[1] * np.arange(reference.sizes["time"])
+    own = swinging(tables(Laws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full"))
+    size, start, teeth, way = own.eccentric[:, [0, 1, 2, 5]].T[..., None]
+    swing = (size * way * np.sin(2.0 * np.pi * time / (own.duration * teeth) + start)).sum(axis=0)
+    off = common(reference)[: samples + 1] - swing[: samples + 1]
+    state[:2] -= off[0] / radii
+    state[6:8] -= (off[-1] - off[0]) / own.duration / radii
     setup = prepare(pair, initial=state)
     first = record(setup, cycles, samples)[0]
-    away, time = common(first) - common(reference), first["time"].to_numpy()
+    away = common(first) - swing
     half = (_FORGOTTEN // 2) * samples
     bend, rate, place = (float(c) for c in np.polyfit(time[half:], away[half:], 2))
     state[:2] -= place / radii
