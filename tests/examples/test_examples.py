@@ -121,6 +121,24 @@ def test_24_two_blades_are_the_published_propeller_on_the_mean_and_exact_on_an_e
         assert np.abs(expected - z).min() <= error + 1e-12
     # Pitch and yaw may change places: the mount is turned by a quarter.
     np.testing.assert_allclose(result["spectral_radius"], result["spectral_radius"].T, rtol=1e-8)
+    # Two pairs of blades at right angles, each with half the area, are the published equations.
+    Q = np.array([[0.0, -1.0], [1.0, 0.0]])
+    T, P = system.coordinates, np.diag([module.NACELLE, module.NACELLE + module.BLADES])
+    A = system.evaluate([0.0])[0]
+    stiffness, damping = (-P @ T @ A[2:, part] @ np.linalg.inv(T) for part in (slice(2), slice(2, 4)))
+    half = module.OMEGA * Q
+    damping = damping - 2.0 * module.NACELLE * half
+    stiffness = (
+        stiffness
+        - damping @ half
+        - module.OMEGA**2 * np.diag([-module.NACELLE, module.BLADES - module.NACELLE])
+    )
+    K, C = (0.5 * (B + Q @ B @ Q.T) for B in (stiffness, damping))
+    inertia = module.NACELLE + 0.5 * module.BLADES
+    A = np.vstack([np.eye(2, 4, 2), -np.hstack([K, C - module.BLADES * half]) / inertia])
+    assert np.linalg.eigvals(A).real.max() == pytest.approx(
+        module.growth_with_many_blades(0.3, 0.3), rel=1e-9
+    )
 
 
 def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(shown):

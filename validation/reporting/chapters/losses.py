@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 
 from lumped import LawRangeWarning
+from lumped.friction.registry import law_of
 from lumped.labelling import labelled_dataset
 from lumped.losses import iso_14179_mesh_loss, losses_of_laws
 from lumped.outcomes import Absent
@@ -77,7 +78,8 @@ def write(results: Results) -> Content:
             losses_figure,
         ),
     ]
-    outside = [str(text) for text in profile.attrs["range_warnings"] if pair.friction.law in str(text)]
+    title = law_of(pair.friction).title
+    outside = [text for text in map(str, profile.attrs["range_warnings"]) if text.startswith(f"{title}:")]
     if outside:
         blocks.append(Text("The friction law is used outside its range:", tuple(outside)))
     result = (
