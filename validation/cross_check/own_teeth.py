@@ -5,8 +5,6 @@ Sources: docs/theory/teeth.md, "In the multibody model".
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 
@@ -19,7 +17,6 @@ from lumped.teeth.contact import Laws, tables
 from lumped.teeth.motion import default_samples, swinging
 from lumped.teeth.pairs import period_of
 from lumped.typing import FloatArray
-from multibody.run.model import build, from_lumped_state
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
 
@@ -91,7 +88,6 @@ def _at_mean_speed(pair: GearPair, reference: xr.Dataset, samples: int) -> xr.Da
     state[:2] -= place / radii
     state[6:8] -= rate / radii
     brake = setup.machine.torque_gear + 2.0 * bend * mass * g.base_radius_gear
-    model = build(replace(setup.machine, torque_gear=brake), setup.model.flags, setup.model.budget.limit)
-    q, v = from_lumped_state(state)
-    run = record(replace(setup, model=model, q=q, v=v), cycles, samples)[0]
+    again = prepare(pair, initial=state).with_torques(setup.machine.torque_pinion, brake)
+    run = record(again, cycles, samples)[0]
     return run.assign_attrs(brake_torque=brake)
