@@ -84,7 +84,7 @@ class ChartPoints:
     verdict : (count,) 1 stable, 0 undecided, -1 unstable
     proven : (count,) whether the error is a proven bound
     known : (count,) whether the point was evaluated; the others are interpolated
-    gap : (count,) `gaps` of evaluated points; None where tongues are not searched by them
+    gap : (count,) `gaps` of evaluated points; None where every point is evaluated
     multipliers, multiplier_errors : (count, size) the largest modulus first; None without ``everything``
     """
 
@@ -148,7 +148,7 @@ def refine_planes(
     evaluate : of some points
     cycles : cycles in a unit of time at the values of the first axis of the plane; None: equal ones
     lowest_alone : whether regions are widest where the second axis of the plane is lowest: then that row
-        seeds the search, else three rows do, and `gaps`
+        alone seeds the search, else three rows do
     progress : told the finished fraction
     """
     names = list(grid)
@@ -158,7 +158,7 @@ def refine_planes(
     first, second = (np.argsort(grid[name]) for name in plane)
     index = index[first][:, second].reshape(first.size, second.size, -1)
     rows = (0,) if lowest_alone else (0, second.size // 2, -1)
-    points.gap = None if lowest_alone else np.zeros(points.radius.size)
+    points.gap = np.zeros(points.radius.size)
     smooth = np.ones(first.size) if cycles is None else cycles[first]
     for k in range(index.shape[2]):
         here = index[:, :, k].ravel()
@@ -166,8 +166,8 @@ def refine_planes(
         def ask(nodes: IntArray, here: IntArray = here) -> tuple[FloatArray, IntArray, FloatArray]:
             at = here[nodes]
             evaluate(at)
-            gap = np.zeros(at.size) if points.gap is None else points.gap[at]
-            return points.radius[at], points.verdict[at].astype(np.intp), gap
+            assert points.gap is not None
+            return points.radius[at], points.verdict[at].astype(np.intp), points.gap[at]
 
         def tell(fraction: float, stage: str = "", /, k: int = k) -> None:
             if progress is not None:

@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 
 from lumped.friction.base import Analytic, ContactPath, FrictionLaw, FrictionSettings
 from lumped.path_function import PathFunction
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _DEGREE = 64
@@ -64,6 +64,11 @@ class Ellipses:
                 free = axis + np.sqrt(axis**2 + 1.0)
             ratio = np.minimum(ratio, free)
         return cls(centre, half, ratio)
+
+    @property
+    def clear(self) -> BoolArray:
+        """Which pieces (k,) are clear of what is singular; of the others the law itself is the bound."""
+        return np.asarray(self.ratio >= _CLEAR)
 
     @property
     def reach(self) -> FloatArray:

@@ -49,12 +49,16 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
-    """Poles at P +- i/Phi, over which the derivative of arctan is bounded from the middle of a piece on."""
+    """Poles at P +- i/Phi, over which the derivative of arctan is bounded from the middle of a piece on.
+
+    On a piece that holds a transition too short for its polynomial, |mu| is at most mu_avg.
+    """
     phi, pole = settings.sharpness, path.L_XP + 1j / settings.sharpness
     around = Ellipses.clear_of(low, high, [pole])
     least = (phi * around.distances(pole)[0]) ** 2  # |1 + Phi^2 d^2|
     angle = 0.5 * np.pi + phi * around.reach / least
     size = angle + phi * around.distances(path.L_XP)[1] / least
+    size = np.where(around.clear, size, 0.5 * np.pi)
     return around.ratio, 2.0 / np.pi * average_coefficient(path, settings) * size
 
 

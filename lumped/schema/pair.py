@@ -264,11 +264,15 @@ class GearPair(Section, metaclass=_InOurWords):
         hertz = 2.0 * (1.0 / moduli[0] + 1.0 / moduli[1]) / (math.pi * g.face_width)
         return Flank(self.wheels[which], tip, start, g.face_width, gear.youngs_modulus, hertz)
 
-    @cached_property
+    @property
     def healthy(self) -> GearPair:
         """The pair with like teeth, centred gears and steady torques; itself where it is that already."""
         if not (self.pinion.has_own_teeth or self.gear.has_own_teeth or self.operating.torque_ripple):
-            return self
+            return self  # not cached: pairs are compared by what they hold, and would hold themselves
+        return self._with_like_teeth
+
+    @cached_property
+    def _with_like_teeth(self) -> GearPair:
         none = {"deviations": None, "mounting": None, "faults": ()}
         gears = {name: getattr(self, name).model_copy(update=none) for name in ("pinion", "gear")}
         steady = self.operating.model_copy(update={"torque_ripple": ()})
