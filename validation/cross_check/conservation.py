@@ -291,7 +291,9 @@ def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:
         "driving power less brake, friction, bearings, damping of the teeth and the work of the change "
         "of stiffness and profile, over the driving power; limit: the error of the integration",
     )
-    if name == "exact":  # its efficiency is below 1 wherever this law and that of friction hold
+    if (
+        name != "lumped"
+    ):  # each power of "linear" is the lumped one; "exact" keeps this law and that of friction
         return [law]
     efficiency = powers["braking"] / powers["driving"]
     outside = max(efficiency - 1.0, 0.0 if efficiency > 0.0 else 1.0 - efficiency, 0.0)
