@@ -5,7 +5,9 @@ Sources: docs/how_to/any_system.md.
 
 from __future__ import annotations
 
+import math
 import re
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +22,6 @@ from lumped.arguments import file_path, real_array, real_number, real_numbers
 from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.refusals import nearest
 from lumped.typing import FloatArray
-from validation.exchange.foreign_arrays import read_arrays
 
 MATRIX_SUFFIXES = (".npz", ".mat")
 FILE_AXES: Mapping[str, ChartAxis] = {
@@ -31,6 +32,8 @@ FILE_AXES: Mapping[str, ChartAxis] = {
 }
 """What a chart of a file can vary."""
 
+#: Most bytes that the arrays of a file may take: matrices of some thousand states.
+_MOST_BYTES = 500_000_000
 _HARMONIC = re.compile(r"([CK])_(cos|sin)_([1-9]\d{0,2})")
 _NAMES = ("M", "C", "G", "K", "period", "K_cos_1", "K_sin_1", "K_times", "K_values", "C_cos_1", "C_sin_1",
           "C_times", "C_values")  # fmt: skip
@@ -125,10 +128,29 @@ def _fields(path: Path) -> dict[str, Any]:
         raise refuse("path", path, "a file that exists", "Check the folder and the name.")
     advice = "Save it again: numpy.savez, or save('-v7', ...)."
     try:
-        return read_arrays(path)
-    except (ValueError, OSError) as error:
+        return _arrays(path)
+    except Exception as error:  # noqa: BLE001  (readers raise anything of a damaged file)
         allowed = "a .npz of arrays or a .mat up to version 7"
         raise refuse("path", path, allowed, f"{advice} ({shown(str(error), 120)})") from None
+
+
+def _arrays(path: Path) -> dict[str, Any]:
+    """The arrays of a file; sparse matrices, as finite-element programs save them, become full ones."""
+    if path.suffix.lower() == ".npz":
+        with zipfile.ZipFile(path) as archive:
+            _check_size(sum(member.file_size for member in archive.infolist()))
+        with np.load(path, allow_pickle=False) as file:
+            return dict(file)
+    import scipy.io
+
+    _check_size(sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(path)))
+    found = scipy.io.loadmat(path).items()
+    return {k: v.toarray() if hasattr(v, "toarray") else v for k, v in found if not k.startswith("__")}
+
+
+def _check_size(wanted: int) -> None:
+    if wanted > _MOST_BYTES:  # a small file can unfold to gigabytes
+        raise ValueError(f"it claims to hold {wanted:.3g} bytes")
 
 
 def _model(fields: dict[str, Any], *, matlab: bool) -> SecondOrderModel:

@@ -20,8 +20,6 @@ from lumped.schema.own_laws import is_own
 from lumped.schema.pair import FORMAT, SHORT_NAMES, GearPair, leaf_paths, stated_unit
 
 GIVEN = "given by the user"
-#: Joins the source of a value and why it is doubtful.
-DOUBTFUL = "; doubtful: "
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
 _WHY = {
     "_stiffness": "of rolling bearing, shaft and housing together; see the guide on bearings",
@@ -259,8 +257,6 @@ def _commented(line: str, path: str, sources: Mapping[str, str]) -> str:
     )
     if sources.get(path, "").startswith("assumed"):
         remarks.append("assumed")
-    if DOUBTFUL in sources.get(path, ""):
-        remarks.append("doubtful")
     return f"{line:<{_COLUMN}} # {', '.join(remarks)}" if remarks else line
 
 

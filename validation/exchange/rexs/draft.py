@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 from lumped.errors import FieldProblem, shown
 from lumped.fields.units import to_file
 from lumped.schema.pair import stated_unit
-from validation.exchange.new_pair_file import DOUBTFUL
 from validation.exchange.rexs.model import Component, RexsModel
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
 
@@ -100,12 +99,6 @@ class Draft:
         """Add a note, once."""
         if text not in self.notes:
             self.notes.append(text)
-
-    def warn(self, paths: Sequence[str], text: str) -> None:
-        """Mark the lines of some fields as doubtful, and note why."""
-        for path in paths:
-            self.sources[path] = f"{self.sources.get(path, ASSUMED)}{DOUBTFUL}{text}"
-        self.note(f"doubtful: {', '.join(paths)}: {text}")
 
     def agreed(self, readings: Iterable[Reading | None], why: str) -> Reading | None:
         """Return the one value of all places that have one; a disagreement is a problem."""

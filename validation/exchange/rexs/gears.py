@@ -18,7 +18,7 @@ _BLANK = {
     "bore": "inner_diameter",
     "mass": "mass_of_component",
 }
-MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
+_MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
 #: Attribute of the flank's roughness, up to 1.7 and of 2.0.0 -> how many Ra it is; Rz = 6 Ra (ISO 6336-2).
 _ROUGHNESS = {
     "arithmetic_average_roughness_flank": 1.0,
@@ -37,7 +37,7 @@ def read_gears(draft: Draft, pinion: Component, gear: Component) -> None:
     for which, component in (("pinion", pinion), ("gear", gear)):
         _read_blank(draft, which, component)
         for material in draft.model.referenced(component, "material"):
-            draft.take_all(which, material, MATERIAL)
+            draft.take_all(which, material, _MATERIAL)
         _read_shift(draft, which, component)
     _read_rack(draft, pinion, gear)
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,13 +12,12 @@ from lumped.fields.units import to_stated
 from lumped.gear_geometry.geometry import theoretical_backlash
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.new_pair_file import DOUBTFUL, completed
+from validation.exchange.new_pair_file import completed
 from validation.exchange.rexs.draft import ASSUMED, Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
 from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
 from validation.exchange.rexs.model import Component, RexsModel, broken
-from validation.exchange.rexs.shafts import read_shafts
-from validation.exchange.rexs.vocabulary import VERSIONS, derived_number
+from validation.exchange.rexs.vocabulary import VERSIONS
 
 _GEARS_OF_PAIR = ("pinion", "gear")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
@@ -37,11 +34,6 @@ _VISCOSITY_LAW = {
     "kinematic_viscosity_100": "viscosity_at_100_degree_celsius",
     "density": "density_at_15_degree_celsius",
 }
-_TIPS = ("pinion.tip_diameter", "gear.tip_diameter")
-_CENTRE, _BACKLASH = "centre_distance", "mesh.backlash"
-_OF_FLANKS = ("pinion.profile_shift", "gear.profile_shift", "basic_rack.pressure_angle")
-#: Backlash [modules] beyond which the centre distance hardly can be meant: ten times DIN 3967 at module 2.
-_MOST_BACKLASH = 0.25
 
 
 class _Stage(NamedTuple):
@@ -70,14 +62,14 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     Returns
     -------
     mapping : nested parameters in file units, valid for ``load_gear_pair``; under ``sources`` every value has
-        its component and attribute in the file, or "assumed" where the file says nothing; "doubtful" in it
-        names what in the file contradicts the value
-    notes : what was assumed, left out, chosen or is doubtful, in words
+        its component and attribute in the file, or "assumed" where the file says nothing
+    notes : what was assumed, left out or chosen, in words
 
     Raises
     ------
     ParameterError : a hostile or broken file; a stage that is helical, internal, planetary, bevel or worm;
-        several stages and no number; a value that is missing and cannot be assumed, or that is refused
+        several stages and no number; a value that is missing and cannot be assumed, that is refused, or that
+        contradicts the others
 
     Examples
     --------
@@ -93,20 +85,13 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     picked, notes = _chosen(model, stage)
     draft, component = Draft(model, notes=notes), picked.component
     gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, picked.gears), strict=True))
-
-    def validated() -> GearPair:
-        return _validated(draft, picked)
-
     read_gears(draft, *gears.values())
     draft.take("centre_distance", draft.number(component, "center_distance"))
     _read_lubricant(draft, component)
     _read_operating_point(draft, component, *gears.values())
-    _read_backlash(draft, component, _without_contradiction(draft, validated))
-    pair = _without_contradiction(draft, validated)
-    _warn_of_contradictions(draft, pair)
-    read_reliefs(draft, component, gears, pair.geometry)
-    read_shafts(draft, gears, validated)
-    pair = validated()
+    _read_backlash(draft, component, _validated(draft, picked))
+    read_reliefs(draft, component, gears, _validated(draft, picked).geometry)
+    pair = _validated(draft, picked)
     sources = {
         path: draft.sources.get(path) or _BECAUSE.get(path, ASSUMED)
         for path in sorted(leaf_paths(pair))
@@ -212,6 +197,8 @@ def _note_assumptions(draft: Draft, pair: GearPair, sources: dict[str, str]) -> 
         if f"{which}.inertia" not in sources and f"{which}.mass" in sources:
             text = f"{which}.inertia: REXS has none of a gear; it is that of a solid disc, not of its mass"
             draft.note(text)
+    if draft.model.of_type("shaft_section"):
+        draft.note("shafts of the file are not read: describe them and their bearings in [shafts]")
     if pair.pinion.tip_relief or pair.gear.tip_relief:
         draft.note("reliefs are read but mesh.relief decides whether the dynamics use them")
 
@@ -238,16 +225,11 @@ def _read_backlash(draft: Draft, stage: Component, pair: GearPair) -> None:
     low, high = (draft.number(stage, f"{end}_normal_backlash") for end in ("minimum", "maximum"))
     if low is None or high is None:
         return
-    where = f"{low.where} and maximum, their mean"
-    if DOUBTFUL in draft.sources.get(_CENTRE, ""):
-        text = f"{where}, was computed with a centre distance that stands for no pair of gears"
-        draft.warn([_BACKLASH], f"{text}; {1e3 * pair.mesh.backlash:g} mm stands in")
-        return
     share = theoretical_backlash(*pair.wheels, pair.geometry.operating_pressure_angle)
-    remark = "" if _CENTRE not in draft.values else ", without the share of the centre distance"
+    remark = "" if "centre_distance" not in draft.values else ", without the share of the centre distance"
     # A difference of lengths of about 100 mm, in fifteen digits.
     thinning = round(to_stated(0.5 * (low.si + high.si) - share, "mm"), 12)
-    draft.put(_BACKLASH, max(thinning, 0.0), where + remark)
+    draft.put("mesh.backlash", max(thinning, 0.0), f"{low.where} and maximum, their mean{remark}")
 
 
 def _read_lubricant(draft: Draft, stage: Component) -> None:
@@ -301,41 +283,3 @@ def _external(draft: Draft, shafts: list[Component], speed: Reading | None) -> R
     if not torques and len(powers) == 1 and speed is not None and speed.si:
         return Reading(powers[0].si / speed.si, f"{powers[0].where} over the speed")
     return None
-
-
-def _without_contradiction(draft: Draft, validated: Callable[[], GearPair]) -> GearPair:
-    """Validate; where that fails and values that the others give are why, put these in their place."""
-    try:
-        return validated()
-    except ParameterError as error:
-        refused = error
-    named = {p.field for p in refused.problems}
-    derived = [path for path in (_CENTRE, _BACKLASH, *_TIPS) if path in draft.values]
-    derived.sort(key=lambda path: path not in named)
-    for paths in (some for n in range(1, len(derived) + 1) for some in combinations(derived, n)):
-        left_out = {path: draft.values.pop(path) for path in paths}
-        try:
-            pair = validated()
-        except ParameterError:
-            draft.values |= left_out
-            continue
-        g = pair.geometry
-        others = {_CENTRE: g.centre_distance, _BACKLASH: pair.mesh.backlash}
-        others |= {_TIPS[0]: 2.0 * g.tip_radius_pinion, _TIPS[1]: 2.0 * g.tip_radius_gear}
-        for path, value in left_out.items():
-            text = f"{draft.sources[path]} has {value:g} mm, with which the other values give no pair"
-            draft.put(path, derived_number(others[path], "mm"), ASSUMED)
-            draft.warn([path], f"{text} of gears; {draft.values[path]:g} mm stands in")
-        return validated()
-    raise refused
-
-
-def _warn_of_contradictions(draft: Draft, pair: GearPair) -> None:
-    """Mark the lines of a valid pair that hardly can be meant."""
-    g = pair.geometry
-    if max(g.normal_backlash, pair.mesh.backlash) > _MOST_BACKLASH * pair.basic_rack.module:
-        text = f"the normal backlash is {1e3 * g.normal_backlash:.3g} mm, more than {_MOST_BACKLASH} modules"
-        draft.warn([path for path in (_CENTRE, _BACKLASH) if path in draft.values], text)
-    if draft.model.of_type("flank_geometry"):
-        marked = [path for path in _OF_FLANKS if path in leaf_paths(pair)]
-        draft.warn(marked, "flank_geometry, where REXS before 1.3 has these, is not read")

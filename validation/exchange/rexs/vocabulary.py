@@ -13,14 +13,11 @@ from lumped.fields.units import to_si, to_stated
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "2.0.0")
 #: Versions that can be written. The XML form of 2.0.0 (with or without a namespace) could not be settled.
 WRITTEN = VERSIONS[:-1]
-BEARINGS = (
-    "concept_bearing", "rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry",
-)  # fmt: skip
 #: REXS unit -> (unit of ``lumped.fields.units``, the REXS unit as text for it).
 UNITS = {
     "none": ("1", ""), "": ("1", ""), "mm": ("mm", "mm"), "mum": ("um", "um"), "deg": ("deg", "deg"),
     "°": ("deg", "deg"), "rad": ("deg", "rad"), "1 / min": ("rpm", "rpm"), "N m": ("N*m", "N*m"),
-    "N / m": ("N/m", "N/m"), "N mm / rad": ("N*m/rad", "N*mm/rad"), "kg": ("kg", "kg"),
+    "kg": ("kg", "kg"),
     "kg / dm^3": ("kg/m**3", "kg/dm**3"), "N / mm^2": ("GPa", "N/mm**2"), "MPa": ("GPa", "MPa"),
     "mm^2 / s": ("mm**2/s", "mm**2/s"), "C": ("degC", "degC"),
 }  # fmt: skip
@@ -35,10 +32,8 @@ _NAMES = {
     "poisson_ratio addendum_coefficient_reference_profile tip_radius_factor "
     "tip_corner_radius_factor_reference_profile",
     ("floating_point", "mm"): "center_distance minimum_normal_backlash maximum_normal_backlash normal_module "
-    "face_width tip_diameter root_diameter inner_diameter addendum_modification u_coordinate_on_shaft length "
-    "outer_diameter_begin outer_diameter_end inner_diameter_begin inner_diameter_end "
-    "u_coordinate_on_shaft_inner_side u_coordinate_on_shaft_outer_side tip_relief_depth root_relief_depth "
-    "tip_relief_datum_diameter tip_relief_evaluation_reference root_relief_datum_diameter "
+    "face_width tip_diameter root_diameter inner_diameter addendum_modification tip_relief_depth "
+    "root_relief_depth tip_relief_datum_diameter tip_relief_evaluation_reference root_relief_datum_diameter "
     "root_relief_evaluation_reference",
     ("floating_point", "mum"): "arithmetic_average_roughness_flank averaged_peak_to_valley_height_flank "
     "arithmetic_mean_roughness_flank_iso_4287_1997 mean_peak_to_valley_roughness_flank_iso_4287_1997",
@@ -46,8 +41,6 @@ _NAMES = {
     ("floating_point", "1 / min"): "rotational_speed",
     ("floating_point", "N m"): "torque torque_around_u_axis",
     ("floating_point", "kW"): "power",
-    ("floating_point", "N / m"): "radial_stiffness",
-    ("floating_point", "N mm / rad"): "bending_stiffness",
     ("floating_point", "N / mm^2"): "elastic_modulus",  # the database of 2.0.0 calls the same unit MPa
     ("floating_point", "kg"): "mass_of_component",
     ("floating_point", "kg / dm^3"): "density density_at_15_degree_celsius",
