@@ -158,6 +158,12 @@ def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> 
     return x
 
 
+def merged(maps: FloatArray, group: IntArray) -> FloatArray:
+    """``chained``, but the maps themselves where no two are of one group."""
+    result: FloatArray = maps if group.size == group[-1] + 1 else chained(maps, group)
+    return result
+
+
 @compiled
 def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     """Affine maps (k, n, n + columns) of which consecutive ones of the same group (k,), 0, 1, ..., are one.

@@ -87,12 +87,12 @@ def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> 
 
 
 def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
-    """Mean losses by place, and those that no torque balances [W], as attributes of a result."""
+    """``balance``, mean losses by place, and those that no torque balances [W], as attributes of a result."""
     powers = mean_powers(solution)
     places = ("sliding", "tooth_dampers", *solution.system.held.places)
     found: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
     conservative = contact_of(solution.system.pair).conservative
-    return found | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
+    return balance(solution) | found | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
 
 
 @lru_cache(maxsize=4)
@@ -148,8 +148,8 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     from lumped.model.results import corner_force, response
 
     system = solution.system
-    values = response(system, times, states)
     pairs, rates = system.cycle.sample(times), states[:, len(system.coordinates) :]
+    values = response(system, times, states, pairs=pairs)
     closing = values["dte_dot"] - pairs.error_rate
     supports = system.held.powers(rates)
     return np.stack(

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, gauss_steps, states_along
+from lumped.model.kernels import chained, gauss_steps, merged, states_along
 from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
@@ -70,6 +70,7 @@ class StepMaps:
     maps: FloatArray
     steps: Callable[[], Iterable[Steps]]
 
+    @cached_property
     def over_all(self) -> tuple[FloatArray, FloatArray]:
         """Map over all steps: transition (n, n) and forced (n, forcings)."""
         whole = chained(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
@@ -102,11 +103,6 @@ class StepMaps:
             work += float(steps.length @ power @ gauss_tableau(power.shape[1])[1])
             state = states[-1]
         return -work / float(self.times[-1])
-
-
-def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
-    """Maps of which consecutive ones of the same group (k,), numbered 0, 1, ..., are made one."""
-    return maps if group.size == group[-1] + 1 else chained(maps, group)
 
 
 @lru_cache(maxsize=4)
@@ -156,10 +152,10 @@ def step_maps(
     parts, groups, low = [], [], 0
     for block in kept or steps():
         group = grid.interval[low : low + _BLOCK]
-        parts.append(_merged(block.maps, group - group[0]))
+        parts.append(merged(block.maps, group - group[0]))
         groups.append(np.unique(group))
         low += _BLOCK
-    maps = _merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
+    maps = merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
         raise NumericalError(
             "The mesh cycle could not be integrated: check stiffness and inertia for extremes."

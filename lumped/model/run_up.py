@@ -94,7 +94,7 @@ def run_up(
     for (first, last), system in zip(groups, systems_over_speed(pairs, supports), strict=True):
         grid = sample_times(system.period, samples_per_cycle)
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
-        start, weights = balanced_start(system, *maps.over_all())
+        start, weights = balanced_start(system, *maps.over_all)
         state = start if state is None else state
         for cycle in range(last - first):
             states = maps.states(state, weights)

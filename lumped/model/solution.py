@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import provenance
-from lumped.model import powers
 from lumped.model.periodic_system import LTVSystem, Supports
+from lumped.model.powers import power_attributes
 from lumped.model.propagation import step_maps
 from lumped.model.results import dataset
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
@@ -95,7 +95,7 @@ def simulate(
         initial=initial if isinstance(initial, str) else "given",
         as_printed=tuple(as_printed),
     )
-    attributes |= powers.balance(balance) | powers.power_attributes(balance) | {"model": "lumped"}
+    attributes |= power_attributes(balance) | {"model": "lumped"}
     return dataset(system, time, states, attributes)
 
 
@@ -141,15 +141,11 @@ def steady_cycle(
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
-    attributes |= (
-        powers.balance(solution)
-        | powers.power_attributes(solution)
-        | {
-            "model": "lumped",
-            "closure": solution.closure,
-            "error_estimate": solution.error,
-            "spectral_radius": solution.spectral_radius,
-        }
-    )
+    attributes |= power_attributes(solution) | {
+        "model": "lumped",
+        "closure": solution.closure,
+        "error_estimate": solution.error,
+        "spectral_radius": solution.spectral_radius,
+    }
     attributes |= {f"{name}_peak_to_peak": value for name, value in solution.peak_to_peak.items()}
     return dataset(system, times, solution.states, attributes)

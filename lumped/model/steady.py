@@ -45,7 +45,6 @@ class PeriodicSolution:
     cycle_time: FloatArray
     cycle_states: FloatArray
     _maps: StepMaps = field(repr=False)
-    _transition: FloatArray = field(repr=False)
     _weights: FloatArray = field(repr=False)
 
     @cached_property
@@ -59,7 +58,7 @@ class PeriodicSolution:
 
         Above 1 the motion is unstable, and a pair leaves it.
         """
-        return relative_spectral_radius(self.system, self._transition)
+        return relative_spectral_radius(self.system, self._maps.over_all[0])
 
     @cached_property
     def peak_to_peak(self) -> dict[str, float]:
@@ -95,30 +94,25 @@ def periodic_solution(
     step_angle : largest angle of the fastest frequency per step [rad]
     """
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-    maps = step_maps(system, torques, outputs=times, every_step=True, step_angle=step_angle)
-    transition, forced = maps.over_all()
-    initial, weights = balanced_start(system, transition, forced)
-    states = maps.states(initial, weights)
-    at = np.searchsorted(maps.times, times - 1e-9 * system.period)
-    result = states[at]
-    error = None
-    if estimate_error:
-        low = step_maps(system, torques, outputs=times, every_step=True, stages=STAGES - 1)
-        other = low.states(*balanced_start(system, *low.over_all()))[at]
-        m = len(system.coordinates)
-        dte, dte_low = result[:, :m] @ system.deflection, other[:, :m] @ system.deflection
-        error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
+    dte: list[FloatArray] = []
+    for stages in (STAGES - 1, STAGES) if estimate_error else (STAGES,):
+        maps = step_maps(
+            system, torques, outputs=times, every_step=True, step_angle=step_angle, stages=stages
+        )
+        initial, weights = balanced_start(system, *maps.over_all)
+        cycle = maps.states(initial, weights)
+        states = cycle[np.searchsorted(maps.times, times - 1e-9 * system.period)]
+        dte.append(states[:, : len(system.coordinates)] @ system.deflection)
     return PeriodicSolution(
         system=system,
         time=times,
-        states=result,
+        states=states,
         pinion_torque=system.pinion_torque + float(weights[1]),
         brake_torque=float(weights[2]),
-        error=error,
+        error=float(np.abs(dte[1] - dte[0]).max() / np.abs(dte[1]).max()) if estimate_error else None,
         cycle_time=maps.times,
-        cycle_states=states,
+        cycle_states=cycle,
         _maps=maps,
-        _transition=transition,
         _weights=weights,
     )
 

@@ -65,23 +65,12 @@ def load_gear_pair(source: AnyPair) -> GearPair:
     """
     if isinstance(source, GearPair):
         return source
-    if isinstance(source, Mapping):
-        return validated(dict(source), "mapping")
-    if not isinstance(source, (str, Path)):
+    if isinstance(source, (str, Path)):
+        return _from_file(source)
+    if not isinstance(source, Mapping):
         allowed = "a preset name, a TOML file, a mapping or a GearPair"
         raise refuse("pair", shown(source), allowed, "Give one of these.")
-    path = Path(source)
-    if isinstance(source, str) and source in preset_names():
-        return validated(parse_toml(preset_text(source), f"preset {source}"), f"preset {source}")
-    if action := _NO_PAIRS.get(path.suffix.lower()):
-        raise refuse("file", path, "the parameters of a gear pair, a .toml file", action)
-    if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
-        preset_text(str(source))
-    data = parse_toml(_read(path), str(path))
-    for key, other in _OTHER_FILES.items():
-        if key in data and "pinion" not in data:
-            raise refuse("file", path, "the parameters of a gear pair", f"This is {other}.")
-    return validated(data, str(path), path.parent)
+    return validated(source, "mapping")
 
 
 def geometry(pair: AnyPair) -> Geometry:
@@ -101,18 +90,28 @@ def json_schema() -> dict[str, Any]:
     return schema
 
 
+def _from_file(source: str | Path) -> GearPair:
+    """The pair of a preset or a file; a name that can be no file is taken for a preset's."""
+    path, suffix = Path(source), Path(source).suffix.lower()
+    named = isinstance(source, str) and source in preset_names()
+    if named or (suffix not in (".toml", *_NO_PAIRS) and "/" not in str(source) and not _exists(path)):
+        text, name, folder = preset_text(str(source)), f"preset {source}", Path()
+    else:
+        if suffix in _NO_PAIRS:
+            raise refuse("file", path, "the parameters of a gear pair, a .toml file", _NO_PAIRS[suffix])
+        instead = ", or a preset: " + ", ".join(preset_names())
+        action = "Check the path, or start from 'spurcheck init'."
+        text = read_text(path, MAX_FILE_BYTES, kind="TOML file", instead=instead, action=action)
+        name, folder = str(path), path.parent
+    data = parse_toml(text, name)
+    for key, other in _OTHER_FILES.items():
+        if key in data and "pinion" not in data:
+            raise refuse("file", path, "the parameters of a gear pair", f"This is {other}.")
+    return validated(data, name, folder)
+
+
 def _exists(path: Path) -> bool:
     try:
         return path.exists()
     except OSError:  # such as a name that is too long
         return False
-
-
-def _read(path: Path) -> str:
-    return read_text(
-        path,
-        MAX_FILE_BYTES,
-        kind="TOML file",
-        instead=", or a preset: " + ", ".join(preset_names()),
-        action="Check the path, or start from 'spurcheck init'.",
-    )

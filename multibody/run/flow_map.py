@@ -187,7 +187,7 @@ def _first_matrix(
     elif near_lumped:
         system = setup.system
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
-        transition, forced = maps.over_all()
+        transition, forced = maps.over_all
         by_torque = forced[:, 2]
     else:
         flow = Flow(setup, machine, cycles)

@@ -86,7 +86,7 @@ def _stages(pair: GearPair) -> Iterator[Level]:
 
     def displacements(stages: int) -> FloatArray:
         maps = step_maps(system, np.zeros((system.size, 0)), step_angle=STEP_ANGLE, stages=stages)
-        phi, forced = maps.over_all()
+        phi, forced = maps.over_all
         return np.linalg.solve(np.eye(system.size) - phi, forced[:, 0])[: system.size // 2]
 
     finest = displacements(STAGES + 2)

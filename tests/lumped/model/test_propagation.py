@@ -79,7 +79,7 @@ def test_order_is_twice_the_stages(stages, angles):
     for angle in angles:
         maps = step_maps(SMOOTH, EXTRA, step_angle=angle, stages=stages)
         steps.append(maps.edges.size - 1)
-        errors.append(np.abs(np.hstack(maps.over_all()) - exact).max())
+        errors.append(np.abs(np.hstack(maps.over_all) - exact).max())
     assert errors[1] > 1e-12  # above the reference's own error
     order = np.log(errors[0] / errors[1]) / np.log(steps[1] / steps[0])
     # Next terms of the error are a few per cent at these steps.
@@ -107,7 +107,7 @@ def test_a_jump_at_an_edge_costs_no_order():
         return np.where(t < 0.7, -9.0, -25.0)[:, None], np.zeros((t.size, 1)), np.zeros((t.size, 1))
 
     system = system_of(np.array([[0.0, 1.0], [0.0, 0.0]]), jump, [1.0], [0.0, 0.7, 2.0])
-    phi, _ = step_maps(system, np.zeros((2, 0)), step_angle=0.3).over_all()
+    phi, _ = step_maps(system, np.zeros((2, 0)), step_angle=0.3).over_all
     np.testing.assert_allclose(phi, rotation(5.0, 1.3) @ rotation(3.0, 0.7), atol=1e-12)
 
 

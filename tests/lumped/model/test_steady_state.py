@@ -86,7 +86,7 @@ def test_the_estimate_bounds_the_error(nasa, law, speed, samples):
     times = sample_times(system.period, samples)
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     fine = step_maps(system, torques, outputs=times, step_angle=0.02)
-    states = fine.states(*balanced_start(system, *fine.over_all()))
+    states = fine.states(*balanced_start(system, *fine.over_all))
     exact = states[np.searchsorted(fine.times, times - 1e-9 * system.period)][:, :6] @ system.deflection
     solution = periodic_solution(system, times)
     dte = solution.states[:, :6] @ system.deflection
