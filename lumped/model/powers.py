@@ -92,7 +92,9 @@ def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
     places = ("sliding", "tooth_dampers", *solution.system.held.places)
     found: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
     conservative = contact_of(solution.system.pair).conservative
-    return balance(solution) | found | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
+    return (
+        balance(solution) | found | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
+    )
 
 
 @lru_cache(maxsize=4)

@@ -38,11 +38,13 @@ from multibody.contact.kinematics import (
     compiled,
     corners_at,
     engaged,
+    error_of,
     mesh_position,
+    move_moments,
+    off_axis,
     overlap_rate,
     sliding_velocity,
 )
-from multibody.contact.own_teeth import error_of, move_moments, off_axis
 
 
 @compiled

@@ -42,6 +42,8 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from lumped.compiler import Compiler
 from lumped.typing import FloatArray
 from multibody.contact import layout as kn
@@ -341,3 +343,48 @@ def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, 
     if flags & kn.ENTRY_SHIFT:
         return pairs_in_contact(rho, delta, length, p[kn.PITCH], p[kn.TIP_P], p[kn.TIP_G], arms)
     return pairs_in_contact(rho, 0.0, p[kn.L_XY], p[kn.PITCH], p[kn.L_XD], p[kn.L_XY] - p[kn.L_XA], arms)
+
+
+@compiled
+def off_axis(own: FloatArray, t: float, state: FloatArray, omega_p: float, omega_g: float) -> FloatArray:
+    """Rows of (x, y, phi) of both: state of the base circles' centres, rates, their way from the axes."""
+    found = np.empty((3, 6))
+    for j in range(6):
+        found[0, j], found[1, j] = state[0, j], state[1, j]
+    for which in range(2):
+        row, sense = kn.OWN_COLUMNS * which, 1.0 - 2.0 * which  # the pinion turns clockwise
+        x, y = 3 * which, 3 * which + 1
+        turned = (omega_g if which else omega_p) * t - sense * state[0, x + 2]
+        rate = (omega_g if which else omega_p) - sense * state[1, x + 2]
+        size, angle = own[row + kn.ECCENTRICITY], turned + own[row + kn.ANGLE]
+        along, off = -sense * size * math.cos(angle), size * math.sin(angle)
+        found[2, x], found[2, y] = along, off
+        found[0, x] += along
+        found[0, y] += off
+        found[1, x] += sense * off * rate
+        found[1, y] -= sense * along * rate
+    return found
+
+
+@compiled
+def move_moments(ways: FloatArray, wrench: FloatArray) -> None:
+    """Make the moments about the base circles' centres those about the axes."""
+    for x in (0, 3):
+        wrench[x + 2] += ways[x] * wrench[x + 1] - ways[x + 1] * wrench[x]
+
+
+@compiled
+def error_of(
+    own: FloatArray, turned_p: float, turned_g: float, rho_p: float, rho_g: float, pitch: float
+) -> float:
+    """Error of the pair with flanks at these distances from X and Y [m].
+
+    ``turned_p`` and ``turned_g`` are arcs of the base circles: of pair 0 the first is its distance from X,
+    and the second its distance from Y, which falls.
+    """
+    number_p = math.floor((turned_p - rho_p) / pitch + 0.5)
+    number_g = math.floor((rho_g - turned_g) / pitch + 0.5)
+    z_p, z_g = int(own[kn.TEETH]), int(own[kn.OWN_COLUMNS + kn.TEETH])
+    pinion = (int(own[kn.FIRST]) + number_p) % z_p
+    gear = (int(own[kn.OWN_COLUMNS + kn.FIRST]) + number_g) % z_g
+    return float(own[kn.OWN_ERRORS + pinion] + own[kn.OWN_ERRORS + z_p + gear])

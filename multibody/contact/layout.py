@@ -25,7 +25,7 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
     DAMPING,  # c/sqrt(k) of a tooth pair, 2 zeta sqrt(m_e) [sqrt(kg)]
     SOFTENING, NOMINAL_FORCE,  # D of Hertz's contact [m/N], and the load at which the table's k holds [N]
     K_ROWS, C_ROWS, E_ROWS, GAP_ROWS,  # of k, c, e, gap in the table of the linear, loaded mesh, or 0
-    OWN,  # where the block of ``own_teeth`` starts, or 0
+    OWN,  # where the block of ``machine.own_block`` starts, or 0
     RELIEFS,  # number of reliefs that act
     FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
 ) = range(32)  # fmt: skip
@@ -39,6 +39,11 @@ COUPLED = FRICTION + N_FRICTION
 FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
 #: The rows of ``friction_size``'s table, if there is one, stand behind all others.
 N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
+
+# Places in the block of teeth that differ: of pinion and gear eccentricity [m], its angle at t = 0 [rad],
+# number of teeth, tooth at A at t = 0; then the errors of the pinion's teeth and of the gear's [m].
+ECCENTRICITY, ANGLE, TEETH, FIRST, OWN_COLUMNS = range(5)
+OWN_ERRORS = 2 * OWN_COLUMNS
 
 # Columns of a contact record.
 # OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own

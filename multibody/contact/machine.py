@@ -15,12 +15,14 @@ from typing import Literal
 
 import numpy as np
 
+from lumped.errors import refuse
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.pair import GearPair
+from lumped.teeth.pairs import first_teeth, own_teeth
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import layout as kn
@@ -30,7 +32,6 @@ from multibody.contact.events import SLIDING, event_table
 from multibody.contact.friction_parameters import fill_friction, friction_switches
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
 from multibody.contact.layout import MAX_PAIRS
-from multibody.contact.own_teeth import with_block
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
@@ -176,7 +177,9 @@ def machine(
         p[kn.FRICTION + fr.COLUMNS] = law.coefficients.shape[0] + 2
         p = np.append(p, pack(law))
         friction = [(SLIDING, place) for place in law.switches.tolist()]
-    p = with_block(pair, p, kn.OWN)
+    own = own_block(pair)
+    p[kn.OWN] = p.size if own.size else 0.0
+    p = np.append(p, own)
     starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
     places = [place for _, place in friction]
     table = pack(stiffness)
@@ -209,6 +212,26 @@ def machine(
     none = np.zeros((2, 2))
     shafts = train(pair, mass, inertia, (omega_p, float(p[kn.OMEGA_G])), _highest(found))
     return replace(found, bearing_stiffness=none, bearing_damping=none, train=shafts)
+
+
+def own_block(pair: GearPair) -> FloatArray:
+    """Teeth that differ, as numbers behind the parameters (see ``layout``); empty for like teeth."""
+    if pair.healthy is pair:
+        return np.zeros(0)
+    unread = [f"{name}.faults" for name in ("pinion", "gear") if getattr(pair, name).faults]
+    unread += ["operating.torque_ripple"] if pair.operating.torque_ripple else []
+    teeth = own_teeth(pair)
+    for name, one in zip(("pinion", "gear"), teeth, strict=True):
+        unread += [f"{name}.deviations.profile_slope"] if one.slope.any() else []
+        unread += [f"{name}.deviations.tip_relief"] if one.relief.any() else []
+    if unread:
+        allowed = "index deviations and eccentricity, all that the multibody model has of teeth that differ"
+        raise refuse(unread[0], "given", allowed, "Leave it out, or use lumped.steady_state.")
+    rows = [
+        (one.eccentricity, one.phase + 2.0 * math.pi * first / one.error.size, one.error.size, first)
+        for one, first in zip(teeth, first_teeth(pair), strict=True)
+    ]
+    return np.concatenate([np.ravel(rows), *(one.error for one in teeth)])
 
 
 def _highest(machine: Machine) -> float:

@@ -6,6 +6,7 @@ Sources: docs/theory/multibody.md.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,11 +19,12 @@ from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
 from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 from multibody.contact import layout as kn
 from multibody.contact.machine import Supports
 from multibody.run.integration import Segment
-from multibody.run.model import ExudynModel, contact_state, to_lumped_state
+from multibody.run.model import ExudynModel, contact_state, from_lumped_state, to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 
 if TYPE_CHECKING:
@@ -253,6 +255,45 @@ def record(
         "force_evaluations": setup.model.budget.calls,
     }
     return recorder.dataset(attributes), q, v
+
+
+def at_mean_speed(
+    pair: GearPair, reference: xr.Dataset, swing: FloatArray, samples: int, settling: int
+) -> xr.Dataset:
+    """Run that starts as a lumped motion, with the brake torque under which it keeps the mean speed.
+
+    Under the lumped one it would turn faster or slower, and the phase of contact with it: a first run tells
+    by how much the common rotation leaves its swing, and how it accelerates.
+
+    reference : the lumped motion at the times of the run, ``samples`` a mesh cycle
+    swing : (k,) common rotation of both base circles at these times [m]
+    settling : mesh cycles of the first run that are left out
+    """
+    names = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
+    state = np.array([float(reference[name][0]) for name in names])
+    setup = prepare(pair, initial=state)
+    p, inertia = setup.machine.parameters, setup.machine.inertia
+    radii = p[[kn.RADIUS_P, kn.RADIUS_G]]
+    mass, period = float((inertia / radii**2).sum()), setup.machine.period
+
+    def away(motion: xr.Dataset, last: int | None = None) -> FloatArray:
+        turned = np.stack([motion[name].to_numpy()[:last] for name in ("theta_p", "theta_g")])
+        return np.asarray(inertia / radii @ turned / mass - swing[:last], dtype=np.float64)
+
+    def run(place: float, rate: float, brake: float) -> xr.Dataset:
+        turned = np.stack([place / radii, rate / radii], axis=1)
+        q, v = from_lumped_state(state - np.pad(turned, ((0, 4), (0, 0))).T.ravel())
+        started = replace(setup, q=q, v=v).with_torques(setup.machine.torque_pinion, brake)
+        return record(started, (reference.sizes["time"] - 1) // samples, samples)[0]
+
+    off = away(reference, samples + 1)
+    start = float(off[0]), float(off[-1] - off[0]) / period
+    first = run(*start, setup.machine.torque_gear)
+    low = settling * samples
+    time = period / samples * np.arange(swing.size)
+    bend, rate, place = (float(c) for c in np.polyfit(time[low:], away(first)[low:], 2))
+    brake = setup.machine.torque_gear + 2.0 * bend * mass * float(radii[1])
+    return run(start[0] + place, start[1] + rate, brake).assign_attrs(brake_torque=brake)
 
 
 _VARIABLES = {

@@ -16,13 +16,12 @@ from floquet.gear.orbit import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
 from lumped.errors import SpurcheckError, refuse
-from lumped.model.steady import UNSTABLE, periodic_cycle
+from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
-from multibody.contact.machine import machine
-from multibody.contact.own_teeth import block
+from multibody.contact.machine import machine, own_block
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
-from validation.cross_check.conservation import conservation
+from validation.cross_check.conservation import conservation, lumped_motion
 from validation.cross_check.motions import (
     CONTACT_LOSS,
     integration_tolerances,
@@ -158,7 +157,7 @@ def crosscheck(
     given = load_gear_pair(pair)
     pair = given.healthy
     if "exact" in chosen:
-        block(given)  # refuses what the multibody model does not have
+        own_block(given)  # refuses what the multibody model does not have
     other = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
     share = 0.75 if other is not None else 1.0
 
@@ -222,9 +221,11 @@ def _compared(
         return lambda fraction, stage="", /: progress((done + fraction) / runs)
 
     orbit, pulling = unilateral_orbit(pair)
+    own = None
     if orbit is None:
+        own = lumped_motion(pair)
         # Where mu(xi) is steep the periodic solution may be off by some 1e-6, which a run from it forgets.
-        stable = periodic_cycle(pair, 8).spectral_radius <= UNSTABLE
+        stable = own[0].spectral_radius <= UNSTABLE
         reference = lumped.simulate(
             pair, cycles, samples_per_cycle=samples, initial="periodic", progress=part(0)
         )
@@ -264,14 +265,7 @@ def _compared(
             agreement(pair, quantity, fidelity, a, b, limit_of(quantity, fidelity, limit))
             for quantity in QUANTITIES
         ]
-    checks, powers = conservation(
-        pair,
-        numbers,
-        cycle,
-        results,
-        periodic=exact is not None,
-        contact_loss=orbit is not None,
-    )
+    checks, powers = conservation(pair, numbers, cycle, results, own, periodic=exact is not None)
     return CrossCheck(
         pair=pair,
         agreements=tuple(agreements),

@@ -57,31 +57,28 @@ def conservation(
     m: Machine,
     reference: xr.Dataset,
     runs: Mapping[Fidelity, xr.Dataset],
+    own: tuple[PeriodicSolution, FloatArray] | None,
     *,
     periodic: bool,
-    contact_loss: bool,
 ) -> tuple[tuple[Judgement, ...], Powers]:
     """Check both models; return the checks, and model -> power -> mean over the mesh cycle [W].
 
     ``m`` has the pair's numbers as the multibody model derives them. ``reference`` is the lumped periodic
     motion over one mesh cycle without its end, ``runs`` fidelity -> multibody motion over whole cycles with
-    the last end, ``periodic`` whether "exact" repeats. With ``contact_loss`` powers are those of "exact"
-    alone.
+    the last end, ``periodic`` whether "exact" repeats. ``own`` is what ``lumped_motion`` returns; None
+    with loss of contact, and powers are those of "exact" alone.
     """
     samples = reference.sizes["time"]
     motions = {"lumped": reference} | {
         name: run.isel(time=slice(-samples - 1, -1)) for name, run in runs.items()
     }
-    system = LTVSystem.of(pair, "full")
     powers: dict[str, Mapping[str, float]] = {}
     histories = _mesh_histories(pair, reference)
-    if not contact_loss:
-        times, weights = quadrature(system)
-        own = periodic_solution(system, times, estimate_error=False)
-        powers["lumped"] = lumped_powers(own, m, weights)
-        histories = _mesh_histories(pair, own.values)  # on both sides of every jump
+    if own is not None:
+        powers["lumped"] = lumped_powers(own[0], m, own[1])
+        histories = _mesh_histories(pair, own[0].values)  # on both sides of every jump
     for fidelity in runs:
-        if periodic if fidelity == "exact" else not contact_loss:
+        if periodic if fidelity == "exact" else own is not None:
             rtol = 1e-8 if fidelity == "exact" else 1e-10
             balance = multibody.motion_balance(pair, motions[fidelity], rtol)
             powers[fidelity] = multibody_powers(balance, m.period)
@@ -109,6 +106,13 @@ def conservation(
             )
         )
     return tuple(found), powers
+
+
+def lumped_motion(pair: GearPair) -> tuple[PeriodicSolution, FloatArray]:
+    """Lumped periodic motion at the times of ``quadrature``, and their weights."""
+    system = LTVSystem.of(pair, "full")
+    times, weights = quadrature(system)
+    return periodic_solution(system, times, estimate_error=False), weights
 
 
 def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:

@@ -10,15 +10,12 @@ import xarray as xr
 
 import lumped
 from lumped import GearPair
-from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
-from lumped.schema.bodies import bodies_of
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.motion import default_samples, swinging
 from lumped.teeth.pairs import period_of
 from lumped.typing import FloatArray
-from multibody.run.setup import prepare
-from multibody.run.simulation import record
+from multibody.run.simulation import at_mean_speed
 
 #: Longest period that is compared as a whole, cycles of a window, and cycles in which a start is forgotten.
 _WHOLE, _WINDOW, _FORGOTTEN = 64, 6, 10
@@ -49,45 +46,19 @@ def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr
     motion = lumped.steady_state(pair, samples_per_cycle=samples)
     number = np.arange((_FORGOTTEN + compared) * samples + 1)
     reference = motion.isel(time=number % motion.sizes["time"])
-    exact = _at_mean_speed(pair, reference, samples)
+    time = reference["time"].to_numpy()[1] * np.arange(number.size)
+    exact = at_mean_speed(pair, reference, _swing(pair, time), samples, _FORGOTTEN // 2)
     kept = slice(_FORGOTTEN * samples, None)
     exact = exact.isel(time=kept)
     return pair, reference.isel(time=kept).assign_coords(time=exact["time"]), exact
 
 
-def _at_mean_speed(pair: GearPair, reference: xr.Dataset, samples: int) -> xr.Dataset:
-    """Multibody run that starts as the lumped motion, with its own brake torque.
+def _swing(pair: GearPair, time: FloatArray) -> FloatArray:
+    """Common rotation of both gears [m] that the lumped contact follows, at times (k,) [s].
 
-    Under the lumped one it would turn faster or slower, and the phase of contact with it: a first run tells
-    by how much the common rotation leaves the swing that the lumped contact follows, and how it accelerates.
     What friction adds over many turns of a free train is no phase of the lumped contact.
     """
-    names = (*COORDINATES, *(f"{name}_dot" for name in COORDINATES))
-    state = np.array([float(reference[name][0]) for name in names])
-    g, bodies = pair.geometry, bodies_of(pair)
-    radii = np.array([g.base_radius_pinion, g.base_radius_gear])
-    inertia = np.array([bodies.inertia_pinion, bodies.inertia_gear])
-    cycles, mass = (reference.sizes["time"] - 1) // samples, float((inertia / radii**2).sum())
-
-    def common(motion: xr.Dataset) -> FloatArray:
-        turned = np.stack([motion[name].to_numpy() for name in ("theta_p", "theta_g")])
-        return np.asarray(inertia / radii @ turned / mass, dtype=np.float64)
-
-    time = reference["time"].to_numpy()[1] * np.arange(reference.sizes["time"])
     own = swinging(tables(Laws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full"))
     size, start, teeth, way = own.eccentric[:, [0, 1, 2, 5]].T[..., None]
-    swing = (size * way * np.sin(2.0 * np.pi * time / (own.duration * teeth) + start)).sum(axis=0)
-    off = common(reference)[: samples + 1] - swing[: samples + 1]
-    state[:2] -= off[0] / radii
-    state[6:8] -= (off[-1] - off[0]) / own.duration / radii
-    setup = prepare(pair, initial=state)
-    first = record(setup, cycles, samples)[0]
-    away = common(first) - swing
-    half = (_FORGOTTEN // 2) * samples
-    bend, rate, place = (float(c) for c in np.polyfit(time[half:], away[half:], 2))
-    state[:2] -= place / radii
-    state[6:8] -= rate / radii
-    brake = setup.machine.torque_gear + 2.0 * bend * mass * g.base_radius_gear
-    again = prepare(pair, initial=state).with_torques(setup.machine.torque_pinion, brake)
-    run = record(again, cycles, samples)[0]
-    return run.assign_attrs(brake_torque=brake)
+    swing = size * way * np.sin(2.0 * np.pi * time / (own.duration * teeth) + start)
+    return np.asarray(swing.sum(axis=0), dtype=np.float64)
