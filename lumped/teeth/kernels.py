@@ -6,6 +6,7 @@ Sources: docs/theory/teeth.md, "Statics", "Motion".
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,10 +18,15 @@ from lumped.quasi_static.kernels import corner_at, shared_loads
 from lumped.typing import FloatArray, IntArray
 
 compiled = Compiler([Path(__file__), Path(quasi_static.__file__)])
+#: Of functions that allocate nothing: counting references would take most of their time.
+inlined = partial(compiled, _nrt=False, forceinline=True)
 
 #: Forms of the contact: fixed windows, linear; the same, push-only; own gaps and corners, push-only; the
 #: linear form about the own static state.
 FIXED, FIXED_PUSH, PUSH, LINEAR = 0, 1, 2, 3
+#: Rows of the contact of all places at an approach: gap [m], its slopes over xi and over the approach, sine
+#: of the tilt, compression [m], load [N], tangent stiffness, that without neighbours [N/m].
+_GAP, _BY_XI, _BY_DELTA, _TILT, _PRESSED, _LOAD, _TANGENT, _ALONE = range(8)
 _STEPS = 100
 _SETTLED = 1e-12
 
@@ -80,27 +86,23 @@ class Tables(NamedTuple):
 @compiled
 def corner(
     beyond: float, start: float, tangent: float, flank_radius: float, tip_radius: float
-) -> tuple[float, float]:
-    """The gap of ``corner_at``, its slope over ``beyond``: the flank's normal times the way of the corner."""
+) -> tuple[float, float, float]:
+    """Gap of ``corner_at``, its slope over ``beyond``, the normal times the way of the corner; tilt."""
     if beyond <= 0.0:
-        return 0.0, 0.0
-    gap = corner_at(beyond, start, tangent, flank_radius, tip_radius)[0]
-    length = tangent - start
-    turn = beyond / tip_radius
+        return 0.0, 0.0, 0.0
+    gap, tilt = corner_at(beyond, start, tangent, flank_radius, tip_radius)
+    length, turn = tangent - start, beyond / tip_radius
     sine, cosine = math.sin(turn), math.cos(turn)
-    t = tangent - (tip_radius * sine + length * cosine)
-    n = 2.0 * tip_radius * math.sin(0.5 * turn) ** 2 + length * sine
-    far = math.sqrt(max(t * t + n * (n + 2.0 * flank_radius), 0.0))
-    angle = math.atan2(t, n + flank_radius) - math.atan2(far, flank_radius)
     t_rate = (length * sine - tip_radius * cosine) / tip_radius
     n_rate = (tip_radius * sine + length * cosine) / tip_radius
-    return gap, math.cos(angle) * t_rate - math.sin(angle) * n_rate + 1.0
+    return gap, math.sqrt(1.0 - tilt * tilt) * t_rate + tilt * n_rate + 1.0, tilt
 
 
-@compiled
+@inlined
 def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> None:
     """Into ``found``: e, de/dcycles, dL, turn of the line (A, D), de/dtheta of both gears, shift of xi."""
-    found[:] = 0.0
+    for i in range(8):
+        found[i] = 0.0
     for which in range(2):
         size = eccentric[which, 0]
         if size == 0.0:
@@ -120,144 +122,119 @@ def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> Non
         found[7] += eccentric[which, 5] * sine
 
 
-@compiled
-def gaps_of(
-    delta: float,
-    cycle: int,
-    step: int,
-    node: int,
-    corners: bool,
-    moved: FloatArray,
-    own: Tables,
-    k: FloatArray,
-    kind: IntArray,
-    found: FloatArray,
+@inlined
+def contact_of_cycle(
+    cycle: int, own: Tables, kind: IntArray, k: FloatArray, flat: FloatArray, moved: FloatArray
 ) -> None:
-    """Gaps of all places at the approach ``delta``: ``found`` (pairs, 5) is gap, over xi, over delta.
+    """Contact of a mesh cycle but for what the approach changes.
 
-    The last two are the first two without corners, which do not depend on ``delta``.
+    Written are ``kind`` (pairs,), ``k`` (steps, nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 2), gap
+    without corners and its slope over xi, and ``moved`` (steps, nodes, 8) of ``eccentric_at``.
     """
-    for i in range(own.ahead.size):
+    steps, nodes, pairs = own.place.shape
+    edges, at, eccentric = own.edges, own.nodes, own.eccentric
+    for s in range(steps):
+        for node in range(nodes):
+            tau = edges[s] + at[node] * (edges[s + 1] - edges[s])
+            eccentric_at(cycle + tau, eccentric, moved[s, node])
+    for i in range(pairs):
         number = cycle - own.ahead[i]
         p, g = (own.first[0] + number) % own.pinion.shape[0], (own.first[1] + number) % own.gear.shape[0]
-        v = own.kinds[p, g]
-        kind[i], k[i] = v, own.stiffness[v, step, node, i]
-        if k[i] <= 0.0:
-            continue
-        value, slope = own.gap[v, step, node, i] + moved[0], own.gap_slope[v, step, node, i]
-        for s in range(3):
-            a, b = own.pinion[p, s], own.gear[g, s]
-            value += own.shape[step, node, i, s] * a + own.shape[step, node, i, 3 + s] * b
-            slope += own.shape_slope[step, node, i, s] * a + own.shape_slope[step, node, i, 3 + s] * b
-        value += slope * moved[7]
-        found[i, 0], found[i, 1], found[i, 2], found[i, 3], found[i, 4] = value, slope, 0.0, value, slope
-    if corners:
-        add_corners(delta, step, node, moved, own, k, kind, found)
+        kind[i] = v = own.kinds[p, g]
+        pinion, gear = own.pinion[p], own.gear[g]
+        stiffness, gap, gap_slope = own.stiffness[v], own.gap[v], own.gap_slope[v]
+        shape, shape_slope = own.shape, own.shape_slope
+        for s in range(steps):
+            for node in range(nodes):
+                k[s, node, i] = stiffness[s, node, i]
+                value, slope = gap[s, node, i] + moved[s, node, 0], gap_slope[s, node, i]
+                for n in range(3):
+                    value += shape[s, node, i, n] * pinion[n] + shape[s, node, i, 3 + n] * gear[n]
+                    slope += shape_slope[s, node, i, n] * pinion[n] + shape_slope[s, node, i, 3 + n] * gear[n]
+                flat[s, node, i, 0], flat[s, node, i, 1] = value + slope * moved[s, node, 7], slope
 
 
-@compiled
-def add_corners(
+@inlined
+def loads_at(
     delta: float,
-    step: int,
-    node: int,
+    single: bool,
+    k: FloatArray,
+    flat: FloatArray,
     moved: FloatArray,
-    own: Tables,
-    k: FloatArray,
+    place: FloatArray,
+    coupling: FloatArray,
     kind: IntArray,
-    found: FloatArray,
+    ends: FloatArray,
+    constants: FloatArray,
+    here: FloatArray,
 ) -> None:
-    """Add what tip corners make of ``gaps_of`` at the approach ``delta``."""
-    longer = own.constants[1]
+    """Gaps and elastic loads of all places at the approach ``delta``, into ``here`` (8, pairs).
+
+    ``single``: linear pairs that do not move each other.
+    """
+    longer = constants[1]
     half, length = 0.5 * (delta + longer), longer + moved[2]
     for i in range(k.size):
         if k[i] <= 0.0:
+            here[_LOAD, i] = here[_TANGENT, i] = here[_ALONE, i] = 0.0
             continue
-        found[i, 0], found[i, 1], found[i, 2] = found[i, 3], found[i, 4], 0.0
-        ends, xi = own.ends[kind[i]], own.place[step, node, i] + moved[7]
-        early = ends[0] - xi + half + ends[4] * moved[3]
-        late = xi - ends[1] + half + ends[3] * moved[4]
-        line = ends[2] + length
+        gap, slope, rise, tilt = flat[i, 0], flat[i, 1], 0.0, 0.0
+        of, xi = ends[kind[i]], place[i] + moved[7]
+        early, late = of[0] - xi + half + of[4] * moved[3], xi - of[1] + half + of[3] * moved[4]
+        line = of[2] + length
         if early > 0.0:
-            more, rise = corner(early, ends[0] + length, line, ends[3], ends[4])
-            found[i, 0] += more
-            found[i, 1] -= rise
-            found[i, 2] += 0.5 * rise
+            more, steep, tilt = corner(early, of[0] + length, line, of[3], of[4])
+            gap, slope, rise = gap + more, slope - steep, 0.5 * steep
         if late > 0.0:
-            more, rise = corner(late, line - ends[1], line, ends[4], ends[3])
-            found[i, 0] += more
-            found[i, 1] += rise
-            found[i, 2] += 0.5 * rise
+            more, steep, turned = corner(late, line - of[1], line, of[4], of[3])
+            gap, slope, rise, tilt = gap + more, slope + steep, rise + 0.5 * steep, tilt + turned
+        here[_GAP, i], here[_BY_XI, i], here[_BY_DELTA, i], here[_TILT, i] = gap, slope, rise, tilt
+        pressed = delta - gap
+        here[_PRESSED, i] = pressed
+        if single:
+            here[_LOAD, i] = k[i] * pressed if pressed > 0.0 else 0.0
+            here[_TANGENT, i] = k[i] if pressed > 0.0 else 0.0
+    if not single:
+        shared_loads(
+            here[_PRESSED],
+            k,
+            coupling,
+            constants[2],
+            constants[0],
+            constants[3],
+            here[_LOAD],
+            here[_TANGENT],
+            here[_ALONE],
+        )
 
 
-@compiled
-def tilt_of(delta: float, xi: float, ends: FloatArray, moved: FloatArray, longer: float) -> float:
-    """Tilt of the pair at xi at the approach ``delta``, as of ``corner_at``; 0 where no corner is beyond."""
-    half, length = 0.5 * (delta + longer), longer + moved[2]
-    xi += moved[7]
-    early = ends[0] - xi + half + ends[4] * moved[3]
-    late = xi - ends[1] + half + ends[3] * moved[4]
-    line, tilt = ends[2] + length, 0.0
-    if early > 0.0:
-        tilt += corner_at(early, ends[0] + length, line, ends[3], ends[4])[1]
-    if late > 0.0:
-        tilt += corner_at(late, line - ends[1], line, ends[4], ends[3])[1]
-    return tilt
-
-
-@compiled
-def carried(
-    delta: float,
-    k: FloatArray,
-    coupling: FloatArray,
-    gaps: FloatArray,
-    constants: FloatArray,
-    loads: FloatArray,
-    tangents: FloatArray,
-    alone: FloatArray,
-) -> None:
-    """Elastic loads [N] and tangents dN/ddelta [N/m] of all places at the approach ``delta``."""
-    if constants[2] == 0.0 and not coupling.any():
-        for i in range(k.size):
-            pressed = delta - gaps[i, 0]
-            touches = k[i] > 0.0 and pressed > 0.0
-            loads[i] = k[i] * pressed if touches else 0.0
-            tangents[i] = k[i] if touches else 0.0
-        return
-    pressed = np.empty(k.size)
-    for i in range(k.size):
-        if not k[i] > 0.0:
-            loads[i] = alone[i] = 0.0
-        pressed[i] = delta - gaps[i, 0]
-    shared_loads(pressed, k, coupling, constants[2], constants[0], constants[3], loads, tangents, alone)
-
-
-@compiled
+@inlined
 def settled(
     delta: float,
-    cycle: int,
-    step: int,
-    node: int,
-    moved: FloatArray,
-    own: Tables,
+    single: bool,
     k: FloatArray,
+    flat: FloatArray,
+    moved: FloatArray,
+    place: FloatArray,
+    coupling: FloatArray,
     kind: IntArray,
-    gaps: FloatArray,
-    loads: FloatArray,
-    tangents: FloatArray,
-    alone: FloatArray,
+    ends: FloatArray,
+    constants: FloatArray,
+    here: FloatArray,
 ) -> float:
-    """Static approach near ``delta`` at which the loads make the force [m], or NaN; see ``gaps_of``."""
-    low, high = -math.inf, math.inf
-    coupling, force = own.coupling[step if own.coupling.shape[0] > 1 else 0, node], own.constants[0]
-    gaps_of(delta, cycle, step, node, False, moved, own, k, kind, gaps)
-    away = force / max(k.max(), 1e-300)
+    """Static approach near ``delta`` at which the loads make the force [m], or NaN; see ``loads_at``."""
+    low, high, force = -math.inf, math.inf, constants[0]
+    away = 1e-300
+    for i in range(k.size):
+        away = max(away, k[i])
+    away = force / away
     for _ in range(_STEPS):
-        add_corners(delta, step, node, moved, own, k, kind, gaps)
-        carried(delta, k, coupling, gaps, own.constants, loads, tangents, alone)
+        loads_at(delta, single, k, flat, moved, place, coupling, kind, ends, constants, here)
         total, slope = -force, 0.0
         for i in range(k.size):
-            total += loads[i]
-            slope += tangents[i] * (1.0 - gaps[i, 2])
+            if k[i] > 0.0:
+                total += here[_LOAD, i]
+                slope += here[_TANGENT, i] * (1.0 - here[_BY_DELTA, i])
         if abs(total) <= _SETTLED * force:
             return delta
         if total < 0.0:
@@ -294,51 +271,50 @@ def static_cycles(
         force of tip corners that pushes the gears apart, by delta, by delta' and without motion
     ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
     """
-    steps, nodes, pairs = own.edges.size - 1, own.nodes.size, own.ahead.size
+    steps, nodes, pairs = own.place.shape
     approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
     sums = np.zeros((cycles, steps, nodes, 17))
-    loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(8)
-    static = 0.0
+    place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
+    constants, speed, duration = own.constants, own.speed, own.duration
+    kind, here = np.zeros(pairs, np.int64), np.zeros((8, pairs))
+    k, flat = np.zeros((steps, nodes, pairs)), np.zeros((steps, nodes, pairs, 2))
+    moved, static = np.zeros((steps, nodes, 8)), 0.0
+    single = constants[2] == 0.0 and not coupling.any()
     for c in range(cycles):
+        contact_of_cycle(start + c, own, kind, k, flat, moved)
         for s in range(steps):
+            w = coupling[s if coupling.shape[0] > 1 else 0]
             for node in range(nodes):
-                tau = own.edges[s] + own.nodes[node] * (own.edges[s + 1] - own.edges[s])
-                eccentric_at(start + c + tau, own.eccentric, moved)
-                if fixed:
-                    gaps_of(0.0, start + c, s, node, False, moved, own, k, kind, gaps)
-                else:
+                k_at, at, off, xi = k[s, node], flat[s, node], moved[s, node], place[s, node]
+                if not fixed:
                     guess = 0.0 if math.isnan(static) else static
-                    static = settled(
-                        guess, start + c, s, node, moved, own, k, kind, gaps, loads, tangents, alone
-                    )
+                    static = settled(guess, single, k_at, at, off, xi, w[node], kind, ends, constants, here)
                     approach[c, s, node] = static
                 row = sums[c, s, node]
-                row[9], row[10] = moved[5], moved[6]
+                row[9], row[10] = off[5], off[6]
                 for i in range(pairs):
-                    if k[i] <= 0.0 or not (fixed or loads[i] > 0.0):
+                    if k_at[i] <= 0.0 or not (fixed or here[_LOAD, i] > 0.0):
                         continue
-                    rise, part, load = k[i], 1.0, -k[i] * gaps[i, 0]
+                    c_i, rise, load = damping[kind[i], s, node, i], k_at[i], -k_at[i] * at[i, 0]
+                    closing, slope, tilt = 1.0, at[i, 1], 0.0
                     if not fixed:
-                        part = min(loads[i] / own.constants[4], 1.0)
-                        part *= part * (3.0 - 2.0 * part)
-                        rise, load = tangents[i], loads[i] - tangents[i] * static
-                    c_i = own.damping[kind[i], s, node, i] * part
-                    closing, rolling = 1.0 - gaps[i, 2], gaps[i, 1] * own.speed + moved[1] / own.duration
+                        part = min(here[_LOAD, i] / constants[4], 1.0)
+                        c_i *= part * part * (3.0 - 2.0 * part)
+                        rise, load = here[_TANGENT, i], here[_LOAD, i] - here[_TANGENT, i] * static
+                        closing, slope, tilt = 1.0 - here[_BY_DELTA, i], here[_BY_XI, i], here[_TILT, i]
+                    rolling = slope * speed + off[1] / duration
                     load -= c_i * rolling
-                    mu, xi, tilt = own.friction[s, node, i], own.place[s, node, i], 0.0
-                    if not fixed:
-                        tilt = tilt_of(static, xi, own.ends[kind[i]], moved, own.constants[1])
+                    mu = friction[s, node, i]
                     for n, value in ((0, rise), (1, c_i * closing), (2, load)):
                         row[3 * n] += value
                         row[3 * n + 1] += mu * value
-                        row[3 * n + 2] += mu * value * xi
+                        row[3 * n + 2] += mu * value * xi[i]
                         row[14 + n] += tilt * value
                     row[11] += c_i * closing**2
                     row[12] -= 2.0 * c_i * closing * rolling
                     row[13] += c_i * rolling**2
                     if node == 0:
-                        each[0, i, c, s] = loads[i]
+                        each[0, i, c, s] = here[_LOAD, i]
                         each[1, i, c, s], each[2, i, c, s], each[3, i, c, s] = rise, c_i * closing, load
     return approach, each, sums
 
@@ -376,19 +352,22 @@ def motion_cycles(
     m, pairs, steps = deflection.size, own.ahead.size, own.edges.size - 1
     count = recorded * own.outputs.sum()
     states, record = np.empty((count, 2 * m)), np.zeros((pairs, count))
-    work = np.zeros(4)
+    work, power = np.zeros(4), np.zeros(4)
     x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
-    power = np.zeros(4)
-    loads, tangents, alone = np.zeros(pairs), np.zeros(pairs), np.zeros(pairs)
-    k, gaps, kind, moved = np.zeros(pairs), np.zeros((pairs, 5)), np.zeros(pairs, np.int64), np.zeros(8)
-    normal = np.zeros(pairs)
+    place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
+    constants, speed, edges, outputs = own.constants, own.speed, own.edges, own.outputs
+    kind, here, normal = np.zeros(pairs, np.int64), np.zeros((8, pairs)), np.zeros(pairs)
+    k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 2))
+    moves = np.zeros((steps, 3, 8))
+    single = constants[2] == 0.0 and not coupling.any()
     row = 0
     for c in range(cycles):
         cycle = start + c
         keeps = c >= cycles - recorded
+        contact_of_cycle(cycle, own, kind, k, flat, moves)
         for s in range(steps):
-            h = (own.edges[s + 1] - own.edges[s]) * own.duration
-            w = own.coupling[s if own.coupling.shape[0] > 1 else 0]
+            h = (edges[s + 1] - edges[s]) * own.duration
+            w = coupling[s if coupling.shape[0] > 1 else 0]
             for stage in range(4):
                 node = (stage + 1) // 2
                 if stage == 0:
@@ -401,12 +380,11 @@ def motion_cycles(
                 for j in range(m):
                     delta += deflection[j] * at[j]
                     closing += deflection[j] * at[m + j]
-                tau = own.edges[s] + own.nodes[node] * (own.edges[s + 1] - own.edges[s])
-                eccentric_at(cycle + tau, own.eccentric, moved)
+                tau = edges[s] + 0.5 * node * (edges[s + 1] - edges[s])
+                k_at, gap_at, moved, xi = k[s, node], flat[s, node], moves[s, node], place[s, node]
                 e_rate = moved[1] / own.duration
-                gaps_of(delta, cycle, s, node, corners, moved, own, k, kind, gaps)
                 if corners:
-                    carried(delta, k, w[node], gaps, own.constants, loads, tangents, alone)
+                    loads_at(delta, single, k_at, gap_at, moved, xi, w[node], kind, ends, constants, here)
                 sums, friction_sum, friction_arm, apart = 0.0, 0.0, 0.0, 0.0
                 power[:] = 0.0
                 v_p, v_g, v_y = sliding[0, m], sliding[1, m], 0.0
@@ -416,29 +394,28 @@ def motion_cycles(
                     v_y += sliding[2, j] * at[m + j]
                 for i in range(pairs):
                     normal[i] = 0.0
-                    if k[i] <= 0.0:
+                    if k_at[i] <= 0.0:
                         continue
-                    c_i = own.damping[kind[i], s, node, i]
-                    pressing = closing * (1.0 - gaps[i, 2]) - gaps[i, 1] * own.speed - e_rate
+                    c_i, rise, slope, tilt = damping[kind[i], s, node, i], 0.0, gap_at[i, 1], 0.0
+                    elastic = k_at[i] * (delta - gap_at[i, 0])
                     if corners:
-                        if loads[i] <= 0.0:
+                        rise, slope, tilt = here[_BY_DELTA, i], here[_BY_XI, i], here[_TILT, i]
+                        elastic = here[_LOAD, i]
+                        if elastic <= 0.0:
                             continue
-                        part = min(loads[i] / own.constants[4], 1.0)
+                        part = min(elastic / constants[4], 1.0)
                         c_i *= part * part * (3.0 - 2.0 * part)
-                        load = loads[i] + c_i * pressing
-                    else:
-                        load = k[i] * (delta - gaps[i, 0]) + c_i * pressing
+                    pressing = closing * (1.0 - rise) - slope * speed - e_rate
+                    load = elastic + c_i * pressing
                     if load <= 0.0:
                         continue
                     normal[i] = load
-                    xi = own.place[s, node, i]
-                    f = own.friction[s, node, i] * load
+                    f = friction[s, node, i] * load
                     sums += load
-                    if corners:
-                        apart += load * tilt_of(delta, xi, own.ends[kind[i]], moved, own.constants[1])
+                    apart += load * tilt
                     friction_sum += f
-                    friction_arm += f * xi
-                    power[0] += f * (v_p * xi - v_g * (sliding[2, m] - xi) - v_y)
+                    friction_arm += f * xi[i]
+                    power[0] += f * (v_p * xi[i] - v_g * (sliding[2, m] - xi[i]) - v_y)
                     power[1] += c_i * pressing**2
                 # The moments of e work on the vibration too.
                 v_p, v_g = v_p - sliding[0, m], v_g - sliding[1, m]
@@ -468,7 +445,7 @@ def motion_cycles(
                 weight = h / (3.0 if 0 < stage < 3 else 6.0)
                 for n in range(4):
                     work[n] += weight * power[n]
-                if stage == 0 and own.outputs[s] == 1:
+                if stage == 0 and outputs[s] == 1:
                     for j in range(2 * m):
                         states[row, j] = x[j]
                     for i in range(pairs):

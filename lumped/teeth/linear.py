@@ -22,11 +22,12 @@ from lumped.teeth.contact import Laws, tables
 from lumped.teeth.motion import OwnMotion, moments, ripples, static_mesh, swinging, without_drift
 from lumped.typing import FloatArray
 
-#: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-7 of that vibration.
-_STEP_ANGLE = 2.0
+#: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of that vibration, less
+#: than the touches of pairs inside steps do.
+_STEP_ANGLE = 2.4
 _LEAST_STEPS = 48
-#: Mesh cycles whose steps are in memory together.
-_BLOCK = 64
+#: Mesh cycles whose steps are in memory together; all are up to so many steps, 2.5 kB each.
+_BLOCK, _MOST_KEPT = 64, 60_000
 
 
 def linear_steps(system: LTVSystem) -> int:
@@ -50,6 +51,7 @@ class LinearForm:
         if system.form == "full":
             self.own = swinging(self.own, system)
         self.lengths = np.diff(self.own.edges) * system.period
+        self.kept: dict[int, tuple[FloatArray, FloatArray]] = {}
         torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
         self.extra = padded(system, torques)
         count = self.own.period if most is None else min(most, self.own.period)
@@ -82,9 +84,12 @@ class LinearForm:
     def cycle_maps(self, mesh: list[FloatArray] | None = None) -> FloatArray:
         """Affine map of each mesh cycle, (cycles, n, n + columns); ``mesh`` where it is known already."""
         found = []
+        keeps = mesh is not None and self.own.period * self.lengths.size <= _MOST_KEPT
         for (first, count), sums in zip(self.cycles, mesh or self.mesh(), strict=True):
-            maps = self.step_maps(first, sums)[0]
-            found.append(chained(maps, np.repeat(np.arange(count), self.lengths.size)))
+            steps = self.step_maps(first, sums)
+            if keeps:
+                self.kept[first] = steps
+            found.append(chained(steps[0], np.repeat(np.arange(count), self.lengths.size)))
         return np.concatenate(found)
 
 
@@ -167,7 +172,7 @@ def _inside(
     outputs, work = [], np.zeros(3)
     g = form.pair.geometry
     for (first, count), sums in zip(form.cycles, mesh, strict=True):
-        maps, inside = form.step_maps(first, sums)
+        maps, inside = form.kept.get(first) or form.step_maps(first, sums)
         states = states_along(maps, cycles[first], weights)
         outputs.append(states[:-1][np.tile(own.outputs == 1, count)])
         columns = m * 2 + weights.size

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
+from lumped.quasi_static.kernels import corner_at
 from lumped.quasi_static.loaded import StaticMesh
 from lumped.teeth import kernels
 from lumped.teeth.linear import linear_motion
@@ -224,10 +225,11 @@ def test_slope_of_a_tip_corner_is_the_rate_of_its_gap(nasa):
     g = nasa.geometry
     at = (g.L_XA, g.L_XY, g.base_radius_pinion, g.base_radius_gear)
     for beyond in (1e-5, 4e-4, 2e-3):
-        gap, slope = kernels.corner(beyond, *at)
+        gap, slope, tilt = kernels.corner(beyond, *at)
         around = [kernels.corner(beyond + h, *at)[0] for h in (-1e-6, 1e-6)]
         assert slope == pytest.approx((around[1] - around[0]) / 2e-6, rel=1e-6, abs=1e-9)
         assert gap > 0.0
+        assert tilt == corner_at(beyond, *at)[1]
 
 
 @pytest.mark.parametrize("touch", MOTION)
