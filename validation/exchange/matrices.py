@@ -5,8 +5,11 @@ Sources: docs/how_to/any_system.md.
 
 from __future__ import annotations
 
+import io
 import math
 import re
+import subprocess
+import sys
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +17,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import scipy.io
 
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, SecondOrderSystem, from_second_order
 from floquet.engine.chart import ChartAxis
@@ -34,6 +38,15 @@ FILE_AXES: Mapping[str, ChartAxis] = {
 
 #: Most bytes that the arrays of a file may take: matrices of some thousand states.
 _MOST_BYTES = 500_000_000
+#: Reads a MATLAB file in a process of its own, which one wrong byte can end; sparse matrices become full ones.
+_READER = """
+import io, sys, numpy, scipy.io
+content = io.BytesIO()
+arrays = {name: value for name, value in scipy.io.loadmat(sys.argv[1]).items() if name[0] != "_"}
+full = {name: value.toarray() if hasattr(value, "toarray") else value for name, value in arrays.items()}
+numpy.savez(content, **full)
+sys.stdout.buffer.write(content.getbuffer())
+"""
 _HARMONIC = re.compile(r"([CK])_(cos|sin)_([1-9]\d{0,2})")
 _NAMES = ("M", "C", "G", "K", "period", "K_cos_1", "K_sin_1", "K_times", "K_values", "C_cos_1", "C_sin_1",
           "C_times", "C_values")  # fmt: skip
@@ -135,17 +148,18 @@ def _fields(path: Path) -> dict[str, Any]:
 
 
 def _arrays(path: Path) -> dict[str, Any]:
-    """The arrays of a file; sparse matrices, as finite-element programs save them, become full ones."""
+    """The arrays of a file."""
     if path.suffix.lower() == ".npz":
         with zipfile.ZipFile(path) as archive:
             _check_size(sum(member.file_size for member in archive.infolist()))
         with np.load(path, allow_pickle=False) as file:
             return dict(file)
-    import scipy.io
-
     _check_size(sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(path)))
-    found = scipy.io.loadmat(path).items()
-    return {k: v.toarray() if hasattr(v, "toarray") else v for k, v in found if not k.startswith("__")}
+    run = subprocess.run([sys.executable, "-P", "-c", _READER, path], capture_output=True, check=False)
+    if run.returncode:
+        raise ValueError(run.stderr.decode(errors="replace").strip().rpartition("\n")[2] or "it is damaged")
+    with np.load(io.BytesIO(run.stdout), allow_pickle=False) as file:
+        return dict(file)
 
 
 def _check_size(wanted: int) -> None:

@@ -15,7 +15,7 @@ from floquet import monodromy
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 from validation.cli import app
-from validation.exchange import read_second_order
+from validation.exchange import matrices, read_second_order
 
 T = 0.4
 M, K, C = np.diag([1.0, 2.0]), np.array([[300.0, -100.0], [-100.0, 400.0]]), np.diag([0.3, 0.2])
@@ -84,6 +84,14 @@ def test_a_small_file_does_not_fill_the_memory(tmp_path, suffix):
     _bomb(tmp_path / f"bomb{suffix}")
     with pytest.raises(ParameterError, match=r"claims to hold 8e\+08 bytes|allocate"):
         read_second_order(tmp_path / f"bomb{suffix}")
+
+
+def test_a_file_that_ends_its_reader_is_refused(tmp_path, monkeypatch):
+    # As scipy ends with some .mat files of which one byte is wrong.
+    monkeypatch.setattr(matrices, "_READER", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)")
+    scipy.io.savemat(tmp_path / "rotor.mat", FIELDS)
+    with pytest.raises(ParameterError, match="damaged"):
+        read_second_order(tmp_path / "rotor.mat")
 
 
 @pytest.mark.parametrize(("change", "field", "word"), [
