@@ -17,7 +17,6 @@ from validation.commands.crosscheck import crosscheck
 from validation.commands.files import export, init, presets
 from validation.commands.floquet import floquet
 from validation.commands.interactive import interactive
-from validation.commands.measurement import measurement
 from validation.commands.report import report
 from validation.commands.response import response
 from validation.commands.simulate import simulate
@@ -82,7 +81,6 @@ COMMANDS = (
     teeth,
     interactive,
     sweep,
-    measurement,
 )
 for command in COMMANDS:
     app.command(cls=Once, help=paragraphs(command.__doc__))(command)

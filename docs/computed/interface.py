@@ -59,7 +59,6 @@ def wrapped(line: str) -> str:
 
 
 _INIT = ("init", "nasa_28_28", "-o", "mypair.toml")
-_EXAMPLE = ("measurement", "tooth_forces", "--example")
 
 FILES: dict[str, Callable[[], str]] = {
     "commands.md": commands,
@@ -69,13 +68,4 @@ FILES: dict[str, Callable[[], str]] = {
         "simulate", "mypair.toml", "--set", "centre_distance=80", exit_code=2, before=_INIT
     ),
     "output_stability.md": lambda: transcript("stability", "mypair.toml", "-o", "chart.png", before=_INIT),
-    "output_measurement.md": lambda: transcript(
-        "measurement",
-        "tooth_forces/measurement.toml",
-        "--identify",
-        "mu",
-        "-o",
-        "evaluation",
-        before=_EXAMPLE,
-    ),
 }

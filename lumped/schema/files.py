@@ -23,13 +23,13 @@ MAX_FILE_BYTES = 1_000_000
 #: Section that only another kind of file has -> what that is.
 _OTHER_FILES = {
     "gear_pair": "a study: run it with 'spurcheck sweep'",
-    "channel": "a measured record: give it to 'spurcheck measurement'",
+    "channel": "a measured record: give it to 'spurcheck report --record'",
 }
 
 #: Suffix of a file that is no TOML -> what to do with it.
 _NO_PAIRS = {
     ".nc": "This is a result: name the parameter file it was computed from; 'spurcheck export' makes tables.",
-    ".csv": "This is a table: name a parameter file; a measured record goes to 'spurcheck measurement'.",
+    ".csv": "This is a table: name a parameter file; name the description of a measured record by --record.",
     ".json": "Name the parameter file; of a report it is data/parameters.toml.",
 } | dict.fromkeys((".rexs", ".rexsj", ".rexsz"), "Make a parameter file of it: 'spurcheck init --from-rexs'.")
 

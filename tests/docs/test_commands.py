@@ -15,13 +15,14 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 import lumped
+from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
 from validation.cli import app
 from validation.commands import response
 from validation.cross_check import comparison
 from validation.exchange import write_results, write_rexs, write_state_space
 from validation.interactive import write_interactive_page
 from validation.interactive.results import Sampling
-from validation.measurements import MeasurementSpec
+from validation.measurements import MeasurementSpec, predict
 
 #: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
 #: reports are written and compared is tested in tests/validation.
@@ -79,6 +80,7 @@ def belongings(tmp_path_factory, root, blocks) -> Path:
     )  # a pair that the cross-check confirms
     write_state_space(pair, folder / "averaged.npz")
     np.savez(folder / "rotor.npz", M=1.0, C=0.1, K=100.0, K_cos_1=0.1, period=0.2)
+    write_measurement(synthetic_measurement(predict(pair), seed=1, engagements=2, start=0.37), folder)
     (folder / "study-sweep").mkdir()
     for result in ("run.nc", "study-sweep/results.nc"):
         write_results(lumped.simulate(pair, cycles=1), folder / result)

@@ -18,7 +18,8 @@ from reproductions.he_cho_singh_2008.figures.figure7 import measured_points
 from reproductions.he_cho_singh_2008.operating_points import FIGURE_4, FIGURE_7
 from reproductions.he_cho_singh_2008.records import ClaimsTable, ErrataChapter, FigureRecord
 from reproductions.he_cho_singh_2008.twins import agreement
-from validation.measurements import predict, synthetic_measurement
+from tests.validation.measurements.synthetic import synthetic_measurement
+from validation.measurements import predict
 
 
 @pytest.fixture(scope="module")

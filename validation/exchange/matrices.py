@@ -38,7 +38,7 @@ FILE_AXES: Mapping[str, ChartAxis] = {
 
 #: Most bytes that the arrays of a file may take: matrices of some thousand states.
 _MOST_BYTES = 500_000_000
-#: Reads a MATLAB file in a process of its own, which one wrong byte can end; sparse matrices become full ones.
+#: Reads a MATLAB file in a process of its own: one wrong byte can end it. Sparse matrices become full.
 _READER = """
 import io, sys, numpy, scipy.io
 content = io.BytesIO()

@@ -1,4 +1,4 @@
-"""A folder of results is written whole or not at all, and replaces only an earlier one of its kind.
+"""The folder of a report is written whole or not at all, and replaces only an earlier report.
 
 Every folder that is written holds the list of its own files (``CONTENTS``). A folder with any other file
 in it is not replaced.
@@ -12,7 +12,6 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from lumped.errors import StorageError, refuse
@@ -26,23 +25,10 @@ FORMAT_VERSION = 2
 CONTENTS = "contents.json"
 
 
-@dataclass(frozen=True)
-class Kind:
-    """What a folder holds: the JSON file that each has, its value of "format", and a noun."""
-
-    file: str
-    format: str
-    noun: str
-
-
-REPORT = Kind("report.json", FORMAT, "report")
-MEASUREMENT = Kind("measurement.json", "spurcheck-measurement", "evaluation of a record")
-
-
-def check_target(out: Path, *, force: bool, kind: Kind = REPORT) -> Path:
+def check_target(out: Path, *, force: bool) -> Path:
     """Return the absolute output folder after refusing one that must not be written.
 
-    It is new or empty; with ``force`` it may hold earlier results of this kind and nothing else.
+    It is new or empty; with ``force`` it may hold an earlier report and nothing else.
     """
     target = Path(os.path.abspath(out))
     if target.is_symlink():
@@ -51,20 +37,20 @@ def check_target(out: Path, *, force: bool, kind: Kind = REPORT) -> Path:
         raise refuse("output", out, "a folder", "This is a file; choose another name.")
     found = _files(target)
     if found and not force:
-        action = f"It is not empty: choose another folder, or give --force to replace an earlier {kind.noun}."
+        action = "It is not empty: choose another folder, or give --force to replace an earlier report."
         raise refuse("output", out, "a new or empty folder", action)
-    if found and (others := sorted(found - _written(target, kind))):
+    if found and (others := sorted(found - _written(target))):
         action = "This file is not of it: move it elsewhere, or choose another folder."
-        raise refuse("output", target / others[0], f"nothing but an earlier {kind.noun}", action)
+        raise refuse("output", target / others[0], "nothing but an earlier report", action)
     return target
 
 
 @contextmanager
-def whole_folder(out: Path, *, force: bool, kind: Kind = REPORT) -> Iterator[Path]:
+def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
     """Give an empty folder to write into, and put it in the place of ``out`` at the end.
     On any failure, interruption included, nothing is left behind and earlier results stay as they were.
     """
-    target = check_target(out, force=force, kind=kind)
+    target = check_target(out, force=force)
     missing = [parent for parent in target.parents if not parent.exists()]
     work: Path | None = None
     try:
@@ -77,9 +63,9 @@ def whole_folder(out: Path, *, force: bool, kind: Kind = REPORT) -> Iterator[Pat
         new.mkdir()
         try:
             yield new
-            contents = {"format": kind.format, "files": sorted(_files(new))}
+            contents = {"format": FORMAT, "files": sorted(_files(new))}
             (new / CONTENTS).write_text(json.dumps(contents, indent=1) + "\n", encoding="utf-8")
-            check_target(target, force=force, kind=kind)  # something may have appeared there meanwhile
+            check_target(target, force=force)  # something may have appeared there meanwhile
             if target.exists():
                 target.rename(old)
             try:
@@ -111,11 +97,11 @@ def _files(folder: Path) -> set[str]:
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir()}
 
 
-def _written(folder: Path, kind: Kind) -> set[str]:
+def _written(folder: Path) -> set[str]:
     """Files that an earlier run wrote into a folder."""
     with suppress(OSError, ValueError, RecursionError, TypeError, KeyError):
         data = json.loads((folder / CONTENTS).read_text(encoding="utf-8"))
-        if data["format"] == kind.format:
+        if data["format"] == FORMAT:
             return {CONTENTS, *map(str, data["files"])}
     action = f"It has no list of such files ({CONTENTS}), so nothing in it is replaced: choose another."
-    raise refuse("output", folder, f"a new or empty folder, or an earlier {kind.noun}", action)
+    raise refuse("output", folder, "a new or empty folder, or an earlier report", action)

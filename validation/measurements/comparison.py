@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped.arguments import real_number, whole_number
+from lumped.arguments import real_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
@@ -79,16 +79,8 @@ def align(measurement: Measurement, prediction: Prediction, *, shift: float | No
     move the phase. Normal loads hardly depend on friction, so where a record has them they alone are aligned:
     a friction coefficient found afterwards is not built into the alignment.
 
-    Parameters
-    ----------
-    measurement : the record
-    prediction : at the record's operating point
-    shift : a known shift [mesh cycles], e.g. 0 for exact roll angles; then nothing is searched
-
-    Raises
-    ------
-    ParameterError : a shift or abscissae beyond 1e9 mesh cycles
-    NumericalError : the channels do not vary, or the best shift explains less than half of their variation
+    ``shift``: a known one [mesh cycles], with which nothing is searched. A NumericalError says that the
+    channels do not vary, or that the best shift explains less than half of their variation.
     """
     raw = mesh_cycles(measurement, prediction.pair)
     advice = "Check its unit."
@@ -150,20 +142,10 @@ def align(measurement: Measurement, prediction: Prediction, *, shift: float | No
 def overlay(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, *, bins: int = 64
 ) -> xr.Dataset:
-    """Measured and predicted values over one engagement (pair channels) or one mesh cycle.
+    """Measured and predicted values over one engagement (pair channels) or one mesh cycle, in phase bins.
 
-    Parameters
-    ----------
-    measurement, prediction, alignment : the record, its prediction, its phase
-    bins : equal phase bins of the band
-
-    Returns
-    -------
-    Dataset over ``channel`` and ``bin`` with phase (middle of the bin, mesh cycles since A), measured (mean
-    of the bin), predicted (likewise), scatter (standard deviation of measured - predicted in the bin),
-    standard_error (of the bin's mean) and count; empty bins are NaN with count 0
+    Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0.
     """
-    bins = whole_number("bins", bins, 4, 4096)
     rows = []
     for channel in measurement.spec.channel:
         age, y, p, _ = _samples(measurement, prediction, alignment, channel)
@@ -178,20 +160,18 @@ def overlay(
     measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
     dims, own = ("channel", "bin"), "SI, by channel"
     units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
-    result = labelled_dataset(
+    return labelled_dataset(
         {
             "measured": (dims, measured, own, "mean of the measured values"),
             "predicted": (dims, predicted, own, "mean of the predicted values"),
-            "scatter": (dims, scatter, own, "standard deviation of measured - predicted"),
-            "phase": (dims, phase, "1", "mesh cycles since A"),
+            "scatter": (dims, scatter, own, "standard deviation of measured - predicted in the bin"),
+            "phase": (dims, phase, "1", "middle of the bin, mesh cycles since A"),
             "count": (dims, count, "1", "samples in the bin"),
             "units": ("channel", units, "1", "SI unit of the channel"),
         },
         {"channel": ([c.name for c in measurement.spec.channel], "1", "channel")},
         {"record": measurement.spec.name, "source": measurement.spec.source},
     )
-    result["standard_error"] = result["scatter"] / np.sqrt(result["count"].where(result["count"] > 0))
-    return result
 
 
 def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment: Alignment) -> xr.Dataset:
@@ -201,18 +181,8 @@ def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment:
     record with fewer than eight is cut into eight runs of samples), because neighbouring samples are not
     independent.
 
-    Parameters
-    ----------
-    measurement, prediction, alignment : the record, its prediction, its phase
-
-    Returns
-    -------
-    Dataset over ``channel``: each metric of ``METRICS``, with ``<metric>_low`` and ``<metric>_high``; the
-    relative one is NaN where the prediction is constant
-
-    Raises
-    ------
-    NumericalError : no sample of a channel is in contact
+    Returns a dataset over ``channel``: each metric of ``METRICS``, with ``<metric>_low`` and
+    ``<metric>_high``; the relative one is NaN where the prediction is constant.
     """
     rng = np.random.default_rng(0)
     one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)

@@ -96,8 +96,10 @@ class Evaluation:
     measurement : the record
     prediction : at the record's speed and torque, with the pair's friction law
     alignment : mesh phase of the record
-    points : measured and predicted over the phase, see ``overlay``
-    metrics : their distance with intervals, see ``overlay_metrics``
+    points : over ``channel`` and ``bin`` of one engagement or one mesh cycle: phase, measured and predicted
+        means, scatter, count
+    metrics : over ``channel``: bias, rms, relative_rms, correlation, each with its 95 % interval ``_low`` to
+        ``_high`` from resampled mesh cycles
     found : identified friction, in the order asked for
     """
 
@@ -119,7 +121,7 @@ def evaluate(
     measurement : the record
     pair : the gear pair; speed and torque are the record's, the friction law is the pair's
     identify : "mu" for a constant coefficient, or the name of a friction law for a scale on it
-    shift : known mesh phase, see ``align``
+    shift : a known mesh phase [mesh cycles], 0 for exact roll angles; default: found from the record
 
     Raises
     ------
@@ -148,23 +150,12 @@ def evaluate(
 def identify_friction(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, *, law: str | None = None
 ) -> Identification:
-    """Identify the friction coefficient, constant or as a scale on a law, by least squares.
+    """Identify the friction coefficient, constant (``law`` None) or as a scale on a law, by least squares.
 
+    N is ``normal_load`` of the same tooth pairs; of the prediction where the record has no normal loads.
+    Where all channels state their noise it weights the samples and keeps noise on N from biasing the result.
     Samples closer to the pitch point than three standard errors of the alignment and one sample are left out:
     their sign is not certain.
-
-    Parameters
-    ----------
-    measurement : a record with channels of ``friction_force``. N is ``normal_load`` of the same pairs; of the
-        prediction where the record has no normal loads. Where all channels state their noise it weights the
-        samples and keeps noise on N from biasing the result
-    prediction, alignment : at the record's operating point, of the record
-    law : a friction law to be scaled; None: a constant coefficient
-
-    Raises
-    ------
-    ParameterError : channels are missing, or an unknown law
-    NumericalError : too few samples in contact, or samples that carry no friction
     """
     s = _collected(measurement, prediction, alignment, law)
     beta = _estimate(s)

@@ -54,24 +54,19 @@ class Abscissa(Section):
         description="time, pinion roll angle at the contact of pair A, or equidistant samples in time"
     )
     column: str | None = Field(None, description="column of the times or roll angles")
-    unit: str | None = Field(None, description="its unit; default the unit in the column's heading")
+    unit: str | None = Field(None, description="its unit")
     sampling_rate: Annotated[float | None, Quantity("Hz", above=0, optional=True)] = Field(
         None, description="samples per second, for kind 'sampled'"
     )
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        if self.kind == "sampled":
-            if self.sampling_rate is None or self.column is not None:
-                raise refuse(
-                    "sampling_rate",
-                    self.sampling_rate,
-                    "a rate and no column for kind 'sampled'",
-                    "Give sampling_rate, or use kind 'time'.",
-                )
-        elif self.column is None or self.sampling_rate is not None:
+        given = {name for name in ("column", "unit", "sampling_rate") if getattr(self, name) is not None}
+        wanted = {"sampling_rate"} if self.kind == "sampled" else {"column", "unit"}
+        if given != wanted:
+            allowed = f"{' and '.join(sorted(wanted))} for kind '{self.kind}'"
             raise refuse(
-                "column", self.column, f"a column and no rate for kind '{self.kind}'", "Name the column."
+                sorted(given ^ wanted)[0], ", ".join(sorted(given)), allowed, "Correct the abscissa."
             )
         return self
 
@@ -80,9 +75,9 @@ class Channel(Section):
     """One measured column; the physical value is gain * (cell - zero)."""
 
     name: str = Field(min_length=1, max_length=60, pattern=r"^\w+$", description="name in results")
-    column: str = Field(min_length=1, description="heading of the column, without its unit")
+    column: str = Field(min_length=1, description="heading of the column")
     quantity: Annotated[str, OneOf(tuple(QUANTITIES))] = Field(description="measured quantity")
-    unit: str | None = Field(None, description="unit of the cells; default the unit in the column's heading")
+    unit: str = Field(description="unit of the cells")
     pair: str | None = Field(
         None, pattern="^[A-H]$", description="tooth pair: A, or B that follows it one pitch later, ..."
     )
@@ -199,11 +194,7 @@ def load_measurement(source: str | Path | Mapping[str, Any]) -> Measurement:
 def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
     """Read CSV text: optional # lines, one line of headings, then numbers."""
     cells = _cells(spec, text)
-    columns: dict[str, tuple[int, str | None]] = {}  # name, with and without its unit -> place, unit
-    for place, heading in enumerate(str(heading).strip() for heading in cells.columns):
-        name, unit = _name_and_unit(heading)
-        columns.setdefault(name, (place, unit))
-        columns.setdefault(heading, (place, unit))
+    columns = {str(heading).strip(): place for place, heading in enumerate(cells.columns)}
     wanted = [(c.column, f"channel.{c.name}.column") for c in spec.channel]
     if spec.abscissa.column is not None:
         wanted.append((spec.abscissa.column, "abscissa.column"))
@@ -211,19 +202,18 @@ def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
         if column not in columns:
             known = ", ".join(map(shown, columns))
             raise refuse(field, shown(column), f"one of {known}", "Correct the column's name.")
-    table = _numbers(spec, cells.iloc[:, [columns[column][0] for column, _ in wanted]])
+    table = _numbers(spec, cells.iloc[:, [columns[column] for column, _ in wanted]])
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
-    units = [columns[column][1] for column, _ in wanted]
     if spec.abscissa.sampling_rate is not None:
         abscissa = np.arange(table.shape[0]) / spec.abscissa.sampling_rate
     else:
-        abscissa = _abscissa(spec, table[:, -1], units[-1])
+        abscissa = _abscissa(spec.abscissa, table[:, -1])
     channels: dict[str, FloatArray] = {}
     noise: dict[str, float | None] = {}
     for j, channel in enumerate(spec.channel):
         si_unit = QUANTITIES[channel.quantity][0]
-        factor = channel.gain * _si_factor(channel.unit, units[j], si_unit, f"channel.{channel.name}.unit")
+        factor = channel.gain * _si_factor(channel.unit, si_unit, f"channel.{channel.name}.unit")
         with np.errstate(over="ignore", invalid="ignore"):
             channels[channel.name] = values = factor * (table[:, j] - channel.zero)
         if not (np.abs(values) < _LARGEST).all():
@@ -231,16 +221,6 @@ def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
             raise refuse(f"channel.{channel.name}", largest, f"< {_LARGEST:g}", "Check gain, zero and unit.")
         noise[channel.name] = None if channel.noise is None else abs(factor) * channel.noise
     return Measurement(spec, abscissa, channels, noise, hashlib.sha256(text.encode()).hexdigest())
-
-
-def _name_and_unit(heading: str) -> tuple[str, str | None]:
-    """Split ``force A [N]`` or ``force A (N)``; in one pass, however many blanks there are."""
-    if heading.endswith(("]", ")")):
-        start = max(heading.rfind("]", 0, -1), heading.rfind(")", 0, -1)) + 1
-        opened = [at for at in (heading.find("[", start), heading.find("(", start)) if at >= 0]
-        if opened:
-            return heading[: min(opened)].strip(), heading[min(opened) + 1 : -1]
-    return heading, None
 
 
 def _cells(spec: MeasurementSpec, text: str) -> pd.DataFrame:
@@ -289,9 +269,9 @@ def _numbers(spec: MeasurementSpec, cells: pd.DataFrame) -> FloatArray:
     return np.asarray(table, dtype=np.float64)
 
 
-def _abscissa(spec: MeasurementSpec, cells: FloatArray, heading: str | None) -> FloatArray:
-    si_unit = "s" if spec.abscissa.kind == "time" else "rad"
-    values = cells * _si_factor(spec.abscissa.unit, heading, si_unit, "abscissa.unit")
+def _abscissa(abscissa: Abscissa, cells: FloatArray) -> FloatArray:
+    si_unit = "s" if abscissa.kind == "time" else "rad"
+    values = cells * _si_factor(str(abscissa.unit), si_unit, "abscissa.unit")
     back = np.flatnonzero(np.diff(values) <= 0.0)
     if back.size:
         place = f"row {back[0] + 2} is not beyond the row before"
@@ -299,19 +279,9 @@ def _abscissa(spec: MeasurementSpec, cells: FloatArray, heading: str | None) -> 
     return np.asarray(values, dtype=np.float64)
 
 
-def _si_factor(stated: str | None, heading: str | None, si_unit: str, field: str) -> float:
-    """Factor from the unit that the description or the heading names to an SI unit of the same dimension."""
-
-    def factor(unit: str, to: str) -> float:
-        try:
-            return to_si(f"1 {unit}", to)
-        except ValueError as error:
-            raise refuse(field, unit, f"a unit that converts to {to}", f"{error}.") from None
-
-    unit = stated or heading
-    if unit is None:
-        raise refuse(field, "none", "a unit, here or in the column's heading", "State the unit.")
-    # Two names may still be one unit; two different units are a mistake somewhere.
-    if stated and heading and stated != heading and factor(stated, heading) != 1.0:
-        raise refuse(field, stated, f"the heading's unit {heading}", "Correct one of the two.")
-    return factor(unit, si_unit)
+def _si_factor(unit: str, si_unit: str, field: str) -> float:
+    """Factor from a unit to an SI unit of the same dimension."""
+    try:
+        return to_si(f"1 {unit}", si_unit)
+    except ValueError as error:
+        raise refuse(field, unit, f"a unit that converts to {si_unit}", f"{error}.") from None

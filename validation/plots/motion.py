@@ -91,10 +91,7 @@ def sweep_figure(
 
 
 def overlay_figure(points: xr.Dataset) -> Figure:
-    """Measured means per phase bin with their scatter, and the prediction, over the mesh phase.
-
-    ``points``: of ``validation.measurements.overlay``.
-    """
+    """Measured means per phase bin with their scatter, and the prediction: ``points`` of an Evaluation."""
     names = [str(name) for name in points["channel"].to_numpy()]
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)

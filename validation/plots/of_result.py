@@ -18,7 +18,7 @@ from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.plots.contact_loss import jump_map_figure, response_figure
 from validation.plots.maps import waterfall_figure
-from validation.plots.motion import history_figure, sweep_figure
+from validation.plots.motion import history_figure, overlay_figure, sweep_figure
 from validation.plots.stability import boundaries_figure, campbell_figure, stability_figure
 from validation.plots.style import legend_above, look, mesh_cycles, new_figure, scale_y
 from validation.signals.orders import waterfall
@@ -47,6 +47,7 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "contact_kept": jump_map_figure,
     "running_speed": lambda result: waterfall_figure(waterfall(result), natural_frequencies(_pair(result))),
     "branch": response_figure,
+    "measured": overlay_figure,
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
     "mesh_frequency": campbell_figure,
@@ -73,8 +74,9 @@ def plot(
     ----------
     result : dataset of ``simulate`` or ``steady_state`` of either model, ``run_up``, ``speed_sweep``,
         ``stability_chart`` (one or two axes), ``stability_boundaries``, ``campbell``, ``jump_map`` or
-        ``response_branches``. A list of datasets of one kind, of ``simulate``, ``steady_state``,
-        ``speed_sweep`` or a chart over speed: their transmission errors or spectral radii
+        ``response_branches``, or the ``points`` of an evaluated record. A list of datasets of one kind, of
+        ``simulate``, ``steady_state``, ``speed_sweep`` or a chart over speed: their transmission errors or
+        spectral radii
     ax : axes of yours to draw this curve into
     labels : of the results, for the legend; default the names of their pairs
 

@@ -11,7 +11,7 @@ from typing import Any
 from lumped.arguments import file_path
 from lumped.errors import refuse
 from lumped.fields.text_file import read_text
-from validation.files.folder import FORMAT, FORMAT_VERSION, REPORT
+from validation.files.folder import FORMAT, FORMAT_VERSION
 from validation.reporting.blocks import REMARKS
 from validation.reporting.page_one import Verdict
 
@@ -93,7 +93,7 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = T
 def load_report(source: str | Path, *, quick: bool) -> dict[str, Any]:
     """Read report.json of an earlier report or its folder; ``quick`` must be that of the new one."""
     path = file_path("--compare", source)
-    path = path / REPORT.file if path.is_dir() else path
+    path = path / "report.json" if path.is_dir() else path
     try:
         found = json.loads(read_text(path, _MAX_BYTES, field="--compare", kind="report.json"))
     except ValueError as error:

@@ -21,7 +21,8 @@ from reproductions.he_cho_singh_2008.twins import (
     roll_angle,
     twins,
 )
-from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
+from validation.measurements import Measurement, predict
+from validation.measurements.comparison import align, overlay, overlay_metrics
 from validation.measurements.record import PAIR_LABELS
 
 LAW = "xu_kahraman"

@@ -13,7 +13,7 @@ import xarray as xr
 from lumped import ParameterError
 from lumped.errors import StorageError
 from validation.files import output
-from validation.files.folder import CONTENTS, Kind, check_target, whole_folder
+from validation.files.folder import CONTENTS, check_target, whole_folder
 
 
 def write(out, files, **options):
@@ -81,13 +81,6 @@ def test_a_folder_without_a_list_of_ours_is_not_touched(tmp_path, content):
     with pytest.raises(ParameterError, match="nothing in it is replaced"):
         check_target(out, force=True)
     assert tree(out) == before
-
-
-def test_results_of_another_kind_are_not_replaced(tmp_path):
-    out = tmp_path / "out"
-    write(out, {"x": "1"}, kind=Kind("other.json", "spurcheck-other", "other result"))
-    with pytest.raises(ParameterError, match="an earlier report"):
-        check_target(out, force=True)
 
 
 def test_a_failure_at_the_last_step_puts_everything_back(tmp_path, monkeypatch):

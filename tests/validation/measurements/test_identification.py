@@ -7,17 +7,11 @@ import pytest
 
 from lumped import geometry, load_gear_pair, simulate
 from lumped.errors import NumericalError, ParameterError
-from validation.measurements import (
-    align,
-    identify_friction,
-    load_measurement,
-    overlay,
-    overlay_metrics,
-    predict,
-    synthetic_measurement,
-    write_measurement,
-)
-from validation.measurements.comparison import mesh_cycles
+from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
+from validation.measurements import evaluate, load_measurement, predict
+from validation.measurements.comparison import align, mesh_cycles, overlay, overlay_metrics
+from validation.measurements.identification import identify_friction
+from validation.plots.of_result import plot
 
 MU = 0.05
 
@@ -215,6 +209,23 @@ def test_a_written_record_is_read_back(truth, tmp_path):
     results = [identify_friction(m, truth, a) for m, a in zip((original, again), phases, strict=True)]
     assert results[0].estimate == pytest.approx(results[1].estimate, rel=1e-6)
     assert "95 % interval" in results[0].text
+
+
+def test_a_record_at_another_speed_and_torque_identifies_the_friction_that_made_it(truth, pair):
+    # Predicted with another law, speed and torque: both come from the record, and the constant does not
+    # follow the prediction's friction.
+    other = pair.with_(operating__pinion_speed=4000, operating__pinion_torque=30, friction__law="xu_kahraman")
+    found = evaluate(record(truth, noise_normal=0.02, noise_friction=0.02, start=0.4), other, identify=["mu"])
+    (mu,) = found.found
+    # Five standard errors: a right estimate misses by more once in two million records.
+    assert abs(mu.estimate - MU) < 5 * mu.standard_error < 0.1 * MU
+    assert found.metrics["correlation"].sel(channel="normal_A") > 0.99
+    assert found.metrics["relative_rms"].sel(channel="friction_A") > 0.2  # the law stays far from 0.05
+    assert plot(found.points).axes[0].get_ylabel() == "normal_A [kN]"
+    smooth = evaluate(record(truth), other.with_(friction__law="none"))
+    assert np.isnan(smooth.metrics["relative_rms"].sel(channel="friction_A"))
+    with pytest.raises(ParameterError, match="xu_kahraman"):
+        evaluate(record(truth), other, identify=["sandpaper"])
 
 
 def test_overlay_metrics_know_a_constant_offset(truth):

@@ -11,7 +11,7 @@ from validation.measurements.model_error import ModelError, measured_peak_to_pea
 from validation.measurements.record import Measurement, MeasurementSpec
 
 TEXT = """# strain-gauge record
-roll [deg];N A [N];F A (kN)
+roll;N A;F A [kN]
 10,0;1500,0;0,050
 10,5;1510,0;0,051
 11,0;1520,0;0,052
@@ -32,12 +32,15 @@ def description(data, **changes):
         "decimal": ",",
         "pinion_speed": 800,
         "pinion_torque": "79.1 N*m",
-        "abscissa": {"kind": "roll_angle", "column": "roll"},
+        "abscissa": {"kind": "roll_angle", "column": "roll", "unit": "deg"},
         "channel": [
-            {"name": "normal", "column": "N A", "quantity": "normal_load", "pair": "A", "noise": 5.0},
             {
-                "name": "friction", "column": "F A", "quantity": "friction_force", "pair": "A", "gain": -1.0,
-                "zero": 0.05, "noise": 0.002,
+                "name": "normal", "column": "N A", "quantity": "normal_load", "unit": "N", "pair": "A",
+                "noise": 5.0,
+            },
+            {
+                "name": "friction", "column": "F A [kN]", "quantity": "friction_force", "unit": "kN",
+                "pair": "A", "gain": -1.0, "zero": 0.05, "noise": 0.002,
             },
         ],
     } | changes  # fmt: skip
@@ -77,7 +80,8 @@ def changed_channel(place, **changes):
     ({"abscissa": {"kind": "sampled", "sampling_rate": "20 kg"}}, "sampling_rate"),
     (changed_channel(0, column="missing"), "missing"),
     (changed_channel(0, unit="m"), "channel.normal.unit"),
-    (changed_channel(0, unit="kN"), "heading's unit N"),
+    (changed_channel(0, unit=None), "unit"),
+    ({"abscissa": {"kind": "time", "column": "roll", "unit": "s", "sampling_rate": "2 Hz"}}, "sampling_rate"),
     (changed_channel(0, pair=None), "pair"),
     (changed_channel(0, gain=0.0), "gain"),
     (changed_channel(0, gain=1e308), "channel.normal"),
