@@ -29,8 +29,11 @@ Everything is imported when it is first asked for: ``import spurcheck`` itself l
 
 from __future__ import annotations
 
+import re
+from functools import wraps
 from importlib import import_module, metadata
-from typing import TYPE_CHECKING
+from types import FunctionType
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import floquet
@@ -154,7 +157,7 @@ __all__ = [
 ]
 
 _NAMES = tuple(__all__)
-del __all__  # help() would print all that it names, 1,500 lines
+__all__.clear()  # help() would print all that it names, 1,500 lines
 
 
 def _find(name: str) -> object:
@@ -165,13 +168,55 @@ def _find(name: str) -> object:
     for source in _SOURCES:
         module = import_module(source)
         if name in module.__all__:
-            return getattr(module, name)
+            value = getattr(module, name)
+            return _explained(name, value) if isinstance(value, FunctionType) else value
     raise AssertionError(f"{name} is in no package")
+
+
+def _explained(name: str, function: Any) -> Any:
+    """The function; a call with arguments that it does not take says which, and where a value belongs."""
+    import inspect
+
+    signature = inspect.signature(function)
+
+    @wraps(function)
+    def call(*arguments: Any, **named: Any) -> Any:
+        try:
+            signature.bind(*arguments, **named)
+        except TypeError as error:
+            raise TypeError(f"spurcheck.{name}: {error}. {advice(str(error), named)}") from None
+        return function(*arguments, **named)
+
+    def advice(error: str, named: dict[str, Any]) -> str:
+        from lumped.schema.short_names import SHORT_NAMES
+
+        word = next((key for key in named if key not in signature.parameters), "")
+        if "pair" in signature.parameters and (word in SHORT_NAMES or "__" in word):
+            return f"Vary the pair: spurcheck.{name}(pair.with_({word}=...))."
+        if word == "model":
+            return f"The multibody model is spurcheck.multibody.{name}."
+        missing = re.search(r"missing .*'(\w+)'", error)
+        meaning = missing and re.search(rf"^ *({missing[1]} : .*)", inspect.getdoc(function) or "", re.M)
+        takes = f"It takes {', '.join(signature.parameters)}"
+        return f"{takes}; {meaning[1]}." if meaning else f"{takes}: see help(spurcheck.{name})."
+
+    call.__module__, call.__qualname__ = __name__, name  # where pickle finds it
+    return call
+
+
+def _nearest(name: str) -> str:
+    """Ask whether names that contain this one, or the most similar one, were meant."""
+    import difflib
+
+    known = [*_NAMES, *(f"{one}.{other}" for one in _PACKAGES for other in import_module(one).__all__)]
+    close = [one for one in known if name.lower() in one.lower()] or difflib.get_close_matches(name, known)
+    return f". Did you mean {' or '.join(f'spurcheck.{one}' for one in close[:3])}?" if close else ""
 
 
 def __getattr__(name: str) -> object:
     if name not in _NAMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        near = "" if name.startswith("_") else _nearest(name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{near}")
     value = globals()[name] = _find(name)
     return value
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import operator
 import os
@@ -90,11 +91,19 @@ def real_array(field: str, value: object, *, finite: bool = True) -> FloatArray:
     return array
 
 
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Ask whether the nearest known name was meant, or those that it is a word of; else nothing."""
+    names = list(known)
+    parts = [one for one in names if name and name in one.split("_")]  # torque: pinion_torque, brake_torque
+    close = parts or difflib.get_close_matches(name[:80], names, n=1, cutoff=0.5)
+    return f"Did you mean {' or '.join(map(repr, close))}?" if close else ""
+
+
 def one_of(field: str, value: object, names: Iterable[str], action: str = "Choose one of them.") -> str:
     """Return a name out of ``names``, or refuse it."""
     known = tuple(names)
     if not isinstance(value, str) or value not in known:
-        raise refuse(field, shown(value), "one of " + ", ".join(known), action)
+        raise refuse(field, shown(value), "one of " + ", ".join(known), nearest(str(value), known) or action)
     return value
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
 from dataclasses import replace
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -12,6 +11,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
+from lumped.arguments import nearest
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
 from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
@@ -21,16 +21,14 @@ _UNION_PARTS = {"int", "float", "str"}
 #: Keys of other gear programs -> what to do, for they are no misspelt keys of this one.
 _ELSEWHERE = {
     ("helix", "helix_angle", "beta"): "Delete it: gears are spur gears; helical ones are not computed.",
-    (
-        "internal",
-        "internal_gear",
-        "ring_gear",
-    ): "Delete it: both gears are external; others are not computed.",
+    ("internal", "internal_gear", "ring_gear"): "Delete it: both gears are external; others are not "
+    "computed.",
     ("quality", "accuracy", "accuracy_grade", "quality_class"): "Write deviations.tolerance_class in the "
     "section of the gear (ISO 1328), or delete it: then all teeth are alike.",
     ("power", "input_power"): "Write pinion_torque: in N m it is 9549.3 times the power in kW over the "
     "speed in rpm.",
     ("module", "normal_module", "pressure_angle"): "Both gears have one rack: write it in basic_rack.",
+    ("mu", "friction_coefficient"): "For a constant mu write law = 'coulomb' and coefficient in friction.",
 }
 _ACTIONS = {key: action for keys, action in _ELSEWHERE.items() for key in keys}
 _NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
@@ -56,7 +54,7 @@ def field_of(root: type[BaseModel], path: str) -> FieldInfo:
             continue
         names = {name: field for model in models for name, field in model.model_fields.items()}
         if part not in names:
-            raise ParameterError([unknown_key(path, list(names), part)])
+            raise ParameterError([unknown_key(path, list(names), part, root)])
         info = names[part]
         models = models_in(info.annotation)
     assert info is not None  # "".split(".") has one part, which is unknown
@@ -79,24 +77,26 @@ def _is_list(info: FieldInfo) -> bool:
     return get_origin(info.annotation) in (tuple, list)
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
-    """Ask whether the nearest known name was meant, or those that it is a word of; else nothing."""
-    names = list(known)
-    parts = [one for one in names if name and name in one.split("_")]  # torque: pinion_torque, brake_torque
-    close = parts or difflib.get_close_matches(name[:80], names, n=1, cutoff=0.5)
-    return f"Did you mean {' or '.join(map(repr, close))}?" if close else ""
-
-
-def unknown_key(path: str, known: list[str], part: str) -> FieldProblem:
-    """Return the problem of a key that the schema does not have."""
+def unknown_key(path: str, known: list[str], part: str, root: type[BaseModel] | None = None) -> FieldProblem:
+    """Return the problem of a key that the schema does not have; a key of a section of ``root`` is named."""
     names = list(dict.fromkeys(known))
     allowed = "one of " + ", ".join(names) if names else "no key below a value"
-    return FieldProblem(
-        shown(path) or "(empty)",
-        "unknown key",
-        allowed,
-        _ACTIONS.get(part) or nearest(part, names) or "Remove the key, or correct its name.",
-    )
+    below = _below(root, part) if root is not None and path == part else ""
+    action = _ACTIONS.get(part) or below or nearest(part, names) or "Remove the key, or correct its name."
+    return FieldProblem(shown(path) or "(empty)", "unknown key", allowed, action)
+
+
+def _below(root: type[BaseModel], part: str) -> str:
+    """Ask whether a field of a section was meant that has this name, or as a word of it, or nearly so."""
+    fields: dict[str, list[str]] = {}
+    for section, info in root.model_fields.items():
+        for model in models_in(info.annotation):
+            for key in model.model_fields:
+                fields.setdefault(key, []).append(f"{section}.{key}")
+    keys = [part] if part in fields else [key for key in fields if part in key.split("_")]
+    close = keys or difflib.get_close_matches(part[:80], fields, n=1, cutoff=0.8)
+    paths = [repr(path) for key in close for path in fields[key]]
+    return f"Did you mean {' or '.join(paths)}?" if paths else ""
 
 
 def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
@@ -111,7 +111,7 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     value = shown(quoted(item.get("input")))
     if kind == "extra_forbidden":
         known = [name for model in models for name in model.model_fields]
-        return [unknown_key(path, known, parts[-1])]
+        return [unknown_key(path, known, parts[-1], root)]
     if kind == "missing" and parts and parts[-1].isidentifier():
         return [FieldProblem(path, "missing", _description(field_of(root, path)), "Add it.")]
     if kind in ("union_tag_invalid", "union_tag_not_found"):

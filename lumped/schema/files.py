@@ -8,8 +8,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from lumped.arguments import nearest
 from lumped.errors import refuse, shown
-from lumped.fields.refusals import nearest
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.gear_geometry.geometry import Geometry
 from lumped.schema.pair import FORMAT, GearPair, validated

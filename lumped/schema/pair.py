@@ -33,6 +33,7 @@ from lumped.schema import own_laws
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.shafts import Bearings, Shafts
+from lumped.schema.short_names import SHORT_NAMES, by_fields
 from lumped.schema.teeth import TorqueRipple
 
 #: Format of parameter files; a change that older programs would misread raises it.
@@ -84,16 +85,6 @@ def _sources_in(value: object) -> object:
 
 #: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
 _STIFFNESS = "mesh.stiffness.model"
-#: Short names that ``with_`` takes beside field paths, as the options of the command.
-SHORT_NAMES = {
-    "speed": "operating.pinion_speed",
-    "torque": "operating.pinion_torque",
-    "range": "operating.speed_range",
-    "law": "friction.law",
-    "stiffness": "mesh.stiffness",
-    "module": "basic_rack.module",
-    "viscosity": "lubricant.viscosity",
-}
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
     ("pinion.addendum", "pinion.tip_diameter"),
@@ -285,7 +276,11 @@ class GearPair(Section, metaclass=_InOurWords):
         def __getattr__(self, name: str) -> Any:
             """Say where a value is that ``with_`` takes by a short name."""
             if name in SHORT_NAMES:
-                raise AttributeError(f"a pair has no {name!r}: read pair.{SHORT_NAMES[name]}")
+                raise AttributeError(
+                    f"a pair has no {name!r}: read pair.{' or pair.'.join(SHORT_NAMES[name])}"
+                )
+            if name in ("save", "write", "to_file"):
+                raise AttributeError(f"a pair has no {name!r}: use Path(...).write_text(pair.to_toml())")
             return super().__getattr__(name)
 
     def __repr__(self) -> str:
@@ -332,7 +327,10 @@ class GearPair(Section, metaclass=_InOurWords):
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
             A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
-            ``torque``, ``range``, ``law``, ``stiffness``, ``module`` and ``viscosity``.
+            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``viscosity``, ``oil``
+            ("vg220", with ``temperature``) and, of both gears, ``teeth`` ("19/41"), ``face_width``,
+            ``roughness``. ``gears.`` in front of a key means both gears, ``bearings.stiffness`` all four
+            directions.
 
         ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
         into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
@@ -352,7 +350,7 @@ class GearPair(Section, metaclass=_InOurWords):
         ParameterError : a value that is refused, or a name that is no field; it names the nearest
         """
         request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
-        fields = {SHORT_NAMES.get(path, path): value for path, value in request.items()}
+        fields = by_fields(request)
         own = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
         pair = _varied(self, fields) if fields or not own else self
         for path, value in own.items():
@@ -416,10 +414,11 @@ def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
             outdated.append(_STIFFNESS.rpartition(".")[0])
             _assign(data, outdated[-1], {})
         for group in _ALTERNATIVES:
-            if path in group and value is not None:
+            if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):
                 outdated += group
                 for other in group:
-                    _assign(data, other, None)
+                    if not path.startswith(f"{other}."):
+                        _assign(data, other, None)
         _assign(data, path, value)
         for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
             del sources[known]

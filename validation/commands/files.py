@@ -143,7 +143,8 @@ def _text_of_own(
 ) -> tuple[str, str]:
     """Parameter file of a pair that the options describe, and a name for it."""
     from lumped.errors import ParameterError, refuse
-    from validation.exchange.new_pair_file import fields_of, new_pair_text
+    from lumped.schema.short_names import fields_of
+    from validation.exchange.new_pair_file import new_pair_text
 
     if teeth is None:
         first = next(option for option, (_, value) in own.items() if value is not None)

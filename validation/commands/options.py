@@ -94,6 +94,7 @@ def gear_pair(
     """
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
+    from lumped.schema.short_names import by_fields, fields_of
     from validation.commands.terminal import note
     from validation.validity.plausibility import parameter_warnings
 
@@ -106,12 +107,12 @@ def gear_pair(
     ):
         if text is not None:
             asked.append((option, path, text))
-    options = {path: option for option, path, _ in asked}
+    options = {field: option for option, path, _ in asked for field in (path, *fields_of(path))}
     if source is None:
         note(f"no gear pair is named, so this is the example {DEFAULT_PAIR}: name your parameter file.")
     own = load_gear_pair(source or DEFAULT_PAIR)
-    changes = {path: value_of(text) for _, path, text in asked}
     try:
+        changes = by_fields({path: value_of(text) for _, path, text in asked})
         pair = own.with_(changes)
     except ParameterError as error:
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
@@ -216,8 +217,8 @@ def axis_values(
     """Name and values of an axis written NAME=FROM:TO:COUNT; ``option`` is named in a refusal."""
     import numpy as np
 
+    from lumped.arguments import nearest
     from lumped.errors import ParameterError, refuse
-    from lumped.fields.refusals import nearest
 
     name, separator, values = (part.strip() for part in text.partition("="))
     allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"

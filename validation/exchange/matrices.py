@@ -22,9 +22,8 @@ import scipy.io
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, SecondOrderSystem, from_second_order
 from floquet.engine.chart import ChartAxis
 from floquet.engine.coefficients import Coefficient, square
-from lumped.arguments import file_path, real_array, real_number, real_numbers
+from lumped.arguments import file_path, nearest, real_array, real_number, real_numbers
 from lumped.errors import ParameterError, refuse, shown
-from lumped.fields.refusals import nearest
 from lumped.typing import FloatArray
 
 MATRIX_SUFFIXES = (".npz", ".mat")

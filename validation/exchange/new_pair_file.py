@@ -12,12 +12,13 @@ from typing import Any
 
 import tomli_w
 
-from lumped.errors import ParameterError, refuse
+from lumped.errors import ParameterError
 from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
 from lumped.schema.own_laws import is_own
-from lumped.schema.pair import FORMAT, SHORT_NAMES, GearPair, leaf_paths, stated_unit
+from lumped.schema.pair import FORMAT, GearPair, leaf_paths, stated_unit
+from lumped.schema.short_names import by_fields, fields_of
 
 GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
@@ -51,18 +52,17 @@ _WHY = {
 _SECTION = re.compile(r"(\[\[?)([\w.]+)\]\]?$")
 _ENTRY = re.compile(r"(\w+) = ")
 _COLUMN = 40
-_TEETH = re.compile(r"\s*(\d{1,4})\s*[/:x]\s*(\d{1,4})\s*")
-_OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
 
 
 def new_pair(
-    teeth: str,
+    teeth: str | tuple[int, int],
     module: float | str,
     face_width: float | str,
     speed: float | str,
     torque: float | str,
     changes: Mapping[str, Any] | None = None,
     name: str = "",
+    **fields: Any,
 ) -> GearPair:
     """Return a pair from what is on its drawing; what is not given is assumed, and ``pair.sources`` says so.
 
@@ -73,10 +73,10 @@ def new_pair(
     face_width : of both gears [mm]
     speed : of the pinion [rpm]
     torque : on the pinion [N m]
-    changes : what else is known: ``oil`` ("vg220"), ``law``, ``stiffness`` (as ``pair.with_``), and
-        field paths -> values, ``{"pinion.profile_shift": 0.4}``; ``gears.`` in front means both gears,
-        ``bearings.stiffness`` and ``bearings.damping_ratio`` all four bearing directions
+    changes : what else is known, by the names and paths of ``pair.with_``: ``{"oil": "vg220",
+        "pinion.profile_shift": 0.4}``
     name : of the pair; default from the numbers of teeth
+    **fields : the same as ``changes``: ``oil="vg220"``, ``pinion__profile_shift=0.4``
 
     Raises
     ------
@@ -89,11 +89,12 @@ def new_pair(
         "speed": speed,
         "torque": torque,
         **(changes or {}),
+        **{key.replace("__", "."): value for key, value in fields.items()},
     }
-    named = name or f"pair_{re.sub('[^0-9]+', '_', str(teeth))}"
-    fields = {SHORT_NAMES.get(path, path): value for path, value in request.items()}
-    own = {path: fields.pop(path) for path in list(fields) if is_own(path, fields[path])}
-    pair = load_gear_pair(tomllib.loads(new_pair_text(named, fields)))
+    known = by_fields(request)
+    named = name or "pair_" + "_".join(str(known[path]) for path in fields_of("teeth"))
+    own = {path: known.pop(path) for path in list(known) if is_own(path, known[path])}
+    pair = load_gear_pair(tomllib.loads(new_pair_text(named, known)))
     return pair.with_(own) if own else pair
 
 
@@ -179,32 +180,14 @@ def _backlash(pair: GearPair) -> float:
 
 
 def _values(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Field path -> value, of what the user asks for."""
+    """Field path -> value, of what the user asks for; a section as a table gives its entries."""
     values: dict[str, Any] = {}
-    for path, value in request.items():
-        if path == "teeth":
-            if (teeth := _TEETH.fullmatch(str(value))) is None:
-                raise refuse("teeth", value, "PINION/GEAR", "For example 19/41.")
-            values |= {"pinion.teeth": int(teeth[1]), "gear.teeth": int(teeth[2])}
-        elif path == "oil":
-            if (grade := _OIL.fullmatch(str(value))) is None:
-                raise refuse("oil", value, "an ISO viscosity grade", "For example vg220.")
-            values |= dict.fromkeys(fields_of(path), int(grade[1]))
-        elif isinstance(value, dict):  # a section: mesh.stiffness = {model = "energy"}
+    for path, value in by_fields(request).items():
+        if isinstance(value, dict):  # mesh.stiffness = {model = "energy"}
             values |= _values({f"{path}.{key}": part for key, part in value.items()})
         else:
-            values |= dict.fromkeys(fields_of(path), value)
+            values[path] = value
     return values
-
-
-def fields_of(path: str) -> list[str]:
-    """Fields that one entry of the request sets."""
-    section, _, key = path.partition(".")
-    if path == "oil":
-        return ["lubricant.viscosity_law.iso_vg"]
-    if path in ("bearings.stiffness", "bearings.damping_ratio"):
-        return [f"bearings.{gear}.{line}_{key}" for gear in ("pinion", "gear") for line in ("loa", "oloa")]
-    return [f"{gear}.{key}" for gear in ("pinion", "gear")] if section == "gears" else [path]
 
 
 def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str:

@@ -9,18 +9,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from lumped.arguments import of_type
 from lumped.errors import refuse
 from lumped.fields.text_file import parse_toml
 from lumped.fields.units import to_stated
 from lumped.model.averaged import natural_frequencies
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
+from validation.plots.axes import cycle_figure, label_axis
 from validation.plots.contact_loss import jump_map_figure, response_figure
 from validation.plots.maps import waterfall_figure
 from validation.plots.motion import history_figure, overlay_figure, sweep_figure
 from validation.plots.stability import boundaries_figure, campbell_figure, stability_figure
-from validation.plots.style import legend_above, look, mesh_cycles, new_figure, scale_y
+from validation.plots.style import BLUE, legend_above, look, mesh_cycles, one_panel, scale_y
+from validation.prediction.motion import Prediction
 from validation.signals.orders import waterfall
 
 
@@ -42,7 +43,29 @@ def _chart(result: xr.Dataset) -> Figure:
     return stability_figure(result)
 
 
-#: Variable that only one kind of result has -> its figure.
+def _static(result: xr.Dataset) -> Figure:
+    torques = result["torque"].to_numpy()
+    return _curves([result.sel(torque=one) for one in torques], None, [f"{one:g} N m" for one in torques])
+
+
+def _spectrum(result: xr.Dataset) -> Figure:
+    if "speed_rpm" in result.dims:
+        return waterfall_figure(result, natural_frequencies(_pair(result)))
+    within = result["frequency"] < (_MESH_ORDERS + 0.5) * _pair(result).geometry.mesh_frequency
+    shown = result.sel(order=within & (result["order"] > 0.0))  # the mean would dwarf the rest
+    figure, ax = one_panel(2.7)
+    across, up = (
+        label_axis(ax, "x", shown["order"]),
+        label_axis(ax, "y", shown["amplitude"], text="amplitude"),
+    )
+    ax.vlines(shown["order"] / across, 0.0, shown["amplitude"] / up, color=BLUE)
+    ax.set(xlim=(0.0, None), ylim=(0.0, None))
+    return figure
+
+
+#: Mesh orders in the figure of a spectrum.
+_MESH_ORDERS = 10
+#: Variable that no kind of result below has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "contact_kept": jump_map_figure,
     "running_speed": lambda result: waterfall_figure(waterfall(result), natural_frequencies(_pair(result))),
@@ -53,6 +76,9 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "mesh_frequency": campbell_figure,
     "interval_lower": boundaries_figure,
     "verdict": _chart,
+    "amplitude": _spectrum,
+    "transmission_error": _static,
+    "mesh_stiffness": lambda result: cycle_figure(result, ["mesh_stiffness"]),
 }
 
 
@@ -60,23 +86,24 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
 _CURVES = {
     "dte": ("time", "transmission error", "m"),
     "dte_peak_to_peak": ("speed", "transmission error,\npeak to peak", "m"),
+    "transmission_error": ("phase", "static transmission error", "m"),
+    "mesh_stiffness": ("phase", "mesh stiffness", "N/m"),
     "spectral_radius": ("speed_rpm", "spectral radius", "1"),
 }
-_ABSCISSA = {"time": "time [mesh cycles]", "speed": "pinion speed [rpm]", "speed_rpm": "pinion speed [rpm]"}
+_SPEED = "pinion speed [rpm]"
+_ABSCISSA = {"time": "time [mesh cycles]", "phase": "mesh phase [-]", "speed": _SPEED, "speed_rpm": _SPEED}
 
 
-def plot(
-    result: xr.Dataset | Sequence[xr.Dataset], *, ax: Axes | None = None, labels: Sequence[str] = ()
-) -> Figure:
+def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> Figure:
     """Draw a result as its figure, or the main curve of several results in one axes.
 
     Parameters
     ----------
-    result : dataset of ``simulate`` or ``steady_state`` of either model, ``run_up``, ``speed_sweep``,
+    result : of ``predict``; dataset of ``simulate`` or ``steady_state`` of either model, ``run_up``,
+        ``waterfall``, ``order_spectrum``, ``speed_sweep``, ``mesh_stiffness``, ``static_transmission_error``,
         ``stability_chart`` (one or two axes), ``stability_boundaries``, ``campbell``, ``jump_map`` or
-        ``response_branches``, or the ``points`` of an evaluated record. A list of datasets of one kind, of
-        ``simulate``, ``steady_state``, ``speed_sweep`` or a chart over speed: their transmission errors or
-        spectral radii
+        ``response_branches``, or the ``points`` of an evaluated record. A list of results of one kind over
+        time, phase or speed: their transmission errors, mesh stiffnesses or spectral radii
     ax : axes of yours to draw this curve into
     labels : of the results, for the legend; default the names of their pairs
 
@@ -88,16 +115,20 @@ def plot(
     ------
     ParameterError : another dataset, more axes than a figure has, or results that cannot share one axes
     """
-    results: list[Any] = list(result) if isinstance(result, (list, tuple)) else [result]
+    several = isinstance(result, (list, tuple))
+    results = [one.cycle if isinstance(one, Prediction) else one for one in (result if several else [result])]
     for one in results:
-        of_type("result", one, xr.Dataset, "a dataset, as simulate returns it, or a list of them")
-    if not isinstance(result, xr.Dataset) or ax is not None:
+        if not isinstance(one, xr.Dataset):
+            known = "a dataset, as simulate returns it, or a list of them"
+            action = "Call it: plot(mesh_stiffness(pair))." if callable(one) else "Draw plot(predict(pair))."
+            raise refuse("result", one, known, action)
+    if several or ax is not None:
         return _curves(results, ax, labels)
     for variable, draw in _FIGURES.items():
-        if variable in result:
-            return draw(result)
+        if variable in results[0]:
+            return draw(results[0])
     known = "a result of simulate, steady_state, speed_sweep, stability_chart or campbell"
-    raise refuse("result", ", ".join(map(str, result.data_vars)), known, "Draw it with xarray's own .plot().")
+    raise refuse("result", ", ".join(map(str, one.data_vars)), known, "Draw it with xarray's own .plot().")
 
 
 def _curves(results: Sequence[xr.Dataset], ax: Axes | None, labels: Sequence[str]) -> Figure:
@@ -113,13 +144,14 @@ def _curves(results: Sequence[xr.Dataset], ax: Axes | None, labels: Sequence[str
     if labels and len(labels) != len(results):
         raise refuse("labels", list(labels), f"{len(results)} texts, one a result", "Give one for each.")
     if ax is None:
-        _, made = new_figure(1, 1, height=2.6)
-        ax = made[0, 0]
+        _, ax = one_panel(2.6)
     across, words, unit = _CURVES[name]
     factor = scale_y(ax, words, unit, *(one[name].to_numpy() for one in results))
     for number, one in enumerate(results):
         x = mesh_cycles(one, _pair(one).geometry) if across == "time" else one[across].to_numpy()
-        label = labels[number] if labels else str(one.attrs.get("gear_pair", f"result {number + 1}"))
+        label = (
+            labels[number] if labels else str(one.attrs.get("gear_pair", one.attrs.get("pair", number + 1)))
+        )
         ax.plot(x, one[name].to_numpy() / factor, **look(number), linewidth=1.0, label=label)
     ax.set_xlabel(_ABSCISSA[across])
     if len(results) > 1 or labels:

@@ -73,7 +73,9 @@ def harmonics(result: xr.Dataset, variable: str, derivative: int) -> Harmonics:
         raise refuse("result", "uneven times", "times at even distances", "Use steady_state.")
     cycles = time.size * steps.mean() / pair.geometry.mesh_period
     if abs(cycles - round(cycles)) > _WHOLE * cycles:
-        action = "Use steady_state, or cut the run to whole mesh cycles without its last time."
+        action = (
+            "Use steady_state, or cut the run: a simulation ends one time late, result.isel(time=slice(-1))."
+        )
         raise refuse("result", f"{cycles:.6g} mesh cycles", "a whole number of mesh cycles", action)
     values = np.fft.rfft(signal) / time.size
     values[1:] *= 2.0

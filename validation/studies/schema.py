@@ -12,9 +12,9 @@ from typing import Annotated, Any, Literal, Self
 import tomli_w
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
 
-from lumped.arguments import file_path
+from lumped.arguments import file_path, nearest
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
-from lumped.fields.refusals import nearest, translated
+from lumped.fields.refusals import translated
 from lumped.fields.section import Section, Text
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.schema.files import load_gear_pair, preset_names
