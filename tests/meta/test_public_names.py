@@ -127,7 +127,7 @@ def test_a_source_is_named(thing):
 
 @pytest.mark.parametrize("thing", FUNCTIONS)
 def test_no_function_swallows_keywords(thing):
-    """Without **options Python itself refuses an unknown keyword; in new_pair they are fields of the schema."""
+    """Without **options Python itself refuses an unknown keyword; those of new_pair are fields."""
     kinds = {p.kind for p in inspect.signature(thing).parameters.values()}
     assert inspect.Parameter.VAR_KEYWORD not in kinds or thing.__name__ == "new_pair"
 
