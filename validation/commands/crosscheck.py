@@ -86,13 +86,12 @@ def crosscheck(
 
 def _print(check: CrossCheck) -> None:
     from validation.cross_check.verdict import Verdict
-    from validation.cross_check.words import cause_of_difference, failed_checks, whole_difference
+    from validation.cross_check.words import MEASURES, cause_of_difference, failed_checks, whole_difference
 
     console = stdout()
     for shown in _tables(check):
         console.print(shown)
-    text = "differences: the largest one over the peak to peak of the lumped history; at fidelity exact"
-    console.print(f"{text} x over that of the transmission error, if larger", soft_wrap=True)
+    console.print(MEASURES, soft_wrap=True)
     if check.pulling:
         console.print(check.pulling, soft_wrap=True)
     cause = cause_of_difference(check) if check.verdict is Verdict.DIFFERS else ""

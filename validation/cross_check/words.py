@@ -22,6 +22,13 @@ NAMES = {
     "friction_force": "friction force",
 }
 
+#: What differences from the exact model are measured by, for readers.
+MEASURES = (
+    "A difference is measured by the peak to peak of the lumped motion. Displacements along the line of "
+    "action are measured by that of the transmission error, the load by the force that bends the teeth by "
+    "it, and the mean off the line of action by the deflection under the friction force, where these are "
+    "larger."
+)
 _UNILATERAL = (
     "The lumped motion has the places of contact of the mean load; in the exact contact they follow the "
     "momentary load, the rotations and the centres."

@@ -93,21 +93,27 @@ def swings(found: xr.Dataset) -> xr.Dataset:
 
 def plain_name(field: str) -> str:
     """A field in words: ``bearings.pinion.loa_stiffness`` as "pinion bearing, stiffness along ..."."""
-    whole = {
-        "mesh.stiffness": "tooth stiffness model",
-        "mesh.stiffness_factor": "tooth stiffness",
-        "mesh.damping_ratio": "mesh damping",
-        "mesh.backlash": "backlash",
-        "friction.law": "friction law",
-        "friction.coefficient": "friction coefficient",
-        "lubricant.viscosity": "oil viscosity",
-        "operating.pinion_torque": "torque",
-    }
-    if field in whole:
-        return whole[field]
-    if field.startswith("bearings."):
-        _, gear, what = field.split(".")
-        line = "off-line" if what.startswith("oloa") else "on-line"
-        kind = "stiffness" if what.endswith("stiffness") else "damping"
-        return f"{gear} bearing {kind}, {line}"
+    if field in _WHOLE:
+        return _WHOLE[field]
+    *place, what = field.split(".")
+    if "bearings" in place:
+        number = place[-1] if place[0] == "shafts" else ""
+        owner = f"bearing {int(number) + 1} of the {place[1]} shaft" if number else f"{place[1]} bearing"
+        kind = "damping" if "damping" in what else "stiffness"
+        line = {"loa": "along", "oloa": "off"}.get(what.partition("_")[0])
+        return f"{owner}, {kind} {f'{line} the line of action' if line else 'against tilting'}"
     return field.replace(".", " ").replace("_", " ")
+
+
+#: Fields whose words are not those of their path.
+_WHOLE = {
+    "mesh.stiffness": "tooth stiffness model",
+    "mesh.stiffness_factor": "tooth stiffness",
+    "mesh.damping_ratio": "mesh damping",
+    "mesh.backlash": "backlash",
+    "friction.law": "friction law",
+    "friction.coefficient": "friction coefficient",
+    "lubricant.viscosity": "oil viscosity",
+    "lubricant.viscosity_law.temperature": "oil temperature",
+    "operating.pinion_torque": "torque",
+}

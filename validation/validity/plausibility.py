@@ -74,13 +74,14 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     for name in ("pinion", "gear"):
         for field in ("loa_stiffness", "oloa_stiffness"):
             given, static = (getattr(getattr(one.bearings, name), field) for one in (pair, condensed))
-            found.append((abs(math.log(given / static)), f"bearings.{name}.{field}", given, static))
-    ratio, field, given, static = max(found)
+            line = "along" if field.startswith("loa") else "off"
+            found.append((abs(math.log(given / static)), f"{name} has {given:.3g} N/m {line}", static))
+    ratio, springs, static = max(found)
     if ratio > math.log(_FAR):
         yield (
-            f"The springs of [bearings] are not those of the shafts: {field} = {given:.3g} N/m, but on its "
-            f"shaft the gear has {static:.3g} N/m. Results on springs (stability, sweeps) are of "
-            "another machine. Take lumped.condensed_bearings, or correct the shafts."
+            "Stability and curves over speed stand on the springs of [bearings] and not on the shafts. There "
+            f"the {springs} the line of action, on its shaft {static:.3g} N/m. The springs that stand for "
+            "the shafts are those of lumped.condensed_bearings."
         )
 
 

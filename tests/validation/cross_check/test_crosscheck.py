@@ -45,7 +45,8 @@ def test_the_difference_is_that_of_the_motions_over_the_peak_to_peak(check):
         swing = np.ptp(b)
         if name == "x_p":  # a part of the transmission error, which measures it where it is larger
             swing = max(swing, np.ptp(own["dte"].to_numpy()))
-        assert found[name].difference == pytest.approx(np.abs(a - b).max() / swing, rel=1e-12)
+        mean = (a - b).mean() if name == "y_g" else 0.0  # small beside the vibration here
+        assert found[name].difference == pytest.approx(np.abs(a - b - mean).max() / swing, rel=1e-12)
         assert found[name].peak_to_peak_multibody == pytest.approx(np.ptp(a), rel=1e-12)
     # Rectangular stiffness: one tooth force jumps by all of itself where the entry moves. The sum is judged,
     # more than 2 % of a cycle from the switches.

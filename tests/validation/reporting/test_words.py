@@ -269,7 +269,9 @@ def test_every_uncertain_input_has_words_of_its_own(written):
             if f".{gear}." in f".{field}." and "bearings" in str(field):
                 assert name.startswith(gear)
         if "bearings" in str(field):
-            assert name.endswith("off-line" if "oloa" in str(field) else "on-line")
+            assert name.endswith(f"{'off' if 'oloa' in str(field) else 'along'} the line of action")
+    name = plain_name("shafts.pinion.bearings.0.loa_stiffness")
+    assert name == "bearing 1 of the pinion shaft, stiffness along the line of action"
     assert lumped.load_gear_pair(written.parameters).name == written.document["gear_pair"]
 
 

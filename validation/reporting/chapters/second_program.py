@@ -7,6 +7,7 @@ import xarray as xr
 
 from lumped.labelling import labelled_dataset
 from lumped.outcomes import Absent
+from validation.cross_check.words import MEASURES
 from validation.plots.prediction import overlay_figure
 from validation.reporting.blocks import Badge, Block, Content, Picture, Text, table_of
 from validation.reporting.chapter import Chapter
@@ -29,7 +30,7 @@ def write(results: Results) -> Content:
     blocks.append(
         table_of(
             "agreement",
-            "Largest difference of the second program, over the peak to peak.",
+            "Largest difference of the second program, as a share.",
             check.agreements,
             {
                 "quantity": ("quantity", lambda a: a.long_name),
@@ -38,6 +39,7 @@ def write(results: Results) -> Content:
                 "limit": ("limit", lambda a: a.limit),
                 "state": ("", lambda a: Badge("ok" if a.within else "differs")),
             },
+            MEASURES,
         )
     )
     blocks.append(
