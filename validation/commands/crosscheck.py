@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
 
     from validation.cross_check.comparison import CrossCheck
 
-_SUFFIXES = (".json", ".png", ".svg")
 #: Exit code where the multibody model has another motion: a finding about the lumped model.
 DIFFERS = 4
 
@@ -27,8 +25,7 @@ DIFFERS = 4
 def crosscheck(
     pair: opt.PairArgument = None,
     output: Annotated[
-        Path | None,
-        opt.output("All metrics as .json, or the transmission errors as .png or .svg."),
+        Path | None, opt.output("Figure of the transmission errors: .png, .svg or .pdf.")
     ] = None,
     limit: Annotated[
         str,
@@ -61,13 +58,13 @@ def crosscheck(
 
     spurcheck crosscheck
 
-    spurcheck crosscheck my_pair.toml --speed 4000 --limit 2% -o agreement.json
+    spurcheck crosscheck my_pair.toml --speed 4000 --limit 2% -o agreement.png
     """
     from validation.cross_check.comparison import crosscheck as run
     from validation.cross_check.verdict import Verdict
-    from validation.files.output import check_file
+    from validation.files.output import FIGURE_SUFFIXES, check_file
 
-    target = None if output is None else check_file(output, _SUFFIXES, force=force)
+    target = None if output is None else check_file(output, FIGURE_SUFFIXES, force=force)
     share = opt.number_in("--limit", limit, "1")
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=True)
     with progress_bar("cross-check") as bar, compiling(bar) as tell:
@@ -77,7 +74,14 @@ def crosscheck(
     else:
         _print(check)
     if target is not None:
-        _write(check, target, force)
+        from validation.cross_check.agreement import off_switch_samples
+        from validation.plots.motion import cross_check_figure
+        from validation.plots.style import save
+
+        keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
+        models = {str(fidelity): result for fidelity, result in check.multibody.items()}
+        figure = cross_check_figure(check.pair.geometry, check.lumped, models, keep)
+        save(figure, target, new=not force)
         stderr().print(f"wrote {target}")
     code = {Verdict.FAILS: FAILED, Verdict.DIFFERS: DIFFERS}.get(check.verdict, 0)
     if code:
@@ -152,19 +156,3 @@ def _word(within: bool) -> Text:
     from rich.text import Text
 
     return Text("within", "green") if within else Text("outside", "red")
-
-
-def _write(check: CrossCheck, target: Path, force: bool) -> None:
-    from validation.cross_check.agreement import off_switch_samples
-    from validation.files.output import write_text
-
-    if target.suffix.lower() == ".json":
-        write_text(target, json.dumps(_data(check), indent=1, allow_nan=False) + "\n", new=not force)
-        return
-    from validation.plots.motion import cross_check_figure
-    from validation.plots.style import save
-
-    keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
-    models = {str(fidelity): result for fidelity, result in check.multibody.items()}
-    figure = cross_check_figure(check.pair.geometry, check.lumped, models, keep)
-    save(figure, target, new=not force)

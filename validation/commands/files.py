@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,8 +13,6 @@ from validation.commands.terminal import guarded, note, stderr, stdout, table
 
 if TYPE_CHECKING:
     from lumped import GearPair
-
-Form = Literal["elastic", "mesh"]
 
 
 @guarded
@@ -67,13 +65,6 @@ def init(
     ] = None,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
-    bearing_stiffness: Annotated[
-        str | None,
-        typer.Option("--bearing-stiffness", help="With --teeth: of each shaft, N/m or '300 N/um'."),
-    ] = None,
-    bearing_damping: Annotated[
-        str | None, typer.Option("--bearing-damping", help="With --teeth: damping ratio of each shaft.")
-    ] = None,
     oil: Annotated[
         str | None, typer.Option("--oil", help="With --teeth: ISO viscosity grade, vg220.")
     ] = None,
@@ -100,7 +91,7 @@ def init(
     spurcheck init --teeth 19/41 --module 2.5 --face-width 20 --speed 1450 --torque 80 --oil vg220
 
     spurcheck init --teeth 13/41 --module 2.5 --face-width 20 --speed 1450 --torque 80
-    --set pinion.profile_shift=0.4 --set gear.face_width=18
+    --set pinion.profile_shift=0.4 --set 'bearings.stiffness=300 N/um'
     """
     from lumped.errors import refuse
     from lumped.schema.files import preset_names, preset_text
@@ -111,8 +102,6 @@ def init(
         "--face-width": ("gears.face_width", face_width),
         "--speed": ("operating.pinion_speed", speed),
         "--torque": ("operating.pinion_torque", torque),
-        "--bearing-stiffness": ("bearings.stiffness", bearing_stiffness),
-        "--bearing-damping": ("bearings.damping_ratio", bearing_damping),
         "--oil": ("oil", oil),
         "--law": ("friction.law", law),
         **{f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()},
@@ -190,13 +179,6 @@ def export(
             "model). Of a result: .csv, .mat or .nc. The suffix chooses."
         ),
     ],
-    rexs_version: Annotated[
-        str | None, typer.Option("--rexs-version", metavar="VERSION", help="1.4 to 1.7; default 1.7.")
-    ] = None,
-    form: Annotated[
-        Form | None,
-        typer.Option(help="States of the linear model: all 10, or the 6 that feed back; default relative."),
-    ] = None,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,
@@ -220,45 +202,30 @@ def export(
     """
     from lumped.errors import refuse
 
-    pair_options = {
-        "--rexs-version": rexs_version,
-        "--form": form,
-        "--speed": speed,
-        "--torque": torque,
-        "--law": law,
-        "--set": settings,
-    }
     if source.lower().endswith(".nc"):
-        given = [name for name, value in pair_options.items() if value is not None]
-        if given:
+        options = {"--speed": speed, "--torque": torque, "--law": law, "--set": settings}
+        if given := [name for name, value in options.items() if value is not None]:
             raise refuse(given[0], "with a result file", "a gear pair", "Leave it out.")
         _export_result(source, output, force=force)
     else:
         pair = opt.gear_pair(source, speed, torque, law, settings, own_teeth=True)
-        _export_pair(pair, output, rexs_version, form, force=force)
+        _export_pair(pair, output, force=force)
     stderr().print(f"wrote {output}")
 
 
-def _export_pair(
-    pair: GearPair, output: Path, rexs_version: str | None, form: Form | None, *, force: bool
-) -> None:
+def _export_pair(pair: GearPair, output: Path, *, force: bool) -> None:
     from lumped.errors import refuse
     from validation.exchange import write_rexs, write_state_space
     from validation.exchange.results import STATE_SPACE_SUFFIXES
     from validation.exchange.rexs.encodings import FORMS
-    from validation.exchange.rexs.vocabulary import WRITTEN
 
     if output.suffix.lower() in STATE_SPACE_SUFFIXES:
-        if rexs_version is not None:
-            raise refuse("--rexs-version", f"with {output.suffix}", "a REXS file", "Leave it out.")
-        write_state_space(pair, output, form or "elastic", force=force)
+        write_state_space(pair, output, force=force)
         return
     if not output.name.lower().endswith(tuple(FORMS)):
         allowed = "a name ending in " + ", ".join([*FORMS, *STATE_SPACE_SUFFIXES])
         raise refuse("output", output, allowed, "The suffix chooses the format.")
-    if form is not None:
-        raise refuse("--form", "with a REXS file", "a linear model", "Leave it out.")
-    write_rexs(pair, output, rexs_version or WRITTEN[-1], force=force)
+    write_rexs(pair, output, force=force)
     note(
         "REXS is written without bearings, shafts, damping, friction law, stiffness model and inertia: "
         "keep the parameter file"

@@ -23,27 +23,20 @@ if TYPE_CHECKING:
 
     #: What is written as data, and the figure.
     View = tuple[xr.Dataset, Callable[[], Figure]]
-    Speeds = tuple[float, float]
 
 #: Speeds and damping ratios of a chart.
 _CHART = (801, 201)
 _AXES = {
     "chart": "any axes",
     "boundaries": "one axis other than speed_rpm, with or without speed_rpm,",
-    "campbell": "the one axis speed_rpm",
+    "campbell": "no axis but speed_rpm",
 }
 
 
 @guarded
 def stability(
     pair: opt.PairArgument = None,
-    output: Annotated[
-        list[Path] | None,
-        opt.output(
-            "Result file, as often as needed: .nc, .csv or .mat for data, .png, .svg or .pdf for the "
-            "figure; the suffix chooses."
-        ),
-    ] = None,
+    output: opt.ResultFiles = None,
     view: Annotated[
         str,
         typer.Option(
@@ -69,12 +62,6 @@ def stability(
             "damping that closes each.",
         ),
     ] = False,
-    operating_range: Annotated[
-        str | None,
-        typer.Option(
-            "--operating-range", metavar="FROM:TO", help="Speeds of operation in rpm or '10Hz:50Hz', marked."
-        ),
-    ] = None,
     supports: opt.Supports = "springs",
     speed: opt.Speed = None,
     torque: opt.Torque = None,
@@ -94,7 +81,7 @@ def stability(
     spurcheck stability -o chart.png
 
     spurcheck stability my_pair.toml --axis speed_rpm=500:20000:1000 --axis damping_ratio=0.002:0.05:1000
-    --tongues --operating-range 3000:8000 -o chart.nc -o chart.pdf
+    --tongues -o chart.nc -o chart.pdf
 
     spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
 
@@ -108,7 +95,6 @@ def stability(
 
     targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
     grid = opt.axes_values(axes or [], GEAR_AXES)
-    marked = None if operating_range is None else _range(operating_range)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     opt.check_supports(gear_pair, supports)
     _check(view, grid, targets, tongues, supports)
@@ -131,11 +117,11 @@ def stability(
         stdout().print(table(title, "quantity", ">value", rows=rows.items()))
     if targets or axes or tongues or view != "chart":
         if view == "chart":
-            data, draw = _chart(gear_pair, grid, marked, tongues, supports)
+            data, draw = _chart(gear_pair, grid, tongues, supports)
         elif view == "boundaries":
-            data, draw = _boundaries(gear_pair, grid, marked, supports)
+            data, draw = _boundaries(gear_pair, grid, supports)
         else:
-            data, draw = _campbell(gear_pair, grid, marked)
+            data, draw = _campbell(gear_pair, grid)
         draw_once = cache(draw)
         for target in targets:
             opt.write_result(target, data, draw_once, force=force)
@@ -152,49 +138,24 @@ def _check(
 
     if view not in _AXES:
         raise refuse("--view", view, ", ".join(_AXES), "For example --view campbell.")
-    others, with_speed = len(set(axes) - {"speed_rpm"}), "speed_rpm" in axes
-    fits = {"chart": True, "boundaries": others <= 1, "campbell": with_speed and not others}
-    if axes and not fits[view]:
-        raise refuse("--axis", ", ".join(axes), f"{_AXES[view]} for --view {view}", "Change the axes.")
+    others = len(set(axes) - {"speed_rpm"})
+    if not {"chart": True, "boundaries": others == 1, "campbell": not others}[view]:
+        action = "For example --axis damping_ratio=0.005:0.05:5." if view == "boundaries" else "Leave it out."
+        raise refuse("--axis", ", ".join(axes) or "none", f"{_AXES[view]} for --view {view}", action)
     figures = [path for path in targets if path.suffix.lower() not in DATA_SUFFIXES]
     if figures and view == "chart" and len(axes) > 2:
         raise refuse("--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv.")
-    if supports == "springs":
-        return
-    if view == "campbell":
-        action = "Take --view chart or boundaries, or --supports springs."
-        raise refuse("--view", view, "chart, boundaries with --supports shafts", action)
-    if tongues:
-        action = "Leave it out, or trace them over one axis with --view boundaries."
-        raise refuse("--tongues", "given", "not with --supports shafts", action)
-    if "bearing_stiffness" in axes:
-        action = "Change the bearings of the shafts by --set shafts.pinion.bearings.1.loa_stiffness=..."
-        raise refuse("--axis", "bearing_stiffness", "not with --supports shafts", action)
-    if view == "boundaries" and not others:
-        action = "For example --axis damping_ratio=0.005:0.05:5."
-        raise refuse("--axis", "none", "an axis other than speed_rpm with --supports shafts", action)
+    for wrong, option, value, allowed, action in (
+        (view == "campbell", "--view", view, "chart, boundaries", "Or take --supports springs."),
+        (tongues, "--tongues", "given", "nothing", "Or trace them over one axis with --view boundaries."),
+        ("bearing_stiffness" in axes, "--axis", "bearing_stiffness", "an axis of the pair",
+         "Change the bearings of the shafts by --set shafts.pinion.bearings.1.loa_stiffness=..."),
+    ):  # fmt: skip
+        if wrong and supports == "shafts":
+            raise refuse(option, value, f"{allowed} with --supports shafts", action)
 
 
-def _range(text: str) -> Speeds:
-    """Range of speeds [rpm] written FROM:TO."""
-    from lumped.errors import refuse
-
-    ends = text.split(":")
-    if len(ends) == 2:
-        low, high = (opt.number_in("--operating-range", end, "rpm") for end in ends)
-        if 0.0 < low < high:
-            return low, high
-    advice = "For example --operating-range 3000:8000."
-    raise refuse("--operating-range", text, "FROM:TO in rpm, 0 < FROM < TO", advice)
-
-
-def _chart(
-    pair: GearPair,
-    axes: Mapping[str, FloatArray],
-    marked: Speeds | None,
-    tongues: bool,
-    supports: opt.SupportsName,
-) -> View:
+def _chart(pair: GearPair, axes: Mapping[str, FloatArray], tongues: bool, supports: opt.SupportsName) -> View:
     from floquet import predicted_lines
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.chart import stability_chart
@@ -228,7 +189,7 @@ def _chart(
     def draw() -> Figure:
         at = {name: GEAR_AXES[name].own(pair) for name in grid}
         lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()} if regions else {}
-        return stability_figure(chart, at, regions, lines, marked)
+        return stability_figure(chart, at, regions, lines)
 
     return data, draw
 
@@ -277,25 +238,16 @@ def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
     return regions
 
 
-def _boundaries(
-    pair: GearPair,
-    axes: Mapping[str, FloatArray],
-    marked: Speeds | None,
-    supports: opt.SupportsName,
-) -> View:
+def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.SupportsName) -> View:
     from floquet import stability_boundaries
     from floquet.gear.axes import GEAR_AXES, chart_axes
-    from validation.plots.stability import boundaries_figure, tongues_figure
+    from validation.plots.stability import boundaries_figure
 
     grid = dict(axes)
-    speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"][[0, -1]])
-    name, values = next(iter(grid.items()), ("damping_ratio", speeds))
-    if name == "damping_ratio" and supports == "springs":
-        traced = _traced(pair, speeds)
-        return traced.dataset, lambda: tongues_figure(traced, marked)
-    ends = float(speeds.min()), float(speeds.max())
+    speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
+    ends, (name,) = (float(speeds.min()), float(speeds.max())), grid
     with progress_bar("boundaries") as tell:
-        found = stability_boundaries(pair, ends, {name: values}, supports=supports, progress=tell)
+        found = stability_boundaries(pair, ends, grid, supports=supports, progress=tell)
     rows = [
         (
             str(part["label"].item()),
@@ -309,14 +261,13 @@ def _boundaries(
     headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
     none = f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value"
     stdout().print(table(f"tongues over {GEAR_AXES[name].long_name}", *headings, rows=rows) if rows else none)
-    return found, lambda: boundaries_figure(found, marked)
+    return found, lambda: boundaries_figure(found)
 
 
-def _campbell(pair: GearPair, axes: Mapping[str, FloatArray], marked: Speeds | None) -> View:
+def _campbell(pair: GearPair, axes: Mapping[str, FloatArray]) -> View:
     from floquet.gear.axes import chart_axes, operating_rpm
     from floquet.gear.campbell import campbell
     from validation.plots.stability import campbell_figure
 
-    speeds = axes.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
-    diagram = campbell(pair, speeds)
-    return diagram, lambda: campbell_figure(diagram, operating_rpm(pair), marked)
+    diagram = campbell(pair, axes.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"]))
+    return diagram, lambda: campbell_figure(diagram, operating_rpm(pair))

@@ -1,4 +1,4 @@
-"""Stability: charts with their tongues, traced tongues, Campbell diagram, multipliers."""
+"""Stability: charts with their tongues, boundaries, Campbell diagram."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from scipy.ndimage import maximum_filter
 from scipy.optimize import isotonic_regression
 
 from floquet.gear.regions import LabelledRegion
-from floquet.gear.tongues import StabilityMargins, TongueMargin
+from floquet.gear.tongues import TongueMargin
 from lumped.typing import FloatArray
 from validation.plots.maps import COLOURS
 from validation.plots.style import (
@@ -35,8 +35,6 @@ from validation.plots.style import (
     one_panel,
     write_beside,
 )
-
-Speeds = tuple[float, float] | None
 
 UNSTABLE = "#f2a26b"
 """Fill of what is unstable."""
@@ -56,7 +54,6 @@ def stability_figure(
     at: Mapping[str, float] | None = None,
     regions: Sequence[LabelledRegion | TongueMargin] = (),
     lines: Mapping[str, float] | None = None,
-    operating_range: Speeds = None,
 ) -> Figure:
     """How fast disturbances decay over the two axes of a chart, edges of instability as lines; or over one.
 
@@ -71,12 +68,11 @@ def stability_figure(
         ``floquet.gear.regions.label_regions``; over mesh damping also traced tongues, of
         ``stability_margins``, whose edges are then drawn
     lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
-    operating_range : speeds of operation [rpm]
     """
     dims = map(str, chart["spectral_radius"].dims)
     x, *rest = sorted(dims, key=lambda name: name != "speed_rpm")  # speed runs to the right
     if not rest:
-        return _line_figure(chart, x, (at or {}).get(x), operating_range)
+        return _line_figure(chart, x, (at or {}).get(x))
     y = rest[0]
     figure, ax = one_panel(3.4)
     chart = chart.sortby([x, y])
@@ -108,7 +104,6 @@ def stability_figure(
         mark_operating_point(ax, (at[x], at[y]))
     if x == "speed_rpm":
         _name_regions(ax, regions, lines or {})
-        mark_operating_range(ax, operating_range)
     return figure
 
 
@@ -133,7 +128,7 @@ def _mark_thin(ax: Axes, chart: xr.Dataset, x: str, y: str) -> None:
     ax.plot(*places, "x", color=RED, markersize=5, markeredgewidth=1.0, zorder=3)
 
 
-def _line_figure(chart: xr.Dataset, x: str, value: float | None, operating_range: Speeds) -> Figure:
+def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
     """Spectral radius along the one axis of a chart."""
     figure, ax = one_panel(2.9)
     radius = chart["spectral_radius"].sortby(x)
@@ -149,8 +144,6 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None, operating_range
     mark_operating_value(ax, value)
     ax.set_title(_certificate(chart), loc="right", fontsize=7.5, color=GREY)
     ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
-    if x == "speed_rpm":
-        mark_operating_range(ax, operating_range)
     return figure
 
 
@@ -219,25 +212,7 @@ def _name_regions(
             ax.axvline(speed, color=GREY, linewidth=0.7, linestyle=(0, (1, 2)))
 
 
-def tongues_figure(margins: StabilityMargins, operating_range: Speeds = None) -> Figure:
-    """Edges of every tongue from zero mesh damping to the damping that closes it.
-
-    ``margins``: of ``floquet.gear.tongues.stability_margins``.
-    """
-    figure, ax = one_panel(3.2)
-    ax.set(xlim=margins.speed_range, ylim=(0.0, 1.25 * max(margins.critical_damping, margins.damping, 1e-3)))
-    for t in margins.tongues:
-        ax.fill_betweenx(t.damping, t.left, t.right, color=UNSTABLE, edgecolor=RED, linewidth=1.0)
-    rows = [(t.label, t.tip_speed, t.critical_damping) for t in margins.tongues]
-    label_above(ax, *zip(*rows, strict=True)) if rows else None
-    ax.axhline(margins.damping, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
-    mark_operating_point(ax, (margins.rpm, margins.damping))
-    mark_operating_range(ax, operating_range)
-    ax.set(xlabel="pinion speed [rpm]", ylabel="mesh damping ratio [-]")
-    return figure
-
-
-def boundaries_figure(found: xr.Dataset, operating_range: Speeds = None) -> Figure:
+def boundaries_figure(found: xr.Dataset) -> Figure:
     """Unstable speeds over another parameter, every tongue named.
 
     ``found``: dataset of ``floquet.stability_boundaries`` with one more axis.
@@ -267,14 +242,11 @@ def boundaries_figure(found: xr.Dataset, operating_range: Speeds = None) -> Figu
     else:
         ax.set_xticks([])
         ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
-    mark_operating_range(ax, operating_range)
     ax.set(xlabel="pinion speed [rpm]", ylabel=axis_label(found, name))
     return figure
 
 
-def campbell_figure(
-    diagram: xr.Dataset, operating_rpm: float | None = None, operating_range: Speeds = None
-) -> Figure:
+def campbell_figure(diagram: xr.Dataset, operating_rpm: float | None = None) -> Figure:
     """Frequencies of the Floquet solutions and their growth over pinion speed.
 
     ``diagram``: dataset of ``floquet.gear.campbell.campbell``.
@@ -314,7 +286,6 @@ def campbell_figure(
     legend_above(top, 3)
     for ax in (top, bottom):
         mark_operating_value(ax, operating_rpm, "operating point" if ax is top else "")
-    mark_operating_range(top, operating_range, lower=True)
     top.tick_params(labelbottom=False)
     return figure
 
@@ -329,8 +300,7 @@ def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
     east = point[0] < 0.5 * (left + right)
     height = (point[1] - bottom) / (top - bottom)
     north = height < 0.5
-    # Below the bar of the operating range, which runs along the upper edge.
-    shift = 7 if north else -7 if height < 0.9 else -22
+    shift = 7 if north else -7
     aside, va = (8, "left") if east else (-8, "right"), "bottom" if north else "top"
     write_beside(
         ax, "operating point", point, (aside[0], shift), ha=aside[1], va=va, fontsize=8.5, bbox=WHITE_BOX
@@ -344,20 +314,6 @@ def mark_operating_value(ax: Axes, value: float | None, words: str = "operating 
         return
     ax.axvline(value, color=BLACK, linewidth=1.0, linestyle="--")
     write_beside(ax, words, (value, 0.03), (3, 0), IN_X, rotation=90, va="bottom", bbox=WHITE_BOX)
-
-
-def mark_operating_range(ax: Axes, speeds: Speeds, *, lower: bool = False) -> None:
-    """Bar along the upper (or lower) edge over the speeds of operation [rpm], if any, as far as shown."""
-    if speeds is None:
-        return
-    left, right = sorted(ax.get_xlim())
-    shown = (max(speeds[0], left), min(speeds[1], right))
-    if shown[0] >= shown[1]:
-        return
-    height, shift, va = (0.012, 4, "bottom") if lower else (0.985, -4, "top")
-    ax.plot(shown, (height, height), transform=ax.get_xaxis_transform(), color=BLACK, linewidth=3.0)
-    place = (0.5 * (shown[0] + shown[1]), height)
-    write_beside(ax, "operating range", place, (0, shift), IN_X, ha="center", va=va, bbox=WHITE_BOX)
 
 
 def axis_label(chart: xr.Dataset, name: str) -> str:

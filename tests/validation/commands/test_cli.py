@@ -129,12 +129,13 @@ def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, 
     monkeypatch.setattr(
         "validation.cross_check.comparison.crosscheck", lambda *_, **options: given.update(options) or judged
     )
-    path = tmp_path / "agreement.json"
+    path = tmp_path / "agreement.png"
     result = run("crosscheck", "-o", path, "--limit", "2%")
     assert result.exit_code == code
     assert given["limit"] == pytest.approx(0.02)
     assert f"{verdict}: {verdict.text}" in result.stdout
-    assert json.loads(path.read_text())["verdict"] == verdict.word
+    assert path.read_bytes().startswith(b"\x89PNG")
+    assert json.loads(run("crosscheck", "--json").stdout)["verdict"] == verdict.word
 
 
 def test_stability_exits_by_the_operating_point(tmp_path):

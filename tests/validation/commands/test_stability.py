@@ -6,7 +6,6 @@ import xarray as xr
 
 import lumped
 from floquet import gear_pair_multipliers
-from validation.commands.stability import _range
 
 from .conftest import refused as refused_command
 from .conftest import run as command
@@ -50,10 +49,8 @@ def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
 
 def test_chart_and_traced_boundaries_are_in_one_file(tmp_path):
     path, picture = tmp_path / "chart.nc", tmp_path / "chart.pdf"
-    result = run(
-        *TONGUE, *SPEEDS, "--axis", "damping_ratio=0:0.04:5", "--tongues", "--operating-range", "15000:17000",
-        "-o", path, "-o", picture,
-    )  # fmt: skip
+    axes = (*SPEEDS, "--axis", "damping_ratio=0:0.04:5")
+    result = run(*TONGUE, *axes, "--tongues", "-o", path, "-o", picture)
     assert result.exit_code == 0, result.stderr
     found = opened(path)
     assert list(found["label"].to_numpy()) == ["2w3/2"]
@@ -95,8 +92,7 @@ def test_campbell_diagram(tmp_path):
     (("--axis", "damping_ratio=0:2:5"), "--axis damping_ratio = 1.5: allowed >= 0 and <= 1"),
     (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),
     ((*SPEEDS, *SPEEDS), "speed_rpm is given twice"),
-    (("--operating-range", "5000"), "FROM:TO"),
-    (("--operating-range", "8000:3000"), "0 < FROM < TO"),
+    (("--view", "boundaries", *SPEEDS), "one axis other than speed_rpm"),
     (("--view", "campbell", "--axis", "torque=1:2:3"), "speed_rpm"),
     (("--axis", "torque=1:2:3", "--view", "boundaries", "--axis", "damping_ratio=0:0.1:2"), "speed_rpm"),
 ])  # fmt: skip
@@ -112,10 +108,6 @@ def test_nothing_is_written_where_a_view_fails(tmp_path):
     assert "one or two axes" in refused(*three, "-o", tmp_path / "new.nc", "-o", tmp_path / "chart.png")
     assert [p.name for p in tmp_path.iterdir()] == ["chart.nc"]
     assert existing.read_text() == "mine"
-
-
-def test_a_marked_range_may_carry_a_unit():
-    assert _range("50Hz:8000") == pytest.approx((3000.0, 8000.0), rel=1e-12)
 
 
 def test_stability_on_shafts(tmp_path, shafted_file):
@@ -134,7 +126,6 @@ def test_stability_on_shafts(tmp_path, shafted_file):
         (("--view", "campbell"), "--view = campbell: allowed chart, boundaries with --supports shafts"),
         (("--tongues",), "--view boundaries"),
         (("--axis", "bearing_stiffness=1e8:2e8:2"), "shafts.pinion.bearings"),
-        (("--view", "boundaries", *axis), "an axis other than speed_rpm"),
     ):
         assert expected in refused(shafted_file, *on_shafts, *arguments)
     assert "springs for a pair without [shafts]" in refused(*on_shafts)
