@@ -247,7 +247,7 @@ def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.Su
     speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
     ends, (name,) = (float(speeds.min()), float(speeds.max())), grid
     with progress_bar("boundaries") as tell:
-        found = stability_boundaries(pair, ends, grid, supports=supports, progress=tell)
+        found = stability_boundaries(pair, ends, {name: grid[name]}, supports=supports, progress=tell)
     rows = [
         (
             str(part["label"].item()),
