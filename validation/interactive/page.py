@@ -23,7 +23,7 @@ from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
 
 #: Parts of the page's own script, in this order.
-_SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "jumps.js", "start.js")
+_SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "start.js")
 
 
 def write_interactive_page(
@@ -90,7 +90,6 @@ def render(results: PageResults, data_name: str) -> str:
         found=results.found,
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
         branches=isinstance(results.branches, xr.Dataset),
-        jumps=results.jumps,
         no_branches=results.branches if isinstance(results.branches, str) else "",
         missing={law_of(pair.friction, law).title: reason for law, reason in results.missing.items()},
         data_name=data_name,

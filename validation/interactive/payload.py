@@ -11,7 +11,6 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from floquet.gear.axes import operating_rpm
-from lumped import GearPair
 from lumped.friction.registry import law_of
 from lumped.model.results import LOAD_NOISE
 from validation.interactive.results import SAMPLES, PageResults, Slices
@@ -34,7 +33,6 @@ def payload(results: PageResults) -> dict[str, Any]:
         "point": {"speed": operating_rpm(pair), "damping": pair.mesh.damping_ratio},
         "stability": [_slices(slices) for slices in results.stability.values()],
         "sweep": _sweep(results),
-        "jumps": None if results.jumps is None else _jumps(results.jumps, results.pair),
         "limits": {"load": LOAD_NOISE, "reversal": list(REVERSAL_LIMITS)},
     }
 
@@ -119,24 +117,6 @@ def _branches(data: xr.Dataset) -> list[dict[str, Any]]:
             }
         )
     return found
-
-
-def _jumps(data: xr.Dataset, pair: GearPair) -> dict[str, Any]:
-    """Jump map: rows are torques; ``at`` holds speed, torque and direction of every jump."""
-    data = data.transpose("torque", "speed_rpm", ...)
-    return {
-        "own": pair.operating.pinion_torque,
-        "speed": _numbers(data["speed_rpm"]),
-        "torque": _numbers(data["torque"]),
-        "rms": [_numbers(row) for row in 1e6 * data["dte_rms_largest"].to_numpy()],
-        "load": [_numbers(row) for row in data["largest_load"].to_numpy()],
-        "motions": data["motions"].to_numpy().tolist(),
-        "kept": data["contact_kept"].to_numpy().astype(int).tolist(),
-        "at": [
-            {"speed": _numbers(data["jump_speed_rpm"][up]), "torque": _numbers(data["jump_torque"][up])}
-            for up in (data["jump_rising"].to_numpy().astype(bool) == way for way in (True, False))
-        ],
-    }
 
 
 def _number(value: float) -> float | None:

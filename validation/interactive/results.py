@@ -12,7 +12,6 @@ import xarray as xr
 import lumped
 from floquet.gear.axes import GEAR_AXES, chart_axes, operating_rpm, speed_range, with_point
 from floquet.gear.chart import stability_chart
-from floquet.gear.jump_map import jump_map
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.regions import LabelledRegion, label_regions
 from floquet.gear.response import ResponseBranches, response_branches
@@ -31,9 +30,6 @@ Grid = dict[str, FloatArray]
 
 #: Speeds of the motions beyond contact loss, over the operating speed.
 BRANCH_SPEEDS = (0.8, 1.25)
-#: Torques of the jump map, over the operating torque, and its size: torques, speeds.
-MAP_TORQUES = (0.4, 2.5)
-MAP_SIZE = (7, 61)
 #: Accuracy of the monodromy matrices; the page shows six decimals.
 _RTOL = 1e-7
 #: Factors on the bearing stiffness span what a change of bearing or housing does.
@@ -45,7 +41,7 @@ SAMPLES, _MOST = 48, 60
 
 @dataclass(frozen=True)
 class Sampling:
-    """How finely the page samples: nodes of its charts, speeds of the response, and of the jump map.
+    """How finely the page samples: nodes of its charts, and speeds of the response.
 
     ``branches`` are the slowest and fastest speed of the motions beyond contact loss over the operating
     speed; None: without them.
@@ -56,12 +52,11 @@ class Sampling:
     slices: int = 7
     sweep_speeds: int = 80
     branches: tuple[float, float] | None = BRANCH_SPEEDS
-    jumps: tuple[int, int] = MAP_SIZE
 
 
 #: Samples per mesh cycle of the response over speed.
 _SAMPLES = 96
-_BEYOND, _JUMPS = "motions beyond contact loss", "jumps over speed and torque"
+_BEYOND = "motions beyond contact loss"
 FINE = Sampling()
 
 
@@ -97,7 +92,6 @@ class PageResults:
     resonances : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
     branches : motions with unilateral contact, see ``branch_dataset``; why they are not available; None where
         the linear model keeps contact at all speeds
-    jumps : ``floquet.jump_map`` over speed and torque; None where there are no such motions
     """
 
     pair: GearPair
@@ -109,7 +103,6 @@ class PageResults:
     missing: dict[str, str]
     resonances: tuple[float, ...]
     branches: xr.Dataset | str | None
-    jumps: xr.Dataset | None
 
     def dataset(self) -> xr.Dataset:
         """Every number of the page; the charts carry ``_over_`` and their third parameter in their names."""
@@ -119,9 +112,6 @@ class PageResults:
         ]
         parts.append(self.sweep)
         parts += [self.branches] if isinstance(self.branches, xr.Dataset) else []
-        if self.jumps is not None:
-            names = [*self.jumps.variables, "jump"]
-            parts.append(self.jumps.rename({name: f"map_{name}" for name in dict.fromkeys(map(str, names))}))
         merged = xr.merge(parts, join="exact", combine_attrs="override")
         merged.attrs = provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"}
         return merged
@@ -152,14 +142,8 @@ def compute(
         notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
         multipliers = gear_pair_multipliers(pair)
         branches = _branches(
-            pair, sampling, sweeps[pair.friction.law], lambda f: tell(0.6 + 0.2 * f, _BEYOND)
+            pair, sampling, sweeps[pair.friction.law], lambda f: tell(0.6 + 0.4 * f, _BEYOND)
         )
-        jumps = None
-        if isinstance(branches, xr.Dataset) and sampling.branches is not None:
-            found_jumps = jumps_about_operation(
-                pair, sampling.branches, sampling.jumps, lambda f, _="", /: tell(0.8 + 0.2 * f, _JUMPS)
-            )
-            jumps = None if isinstance(found_jumps, str) else found_jumps
     laws = xr.DataArray(
         np.array(list(sweeps), dtype=object), dims="law", name="law", attrs={"long_name": "friction law"}
     )
@@ -173,7 +157,6 @@ def compute(
         missing=missing,
         resonances=tuple(mode.resonant_speed for mode in found),
         branches=branches,
-        jumps=jumps,
     )
 
 
@@ -331,34 +314,9 @@ def branches_about_operation(
 
     ``factors`` are the slowest and fastest speed over the operating speed, cut to the pair's range.
     """
-    try:
-        return response_branches(pair, _speeds(pair, factors), seeds=0, progress=progress)
-    except (NumericalError, ParameterError) as error:
-        return str(error)
-
-
-def jumps_about_operation(
-    pair: GearPair,
-    factors: tuple[float, float] = BRANCH_SPEEDS,
-    size: tuple[int, int] = MAP_SIZE,
-    progress: Progress | None = None,
-) -> xr.Dataset | str:
-    """Jump map over speed and torque about the operating point; why it cannot be computed.
-
-    Motions of one mesh cycle, without friction, which hardly moves them and triples the time. ``size`` is the
-    number of torques, in equal ratios, and of speeds.
-    """
-    smooth = pair.with_(friction__law="none")
-    axes = {
-        "speed_rpm": np.linspace(*_speeds(pair, factors), size[1]),
-        "torque": pair.operating.pinion_torque * np.geomspace(*MAP_TORQUES, size[0]),
-    }
-    try:
-        return jump_map(smooth, axes, (1,), progress=progress)
-    except (NumericalError, ParameterError) as error:
-        return str(error)
-
-
-def _speeds(pair: GearPair, factors: tuple[float, float]) -> tuple[float, float]:
     own, (slowest, fastest) = operating_rpm(pair), speed_range(pair)
-    return max(factors[0] * own, slowest), min(factors[1] * own, fastest)
+    speeds = max(factors[0] * own, slowest), min(factors[1] * own, fastest)
+    try:
+        return response_branches(pair, speeds, seeds=0, progress=progress)
+    except (NumericalError, ParameterError) as error:
+        return str(error)

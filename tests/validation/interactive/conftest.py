@@ -18,7 +18,7 @@ HOSTILE = (
     "</style></title></noscript><script>document.title='owned'</script>"
     "<img src=x onerror=\"document.title='owned'\">{{ 7*7 }} \u2028 Zahnrad & Söhne <!--<script>",
 )
-SAMPLING = Sampling(speeds=31, dampings=6, slices=3, sweep_speeds=9, branches=(0.99, 1.01), jumps=(3, 5))
+SAMPLING = Sampling(speeds=31, dampings=6, slices=3, sweep_speeds=9, branches=(0.99, 1.01))
 WIDE, PHONE = (1280, 900), (390, 844)
 
 

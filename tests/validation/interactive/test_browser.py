@@ -122,16 +122,3 @@ def test_hover_over_a_branch_shows_its_load_and_multiplier(page, data):
     page.choose("law", 0)
     assert page.drawn("sweep-plot", "plot.data.some(t => t.name?.startsWith('unilateral contact'))") is False
     assert page.run("return document.getElementById('motion').hidden") is True
-
-
-def test_hover_over_the_jump_map_shows_the_data_file(page, data):
-    one = data.isel(map_torque=1, map_speed_rpm=2)
-    lines = page.hover("jumps-plot", float(one["map_speed_rpm"]), float(one["map_torque"]))
-    assert lines == [
-        f"{float(one['map_speed_rpm']):.5g} rpm, {float(one['map_torque']):.4g} N m",
-        f"largest motion {1e6 * float(one['map_dte_rms_largest']):.4g} µm rms, "
-        f"tooth load up to {float(one['map_largest_load']):.4g} N",
-        "1 stable motion",
-        "contact kept" if one["map_contact_kept"] else "contact loss",
-    ]
-    assert "; ".join(lines) in page.text("jumps-text")
