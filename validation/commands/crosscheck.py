@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -70,7 +71,8 @@ def crosscheck(
     with progress_bar("cross-check") as bar, compiling(bar) as tell:
         check = run(gear_pair, cycles=cycles, samples_per_cycle=samples, limit=share, progress=tell)
     if as_json:
-        print_json(_data(check))
+        agreements = [asdict(one) | {"within": one.within} for one in check.agreements]
+        print_json({"verdict": check.verdict.word, "failures": check.failures, "agreements": agreements})
     else:
         _print(check)
     if target is not None:
@@ -108,24 +110,6 @@ def _print(check: CrossCheck) -> None:
     console.print(f"[bold]{verdict}[/bold]: {verdict.text}.", markup=True, soft_wrap=True)
     if told:
         console.print(told, soft_wrap=True)
-
-
-def _data(check: CrossCheck) -> Any:
-    """Verdict, failures and agreements as plain data."""
-    from dataclasses import asdict
-
-    from validation.reporting.blocks import plain
-
-    def data(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {key: data(one) for key, one in value.items()}
-        return plain(value)
-
-    return {
-        "verdict": check.verdict.word,
-        "failures": [data(asdict(failure)) for failure in check.failures],
-        "agreements": [data(asdict(a)) | {"within": a.within} for a in check.agreements],
-    }
 
 
 def _tables(check: CrossCheck) -> list[Table]:

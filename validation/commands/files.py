@@ -214,17 +214,15 @@ def export(
 
 
 def _export_pair(pair: GearPair, output: Path, *, force: bool) -> None:
-    from lumped.errors import refuse
     from validation.exchange import write_rexs, write_state_space
     from validation.exchange.results import STATE_SPACE_SUFFIXES
     from validation.exchange.rexs.encodings import FORMS
+    from validation.files.output import check_file
 
     if output.suffix.lower() in STATE_SPACE_SUFFIXES:
         write_state_space(pair, output, force=force)
         return
-    if not output.name.lower().endswith(tuple(FORMS)):
-        allowed = "a name ending in " + ", ".join([*FORMS, *STATE_SPACE_SUFFIXES])
-        raise refuse("output", output, allowed, "The suffix chooses the format.")
+    check_file(output, (*FORMS, *STATE_SPACE_SUFFIXES), force=force)
     write_rexs(pair, output, force=force)
     note(
         "REXS is written without bearings, shafts, damping, friction law, stiffness model and inertia: "

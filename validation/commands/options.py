@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import math
-import re
 import tomllib
-import warnings
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -14,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
     import numpy as np
     import xarray as xr
@@ -26,8 +23,6 @@ if TYPE_CHECKING:
     from lumped.errors import ParameterError
 
 DEFAULT_PAIR = "nasa_28_28"
-#: Fields that only some friction laws or forms of relief read.
-_READ_BY_LAWS = re.compile(r"^(friction\.(?!law$)|lubricant\.)|\.(roughness$|(tip|root)_relief)")
 _LARGEST_COUNT = 5000
 
 
@@ -116,40 +111,12 @@ def gear_pair(
         pair = own.with_(changes)
     except ParameterError as error:
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
-    for path in without_effect(own, pair, changes):
-        cause = f"the law is {pair.friction.law}"
-        if "relief" in path:
-            cause = f"mesh.relief is '{pair.mesh.relief}'"
-        elif path.endswith(".roughness") and pair.friction.composite_roughness is not None:
-            cause = "friction.composite_roughness is given"
-        note(f"{options[path]} changes nothing in the motion, for {cause}.")
     for warning in parameter_warnings(pair):
         note(warning)
     if not own_teeth and pair.healthy is not pair:
         note("this command takes all teeth of a gear as alike; spurcheck teeth takes them as given.")
         return pair.healthy
     return pair
-
-
-def without_effect(own: GearPair, pair: GearPair, changes: Mapping[str, Any]) -> Iterator[str]:
-    """Return the fields of the changes that made ``pair`` of ``own`` and that no law of it reads."""
-    from lumped import LawRangeWarning
-    from lumped.errors import ParameterError
-    from lumped.quasi_static.contacts import contact_of
-
-    def laws(of: GearPair) -> list[bytes]:
-        elements = contact_of(of).elements(of)
-        functions = (elements.stiffness, elements.friction, elements.error)
-        return [array.tobytes() for law in functions for array in (law.breaks, law.coefficients)]
-
-    for path in changes:
-        if not _READ_BY_LAWS.search(path):
-            continue
-        with warnings.catch_warnings(), suppress(ParameterError):  # of the pair without it
-            warnings.simplefilter("ignore", LawRangeWarning)
-            without = own.with_({other: value for other, value in changes.items() if other != path})
-            if without != pair and laws(without) == laws(pair):
-                yield path
 
 
 def set_fields(settings: list[str] | None) -> dict[str, str]:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -103,11 +100,11 @@ def response(
             {
                 "gear_pair": gear_pair.name,
                 "speeds_rpm": list(found.speeds_rpm),
-                "jumps": _records(found.jumps),
-                "attractors": _records(found.attractors),
+                "jumps": found.jumps,
+                "attractors": found.attractors,
                 "gaps": found.gaps,
-                "basins": _records(_basins(found)),
-                "bifurcations": _records(found.bifurcations),
+                "basins": _basins(found),
+                "bifurcations": found.bifurcations,
             }
         )
     else:
@@ -160,19 +157,6 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         )
 
 
-def _records(found: Iterable[Any]) -> list[Any]:
-    """Records as JSON has them: no number is null."""
-
-    def plain(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {key: plain(one) for key, one in value.items()}
-        if isinstance(value, list | tuple):
-            return [plain(one) for one in value]
-        return None if isinstance(value, float) and not math.isfinite(value) else value
-
-    return [plain(asdict(one)) for one in found]
-
-
 def _basins(found: ResponseBranches) -> tuple[Basin, ...]:
     """Shares of start states at the operating speed, where it is in the range and motions coexist."""
     from floquet.gear.axes import operating_rpm
@@ -205,7 +189,7 @@ def _map(
                 "axis": name,
                 "values": values.tolist(),
                 "jumps": _rows(found),
-                "removed_by": [asdict(one) for one in removed],
+                "removed_by": removed,
             }
         )
     else:

@@ -15,7 +15,7 @@ from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN
 
 #: Ending -> first letter of the file after its byte order mark: XML and JSON.
 ENDINGS = {
-    ".rexs": b"<", ".rexs.xml": b"<", ".rexsj": b"{", ".rexs.json": b"{",
+    ".rexs": b"<", ".rexsj": b"{",
 }  # fmt: skip
 
 

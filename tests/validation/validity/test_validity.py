@@ -8,7 +8,6 @@ import lumped
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import load_gear_pair, preset_names
 from validation.cli import app
-from validation.commands.options import without_effect
 from validation.validity import flags as validity
 from validation.validity.flags import validity_state
 from validation.validity.plausibility import parameter_warnings
@@ -174,24 +173,12 @@ def nasa_pair():
     return load_gear_pair("nasa_28_28")
 
 
-@pytest.mark.parametrize(("changes", "unread"), [
-    ({"friction.law": "xu_kahraman", "friction.coefficient": 0.1}, ["friction.coefficient"]),
-    ({"friction.law": "none", "lubricant.viscosity": 8}, ["lubricant.viscosity"]),
-    ({"friction.law": "benedict_kelley", "lubricant.viscosity": 8}, []),
-    ({"friction.law": "none", "mesh.relief": "static", "pinion.tip_relief.amount": 12}, []),
-    ({"mesh.relief": "ignored", "pinion.tip_relief.amount": 12}, ["pinion.tip_relief.amount"]),
-])  # fmt: skip
-def test_a_value_that_no_law_of_the_pair_reads_is_found(nasa_pair, changes, unread):
-    assert list(without_effect(nasa_pair, nasa_pair.with_(changes), changes)) == unread
-
-
 def test_commands_say_it_and_go_on():
     result = CliRunner().invoke(
         app, ["simulate", "--law", "none", "--set", "friction.composite_roughness=0.8", "--cycles", "2"]
     )
     assert result.exit_code == 0
     assert "note: no gear pair is named, so this is the example nasa_28_28" in result.stderr
-    assert "--set friction.composite_roughness changes nothing in the motion" in result.stderr
     assert "note: friction.composite_roughness = 0.8 um is used for the film" in result.stderr
 
 

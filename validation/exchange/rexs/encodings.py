@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from lumped.arguments import file_path
-from lumped.errors import ParameterError, refuse, shown
+from lumped.errors import ParameterError, shown
 from lumped.fields.text_file import read_bytes
 from validation.exchange.rexs.model import Document, RexsModel, broken, model_of
 
@@ -27,7 +27,7 @@ _MARK = b"\xef\xbb\xbf"
 #: What zipfile raises of a damaged archive: it trusts the offsets of the directory, so a seek may fail.
 _DAMAGED = (zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, ValueError, RuntimeError)
 #: Suffix of a file to write -> its form.
-FORMS = {".rexs": "xml", ".rexs.xml": "xml", ".rexsj": "json", ".rexs.json": "json"}
+FORMS = {".rexs": "xml", ".rexsj": "json"}
 
 
 def read_rexs(path: str | Path) -> RexsModel:
@@ -158,14 +158,6 @@ class _Elements(ET.TreeBuilder):
     def data(self, text: str) -> None:
         if self.path[-1] == "attribute":
             super().data(text)
-
-
-def form_of(path: Path) -> str:
-    """Form of a file to write, from its suffix; refuse one that the specification does not have."""
-    for suffix, form in FORMS.items():
-        if path.name.lower().endswith(suffix):
-            return form
-    raise refuse("output", path, "a name ending in " + ", ".join(FORMS), "The suffix chooses the form.")
 
 
 def encoded(document: Document, form: str) -> bytes:

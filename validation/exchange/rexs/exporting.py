@@ -11,7 +11,7 @@ from lumped.arguments import file_path, one_of
 from lumped.lubrication.viscosity import grade_viscosity
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from validation.exchange.rexs.encodings import encoded, form_of
+from validation.exchange.rexs.encodings import FORMS, encoded
 from validation.exchange.rexs.gears import RELIEFS, diameter_at, end_of_flank
 from validation.exchange.rexs.model import Document
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN, rexs_from_si
@@ -27,7 +27,7 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, f
     Parameters
     ----------
     pair : a validated gear pair
-    path : file to write; .rexs, .rexs.xml (XML), .rexsj, .rexs.json (JSON)
+    path : file to write; .rexs (XML) or .rexsj (JSON)
     version : of REXS, "1.4" to "1.7"
     force : overwrite an existing file
 
@@ -40,11 +40,10 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, f
     ParameterError : an unknown suffix or version, or an existing file without ``force``
     """
     pair, path = load_gear_pair(pair), file_path("path", path)
-    form = form_of(path)
-    check_file(path, (path.suffix.lower(),), force=force)
+    check_file(path, tuple(FORMS), force=force)
     document = rexs_document(pair, one_of("version", version, WRITTEN))
     with whole_file(path, new=not force) as temporary:
-        temporary.write_bytes(encoded(document, form))
+        temporary.write_bytes(encoded(document, FORMS[path.suffix.lower()]))
     return path
 
 

@@ -144,16 +144,6 @@ def _working_flank(draft: Draft, stage: Component, gear: Component) -> Component
     for data in gear_data_of(draft, stage, gear):
         if (side := draft.text(data, "loaded_tooth_flank")) in flanks:
             return flanks[side]
-
-    def modifications(flank: Component) -> list[tuple[str, object]]:
-        parts = draft.model.referenced(flank, *RELIEFS, *NOT_TAKEN)
-        return sorted((c.type, sorted(c.attributes.items(), key=str)) for c in parts)
-
-    if len({str(modifications(flank)) for flank in flanks.values()}) > 1:
-        draft.note(
-            f"{gear.label}: its flanks are modified differently and the file does not say which one carries "
-            "load (loaded_tooth_flank); the left one is taken (assumed)"
-        )
     return next(iter(flanks.values()), None)
 
 
