@@ -33,16 +33,17 @@ from multibody.contact.kinematics import (
     COAST,
     DRIVE,
     Corners,
+    OwnPair,
     add_gradient,
     add_wrench,
     compiled,
     corners_at,
     engaged,
-    error_of,
     mesh_position,
     move_moments,
     off_axis,
     overlap_rate,
+    own_pair,
     sliding_velocity,
 )
 
@@ -129,7 +130,7 @@ def contact_forces(
     q, v, wrench = state[0], state[1], state[2]
     wrench[:] = 0.0
     rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
-    teeth, late = p[int(p[kn.OWN]) :], 0.0
+    teeth = p[int(p[kn.OWN]) :]
     if p[kn.OWN] > 0.0:
         centres = off_axis(teeth, t, state, p[kn.OMEGA_P], p[kn.OMEGA_G])
         q, v = centres[0], centres[1]
@@ -146,6 +147,7 @@ def contact_forces(
     count = int(np.int64(0))
     for side in range(2 if flags & kn.BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
+        own_teeth = OwnPair(0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G])
         line, delta, rho, _ = mesh_position(t, q, p, flags, flank)
         ex, ey, length = line.ex, line.ey, line.length
         if not math.isfinite(delta):
@@ -164,16 +166,17 @@ def contact_forces(
         for candidate in range(candidates):
             rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
             xi = 0.5 * (rho_p - rho_g + p[kn.L_XY])
-            if p[kn.OWN] > 0.0:
-                late = error_of(teeth, turned_p, turned_g, rho_p, rho_g, p[kn.PITCH])
+            if p[kn.OWN] > 0.0 and side == 0:
+                own_teeth = own_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
+            late, tip_p, tip_g = own_teeth.error, own_teeth.tip_p, own_teeth.tip_g
             error, error_slope = relief_at(p, xi)
             pressed, pressing = delta - error - late, rate - error_slope * xi_rate
             corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
             if flags & kn.TIP_CONTACT:
                 if xi < p[kn.L_XA] or xi > p[kn.L_XD]:
                     error, error_slope = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))[0], 0.0
-                corners = corners_at(line, rho_p, rho_g, p[kn.TIP_P], p[kn.TIP_G])
-                beyond = rho_p > p[kn.TIP_P] or rho_g > p[kn.TIP_G]
+                corners = corners_at(line, rho_p, rho_g, tip_p, tip_g)
+                beyond = rho_p > tip_p or rho_g > tip_g
                 pressed = delta - error - late - corners.gap
                 if beyond and pressed < -abs(delta):
                     continue  # further apart than any neighbour could move it
@@ -195,7 +198,11 @@ def contact_forces(
                 corners.by_g,
                 corners.by_length,
             )
-            known[kn.STIFFNESS, i], known[kn.SLOPE, i] = stiffness_and_slope(table, xi)
+            k, slope = stiffness_and_slope(table, xi)
+            share = 1.0 / (1.0 + own_teeth.softer * k)
+            known[kn.STIFFNESS, i] = share * k
+            known[kn.SLOPE, i] = share * share * (slope - k * k * own_teeth.slope)
+            known[kn.BEYOND, i] = 1.0 if rho_p > tip_p or rho_g > tip_g else 0.0
             if not coupled:
                 load = elastic_load(pressed, known[kn.STIFFNESS, i], softening, nominal)
                 known[kn.NORMAL, i] = load if bound >> i & 1 else max(load, 0.0)
@@ -223,7 +230,7 @@ def contact_forces(
                         moved += coupling[i, j] * known[kn.NORMAL, j]
                         moved_slope += known[kn.SLOPES + i, j] * known[kn.NORMAL, j]
                 own -= moved
-            beyond = arms[i, 0] > p[kn.TIP_P] or arms[i, 1] > p[kn.TIP_G]
+            beyond = known[kn.BEYOND, i] == 1.0
             if own <= 0.0 and (beyond or (side == 1 and unilateral)):
                 continue
             arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)

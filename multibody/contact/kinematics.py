@@ -373,18 +373,57 @@ def move_moments(ways: FloatArray, wrench: FloatArray) -> None:
         wrench[x + 2] += ways[x] * wrench[x + 1] - ways[x + 1] * wrench[x]
 
 
+class OwnPair(NamedTuple):
+    """What its two teeth make of a pair.
+
+    error : material missing on both flanks [m]
+    softer, slope : compliance that faults add [m/N], and its slope along the path of contact
+    tip_p, tip_g : where the flanks end, distances from X and Y [m]
+    """
+
+    error: float
+    softer: float
+    slope: float
+    tip_p: float
+    tip_g: float
+
+
 @compiled
-def error_of(
-    own: FloatArray, turned_p: float, turned_g: float, rho_p: float, rho_g: float, pitch: float
-) -> float:
-    """Error of the pair with flanks at these distances from X and Y [m].
+def own_pair(
+    own: FloatArray, p: FloatArray, turned_p: float, turned_g: float, arms: FloatArray, xi: float
+) -> OwnPair:
+    """The pair with flanks at the distances ``arms`` from X and Y, in contact at xi [m].
 
     ``turned_p`` and ``turned_g`` are arcs of the base circles: of pair 0 the first is its distance from X,
-    and the second its distance from Y, which falls.
+    and the second its distance from Y, which falls. A crack bends the tooth about its root section, whose
+    centre is r_b - u cos(rho/r_b - half tooth) off the line of action: the tangent's foot on the base circle
+    is that angle off the tooth's centre line.
     """
-    number_p = math.floor((turned_p - rho_p) / pitch + 0.5)
-    number_g = math.floor((rho_g - turned_g) / pitch + 0.5)
+    number_p = math.floor((turned_p - arms[0]) / p[kn.PITCH] + 0.5)
+    number_g = math.floor((arms[1] - turned_g) / p[kn.PITCH] + 0.5)
     z_p, z_g = int(own[kn.TEETH]), int(own[kn.OWN_COLUMNS + kn.TEETH])
     pinion = (int(own[kn.FIRST]) + number_p) % z_p
     gear = (int(own[kn.OWN_COLUMNS + kn.FIRST]) + number_g) % z_g
-    return float(own[kn.OWN_ERRORS + pinion] + own[kn.OWN_ERRORS + z_p + gear])
+    error = own[kn.OWN_ERRORS + pinion] + own[kn.OWN_ERRORS + z_p + gear]
+    softer, slope, tip_p, tip_g = 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G]
+    for i in range(int(own[kn.OWN_FAULTS])):
+        row = kn.OWN_ERRORS + z_p + z_g + kn.FAULT_COLUMNS * i
+        of_gear = own[row + kn.FAULT_GEAR] == 1.0
+        if own[row + kn.FAULT_TOOTH] != (gear if of_gear else pinion):
+            continue
+        end, radius = own[row + kn.FLANK_END], p[kn.RADIUS_G] if of_gear else p[kn.RADIUS_P]
+        sense, place = (-1.0, p[kn.L_XY] - xi) if of_gear else (1.0, xi)
+        if of_gear:
+            tip_g = min(tip_g, end)
+        else:
+            tip_p = min(tip_p, end)
+        if place > end:
+            sense, place = 0.0, end
+        turn = place / radius - own[row + kn.HALF_TOOTH]
+        arm = radius - own[row + kn.ROOT] * math.cos(turn)
+        softer += own[row + kn.CRACK] * arm * arm
+        slope += sense * 2.0 * own[row + kn.CRACK] * arm * own[row + kn.ROOT] * math.sin(turn) / radius
+        if own[row + kn.SPALL_START] <= place < own[row + kn.SPALL_END]:
+            softer += own[row + kn.SPALL]
+            error += own[row + kn.PIT]
+    return OwnPair(error, softer, slope, tip_p, tip_g)

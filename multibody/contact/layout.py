@@ -41,9 +41,19 @@ FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
 N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
 
 # Places in the block of teeth that differ: of pinion and gear eccentricity [m], its angle at t = 0 [rad],
-# number of teeth, tooth at A at t = 0; then the errors of the pinion's teeth and of the gear's [m].
+# number of teeth, tooth at A at t = 0; then the number of faults, the errors of the pinion's teeth and of the
+# gear's [m], and a row for each fault.
 ECCENTRICITY, ANGLE, TEETH, FIRST, OWN_COLUMNS = range(5)
-OWN_ERRORS = 2 * OWN_COLUMNS
+OWN_FAULTS = 2 * OWN_COLUMNS
+OWN_ERRORS = OWN_FAULTS + 1
+# Columns of a fault: gear (1) or pinion (0), tooth from 0; of a crack the compliance over the square of the
+# arm of the load [1/(N m)], place of the root section on the centre line of the tooth [m], half its angle on
+# the base circle [rad]; of a spall both ends [m], compliance between them [m/N], depth [m]; where the flank
+# ends [m]. Lengths are on the own base tangent.
+(
+    FAULT_GEAR, FAULT_TOOTH, CRACK, ROOT, HALF_TOOTH, SPALL_START, SPALL_END, SPALL, PIT, FLANK_END,
+    FAULT_COLUMNS,
+) = range(11)  # fmt: skip
 
 # Columns of a contact record.
 # OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own
@@ -58,8 +68,8 @@ N_RECORD = 15
 
 # Rows of what is known of the pairs before their loads are.
 (
-    POSITION, PRESSED, PRESSING, RELIEF_SLOPE, BY_P, BY_G, BY_L, STIFFNESS, SLOPE, NORMAL, ARMS,
-) = range(11)  # fmt: skip
+    POSITION, PRESSED, PRESSING, RELIEF_SLOPE, BY_P, BY_G, BY_L, STIFFNESS, SLOPE, NORMAL, BEYOND, ARMS,
+) = range(12)  # fmt: skip
 # The flank distances take two rows; behind them stand how pairs move each other, and its slopes.
 COUPLINGS = ARMS + 2
 SLOPES = COUPLINGS + MAX_PAIRS

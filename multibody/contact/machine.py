@@ -16,6 +16,10 @@ from typing import Literal
 import numpy as np
 
 from lumped.errors import refuse
+from lumped.faults.base import ToothFault
+from lumped.faults.chip import Chip
+from lumped.faults.crack import Crack, root_section
+from lumped.faults.spall import Spall
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
@@ -181,6 +185,9 @@ def machine(
     p[kn.OWN] = p.size if own.size else 0.0
     p = np.append(p, own)
     starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
+    for which, gear in enumerate((pair.pinion, pair.gear)):
+        kinks = [place for fault in gear.faults for place in fault.kinks(pair.flank(which))]
+        starts += [l_xy - place if which else place for place in kinks]
     places = [place for _, place in friction]
     table = pack(stiffness)
     switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch)
@@ -218,20 +225,53 @@ def own_block(pair: GearPair) -> FloatArray:
     """Teeth that differ, as numbers behind the parameters (see ``layout``); empty for like teeth."""
     if pair.healthy is pair:
         return np.zeros(0)
-    unread = [f"{name}.faults" for name in ("pinion", "gear") if getattr(pair, name).faults]
-    unread += ["operating.torque_ripple"] if pair.operating.torque_ripple else []
+    unread = ["operating.torque_ripple"] if pair.operating.torque_ripple else []
     teeth = own_teeth(pair)
     for name, one in zip(("pinion", "gear"), teeth, strict=True):
         unread += [f"{name}.deviations.profile_slope"] if one.slope.any() else []
         unread += [f"{name}.deviations.tip_relief"] if one.relief.any() else []
     if unread:
-        allowed = "index deviations and eccentricity, all that the multibody model has of teeth that differ"
+        allowed = "index deviations, eccentricity and faults, all that the multibody model has of own teeth"
         raise refuse(unread[0], "given", allowed, "Leave it out, or use lumped.steady_state.")
     rows = [
         (one.eccentricity, one.phase + 2.0 * math.pi * first / one.error.size, one.error.size, first)
         for one, first in zip(teeth, first_teeth(pair), strict=True)
     ]
-    return np.concatenate([np.ravel(rows), *(one.error for one in teeth)])
+    faults = [
+        _fault(pair, which, fault)
+        for which, gear in enumerate((pair.pinion, pair.gear))
+        for fault in gear.faults
+    ]
+    return np.concatenate([np.ravel(rows), [len(faults)], *(one.error for one in teeth), *faults])
+
+
+def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
+    """A fault as a row of ``layout``; the crack's strip is that of ``lumped.faults``, its arm is not."""
+    flank, gear = pair.flank(which), (pair.pinion, pair.gear)[which]
+    row = np.zeros(kn.FAULT_COLUMNS)
+    row[[kn.FAULT_GEAR, kn.FAULT_TOOTH, kn.FLANK_END]] = which, fault.tooth - 1, flank.tip
+    radius = flank.wheel.tooth.base_radius
+    if isinstance(fault, Crack):
+        centre, half = root_section(flank.wheel.tooth)
+        x = fault.depth * math.sin(fault.angle) / (2.0 * half)
+        strip = x**2 / (1.0 - x) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)
+        row[kn.CRACK] = 6.0 * strip / (gear.youngs_modulus * flank.face_width * half**2)
+        row[kn.ROOT], row[kn.HALF_TOOTH] = centre, 0.5 * base_tooth_angle(pair, gear, radius)
+    elif isinstance(fault, Spall):
+        row[[kn.SPALL_START, kn.SPALL_END]] = (
+            fault.start_roll_angle * radius,
+            fault.end_roll_angle * radius,
+        )
+        width = flank.face_width if fault.width is None else fault.width
+        if width < flank.face_width:
+            row[kn.SPALL] = flank.hertz * (flank.face_width / (flank.face_width - width) - 1.0)
+        else:
+            row[kn.PIT] = fault.pit_depth
+    elif isinstance(fault, Chip):
+        row[kn.FLANK_END] = min(flank.tip, fault.roll_angle * radius)
+    else:
+        raise refuse("faults", fault.kind, "crack, spall, chip in the multibody model", "Leave it out.")
+    return row
 
 
 def _highest(machine: Machine) -> float:

@@ -22,9 +22,14 @@ _WHOLE, _WINDOW, _FORGOTTEN = 64, 6, 10
 
 
 def worst_cycle(pair: GearPair) -> int:
-    """Mesh cycle with the largest static load of a tooth in the period."""
+    """Mesh cycle with the largest static load of a tooth in the period, of faulty teeth if there are."""
     sharing = lumped.static_sharing(pair, samples_per_cycle=32)
-    return int(sharing["normal_load"].to_numpy().max(axis=0).argmax()) // 32
+    load = sharing["normal_load"].to_numpy()
+    faulty = np.zeros(load.shape, dtype=bool)
+    for name, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
+        teeth = [fault.tooth for fault in gear.faults]
+        faulty |= np.isin(sharing[f"{name}_tooth"].to_numpy(), teeth)
+    return int(np.where(faulty | ~faulty.any(), load, 0.0).max(axis=0).argmax()) // 32
 
 
 def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr.Dataset]:

@@ -1,10 +1,14 @@
-"""Do gears whose teeth differ keep the first law in the multibody model, and is refused what it has not?"""
+"""Gears whose teeth differ: the first law, faults against the lumped model's, refusals."""
 
 import numpy as np
 import pytest
 
 import lumped
 import multibody
+from lumped.teeth.contact import Laws
+from multibody.contact import layout as kn
+from multibody.contact.kinematics import own_pair
+from multibody.contact.machine import machine
 
 ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
 OWN = {
@@ -22,17 +26,47 @@ def pair():
     return lumped.load_gear_pair("nasa_28_28").with_(changes)
 
 
-def test_first_law_holds_with_own_gaps_and_eccentric_base_circles(pair):
-    balance = multibody.power_balance(
-        pair.with_(OWN | {"gear.mounting": {"eccentricity": 40}, "friction.coefficient": 0.05}),
-        cycles=4,
-        initial="periodic",
-    )
+CRACK = {"kind": "crack", "tooth": 3, "depth": 1.5}
+
+
+def test_first_law_holds_with_own_gaps_eccentric_base_circles_and_cracks(pair):
+    changes = {"gear.mounting": {"eccentricity": 40}, "friction.coefficient": 0.05}
+    changes |= {f"{gear}.faults": [CRACK] for gear in ("pinion", "gear")}
+    balance = multibody.power_balance(pair.with_(OWN | changes), cycles=4, initial="periodic")
     assert abs(balance.residual) < 1e-8 * balance.driving
 
 
+@pytest.mark.parametrize("which", [0, 1])
+def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which):
+    # The lumped model has the arm from the point of contact on the tooth, this one from the line of action.
+    pair = pair.with_({"mesh.backlash": 0})
+    g, flank = pair.geometry, pair.flank(which)
+    low, high, end = np.degrees(flank.start + np.array([2e-3, 4e-3, 6e-3])) / flank.wheel.tooth.base_radius
+    spall = {"kind": "spall", "tooth": 3, "start_roll_angle": low, "end_roll_angle": high, "width": 3}
+    pit = {**spall, "width": None, "pit_depth": 7}
+    chip = {"kind": "chip", "tooth": 3, "roll_angle": end}
+    xi = np.linspace(g.L_XA, g.L_XD, 12)[1:-1]
+    for fault in (CRACK, spall, pit, chip):
+        own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
+        laws, p = Laws(own), machine(own).parameters
+        (k0, _, gap0), (k, _, gap) = (laws.of_kind(kind, xi) for kind in (0, 1))
+        # Two pairs later the third teeth are in contact.
+        block, at = p[int(p[kn.OWN]) :], 2 * g.base_pitch
+
+        def found(x, block=block, p=p, at=at):
+            return own_pair(block, p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
+
+        pairs = [found(x) for x in xi]
+        scale = max((1.0 / k - 1.0 / k0).max(), 1e-12)
+        assert [o.softer for o in pairs] == pytest.approx(1.0 / k - 1.0 / k0, abs=1e-9 * scale)
+        assert [o.error for o in pairs] == pytest.approx(gap - gap0, abs=1e-15)
+        assert (g.L_XY - pairs[0].tip_g, pairs[0].tip_p) == pytest.approx(laws.ends(1)[:2], rel=1e-12)
+        if fault is CRACK:
+            slopes = [(found(x + 1e-8).softer - found(x - 1e-8).softer) / 2e-8 for x in xi]
+            assert [o.slope for o in pairs] == pytest.approx(slopes, rel=1e-5)
+
+
 @pytest.mark.parametrize(("changes", "field"), [
-    ({"pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 1}]}, "pinion.faults"),
     ({"gear.deviations": {"profile_slope": [1.0] * 28}}, "gear.deviations.profile_slope"),
     ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, "torque_ripple"),
 ])  # fmt: skip
