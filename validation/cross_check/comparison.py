@@ -145,7 +145,7 @@ def crosscheck(
 
     Raises
     ------
-    ParameterError : arguments out of range, or profile slopes of teeth, which the multibody model does not have
+    ParameterError : arguments out of range, or profile slopes of teeth, which multibody does not have
     NumericalError : a model fails; the text says what to try
     """
     whole_number("cycles", cycles, 6, 100_000)
