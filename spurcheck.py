@@ -11,7 +11,8 @@ Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.wit
 Motion     predict, dynamic_factor, steady_state, simulate, run_up, speed_sweep, response_branches,
            periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
-Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance, compare_ross
+Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance, compare_ross,
+           compare_matrices
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy
 Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
@@ -82,7 +83,14 @@ if TYPE_CHECKING:
         validity_flags,
         write_interactive_page,
     )
-    from validation.exchange import compare_ross, gear_pair_from_rexs, new_pair, write_results, write_rexs
+    from validation.exchange import (
+        compare_matrices,
+        compare_ross,
+        gear_pair_from_rexs,
+        new_pair,
+        write_results,
+        write_rexs,
+    )
     from validation.signals import order_spectrum, time_synchronous_average, waterfall
     from validation.studies import load_study, read_results, run_sweep
 
@@ -111,6 +119,7 @@ __all__ = [
     "attribution",
     "bodies",
     "campbell",
+    "compare_matrices",
     "compare_ross",
     "crosscheck",
     "dynamic_factor",

@@ -1,7 +1,8 @@
-"""A gear mesh of ROSS beside the same pair here: where its numbers agree and where they do not.
+"""A gear mesh of ROSS, or matrices of one's own model, beside the same pair here: which numbers agree.
 
 Sources: attributes of ``Mesh`` and ``GearElementTVMS`` of ROSS 2.3 (github.com/petrobras/ross); its stiffness
 is the potential-energy method with a linear contact, as ``hertz = "linear"`` of docs/theory/mesh_physics.md.
+Both begin a mesh cycle with a pair at A.
 """
 
 from __future__ import annotations
@@ -11,17 +12,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import lumped
+from lumped.arguments import real_array
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import LTVSystem
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from validation.exchange.new_pair_file import new_pair
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     import xarray as xr
 
-#: Relative differences up to which numbers agree: of exact geometry, and of stiffness and what follows from
-#: it, where variants of the method differ by some per cent.
-_GEOMETRY, _STIFFNESS = 1e-6, 0.05
+#: Relative differences up to which numbers agree: of exact geometry, of stiffness and what follows from it,
+#: where variants of the method differ by some per cent, and of frequencies, square roots of stiffness.
+_GEOMETRY, _STIFFNESS, _FREQUENCY = 1e-6, 0.05, 0.025
+#: Name, unit, their value, ours, limit.
+Row = tuple[str, str, float, float, float]
 
 
 def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Dataset:
@@ -36,8 +44,10 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
     Returns
     -------
     xarray.Dataset over ``quantity``: ``ross`` and ``spurcheck`` in the unit ``units``, ``difference``, theirs
-    over ours less 1, ``limit`` and ``agrees``. The transmission error is that of the lumped model with
-    stiffness from ROSS and with ours. The attribute ``parameters`` is the pair as a parameter file.
+    over ours less 1, ``limit`` and ``agrees``. Variation in step is the part of the stiffness over the cycle
+    that varies as ours does, over the mean: a shift or time that runs backwards makes it small. The
+    transmission error is that of the lumped model with stiffness from ROSS and with ours. The attribute
+    ``parameters`` is the pair as a parameter file.
 
     Raises
     ------
@@ -47,28 +57,92 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
     g, gears = pair.geometry, (mesh.driving_gear, mesh.driven_gear)
     # The last point of a mesh cycle is the first of the next one.
     theirs = np.asarray(mesh.stiffness_range, dtype=float)[:-1]
-    phase = np.arange(theirs.size) / theirs.size
-    ours = lumped.mesh_stiffness(pair)["mesh_stiffness"].to_numpy()
+    phase, cycle = np.arange(theirs.size) / theirs.size, lumped.mesh_cycle(pair)
+    ours = cycle.sample(phase * cycle.period).stiffness.sum(axis=0)
     with_theirs = pair.with_(stiffness={"phase": phase, "stiffness [N/m]": theirs})
     motions = [lumped.steady_state(one)["dte"].to_numpy() for one in (with_theirs, pair)]
     bodies = lumped.bodies(pair)
-    rows: list[tuple[str, str, float, float, float]] = [
+    rows: list[Row] = [
         ("base radius, driving gear", "m", gears[0].base_radius, g.base_radius_pinion, _GEOMETRY),
         ("base radius, driven gear", "m", gears[1].base_radius, g.base_radius_gear, _GEOMETRY),
         ("contact ratio", "1", mesh.contact_ratio, g.contact_ratio, _GEOMETRY),
         ("mass, driving gear", "kg", gears[0].m, bodies.mass_pinion, _STIFFNESS),
         ("moment of inertia, driving gear", "kg m^2", gears[0].Ip, bodies.inertia_pinion, _STIFFNESS),
-        ("mesh stiffness, mean", "N/m", theirs.mean(), ours.mean(), _STIFFNESS),
-        ("mesh stiffness, largest", "N/m", theirs.max(), ours.max(), _STIFFNESS),
-        ("mesh stiffness, smallest", "N/m", theirs.min(), ours.min(), _STIFFNESS),
+        *_over_cycle("mesh stiffness", "N/m", theirs, ours),
         ("transmission error, peak to peak", "m", *map(np.ptp, motions), _STIFFNESS),
     ]
+    return _compared("ross", rows, pair)
+
+
+def compare_matrices(pair: AnyPair, M: npt.ArrayLike, K: npt.ArrayLike) -> xr.Dataset:
+    """Compare mass and stiffness matrices of one's own model of a gear pair with the model here.
+
+    What is compared does not depend on the coordinates: the natural frequencies of the mean stiffness and,
+    over the mesh cycle, their sum of squares, the trace of M^-1 K. Both are without friction and damping, on
+    the springs of ``bearings``. Source: docs/theory/equations.md.
+
+    Parameters
+    ----------
+    pair : the gear pair, with its bearings
+    M : (n, n) mass matrix of any coordinates and units that make M^-1 K a matrix in 1/s^2
+    K : (n, n) stiffness matrix, or (m, n, n) at m equal steps of a mesh cycle that begins with a pair at A
+
+    Returns
+    -------
+    xarray.Dataset as of ``compare_ross``, with ``matrices`` in place of ``ross``
+
+    Raises
+    ------
+    ParameterError : matrices of other shapes, or a singular M
+    """
+    pair = load_gear_pair(pair).with_(law="none")
+    mass, stiffness = real_array("M", M), np.atleast_3d(real_array("K", K).T).T
+    n = stiffness.shape[-1]
+    if mass.shape != (n, n) or stiffness.shape[-2] != n or np.linalg.matrix_rank(mass) < n:
+        shapes = f"M {mass.shape}, K {np.shape(K)}"
+        raise refuse("M, K", shapes, "M (n, n), regular, and K (n, n) or (m, n, n)", "Correct the shapes.")
+    system = LTVSystem.of(pair, "elastic")
+    m, count = len(system.coordinates), len(stiffness) if len(stiffness) > 1 else 512
+    ours = -system.matrices(np.arange(count) * (system.period / count))[:, m:, :m]
+    theirs = np.linalg.solve(mass, stiffness)
+    modes = [_frequencies(one.mean(axis=0)) for one in (theirs, ours)]
+    rows: list[Row] = [("number of natural frequencies", "1", modes[0].size, modes[1].size, 0.0)]
+    for number, (a, b) in enumerate(zip(*modes, strict=False), start=1):
+        rows.append((f"natural frequency {number}", "Hz", a, b, _FREQUENCY))
+    if len(stiffness) > 1:
+        traces = [np.trace(one, axis1=1, axis2=2) for one in (theirs, ours)]
+        rows += _over_cycle("sum of squared frequencies", "rad^2/s^2", *traces)
+    return _compared("matrices", rows, pair)
+
+
+def _frequencies(squares: FloatArray) -> FloatArray:
+    """Natural frequencies of M^-1 K, increasing, without rigid motions [Hz]."""
+    values = np.sort(np.linalg.eigvals(squares).real)
+    return np.asarray(np.sqrt(values[values > 1e-9 * values[-1]]) / (2.0 * np.pi), dtype=np.float64)
+
+
+def _over_cycle(name: str, unit: str, theirs: FloatArray, ours: FloatArray) -> list[Row]:
+    """Rows of a quantity over a mesh cycle; the last one sees a shift, or time that runs backwards."""
+    rows = [
+        (f"{name}, {which}", unit, float(of(theirs)), float(of(ours)), _STIFFNESS)
+        for which, of in (("mean", np.mean), ("largest", np.max), ("smallest", np.min))
+    ]
+    a, b = theirs / theirs.mean() - 1.0, ours / ours.mean() - 1.0
+    size = float(np.sqrt(np.mean(b**2)))
+    return [
+        *rows,
+        (f"{name}, variation in step, over the mean", "1", np.mean(a * b) / size, size, _STIFFNESS),
+    ]
+
+
+def _compared(theirs: str, rows: list[Row], pair: GearPair) -> xr.Dataset:
+    """The rows as a dataset."""
     names, units, a, b, limits = zip(*rows, strict=True)
     difference = np.array(a, dtype=float) / np.array(b, dtype=float) - 1.0
     columns = {
-        "ross": (np.array(a, dtype=float), "value of ROSS"),
+        theirs: (np.array(a, dtype=float), "value of the other model"),
         "spurcheck": (np.array(b, dtype=float), "value here"),
-        "difference": (difference, "value of ROSS over that here, less 1"),
+        "difference": (difference, "value of the other model over that here, less 1"),
         "limit": (np.array(limits), "largest difference that agrees"),
         "agrees": (np.abs(difference) <= np.array(limits), "whether it agrees"),
     }

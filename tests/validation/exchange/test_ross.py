@@ -50,12 +50,42 @@ def test_a_mesh_of_our_stiffness_agrees_in_all():
     assert spurcheck.load_gear_pair(tomllib.loads(found.attrs["parameters"])).gear.teeth == 60
 
 
+def wrong(found) -> list[str]:
+    return found["quantity"].where(~found["agrees"], drop=True).values.tolist()
+
+
 def test_what_differs_is_named():
     found = spurcheck.compare_ross(mesh(factor=0.8, contact_ratio=1.6), 1500, 50)
-    wrong = found["quantity"].to_numpy()[~found["agrees"].to_numpy()]
-    kinds = ["contact ratio", *["mesh stiffness"] * 3, "transmission error"]
-    assert [str(name).split(",")[0] for name in wrong] == kinds
+    stiffness = [f"mesh stiffness, {which}" for which in ("mean", "largest", "smallest")]
+    assert wrong(found) == ["contact ratio", *stiffness, "transmission error, peak to peak"]
     assert found["difference"].sel(quantity="mesh stiffness, mean") == pytest.approx(-0.2, abs=1e-3)
+    backwards = mesh(stiffness_range=mesh().stiffness_range[::-1])
+    assert wrong(spurcheck.compare_ross(backwards, 1500, 50)) == [f"mesh stiffness, {STEP}"]
+
+
+STEP = "variation in step, over the mean"
+SPRING = 2e8
+
+
+@pytest.mark.parametrize(("change", "differs"), [
+    (lambda M, K: (M, K), []),
+    (lambda M, K: (M, K[::-1]), [f"sum of squared frequencies, {STEP}"]),
+    (lambda M, K: (M[:4, :4], K[:, :4, :4]), ["number of natural frequencies"]),
+    (lambda M, K: (M * np.array([1.2, 1, 1, 1, 1, 1]), K), ["natural frequency 5"]),
+])  # fmt: skip
+def test_matrices_are_compared_in_any_coordinates(change, differs):
+    """M and K of the six displacements by hand: K(t) = k(t) v v^T and the bearings."""
+    pair = spurcheck.new_pair("30/60", 2, 20, 1500, 50, CHANGES, bearings__stiffness=SPRING)
+    g, bodies, cycle = pair.geometry, spurcheck.bodies(pair), spurcheck.lumped.mesh_cycle(pair)
+    k = cycle.sample(np.arange(200) * (cycle.period / 200)).stiffness.sum(axis=0)
+    v = np.array([g.base_radius_pinion, -g.base_radius_gear, 1.0, -1.0, 0.0, 0.0])
+    masses = [bodies.mass_pinion, bodies.mass_gear]
+    M = np.diag([bodies.inertia_pinion, bodies.inertia_gear, *masses, *masses])
+    K = k[:, None, None] * np.outer(v, v) + np.diag([0.0, 0.0, *[SPRING] * 4])
+    M, K = change(M, K)
+    T = np.random.default_rng(1).normal(size=M.shape)
+    found = wrong(spurcheck.compare_matrices(pair, T.T @ M @ T, T.T @ K @ T))
+    assert found[:1] == differs
 
 
 @pytest.mark.parametrize(
@@ -65,3 +95,5 @@ def test_what_differs_is_named():
 def test_other_meshes_are_refused(wrong, message):
     with pytest.raises(spurcheck.ParameterError, match=message):
         spurcheck.compare_ross(wrong, 1500, 50)
+    with pytest.raises(spurcheck.ParameterError, match="regular"):
+        spurcheck.compare_matrices("nasa_28_28", np.ones((2, 2)), np.eye(2))
