@@ -136,15 +136,14 @@ from validation.commands import options as opt
 from validation.commands.terminal import guarded, stdout
 
 @guarded
-def count(pair: opt.PairArgument = None, settings: opt.Settings = None) -> None:
+def count(pair: opt.Pair) -> None:
     \"\"\"Count the teeth of a pair.
 
     [bold]Example[/bold]
 
     spurcheck count fzg_c
     \"\"\"
-    found = opt.gear_pair(pair, None, None, None, settings)
-    stdout().print(found.pinion.teeth + found.gear.teeth)
+    stdout().print(pair.pinion.teeth + pair.gear.teeth)
 """,
     "validation/cli.py": ("from validation.commands.count import count", "COMMANDS", "count"),
 }

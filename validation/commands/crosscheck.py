@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.commands import options as opt
 from validation.commands.kernels import compiling
-from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stdout, table
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.table import Table
     from rich.text import Text
 
@@ -24,10 +24,8 @@ DIFFERS = 4
 
 @guarded
 def crosscheck(
-    pair: opt.PairArgument = None,
-    output: Annotated[
-        Path | None, opt.output("Figure of the transmission errors: .png, .svg or .pdf.")
-    ] = None,
+    pair: opt.Pair,
+    files: opt.FigureFiles,
     limit: Annotated[
         str,
         typer.Option(
@@ -37,12 +35,7 @@ def crosscheck(
     ] = "5%",
     cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 40,
     samples: Annotated[int, typer.Option(help="Output times per mesh cycle.")] = 256,
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
     as_json: opt.Json = False,
-    force: opt.Force = False,
 ) -> None:
     """Check the lumped model against the independent multibody model.
 
@@ -63,28 +56,16 @@ def crosscheck(
     """
     from validation.cross_check.comparison import crosscheck as run
     from validation.cross_check.verdict import Verdict
-    from validation.files.output import FIGURE_SUFFIXES, check_file
 
-    target = None if output is None else check_file(output, FIGURE_SUFFIXES, force=force)
     share = opt.number_in("--limit", limit, "1")
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=True)
     with progress_bar("cross-check") as bar, compiling(bar) as tell:
-        check = run(gear_pair, cycles=cycles, samples_per_cycle=samples, limit=share, progress=tell)
+        check = run(pair, cycles=cycles, samples_per_cycle=samples, limit=share, progress=tell)
     if as_json:
         agreements = [asdict(one) | {"within": one.within} for one in check.agreements]
         print_json({"verdict": check.verdict.word, "failures": check.failures, "agreements": agreements})
     else:
         _print(check)
-    if target is not None:
-        from validation.cross_check.agreement import off_switch_samples
-        from validation.plots.motion import cross_check_figure
-        from validation.plots.style import save
-
-        keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
-        models = {str(fidelity): result for fidelity, result in check.multibody.items()}
-        figure = cross_check_figure(check.pair.geometry, check.lumped, models, keep)
-        save(figure, target, new=not force)
-        stderr().print(f"wrote {target}")
+    files.write(check.lumped, lambda: _figure(check))
     code = {Verdict.FAILS: FAILED, Verdict.DIFFERS: DIFFERS}.get(check.verdict, 0)
     if code:
         raise typer.Exit(code)
@@ -110,6 +91,15 @@ def _print(check: CrossCheck) -> None:
     console.print(f"[bold]{verdict}[/bold]: {verdict.text}.", markup=True, soft_wrap=True)
     if told:
         console.print(told, soft_wrap=True)
+
+
+def _figure(check: CrossCheck) -> Figure:
+    from validation.cross_check.agreement import off_switch_samples
+    from validation.plots.motion import cross_check_figure
+
+    keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
+    models = {str(fidelity): result for fidelity, result in check.multibody.items()}
+    return cross_check_figure(check.pair.geometry, check.lumped, models, keep)
 
 
 def _tables(check: CrossCheck) -> list[Table]:

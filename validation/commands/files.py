@@ -208,7 +208,7 @@ def export(
             raise refuse(given[0], "with a result file", "a gear pair", "Leave it out.")
         _export_result(source, output, force=force)
     else:
-        pair = opt.gear_pair(source, speed, torque, law, settings, own_teeth=True)
+        pair = opt.gear_pair(source, speed, torque, law, settings)
         _export_pair(pair, output, force=force)
     stderr().print(f"wrote {output}")
 

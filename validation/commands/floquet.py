@@ -26,7 +26,7 @@ def floquet(
             "periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.",
         ),
     ],
-    output: opt.ResultFiles = None,
+    files: opt.ResultFiles,
     axes: Annotated[
         list[str] | None,
         typer.Option(
@@ -38,7 +38,6 @@ def floquet(
     ] = None,
     rtol: Annotated[float, typer.Option(help="Wanted error of the monodromy matrix.")] = 1e-10,
     as_json: opt.Json = False,
-    force: opt.Force = False,
 ) -> None:
     """Decide whether M x'' + C(t) x' + K(t) x = 0 is stable, for any matrices with one period.
 
@@ -54,12 +53,10 @@ def floquet(
     from floquet import monodromy, scan
     from lumped.errors import refuse
     from validation.exchange.matrices import FILE_AXES, read_second_order
-    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
-    targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
     grid = opt.axes_values(axes or [], FILE_AXES)
-    if targets and not grid:
-        raise refuse("--output", targets[0], "a chart to write", "Give --axis, once or twice.")
+    if files.paths and not grid:
+        raise refuse("--output", files.paths[0], "a chart to write", "Give --axis, once or twice.")
     if len(grid) > 2 or {"period", "frequency"} <= set(grid):
         allowed = "one or two, of period and frequency one"
         raise refuse("--axis", ", ".join(grid), allowed, "Leave an axis out.")
@@ -84,10 +81,7 @@ def floquet(
             f"chart: {verdict.size} points, {counts[0]} stable, {counts[1]} undecided, {counts[2]} unstable; "
             f"largest bound on an error {float(chart['error'].max()):.1e}"
         )
-        for target in targets:
-            from validation.plots.of_result import plot
-
-            opt.write_result(target, chart, lambda: plot(chart), force=force)
+        files.write(chart)
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 

@@ -11,15 +11,10 @@ from validation.commands.terminal import guarded, progress_bar, stderr
 
 @guarded
 def interactive(
-    pair: opt.PairArgument = None,
+    pair: opt.AlikePair,
     output: Annotated[Path, opt.output("Page to write, .html; its numbers go beside it as .nc.")] = Path(
         "interactive.html"
     ),
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    speed_range: opt.Range = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
     force: opt.Force = False,
 ) -> None:
     """Write a page to explore stability over speed and damping, and the response over speed.
@@ -38,7 +33,6 @@ def interactive(
 
     check_file(output, (".html",), force=force)
     data = check_file(output.with_suffix(".nc"), (".nc",), force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     with progress_bar("interactive page") as tell:
-        write_interactive_page(gear_pair, output, data=data, new=not force, progress=tell)
+        write_interactive_page(pair, output, data=data, new=not force, progress=tell)
     stderr().print(f"wrote {output} and {data}")

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     import numpy as np
     import xarray as xr
     from matplotlib.figure import Figure
@@ -62,10 +61,6 @@ Settings = Annotated[
         help="Change any parameter, as often as needed: --set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
-_DATA_OR_FIGURE = ".nc, .csv or .mat for data, .png, .svg or .pdf for the figure."
-ResultFile = Annotated[Path | None, output(f"Result file: {_DATA_OR_FIGURE}")]
-ResultFiles = Annotated[list[Path] | None, output(f"Result file, as often as needed: {_DATA_OR_FIGURE}")]
-DataFile = Annotated[Path | None, output("File for all numbers: .nc (NetCDF), .mat (MATLAB) or .csv.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON (SI units) and nothing else.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
 ForceFolder = Annotated[
@@ -73,23 +68,27 @@ ForceFolder = Annotated[
 ]
 
 
-def gear_pair(
-    source: str | None,
-    speed: str | None,
-    torque: str | None,
-    law: str | None,
-    settings: list[str] | None,
-    speed_range: str | None = None,
-    *,
-    own_teeth: bool = False,
-) -> GearPair:
-    """Load a gear pair and apply the options of the command line; None: the example, which a note says.
+class Group(NamedTuple):
+    """Marks the parameter of a command that several options make: ``guarded`` puts these in its place.
 
-    Unless the command takes teeth that differ (``own_teeth``), it gets the twin with like teeth, and says so.
+    ``options``: name -> type of each, all with the default None; ``make`` makes the parameter of them.
     """
+
+    options: Mapping[str, Any]
+    make: Callable[..., Any]
+
+
+def gear_pair(
+    pair: str | None,
+    speed: str | None = None,
+    torque: str | None = None,
+    law: str | None = None,
+    settings: list[str] | None = None,
+    speed_range: str | None = None,
+) -> GearPair:
+    """Load a gear pair and apply the options of the command line; None: the example, which a note says."""
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
-    from lumped.schema.short_names import by_fields, fields_of
     from validation.commands.terminal import note
     from validation.validity.plausibility import parameter_warnings
 
@@ -102,21 +101,83 @@ def gear_pair(
     ):
         if text is not None:
             asked.append((option, path, text))
-    options = {field: option for option, path, _ in asked for field in (path, *fields_of(path))}
-    if source is None:
+    if pair is None:
         note(f"no gear pair is named, so this is the example {DEFAULT_PAIR}: name your parameter file.")
-    own = load_gear_pair(source or DEFAULT_PAIR)
+    own = load_gear_pair(pair or DEFAULT_PAIR)
     try:
-        changes = by_fields({path: value_of(text) for _, path, text in asked})
-        pair = own.with_(changes)
+        varied = own.with_({path: value_of(text) for _, path, text in asked})
     except ParameterError as error:
+        options = {path: option for option, path, _ in asked}
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
-    for warning in parameter_warnings(pair):
+    for warning in parameter_warnings(varied):
         note(warning)
-    if not own_teeth and pair.healthy is not pair:
+    return varied
+
+
+def alike(pair: GearPair) -> GearPair:
+    """The twin with like teeth, for a command that takes no teeth that differ; a note says so."""
+    from validation.commands.terminal import note
+
+    if pair.healthy is not pair:
         note("this command takes all teeth of a gear as alike; spurcheck teeth takes them as given.")
-        return pair.healthy
-    return pair
+    return pair.healthy
+
+
+class Files(NamedTuple):
+    """Files that a command writes, checked before any work."""
+
+    paths: tuple[Path, ...]
+    force: bool
+
+    def write(self, data: xr.Dataset, draw: Callable[[], Figure] | None = None) -> None:
+        """Write data or the figure of it, as each suffix says; ``draw`` makes another figure than ``plot``."""
+        from validation.commands.terminal import stderr
+        from validation.exchange.results import write_results
+        from validation.files.output import DATA_SUFFIXES
+
+        figure = None
+        for path in self.paths:
+            if path.suffix.lower() in DATA_SUFFIXES:
+                write_results(data, path, force=self.force)
+            else:
+                from validation.plots.of_result import plot
+                from validation.plots.style import save
+
+                figure = figure or (draw() if draw else plot(data))
+                save(figure, path, new=not self.force)
+            stderr().print(f"wrote {path}")
+
+
+def _files(kinds: str) -> Group:
+    """The options --output and --force for files of "data", "figure" or both."""
+    words = {
+        "data": ".nc (NetCDF), .mat (MATLAB) or .csv for data",
+        "figure": ".png, .svg or .pdf for the figure",
+    }
+    text = f"Result file, as often as needed: {', '.join(words[kind] for kind in kinds.split())}."
+
+    def make(output: list[Path] | None, force: bool | None) -> Files:
+        from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+
+        known = {"data": DATA_SUFFIXES, "figure": FIGURE_SUFFIXES}
+        suffixes = tuple(suffix for kind in kinds.split() for suffix in known[kind])
+        return Files(tuple(check_file(one, suffixes, force=bool(force)) for one in output or ()), bool(force))
+
+    return Group({"output": Annotated[list[Path] | None, output(text)], "force": Force}, make)
+
+
+ResultFiles = Annotated[Files, _files("data figure")]
+DataFiles = Annotated[Files, _files("data")]
+FigureFiles = Annotated[Files, _files("figure")]
+_PAIR = {"pair": PairArgument, "speed": Speed, "torque": Torque, "law": Law, "settings": Settings}
+_RANGED = _PAIR | {"speed_range": Range}
+#: A pair with its teeth as given; the same with what it is called and a range of speeds; one with like teeth.
+Pair = Annotated["GearPair", Group(_PAIR, gear_pair)]
+NamedPair = Annotated[
+    "tuple[str, GearPair]",
+    Group(_RANGED, lambda pair, **options: (pair or DEFAULT_PAIR, gear_pair(pair, **options))),
+]
+AlikePair = Annotated["GearPair", Group(_RANGED, lambda **options: alike(gear_pair(**options)))]
 
 
 def set_fields(settings: list[str] | None) -> dict[str, str]:
@@ -155,27 +216,6 @@ def value_of(text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"]
     except (tomllib.TOMLDecodeError, RecursionError):
         return text
-
-
-def figure_or_data(output: Path | None, *, force: bool) -> Path | None:
-    """Check an output file that may be data or a figure, before any work."""
-    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
-
-    return None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
-
-
-def write_result(target: Path, data: xr.Dataset, draw: Callable[[], Figure], *, force: bool) -> None:
-    """Write data or the figure of it, as the suffix of the target says, and say so."""
-    from validation.commands.terminal import stderr
-    from validation.files.output import DATA_SUFFIXES, write_dataset
-
-    if target.suffix.lower() in DATA_SUFFIXES:
-        write_dataset(data, target, new=not force)
-    else:
-        from validation.plots.style import save
-
-        save(draw(), target, new=not force)
-    stderr().print(f"wrote {target}")
 
 
 def axis_values(

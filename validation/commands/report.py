@@ -26,7 +26,7 @@ _REQUIRE = ("holds", "stable", "contact")
 
 @guarded
 def report(
-    pair: opt.PairArgument = None,
+    pair: opt.NamedPair,
     output: Annotated[Path, opt.output("Folder to write, new or empty.")] = Path("spurcheck-report"),
     quick: Annotated[
         bool, typer.Option("--quick", help="Coarser sampling, inputs not varied, for a first look.")
@@ -58,11 +58,6 @@ def report(
     tolerance: Annotated[
         float, typer.Option("--tolerance", help="With --compare: relative change of a number that passes.")
     ] = 1e-3,
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    speed_range: opt.Range = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
     supports: Annotated[
         opt.SupportsName | None,
         typer.Option("--supports", help="springs: leave shafts out. Default: shafts where they are given."),
@@ -90,7 +85,7 @@ def report(
 
     required = some_of("--require", require or (), _REQUIRE)
     check_target(output, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range, own_teeth=True)
+    name, gear_pair = pair
     if supports is not None:
         opt.check_supports(gear_pair, supports)
     if supports == "springs" and gear_pair.shafts is not None:
@@ -104,7 +99,7 @@ def report(
             record=record,
             compare=compare,
             tolerance=tolerance,
-            name=pair or opt.DEFAULT_PAIR,
+            name=name,
             progress=tell,
             early=_show_early,
         )

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,6 +12,7 @@ from validation.commands.terminal import guarded, note, print_json, progress_bar
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
+    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from floquet import JumpRemoval, ResponseBranches
@@ -27,8 +26,8 @@ _VALUES = 26
 
 @guarded
 def response(
-    pair: opt.PairArgument = None,
-    output: opt.ResultFile = None,
+    pair: opt.AlikePair,
+    files: opt.ResultFiles,
     periods: Annotated[int, typer.Option(help="Look for motions that repeat after 1 to so many cycles.")] = 3,
     seeds: Annotated[
         int | None,
@@ -50,12 +49,7 @@ def response(
     back_side: Annotated[
         bool, typer.Option("--back-side", help="Also let the back sides of the teeth touch.")
     ] = False,
-    torque: opt.Torque = None,
-    speed_range: opt.Range = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
     as_json: opt.Json = False,
-    force: opt.Force = False,
 ) -> None:
     """Follow all motions over speed, stable and unstable, with unilateral contact.
 
@@ -79,16 +73,14 @@ def response(
     from floquet.gear.axes import operating_rpm
     from lumped.arguments import whole_number
 
-    target = opt.figure_or_data(output, force=force)
-    gear_pair = opt.gear_pair(pair, None, torque, law, settings, speed_range)
     if over is not None:
         whole_number("--speeds", speeds, 2, 5000)
-        _map(gear_pair, over, speeds, seeds or 0, target, as_json, force)
+        _map(pair, over, speeds, seeds or 0, files, as_json)
         return
     whole_number("--periods", periods, 1, 8)
     with progress_bar("branches") as tell:
         found = floquet.response_branches(
-            gear_pair,
+            pair,
             None,
             range(1, periods + 1),
             seeds=20 if seeds is None else seeds,
@@ -98,7 +90,7 @@ def response(
     if as_json:
         print_json(
             {
-                "gear_pair": gear_pair.name,
+                "gear_pair": pair.name,
                 "speeds_rpm": list(found.speeds_rpm),
                 "jumps": found.jumps,
                 "attractors": found.attractors,
@@ -108,15 +100,17 @@ def response(
             }
         )
     else:
-        _print(gear_pair, found)
-    if not back_side and any(o.reaches_back_side for o in found.at(operating_rpm(gear_pair))):
+        _print(pair, found)
+    if not back_side and any(o.reaches_back_side for o in found.at(operating_rpm(pair))):
         note("a motion at the operating speed is larger than the backlash: try --back-side.")
-    if target is not None:
+
+    def draw() -> Figure:
         from validation.plots.contact_loss import response_figure
 
-        linear = lumped.speed_sweep(gear_pair, np.linspace(*found.speeds_rpm, _LINEAR_SPEEDS))
-        draw = partial(response_figure, found.dataset, linear)
-        opt.write_result(target, found.dataset, draw, force=force)
+        linear = lumped.speed_sweep(pair, np.linspace(*found.speeds_rpm, _LINEAR_SPEEDS))
+        return response_figure(found.dataset, linear)
+
+    files.write(found.dataset, draw)
 
 
 def _print(pair: GearPair, found: ResponseBranches) -> None:
@@ -166,9 +160,7 @@ def _basins(found: ResponseBranches) -> tuple[Basin, ...]:
     return shares if len(shares) > 1 else ()
 
 
-def _map(
-    pair: GearPair, axis: str, speeds: int, seeds: int, target: Path | None, as_json: bool, force: bool
-) -> None:
+def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, as_json: bool) -> None:
     """Map the jumps over speed and a second axis, and find what removes them."""
     import numpy as np
 
@@ -194,10 +186,7 @@ def _map(
         )
     else:
         _print_map(pair, found, name, removed)
-    if target is not None:
-        from validation.plots.contact_loss import jump_map_figure
-
-        opt.write_result(target, found, lambda: jump_map_figure(found), force=force)
+    files.write(found)
 
 
 def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:

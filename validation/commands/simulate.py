@@ -16,8 +16,8 @@ Start = Literal["static", "periodic"]
 
 @guarded
 def simulate(
-    pair: opt.PairArgument = None,
-    output: opt.ResultFile = None,
+    pair: opt.Pair,
+    files: opt.ResultFiles,
     model: Annotated[Model, typer.Option(help="Which model to run.")] = "lumped",
     fidelity: Annotated[Fidelity, typer.Option(help="Of the multibody model.")] = "exact",
     cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 20,
@@ -29,12 +29,7 @@ def simulate(
         bool, typer.Option("--steady", help="Only the periodic motion over one mesh cycle (lumped).")
     ] = False,
     supports: opt.Supports = "springs",
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
     as_json: opt.Json = False,
-    force: opt.Force = False,
 ) -> None:
     """Simulate a gear pair: transmission error, tooth loads, friction and motions in time.
 
@@ -53,33 +48,32 @@ def simulate(
     import lumped
     from lumped.errors import refuse
 
-    target = opt.figure_or_data(output, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=steady)
-    opt.check_supports(gear_pair, supports)
+    pair = pair if steady else opt.alike(pair)
+    opt.check_supports(pair, supports)
     if steady and model == "multibody":
         raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")
     with progress_bar(f"{model} model") as tell:
         common: dict[str, Any] = {"samples_per_cycle": samples, "supports": supports}
         if steady:
-            result = lumped.steady_state(gear_pair, **common)
+            result = lumped.steady_state(pair, **common)
         elif model == "lumped":
-            result = lumped.simulate(gear_pair, cycles, initial=initial, progress=tell, **common)
+            result = lumped.simulate(pair, cycles, initial=initial, progress=tell, **common)
         else:
             import multibody
 
             common |= {"fidelity": fidelity, "initial": initial}
-            result = multibody.simulate(gear_pair, cycles, progress=tell, **common)
+            result = multibody.simulate(pair, cycles, progress=tell, **common)
     from lumped.model.results import cycle_peak_to_peak, load_range
     from lumped.quasi_static.contacts import contact_of
     from validation.files.formatting import number, quantity
     from validation.validity.flags import contact_loss
 
-    g = gear_pair.geometry
+    g = pair.geometry
     # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
     last = result.isel(time=slice(-samples - (not steady), None))
-    form = contact_of(gear_pair)
-    largest, smallest = load_range(gear_pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
-    static = gear_pair.operating.pinion_torque / g.base_radius_pinion
+    form = contact_of(pair)
+    largest, smallest = load_range(pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
+    static = pair.operating.pinion_torque / g.base_radius_pinion
     numbers = {
         "dte_peak_to_peak": cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None),
         "dte_mean": float(last["dte"][:samples].mean()),
@@ -94,7 +88,7 @@ def simulate(
         numbers["power_energy_residual"] = float(result.attrs["power_energy_residual"])
     alone = "" if form.conservative else ", sliding alone"
     if as_json:
-        print_json({"gear_pair": gear_pair.name, "model": model, "supports": supports} | numbers)
+        print_json({"gear_pair": pair.name, "model": model, "supports": supports} | numbers)
     else:
         rows = {
             "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3, measured=True),
@@ -107,9 +101,9 @@ def simulate(
         }
         if "power_energy_residual" in numbers:
             rows["losses that the torques do not balance"] = quantity(numbers["power_energy_residual"], "W")
-        title = f"{gear_pair.name} on {supports}, last mesh cycle"
+        title = f"{pair.name} on {supports}, last mesh cycle"
         stdout().print(table(title, "quantity", ">value", rows=rows.items()))
-    separation = contact_loss(gear_pair, g, last)
+    separation = contact_loss(pair, g, last)
     if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
         note(
             f"contact loss: {separation.detail}. Here the teeth pull instead, so the motion is not to be "
@@ -121,7 +115,4 @@ def simulate(
             f"this periodic motion is unstable: a disturbance grows {number(radius)} times in a mesh cycle. "
             "See 'spurcheck stability', or raise the damping."
         )
-    if target is not None:
-        from validation.plots.motion import history_figure
-
-        opt.write_result(target, result, lambda: history_figure(g, result), force=force)
+    files.write(result)

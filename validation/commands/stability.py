@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -21,8 +20,8 @@ if TYPE_CHECKING:
     from lumped import GearPair
     from lumped.typing import FloatArray
 
-    #: What is written as data, and the figure.
-    View = tuple[xr.Dataset, Callable[[], Figure]]
+    #: What is written as data, and its figure, None for that of ``plot``.
+    View = tuple[xr.Dataset, Callable[[], Figure] | None]
 
 #: Speeds and damping ratios of a chart.
 _CHART = (801, 201)
@@ -35,8 +34,8 @@ _AXES = {
 
 @guarded
 def stability(
-    pair: opt.PairArgument = None,
-    output: opt.ResultFiles = None,
+    pair: opt.AlikePair,
+    files: opt.ResultFiles,
     view: Annotated[
         str,
         typer.Option(
@@ -63,13 +62,7 @@ def stability(
         ),
     ] = False,
     supports: opt.Supports = "springs",
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    speed_range: opt.Range = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
     as_json: opt.Json = False,
-    force: opt.Force = False,
 ) -> None:
     """Decide whether the motion is stable, at the operating point and over a chart.
 
@@ -87,23 +80,18 @@ def stability(
 
     spurcheck stability my_pair.toml --supports shafts --axis speed_rpm=500:20000:1000 -o on_shafts.png
     """
-    from functools import cache
-
     from floquet.gear.axes import GEAR_AXES
     from floquet.gear.multipliers import gear_pair_multipliers
-    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
-    targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
     grid = opt.axes_values(axes or [], GEAR_AXES)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
-    opt.check_supports(gear_pair, supports)
-    _check(view, grid, targets, tongues, supports)
-    found = gear_pair_multipliers(gear_pair, supports=supports)
+    opt.check_supports(pair, supports)
+    _check(view, grid, files, tongues, supports)
+    found = gear_pair_multipliers(pair, supports=supports)
     margin = 1.0 - found.spectral_radius
     if as_json:
         point = {"verdict": found.verdict, "spectral_radius": found.spectral_radius, "error": found.error}
         point |= {"certificate": found.certificate, "margin": margin}
-        print_json({"gear_pair": gear_pair.name, "supports": supports} | point)
+        print_json({"gear_pair": pair.name, "supports": supports} | point)
     else:
         from validation.files.formatting import number
 
@@ -113,24 +101,22 @@ def stability(
             "bound on its error": f"{number(found.error, 2)} ({found.certificate})",
             "margin, 1 - largest multiplier": number(margin),
         }
-        title = f"{gear_pair.name} on {supports}: operating point"
+        title = f"{pair.name} on {supports}: operating point"
         stdout().print(table(title, "quantity", ">value", rows=rows.items()))
-    if targets or axes or tongues or view != "chart":
+    if files.paths or axes or tongues or view != "chart":
         if view == "chart":
-            data, draw = _chart(gear_pair, grid, tongues, supports)
+            data, draw = _chart(pair, grid, tongues, supports)
         elif view == "boundaries":
-            data, draw = _boundaries(gear_pair, grid, supports)
+            data, draw = _boundaries(pair, grid, supports)
         else:
-            data, draw = _campbell(gear_pair, grid)
-        draw_once = cache(draw)
-        for target in targets:
-            opt.write_result(target, data, draw_once, force=force)
+            data, draw = _campbell(pair, grid)
+        files.write(data, draw)
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 
 
 def _check(
-    view: str, axes: Mapping[str, FloatArray], targets: list[Path], tongues: bool, supports: opt.SupportsName
+    view: str, axes: Mapping[str, FloatArray], files: opt.Files, tongues: bool, supports: opt.SupportsName
 ) -> None:
     """Refuse what cannot be shown, before any work."""
     from lumped.errors import refuse
@@ -142,7 +128,7 @@ def _check(
     if not {"chart": True, "boundaries": others == 1, "campbell": not others}[view]:
         action = "For example --axis damping_ratio=0.005:0.05:5." if view == "boundaries" else "Leave it out."
         raise refuse("--axis", ", ".join(axes) or "none", f"{_AXES[view]} for --view {view}", action)
-    figures = [path for path in targets if path.suffix.lower() not in DATA_SUFFIXES]
+    figures = [path for path in files.paths if path.suffix.lower() not in DATA_SUFFIXES]
     if figures and view == "chart" and len(axes) > 2:
         raise refuse("--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv.")
     for wrong, option, value, allowed, action in (
@@ -159,7 +145,6 @@ def _chart(pair: GearPair, axes: Mapping[str, FloatArray], tongues: bool, suppor
     from floquet import predicted_lines
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.chart import stability_chart
-    from validation.plots.stability import stability_figure
 
     grid = dict(axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
@@ -187,6 +172,8 @@ def _chart(pair: GearPair, axes: Mapping[str, FloatArray], tongues: bool, suppor
         regions = _labelled(pair, chart)
 
     def draw() -> Figure:
+        from validation.plots.stability import stability_figure
+
         at = {name: GEAR_AXES[name].own(pair) for name in grid}
         lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()} if regions else {}
         return stability_figure(chart, at, regions, lines)
@@ -241,7 +228,6 @@ def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
 def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.SupportsName) -> View:
     from floquet import stability_boundaries
     from floquet.gear.axes import GEAR_AXES, chart_axes
-    from validation.plots.stability import boundaries_figure
 
     grid = dict(axes)
     speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
@@ -261,13 +247,18 @@ def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.Su
     headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
     none = f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value"
     stdout().print(table(f"tongues over {GEAR_AXES[name].long_name}", *headings, rows=rows) if rows else none)
-    return found, lambda: boundaries_figure(found)
+    return found, None
 
 
 def _campbell(pair: GearPair, axes: Mapping[str, FloatArray]) -> View:
     from floquet.gear.axes import chart_axes, operating_rpm
     from floquet.gear.campbell import campbell
-    from validation.plots.stability import campbell_figure
 
     diagram = campbell(pair, axes.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"]))
-    return diagram, lambda: campbell_figure(diagram, operating_rpm(pair))
+
+    def draw() -> Figure:
+        from validation.plots.stability import campbell_figure
+
+        return campbell_figure(diagram, operating_rpm(pair))
+
+    return diagram, draw

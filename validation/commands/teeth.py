@@ -2,29 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
-
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, progress_bar, stderr, stdout, table
-
-_SUFFIXES = (".csv", ".nc", ".mat")
+from validation.commands.terminal import guarded, progress_bar, stdout, table
 
 
 @guarded
 def teeth(
-    pair: Annotated[str, typer.Argument(help="Preset, or parameter file.", metavar="PAIR")],
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
-    output: Annotated[
-        Path | None,
-        opt.output("File for the motion over the whole period: .nc (NetCDF), .mat (MATLAB) or .csv."),
-    ] = None,
-    force: opt.Force = False,
+    pair: opt.Pair,
+    files: opt.DataFiles,
 ) -> None:
     r"""Show what teeth that differ do: loads, sidebands, indicators, beside the twin with like teeth.
 
@@ -43,19 +28,15 @@ def teeth(
 
     spurcheck teeth my_pair.toml --set pinion.deviations.tolerance_class=6 -o motion.nc
     """
-    from validation.exchange.results import write_results
     from validation.files.formatting import number, quantity
-    from validation.files.output import check_file
     from validation.signals.findings import GEARS, NOISE, TeethFindings, deviations_table, rpm_and_period
 
-    target = None if output is None else check_file(output, _SUFFIXES, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=True)
     with progress_bar("motion over the period of the teeth"):
-        found = TeethFindings(gear_pair)
+        found = TeethFindings(pair)
     console = stdout()
-    console.print(f"{gear_pair.name}, {rpm_and_period(found)}")
+    console.print(f"{pair.name}, {rpm_and_period(found)}")
     console.print(f"contact: {found.motion.attrs['touch']}")
-    given = deviations_table(gear_pair)
+    given = deviations_table(pair)
     shown = table("", "gear", ">index deviations", ">largest step", ">eccentricity", ">ISO 1328-1 class")
     for at, gear in enumerate(GEARS):
         sizes = (quantity(float(given[n][at]), "m", 3) for n in ("cumulative", "pitch", "eccentricity"))
@@ -75,6 +56,4 @@ def teeth(
     console.print(shown)
     console.print(f"indicators: acceleration of the pinion, with noise of {100 * NOISE:.0f} % of its rms")
     console.print(found.sentence)
-    if target is not None:
-        write_results(found.motion, target, force=force)
-        stderr().print(f"wrote {target}")
+    files.write(found.motion)

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import asdict, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn, ParamSpec
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
@@ -26,10 +26,10 @@ from rich.table import Table
 from rich.text import Text
 from typer.core import TyperCommand
 
+from validation.commands.options import Group
+
 if TYPE_CHECKING:
     from lumped.typing import Progress
-
-P = ParamSpec("P")
 
 #: Exit codes: a verdict that fails, an input that is refused, a computation or the writing of its result
 #: that fails, an interruption.
@@ -114,18 +114,38 @@ class Once(TyperCommand):
         return super().parse_args(ctx, args)
 
 
-def guarded(command: Callable[P, None]) -> Callable[P, None]:
-    """Turn errors into one message and an exit code, warnings into notes; add the option --quiet."""
+def guarded(command: Callable[..., None]) -> Callable[..., None]:
+    """Turn errors into one message and an exit code, warnings into notes; add the option --quiet.
+
+    A parameter marked by ``Group`` of ``options.py`` is made of its options, which take its place.
+    """
+    groups: dict[str, Group] = {}
+    shown: list[inspect.Parameter] = []
+
+    def add(name: str, kind: Any, default: Any = None) -> None:
+        shown.append(
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+        )
+
+    for one in inspect.signature(command, eval_str=True).parameters.values():
+        marks = [mark for mark in getattr(one.annotation, "__metadata__", ()) if isinstance(mark, Group)]
+        for mark in marks:
+            groups[one.name] = mark
+            for name, kind in mark.options.items():
+                add(name, kind)
+        if not marks:
+            add(one.name, one.annotation, one.default)
+    add("quiet", Quiet, False)
 
     @functools.wraps(command)
-    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+    def run(**kwargs: Any) -> None:
         silent = _quiet.set(bool(kwargs.pop("quiet", False)))
         try:
-            answered(*args, **kwargs)
+            answered(kwargs)
         finally:
             _quiet.reset(silent)
 
-    def answered(*args: P.args, **kwargs: P.kwargs) -> None:
+    def answered(kwargs: dict[str, Any]) -> None:
         from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 
         told: set[str] = set()
@@ -141,7 +161,11 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             with warnings.catch_warnings():
                 warnings.simplefilter("always", LawRangeWarning)
                 warnings.showwarning = show
-                command(*args, **kwargs)
+                made = {
+                    name: group.make(**{option: kwargs.pop(option) for option in group.options})
+                    for name, group in groups.items()
+                }
+                command(**made, **kwargs)
         except ParameterError as error:
             problems = [replace(p, field=_OPTIONS.get(p.field, p.field)) for p in error.problems]
             fail(str(ParameterError(problems, error.source)), REFUSED)
@@ -167,10 +191,8 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
                 NUMERICAL,
             )
 
-    signature = inspect.signature(command, eval_str=True)
-    quiet = inspect.Parameter("quiet", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Quiet)
-    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), quiet])  # type: ignore[attr-defined]
-    run.__annotations__ = {**command.__annotations__, "quiet": Quiet}
+    run.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
+    run.__annotations__ = {one.name: one.annotation for one in shown}
     return run
 
 

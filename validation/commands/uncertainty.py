@@ -7,20 +7,15 @@ from typing import Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, progress_bar, stderr, stdout, table
+from validation.commands.terminal import guarded, progress_bar, stdout, table
 
 
 @guarded
 def uncertainty(
-    pair: opt.PairArgument = None,
+    pair: opt.Pair,
+    files: opt.DataFiles,
     samples: Annotated[int, typer.Option("--samples", help="Number of predictions.")] = 128,
     seed: Annotated[int, typer.Option("--seed", help="Of the sampled points.")] = 1,
-    speed: opt.Speed = None,
-    torque: opt.Torque = None,
-    law: opt.Law = None,
-    settings: opt.Settings = None,
-    output: opt.DataFile = None,
-    force: opt.Force = False,
 ) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
@@ -35,19 +30,15 @@ def uncertainty(
     """
     import numpy as np
 
-    from validation.exchange.results import write_results
     from validation.files.formatting import number, quantity
-    from validation.files.output import DATA_SUFFIXES, check_file
     from validation.prediction.motion import QUANTITIES
     from validation.prediction.uncertainty import TEETH
     from validation.prediction.uncertainty import uncertainty as run
 
-    target = None if output is None else check_file(output, DATA_SUFFIXES, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, own_teeth=True)
     with progress_bar("uncertain inputs") as tell:
-        found = run(gear_pair, samples, seed, progress=tell)
+        found = run(pair, samples, seed, progress=tell)
     console = stdout()
-    shown = table(f"{gear_pair.name}: results", "result", ">as given", ">5 %", ">50 %", ">95 %")
+    shown = table(f"{pair.name}: results", "result", ">as given", ">5 %", ">50 %", ">95 %")
     for name, (unit, words) in (QUANTITIES | TEETH).items():
         if f"given_{name}" not in found.attrs:
             continue
@@ -67,6 +58,4 @@ def uncertainty(
         f"{samples} samples, seed {seed}: "
         + ", ".join(f"{found.attrs[name]} {name.replace('_', ' ')}" for name in counts)
     )
-    if target is not None:
-        write_results(found, target, force=force)
-        stderr().print(f"wrote {target}")
+    files.write(found)
