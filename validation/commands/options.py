@@ -130,7 +130,7 @@ class Files(NamedTuple):
     force: bool
 
     def write(self, data: xr.Dataset, draw: Callable[[], Figure] | None = None) -> None:
-        """Write data or the figure of it, as each suffix says; ``draw`` makes another figure than ``plot``."""
+        """Write data or its figure, as each suffix says; ``draw`` makes another figure than ``plot``."""
         from validation.commands.terminal import stderr
         from validation.exchange.results import write_results
         from validation.files.output import DATA_SUFFIXES
