@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import typer
 
+from validation.commands.terminal import Group, note, stderr
+
 if TYPE_CHECKING:
     import numpy as np
     import xarray as xr
@@ -68,16 +70,6 @@ ForceFolder = Annotated[
 ]
 
 
-class Group(NamedTuple):
-    """Marks the parameter of a command that several options make: ``guarded`` puts these in its place.
-
-    ``options``: name -> type of each, all with the default None; ``make`` makes the parameter of them.
-    """
-
-    options: Mapping[str, Any]
-    make: Callable[..., Any]
-
-
 def gear_pair(
     pair: str | None,
     speed: str | None = None,
@@ -89,7 +81,6 @@ def gear_pair(
     """Load a gear pair and apply the options of the command line; None: the example, which a note says."""
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
-    from validation.commands.terminal import note
     from validation.validity.plausibility import parameter_warnings
 
     asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
@@ -116,8 +107,6 @@ def gear_pair(
 
 def alike(pair: GearPair) -> GearPair:
     """The twin with like teeth, for a command that takes no teeth that differ; a note says so."""
-    from validation.commands.terminal import note
-
     if pair.healthy is not pair:
         note("this command takes all teeth of a gear as alike; spurcheck teeth takes them as given.")
     return pair.healthy
@@ -131,7 +120,6 @@ class Files(NamedTuple):
 
     def write(self, data: xr.Dataset, draw: Callable[[], Figure] | None = None) -> None:
         """Write data or its figure, as each suffix says; ``draw`` makes another figure than ``plot``."""
-        from validation.commands.terminal import stderr
         from validation.exchange.results import write_results
         from validation.files.output import DATA_SUFFIXES
 

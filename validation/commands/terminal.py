@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import asdict, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, NoReturn
 
 import typer
 from rich.console import Console
@@ -25,8 +25,6 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 from typer.core import TyperCommand
-
-from validation.commands.options import Group
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -114,10 +112,20 @@ class Once(TyperCommand):
         return super().parse_args(ctx, args)
 
 
+class Group(NamedTuple):
+    """Marks the parameter of a command that several options make: ``guarded`` puts these in its place.
+
+    ``options``: name -> type of each, all with the default None; ``make`` makes the parameter of them.
+    """
+
+    options: Mapping[str, Any]
+    make: Callable[..., Any]
+
+
 def guarded(command: Callable[..., None]) -> Callable[..., None]:
     """Turn errors into one message and an exit code, warnings into notes; add the option --quiet.
 
-    A parameter marked by ``Group`` of ``options.py`` is made of its options, which take its place.
+    A parameter marked by ``Group`` is made of its options, which take its place.
     """
     groups: dict[str, Group] = {}
     shown: list[inspect.Parameter] = []
