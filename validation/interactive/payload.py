@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from floquet.gear.axes import operating_rpm
 from lumped.friction.registry import law_of
 from lumped.model.results import LOAD_NOISE
-from validation.interactive.results import SAMPLES, PageResults, Slices
+from validation.interactive.results import PageResults, Slices
 from validation.plots.stability import pretty
 from validation.validity.flags import REVERSAL_LIMITS, STATES
 
@@ -98,22 +98,18 @@ def _sweep(results: PageResults) -> dict[str, Any]:
 
 
 def _branches(data: xr.Dataset) -> list[dict[str, Any]]:
-    """Branches in their order; ``waves`` holds the transmission error [um] of the orbits ``drawn``."""
+    """Branches in their order."""
     found = []
     for branch in np.unique(data["branch"]):
         one = data.isel(orbit=data["branch"].to_numpy() == branch)
-        waves = data.isel(wave=np.isin(data["wave_orbit"], one["orbit"]))
-        n, first = int(one["branch_n"][0]), int(one["orbit"][0])
         found.append(
             {
-                "n": n,
+                "n": int(one["branch_n"][0]),
                 "speed": _numbers(one["branch_speed_rpm"]),
                 "dte": _numbers(1e6 * one["branch_dte_peak_to_peak"].to_numpy()),
                 "load": _numbers(one["branch_largest_load"]),
                 "radius": _numbers(one["branch_spectral_radius"]),
                 "stable": one["branch_stable"].to_numpy().astype(int).tolist(),
-                "drawn": (waves["wave_orbit"].to_numpy() - first).tolist(),
-                "waves": [_numbers(1e6 * wave[: n * SAMPLES]) for wave in waves["wave_dte"].to_numpy()],
             }
         )
     return found

@@ -55,27 +55,10 @@ function orbitAt(speed) {
   return best;
 }
 
-// Its transmission error over its cycles, of the nearest orbit whose motion is kept, beside its numbers.
+// Its numbers.
 function showOrbit(orbit) {
-  element("motion").hidden = !shownBranches().length;
-  if (!orbit) {
-    element("motion-wave").replaceChildren();
-    element("motion-text").textContent = "No motion with unilateral contact was computed at the cursor's speed.";
-    return;
-  }
-  const branch = sweep.branches[orbit[0]], kept = nearest(branch.drawn, orbit[1]), wave = branch.waves[kept];
-  const low = Math.min(...wave), span = Math.max(...wave) - low || 1, closed = [...wave, wave[0]];
-  const svg = element("motion-wave"), part = (name, attributes) => {
-    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
-    Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
-    return made;
-  };
-  const points = closed.map((v, i) => `${(300 * i) / wave.length},${75 - (70 * (v - low)) / span}`).join(" ");
-  const cycles = Array.from({ length: branch.n - 1 }, (_, k) => (300 * (k + 1)) / branch.n);
-  svg.replaceChildren(
-    ...cycles.map((x) => part("line", { x1: x, x2: x, y1: 0, y2: 80 })), part("polyline", { points }));
-  element("motion-text").textContent =
-    `Motion with unilateral contact: ${orbitWords(orbit).join(", ")}. Curve: transmission error over ` +
-    `${branch.n > 1 ? `${branch.n} mesh cycles` : "a mesh cycle"} at ${rpm(branch.speed[branch.drawn[kept]])}, ` +
-    `${plain(low, 4)} to ${plain(low + span, 4)} µm.`;
+  element("motion-text").hidden = !shownBranches().length;
+  element("motion-text").textContent = orbit
+    ? `Motion with unilateral contact: ${orbitWords(orbit).join(", ")}.`
+    : "No motion with unilateral contact was computed at the cursor's speed.";
 }
