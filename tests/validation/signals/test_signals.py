@@ -84,6 +84,26 @@ def test_the_average_of_a_shaft_keeps_its_own_orders_only() -> None:
     np.testing.assert_allclose(of_gear["average"], other(of_gear["turn"].to_numpy() * Z2), atol=1e-18)
 
 
+def test_errors_of_the_gear_leave_the_average_of_the_pinion_in_fixed_contacts_alone() -> None:
+    # The hunting period brings every tooth of the gear to every tooth of the pinion: errors of zero mean
+    # cancel where the motion is linear in them, and do not where a pair touches when its own gap closes.
+    errors = np.sin(2.1 * np.arange(22)) * 20.0
+    off = {}
+    for contact, touch in (("prescribed", "linear"), ("loaded", "push_only")):
+        changes = {"gear.teeth": 22, "mesh.contact": contact, "centre_distance": None}
+        pair = PAIR.with_(changes | {"pinion.deviations": {"index": [0.0] * Z1, "first_order": "steps"}})
+        lists = {"index": list(errors - errors.mean()), "first_order": "steps"}
+        healthy, found = (
+            time_synchronous_average(
+                lumped.steady_state(one, touch=touch, samples_per_cycle=8), variable="dte", derivative=0
+            )["average"].to_numpy()
+            for one in (pair, pair.with_({"gear.deviations": lists}))
+        )
+        off[contact] = np.abs(found - healthy).max() / np.ptp(healthy)
+    assert off["prescribed"] < 1e-11
+    assert off["loaded"] > 0.01
+
+
 def test_residual_and_difference_lose_the_mesh_and_its_first_sidebands() -> None:
     parts = [lambda u: 0.0 * u + 7.0, *map(tone, (1, 4, Z1 - 1, Z1, 2 * Z1 + 1))]
     average = time_synchronous_average(result_of(added(*parts)), variable="dte", derivative=0)
