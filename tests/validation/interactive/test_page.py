@@ -18,10 +18,8 @@ import lumped
 from floquet.gear.axes import vary
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import gear_pair_multipliers
-from lumped import NumericalError
 from validation.cli import app
 from validation.interactive import page
-from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import Sampling, compute
 from validation.validity.flags import contact_loss, sliding_reversal
@@ -220,22 +218,3 @@ def test_the_command_writes_page_and_data_and_does_not_overwrite(tiny, tmp_path)
     assert _run("nasa_28_28", "-o", out).exit_code == 2  # the data file would be lost
     assert not out.exists()
     assert _run("nasa_28_28", "-o", out, "--force").exit_code == 0
-
-
-def test_the_command_refuses_other_names_and_missing_folders(tmp_path):
-    for name in ("page.pdf", "missing/page.html"):
-        refused = _run("nasa_28_28", "-o", tmp_path / name)
-        assert refused.exit_code == 2
-        assert "output" in refused.output
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_failure_leaves_nothing_behind(tiny, tmp_path, monkeypatch):
-    def fail(*_, **__):
-        raise NumericalError("no such motion: try another speed")
-
-    monkeypatch.setattr(interactive_results, "gear_pair_multipliers", fail)
-    failed = _run("nasa_28_28", "-o", tmp_path / "page.html")
-    assert failed.exit_code == 3
-    assert "no such motion" in failed.output
-    assert list(tmp_path.iterdir()) == []
