@@ -94,7 +94,9 @@ class PathFunction:
     def __call__(self, xi: ArrayLike) -> FloatArray:
         """Values at positions xi [m], any shape; zero outside the interval, right-continuous at switches."""
         at = np.asarray(xi, dtype=float)
-        return _evaluated(self.breaks, self.coefficients, at.ravel()).reshape(at.shape)
+        places = at.ravel()[:]
+        places.setflags(write=False)  # as breaks are: an array of another kind is another compilation
+        return _evaluated(self.breaks, self.coefficients, places).reshape(at.shape)
 
     @cached_property
     def slope(self) -> PathFunction:

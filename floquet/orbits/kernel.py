@@ -185,7 +185,7 @@ def propagate(
     aa = np.zeros((contacts, n, a.shape[3]))
     watch = np.zeros((contacts, order + width))
     depth = np.zeros((contacts, order + 1))
-    turns, series = np.zeros(contacts), np.zeros(order + 1)
+    turns, series, push = np.zeros(contacts), np.zeros(order + 1), np.zeros(order + 1)
     state = np.empty(contacts, np.int64)
     for i in range(m):
         z[0, i, 0] = x[i]
@@ -270,9 +270,11 @@ def propagate(
                 series[:] = 0.0
                 for i in range(contacts):
                     if state[i] == CLOSED:
-                        totals[4] = extremes(load[i, :, 0], step, -math.inf, totals[4])[1]
+                        for j in range(order + 1):
+                            push[j] = load[i, j, 0]
                         for j in range(order):
                             series[j] += load[i, j, 0]
+                        totals[4] = extremes(push, step, -math.inf, totals[4])[1]
                 totals[5] = extremes(series, step, totals[5], math.inf)[0]
                 # Samples in [tau, tau + step).
                 last = tau + step

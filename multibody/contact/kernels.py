@@ -358,26 +358,17 @@ def tooth_forces(
     return contact_forces(t, state, p, flags, table, contacts)
 
 
-@compiled
 def tooth_forces_over(
-    times: FloatArray,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    table: FloatArray,
-    wrenches: FloatArray,
-    contacts: FloatArray,
-) -> IntArray:
-    """``tooth_forces`` at n states; returns the numbers of contacts (n,).
+    times: FloatArray, q: FloatArray, v: FloatArray, p: FloatArray, flags: int, table: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """``tooth_forces`` at n times [s] with states q, v (n, 6 or more); a kernel would compile for a second.
 
-    times (n,) [s]; q, v, wrenches (n, 6); contacts (n, 2 MAX_PAIRS, N_RECORD); the rest as ``tooth_forces``
+    Returns wrenches (n, 6), contact records (n, 2 MAX_PAIRS, N_RECORD), and how many of each count (n,)
     """
-    counts, state = np.empty(times.size, np.int64), np.empty((3, 6))
-    for i in range(times.size):
-        for j in range(6):
-            state[0, j], state[1, j] = q[i, j], v[i, j]
-        counts[i] = tooth_forces(times[i], state, p, flags, table, contacts[i])
-        for j in range(6):
-            wrenches[i, j] = state[2, j]
-    return counts
+    wrenches, counts = np.empty((times.size, 6)), np.empty(times.size, np.int64)
+    contacts, state = np.zeros((times.size, 2 * kn.MAX_PAIRS, kn.N_RECORD)), np.empty((3, 6))
+    for i, t in enumerate(times.tolist()):
+        state[0], state[1] = q[i, :6], v[i, :6]
+        counts[i] = tooth_forces(t, state, p, flags, table, contacts[i])
+        wrenches[i] = state[2]
+    return wrenches, contacts, counts

@@ -22,7 +22,6 @@ from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 from multibody.contact import layout as kn
 from multibody.contact.kernels import tooth_forces_over
-from multibody.contact.layout import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.shafts.train import Train
 
@@ -203,7 +202,4 @@ def _contacts(
     """Wrench (k, 6) and contact records of the linear mesh inside a smooth interval."""
     p, margin = machine.parameters.copy(), 1e-12 * machine.period
     p[kn.T_LOW], p[kn.T_HIGH] = low + margin, high - margin
-    wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
-    q, v = np.ascontiguousarray(q[:, :6]), np.ascontiguousarray(v[:, :6])
-    tooth_forces_over(times, q, v, p, kn.LINEAR, machine.table, wrenches, contacts)
-    return wrenches, contacts
+    return tooth_forces_over(times, q, v, p, kn.LINEAR, machine.table)[:2]

@@ -285,13 +285,7 @@ def contact_state(
     Returns (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
         (n, 2 MAX_PAIRS, kernels.N_RECORD), of which the first counts (n,) are valid
     """
-    m = model.machine
-    wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
-    p, flags = model.parameters, model.flags
-    # Another layout of the arrays would be another compilation.
-    times, q, v = (np.ascontiguousarray(x, dtype=float) for x in (times, q[:, :6], v[:, :6]))
-    counts = tooth_forces_over(times, q, v, p, flags, m.table, wrenches, contacts)
-    return wrenches, contacts, counts
+    return tooth_forces_over(times, q, v, model.parameters, model.flags, model.machine.table)
 
 
 def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:

@@ -23,8 +23,9 @@ _FIRST_GUESS = 0.3
 def compiling(bar: Progress) -> Iterator[Progress]:
     """Compile beside the block what it needs late; the block's own progress, with what it compiles itself.
 
-    The second process begins with the stability chart and motions beyond contact loss, while the block
-    compiles the lumped and the multibody model. A kernel that one of them compiles, the other one waits for.
+    The second process compiles the multibody model, then stability charts, while the block compiles the
+    lumped model with contact loss and takes samples of it. A kernel that one of them compiles, the other one
+    waits for.
     """
     from numba.core import event
 
@@ -46,10 +47,10 @@ def _processors() -> int:
 
 
 def _all_stored() -> bool:
-    from floquet.orbits.polynomials import _COMPILE as orbits
     from floquet.rank_one.kernels.simd import _COMPILE as charts
+    from multibody.contact.kinematics import compiled as contact
 
-    return charts.stored("spectra") and orbits.stored("propagate")
+    return charts.stored("spectra") and contact.stored("bridge")
 
 
 def _start() -> subprocess.Popen[bytes]:
@@ -89,13 +90,14 @@ class _Listener:
 
 
 def main() -> None:
-    """Compute a chart of one point and a motion with unilateral contact: their kernels are stored."""
+    """Compute a motion of the multibody model and a chart of one point: their kernels are stored."""
     import floquet
+    import multibody
     from lumped import load_gear_pair
 
     pair = load_gear_pair("nasa_28_28")
+    multibody.steady_state(pair, samples_per_cycle=32)
     floquet.stability_chart(pair, {"speed_rpm": [4000.0]})
-    floquet.periodic_orbit(pair)
 
 
 if __name__ == "__main__":

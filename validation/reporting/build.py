@@ -161,8 +161,8 @@ def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -
         shown = max(shown, (first + fraction * own) / total)  # a chapter may compute several results
         progress(shown, stage)
 
-    # The second program first: its kernels compile here while another process compiles those of the charts.
-    for chapter in sorted(chapters, key=lambda one: one.key != "second_program"):
+    # Samples first, charts last: another process compiles the second program meanwhile, and then the charts.
+    for chapter in sorted(chapters, key=lambda one: (one.key == "stability") - (one.key == "how_sure")):
         results.progress = partial(tell, done, chapter.seconds)
         content = chapter.write(results)
         if content is not None:

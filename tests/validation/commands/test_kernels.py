@@ -9,9 +9,11 @@ from types import SimpleNamespace
 import pytest
 
 import floquet
-from floquet.orbits.kernel import propagate
+import multibody
 from floquet.rank_one.kernels.taylor import propagate_points
 from lumped import load_gear_pair
+from multibody.contact.kernels import tooth_forces
+from multibody.run.bridge import bridge
 from validation.commands import kernels
 
 
@@ -55,11 +57,12 @@ def test_what_is_compiled_is_told_and_the_fraction_stays() -> None:
     assert told[-1][1].startswith("compiling, once for this machine: about ")
 
 
-def test_the_second_process_compiles_what_charts_and_orbits_of_any_pair_take() -> None:
+def test_the_second_process_compiles_what_charts_and_runs_of_any_pair_take() -> None:
     kernels.main()
-    before = [len(kernel.signatures) for kernel in (propagate_points, propagate)]
+    compiled = (propagate_points, bridge, tooth_forces)
+    before = [len(kernel.signatures) for kernel in compiled]
     pair = load_gear_pair("fzg_c").with_({"mesh.contact": "loaded"})
     floquet.stability_chart(pair, {"speed_rpm": [900.0, 1000.0], "damping_ratio": [0.02, 0.05]})
-    floquet.periodic_orbit(pair)
-    assert before == [1, 1] == [len(kernel.signatures) for kernel in (propagate_points, propagate)]
+    multibody.simulate(pair, 1)
+    assert before == [1, 1, 1] == [len(kernel.signatures) for kernel in compiled]
     assert kernels._all_stored()

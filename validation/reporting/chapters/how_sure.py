@@ -19,7 +19,7 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    budget = results.budget
+    found, budget = results.uncertainty, results.budget
     blocks: list[Block] = [_budget_table(budget)]
     blocks.append(
         Picture(
@@ -32,7 +32,6 @@ def write(results: Results) -> Content:
     result = f"The largest error of the prediction is “{budget.attrs['largest_name']}”."
     if results.measured_error is not None:
         blocks.append(_measured_table(results.measured_error))
-    found = results.uncertainty
     if isinstance(found, Absent):
         blocks.append(Text("The inputs were not varied in this report."))
         return Content(result, tuple(blocks))
