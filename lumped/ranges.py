@@ -118,7 +118,7 @@ def warn_violations(violations: Iterable[RangeViolation]) -> None:
 
 
 @contextlib.contextmanager
-def told_once() -> Iterator[None]:
+def warned_once() -> Iterator[None]:
     """Issue one ``LawRangeWarning`` per law and quantity at the end, that with the largest coefficient."""
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", LawRangeWarning)

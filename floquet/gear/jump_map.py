@@ -26,7 +26,7 @@ from lumped.arguments import one_of, real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
 from lumped.labelling import Variable, labelled_dataset
-from lumped.ranges import told_once
+from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray, IntArray, Progress
@@ -104,7 +104,7 @@ def _at(pair: GearPair, axis: str, value: float) -> GearPair:
     return JUMP_AXES[axis].apply(GearVariation(pair), value).pair
 
 
-@told_once()
+@warned_once()
 def jump_map(
     pair: AnyPair,
     axes: Axes,

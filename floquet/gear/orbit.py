@@ -183,7 +183,7 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
     The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
     friction by the trapezoidal rule.
     """
-    g, held = pair.geometry, LTVSystem.of(pair, "elastic", cycle=cycle).held
+    g, support = pair.geometry, LTVSystem.of(pair, "elastic", cycle=cycle).supports
     time, torques = run.phases * orbit.period, _torques(pair, orbit.parameter)
     steps = np.diff(time, append=orbit.n * orbit.period)
 
@@ -205,9 +205,9 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
         (run.states[:, :_WHOLE], integral(rate)),
         (run.states[:, _WHOLE:] / orbit.period, rate),
     ):
-        half = z @ held.back.T
-        missing = (rigid - half @ held.common_weights) / (held.common_weights @ held.common)
-        halves.append(half + np.outer(missing, held.common))
+        half = z @ support.back.T
+        missing = (rigid - half @ support.common_weights) / (support.common_weights @ support.common)
+        halves.append(half + np.outer(missing, support.common))
     return np.concatenate(halves, axis=1)
 
 
@@ -320,7 +320,7 @@ def start_of(
             states, torque = linear.states[0], linear.pinion_torque if given else linear.brake_torque
         except NumericalError:
             states[2] = static_deflection(pair)
-    relative = absolute.held.relative
+    relative = absolute.supports.relative
     wide = np.concatenate([relative @ states[:6], relative @ states[6:] * g.mesh_period])
     return _of_form(wide, form), torque
 

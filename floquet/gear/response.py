@@ -43,7 +43,7 @@ from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import averaged_matrix
 from lumped.model.periodic_system import LTVSystem
 from lumped.quasi_static.contacts import contact_of
-from lumped.ranges import told_once
+from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -293,7 +293,7 @@ class ResponseBranches:
         )
 
 
-@told_once()
+@warned_once()
 def response_branches(
     pair: AnyPair,
     speeds: tuple[float, float] | None = None,

@@ -22,7 +22,7 @@ _STEPS = 48
 #: Periods of the fastest natural motion and cycles, at least, that a run settles; cycles that are observed.
 _SETTLE, _LEAST_CYCLES, _OBSERVED = 150.0, 40, 128
 #: Runs side by side whose states stay in the cache of a core.
-_LANES = 64
+_SIDE_BY_SIDE = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,22 +66,22 @@ def settle(
     """Let runs from states (L, 2m) settle at periods (L,) with parameters (L,)."""
     states, stats = np.array(starts, dtype=float), np.empty((4, periods.size))
     order = np.argsort(periods, kind="stable")
-    cuts = np.arange(_LANES, order.size, _LANES)
+    cuts = np.arange(_SIDE_BY_SIDE, order.size, _SIDE_BY_SIDE)
     if not family.constant:
         cuts = np.union1d(cuts, np.flatnonzero(np.diff(periods[order])) + 1)
-    for lanes in np.split(order, cuts):
-        T = float(periods[lanes].max())
+    for runs in np.split(order, cuts):
+        T = float(periods[runs].max())
         system = family.at(T)
         cycles = max(int(np.ceil(_SETTLE / (limits.frequency * T))), _LEAST_CYCLES)
-        half = np.ascontiguousarray(states[lanes].T)
+        half = np.ascontiguousarray(states[runs].T)
         m = half.shape[0] // 2
-        z, v, found = half[:m], half[m:], np.zeros((4, lanes.size))
+        z, v, found = half[:m], half[m:], np.zeros((4, runs.size))
         arguments: tuple[Any, ...] = (
-            *(z, v, np.ascontiguousarray(periods[lanes]), np.ascontiguousarray(parameters[lanes])),
+            *(z, v, np.ascontiguousarray(periods[runs]), np.ascontiguousarray(parameters[runs])),
             *(cycles, _OBSERVED, *_tables(system, max(1.0, _STEPS * limits.frequency * T)), found),
         )
         _run(*arguments)
-        states[lanes], stats[:, lanes] = half.T, found
+        states[runs], stats[:, runs] = half.T, found
     mean, square, least, most = stats
     with np.errstate(invalid="ignore"):
         return Settled(states, mean, np.sqrt(np.maximum(square - mean**2, 0.0)), least, most)
@@ -115,14 +115,14 @@ def _run(
     found: FloatArray,
 ) -> None:  # fmt: skip
     """Take states (m, L) over whole cycles, in place; found (4, L): mean, mean square, extremes at last."""
-    m, lanes = z.shape
+    m, runs = z.shape
     zs, vs, dz, dv = np.empty_like(z), np.empty_like(z), np.empty_like(z), np.empty_like(z)
-    force, d, w = np.empty_like(z), np.empty(lanes), np.empty(lanes)
+    force, d, w = np.empty_like(z), np.empty(runs), np.empty(runs)
     found[2], found[3] = np.inf, -np.inf
     for cycle in range(cycles + observed):
         for s in range(h.size):
             if cycle >= cycles:
-                for q in range(lanes):
+                for q in range(runs):
                     y = 0.0
                     for p in range(m):
                         y += output[p] * z[p, q]
@@ -135,7 +135,7 @@ def _run(
                 ahead = 0.0 if stage == 0 else 0.5 * h[s] if stage < 3 else h[s]
                 weight = h[s] / 6.0 if stage in (0, 3) else h[s] / 3.0
                 for p in range(m):
-                    for q in range(lanes):
+                    for q in range(runs):
                         if stage == 0:
                             zs[p, q], vs[p, q] = z[p, q], v[p, q]
                         else:
@@ -143,37 +143,37 @@ def _run(
                             zs[p, q] = z[p, q] + ahead * step
                             vs[p, q] = v[p, q] + ahead * force[p, q]
                 for p in range(m):
-                    for q in range(lanes):
+                    for q in range(runs):
                         force[p, q] = T[q] * T[q] * (F[p] + parameter[q] * H[p])
                     for r in range(m):
                         if K[p, r] != 0.0 or C[p, r] != 0.0:
-                            for q in range(lanes):
+                            for q in range(runs):
                                 force[p, q] -= T[q] * (T[q] * K[p, r] * zs[r, q] + C[p, r] * vs[r, q])
                 for i in range(u.shape[0]):
                     stiff, damped = k[s, node, i], c[s, node, i]
                     if stiff == 0.0 and damped == 0.0:
                         continue
-                    for q in range(lanes):
+                    for q in range(runs):
                         d[q], w[q] = -e[s, node, i], -b[s, node, i]
                     for p in range(m):
-                        for q in range(lanes):
+                        for q in range(runs):
                             d[q] += u[i, p] * zs[p, q]
                             w[q] += u[i, p] * vs[p, q]
-                    for q in range(lanes):
+                    for q in range(runs):
                         load = T[q] * (T[q] * stiff * d[q] + damped * w[q])
                         d[q] = load if d[q] > 0.0 and load > 0.0 else 0.0
                     for p in range(m):
                         if a[s, node, i, p] != 0.0:
-                            for q in range(lanes):
+                            for q in range(runs):
                                 force[p, q] += a[s, node, i, p] * d[q]
                 for p in range(m):
-                    for q in range(lanes):
+                    for q in range(runs):
                         if stage == 0:
                             dz[p, q], dv[p, q] = weight * vs[p, q], weight * force[p, q]
                         else:
                             dz[p, q] += weight * vs[p, q]
                             dv[p, q] += weight * force[p, q]
             for p in range(m):
-                for q in range(lanes):
+                for q in range(runs):
                     z[p, q] += dz[p, q]
                     v[p, q] += dv[p, q]

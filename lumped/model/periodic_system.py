@@ -59,7 +59,7 @@ class LTVSystem:
     structure : constant data of the equations of motion without shafts
     gears : (6, m) rows that make the six coordinates of z, up to the common rotation
     gyroscopic : (m, m) gyroscopic moments over the speed of the pinion, part of ``constant``
-    held : what holds the gears, in the coordinates of "full"
+    supports : what holds the gears, in the coordinates of "full"
     """
 
     pair: GearPair
@@ -74,7 +74,7 @@ class LTVSystem:
     structure: Structure
     gears: FloatArray
     gyroscopic: FloatArray
-    held: _Supports
+    supports: _Supports
 
     def gear_motion(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The six coordinates and their rates, (k, 6) each, of states (k, 2m); see ``gears``."""
@@ -95,8 +95,8 @@ class LTVSystem:
         one_of("form", form, get_args(Form))
         one_of("supports", supports, get_args(Supports))
         s = structure(pair, as_printed)
-        held = SUPPORTS[supports](pair, s)
-        z = held.coordinates(form)
+        support = SUPPORTS[supports](pair, s)
+        z = support.coordinates(form)
         m = len(z.names)
         constant, torques = np.zeros((2 * m, 2 * m)), np.zeros((2, 2 * m))
         constant[:m, m:] = np.eye(m)
@@ -114,7 +114,7 @@ class LTVSystem:
             structure=s,
             gears=z.gears,
             gyroscopic=z.gyroscopic,
-            held=held,
+            supports=support,
         )
 
     @property

@@ -89,7 +89,7 @@ def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> 
 def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
     """``balance``, mean losses by place, and those that no torque balances [W], as attributes of a result."""
     powers = mean_powers(solution)
-    places = ("sliding", "tooth_dampers", *solution.system.held.places)
+    places = ("sliding", "tooth_dampers", *solution.system.supports.places)
     found: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
     conservative = contact_of(solution.system.pair).conservative
     return (
@@ -153,7 +153,7 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     pairs, rates = system.cycle.sample(times), states[:, len(system.coordinates) :]
     values = response(system, times, states, pairs=pairs)
     closing = values["dte_dot"] - pairs.error_rate
-    supports = system.held.powers(rates)
+    supports = system.supports.powers(rates)
     return np.stack(
         [
             -values["friction_power"].sum(axis=0),

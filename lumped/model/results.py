@@ -73,7 +73,7 @@ def dataset(
     system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Return states (k, n) of the "full" system with all loads and velocities that follow from them."""
-    return system.held.labelled(labelled(time, response(system, time, states), attributes), states)
+    return system.supports.labelled(labelled(time, response(system, time, states), attributes), states)
 
 
 def load_range(pair: GearPair, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
@@ -138,7 +138,9 @@ def response(
     )
     values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
     values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
-    values |= {f"bearing_force_{name}": force for name, force in system.held.forces_by_gear(states).items()}
+    values |= {
+        f"bearing_force_{name}": force for name, force in system.supports.forces_by_gear(states).items()
+    }
     values |= {
         "dte": dte,
         "dte_dot": dte_dot,

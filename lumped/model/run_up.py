@@ -18,7 +18,7 @@ from lumped.model.propagation import step_maps
 from lumped.model.results import VARIABLES, labelled, response
 from lumped.model.steady import balanced_start, sample_times
 from lumped.model.sweep import systems_over_speed
-from lumped.ranges import told_once
+from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED
 from lumped.typing import FloatArray, IntArray, Progress
@@ -32,7 +32,7 @@ _MOST = 3_000_000
 _STEP = 1e-3
 
 
-@told_once()
+@warned_once()
 def run_up(
     pair: AnyPair,
     speeds_rpm: tuple[float, float],

@@ -119,14 +119,16 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
 
     ``system`` is the "full" one; the torque [N m] is by default the operating point's.
     """
-    g, held, m = system.pair.geometry, system.held, len(system.coordinates)
+    g, support, m = system.pair.geometry, system.supports, len(system.coordinates)
     load = (system.pinion_torque if pinion_torque is None else pinion_torque) / g.base_radius_pinion
     mesh = system.reduction @ (system.structure.deflection / system.structure.mass)
     stiffness = -system.constant[m:, :m] + system.cycle.mean_stiffness * np.outer(mesh, system.deflection)
     torques = g.base_radius_pinion * system.torque_pinion + g.base_radius_gear * system.torque_gear
-    z = held.back @ np.linalg.solve(held.relative @ stiffness @ held.back, held.relative @ torques[m:] * load)
+    z = support.back @ np.linalg.solve(
+        support.relative @ stiffness @ support.back, support.relative @ torques[m:] * load
+    )
     # Whatever the common rotation is: as two free rotors would, so that its weighted sum is zero.
-    z -= held.common * ((held.common_weights @ z) / (held.common_weights @ held.common))
+    z -= support.common * ((support.common_weights @ z) / (support.common_weights @ support.common))
     return np.concatenate([z, np.zeros(m)])
 
 

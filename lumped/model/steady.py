@@ -147,7 +147,7 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
     right inverse R of S gives phi_rel = S phi R.
     """
     twice = np.eye(2)
-    relative = np.kron(twice, system.held.relative) @ phi @ np.kron(twice, system.held.back)
+    relative = np.kron(twice, system.supports.relative) @ phi @ np.kron(twice, system.supports.back)
     return float(np.abs(np.linalg.eigvals(relative)).max())
 
 
@@ -160,7 +160,7 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
     matrix = np.zeros((n + 1, n + 1))
     matrix[:n, :n] = np.eye(n) - phi
     matrix[:n, n] = -forced[:, unknown]
-    unit, common = system.held.units, system.held.common_weights
+    unit, common = system.supports.units, system.supports.common_weights
     matrix[n, : common.size] = common
     right = np.append(forced @ known, 0.0)
     # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.

@@ -23,7 +23,7 @@ from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
-from lumped.ranges import told_once
+from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -45,7 +45,7 @@ _ORDERS = 6
 _FIRST = 0.3
 
 
-@told_once()
+@warned_once()
 def speed_sweep(
     pair: AnyPair,
     speeds_rpm: Iterable[float],
@@ -151,7 +151,7 @@ def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:
     return real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, unit="rpm", action="Give running speeds.")
 
 
-@told_once()
+@warned_once()
 def resolved_sweep(
     pair: GearPair,
     speeds_rpm: tuple[float, float],

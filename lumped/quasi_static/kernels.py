@@ -57,14 +57,15 @@ def shared_loads(
     least: float,
     loads: FloatArray,
     tangents: FloatArray,
-    alone: FloatArray,
+    self_tangents: FloatArray,
 ) -> None:
     """Loads of tooth pairs that move each other, and how they grow when all are compressed further together.
 
     Each pair has ``load_of`` what its neighbours leave of its compression, p_i - sum_j w_ij N_j; loads that
     are relaxed one after the other find the minimum of a convex energy. A pair of k_i = 0 is not followed;
     ``coupling`` is w_ij, zero on the diagonal [m/N]. ``loads`` are a first guess and receive N_i,
-    ``tangents`` receive dN_i/dp at a common p, ``alone`` the same of pairs alone (zero where not followed).
+    ``tangents`` receive dN_i/dp at a common p, ``self_tangents`` the same of each pair without the others
+    (zero where not followed).
     """
     most = _SWEEPS if coupling.any() else 1
     for _ in range(most):
@@ -74,23 +75,23 @@ def shared_loads(
                 pressed = compression[i]
                 for j in range(loads.size):
                     pressed -= coupling[i, j] * loads[j]
-                load, alone[i] = load_of(pressed, stiffness[i], softening, nominal, least, loads[i])
+                load, self_tangents[i] = load_of(pressed, stiffness[i], softening, nominal, least, loads[i])
                 change += abs(load - loads[i])
                 total += load
                 loads[i] = load
         if change <= _SETTLED * total:
             break
     for i in range(loads.size):  # to assign whole arrays takes the compiler two seconds
-        tangents[i] = alone[i]
+        tangents[i] = self_tangents[i]
     for _ in range(most):
         change = total = 0.0
         for i in range(loads.size):
-            if alone[i] > 0.0:
+            if self_tangents[i] > 0.0:
                 left = 1.0
                 for j in range(loads.size):
                     left -= coupling[i, j] * tangents[j]
-                change += abs(alone[i] * left - tangents[i])
-                tangents[i] = alone[i] * left
+                change += abs(self_tangents[i] * left - tangents[i])
+                tangents[i] = self_tangents[i] * left
                 total += tangents[i]
         if change <= _SETTLED * total:
             break
@@ -199,7 +200,7 @@ def approaches(
     found = np.full(place.shape[0], np.nan)
     pairs = place.shape[1]
     loads, gaps = np.zeros(pairs), np.zeros(pairs)
-    tangents, alone = np.zeros(pairs), np.zeros(pairs)
+    tangents, self_tangents = np.zeros(pairs), np.zeros(pairs)
     for i in range(place.shape[0]):
         largest = stiffness[i].max()
         if not largest > 0.0:
@@ -207,7 +208,7 @@ def approaches(
         low, high, delta = 0.0, math.inf, force / largest
         if i > 0 and found[i - 1] > 0.0:  # the phase before may be near by: start from there
             delta = found[i - 1]
-        alone[:] = 0.0
+        self_tangents[:] = 0.0
         for j in range(pairs):
             if not stiffness[i, j] > 0.0:
                 loads[j] = 0.0
@@ -217,7 +218,15 @@ def approaches(
                 if stiffness[i, j] > 0.0:
                     gaps[j] = gap_at(place[i, j], relief[i, j], half, lengthening, ends)[0]
             shared_loads(
-                delta - gaps, stiffness[i], coupling[i], softening, force, least, loads, tangents, alone
+                delta - gaps,
+                stiffness[i],
+                coupling[i],
+                softening,
+                force,
+                least,
+                loads,
+                tangents,
+                self_tangents,
             )
             total, slope = loads.sum() - force, tangents.sum()
             if total < 0.0:

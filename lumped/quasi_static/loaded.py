@@ -108,7 +108,7 @@ class ContactLaw:
         """N_1 [N]."""
         return LEAST_LOAD * self.nominal
 
-    def held(self, xi: FloatArray) -> FloatArray:
+    def extended(self, xi: FloatArray) -> FloatArray:
         """K at positions of any shape, held beyond the ends of its path; never quite zero [N/m]."""
         low, high = self.stiffness.interval
         found = self.stiffness(np.clip(xi, low, np.nextafter(high, low)))
@@ -200,7 +200,7 @@ class StaticMesh:
             start = self._fitted.breaks[0]
             return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
         place, near = self.pairs(xi)
-        law, k = self.law, np.where(near, self.law.held(place), 0.0)
+        law, k = self.law, np.where(near, self.law.extended(place), 0.0)
         relief, coupling = self.relief(place), coupled(self.neighbours, place, near)
         found = approaches(
             place, k, relief, coupling, self.force, self.lengthening, law.softening, law.least, self.ends
@@ -233,7 +233,7 @@ class StaticMesh:
         delta = np.broadcast_to(self.approach(xi)[:, None], place.shape)
         longer = np.full(place.size, self.lengthening)
         gap = self.gap(place.ravel(), 0.5 * (delta.ravel() + longer), longer).reshape(place.shape)
-        load, tangent, pressed = self.together(place, delta - gap, near)
+        load, tangent, pressed = self.middle_load(place, delta - gap, near)
         middle = place.shape[1] // 2
         return StaticPair(delta[:, middle], load, tangent, gap[:, middle], pressed)
 
@@ -251,14 +251,14 @@ class StaticMesh:
         found = gaps_at(xi, np.zeros(xi.size), self.half(xi), longer, self.ends)[1]
         return np.asarray(found, dtype=np.float64)
 
-    def together(
+    def middle_load(
         self, place: FloatArray, compression: FloatArray, near: BoolArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Of the middle one of pairs that share a load N [N], dN/ddelta [N/m] and what presses it [m]; (n,).
 
         ``place`` and ``compression``, delta less gap, are (n, pairs), the pair behind first.
         """
-        law, k = self.law, np.where(near, self.law.held(place), 0.0)
+        law, k = self.law, np.where(near, self.law.extended(place), 0.0)
         coupling = coupled(self.neighbours, place, near)
         found = middle_loads(compression, k, coupling, law.softening, law.nominal, law.least)
         return found[:, 0], found[:, 1], found[:, 2]
@@ -314,7 +314,7 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     smooth = law.stiffness.breaks[(law.stiffness.breaks > low) & (law.stiffness.breaks < high)]
     breaks = np.concatenate([[low], inside, [high]])
     pieces = np.union1d(breaks, smooth)
-    largest = float(law.held(np.linspace(low, high, 101)).max())
+    largest = float(law.extended(np.linspace(low, high, 101)).max())
     deflection = mesh.force / largest
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
     # Not below the rounding of positions, several times over: the approach is solved for by iteration.
@@ -347,7 +347,7 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
         gap=fitted(lambda xi: mesh.static(xi).gap, deflection),
         tilt=PathFunction.fit(mesh.tilt, error.breaks, inside, tolerance=relative, by_length=True),
         engagement=restricted(engaged, contact),
-        secant=PathFunction.fit(law.held, pieces, inside, tolerance=_TOLERANCE * largest),
+        secant=PathFunction.fit(law.extended, pieces, inside, tolerance=_TOLERANCE * largest),
         contact=contact,
     )
 

@@ -98,7 +98,7 @@ class Laws:
         """Stiffness k [N/m], c [N s/m] and gap without corners [m] of a kind at positions of any shape."""
         g, inside = self.geometry, (xi >= self.low) & (xi <= self.high)
         if self.elements is None:
-            k = np.where(inside, self.mesh.law.held(xi), 0.0)
+            k = np.where(inside, self.mesh.law.extended(xi), 0.0)
             gap = self.mesh.relief(xi)
             c = self._dampers(k)
         else:

@@ -114,12 +114,14 @@ def linear_motion(
     maps = form.cycle_maps(mesh)
     start, weights = _closed(system, maps)
     # Rounding of the closing equations fades in a period, but that of the common rotation, which grows.
-    held, m, dte = system.held, len(system.coordinates), system.deflection
+    support, m, dte = system.supports, len(system.coordinates), system.deflection
     moved = (states_along(maps, start, weights)[-1] - start).reshape(2, m)
     start = (
         start
         + (
-            moved - np.outer(moved @ held.common_weights, held.common) / (held.common_weights @ held.common)
+            moved
+            - np.outer(moved @ support.common_weights, support.common)
+            / (support.common_weights @ support.common)
         ).ravel()
     )
     cycles = states_along(maps, start, weights)
@@ -135,7 +137,7 @@ def linear_motion(
     # The first law gives what slides.
     lost = powers["tooth_dampers"] + powers["supports"] - powers["rolling"]
     powers["sliding"] = torque * g.omega_pinion - brake * g.omega_gear - lost
-    largest = np.abs(cycles[:, :m] @ held.relative.T).max()
+    largest = np.abs(cycles[:, :m] @ support.relative.T).max()
     return OwnMotion(
         pair=pair,
         system=system,
@@ -147,7 +149,7 @@ def linear_motion(
         pinion_torque=torque,
         brake_torque=brake,
         powers=powers,
-        closure=float(np.abs(held.relative @ (cycles[-1] - cycles[0])[:m]).max() / largest),
+        closure=float(np.abs(support.relative @ (cycles[-1] - cycles[0])[:m]).max() / largest),
         error=float(error),
         spectral_radius=twin.spectral_radius,
     )
@@ -185,7 +187,7 @@ def _inside(
         along = turning[:-1, None] + own.nodes[:, None] * np.diff(turning, axis=0)[:, None]
         late = n[9] * (g.omega_pinion + along[..., 0]) + n[10] * (g.omega_gear + along[..., 1])
         corners = (n[14] * delta + n[15] * closing + n[16]) * along[..., 2]
-        outside = np.sum(list(system.held.powers(states[:, m:]).values()), axis=0)
+        outside = np.sum(list(system.supports.powers(states[:, m:]).values()), axis=0)
         work[0] += lengths @ (taken @ b)
         work[1] += lengths @ ((load * (closing - late) - corners) @ b)
         work[2] += 0.5 * (lengths @ (outside[1:] + outside[:-1]))

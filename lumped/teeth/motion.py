@@ -151,7 +151,7 @@ def push_motion(
     steps = steps_of(system) if steps is None else steps
     settling = _settling(twin.spectral_radius)
     state, driving, brake = twin.states[0].copy(), twin.pinion_torque, twin.brake_torque
-    weights = system.held.common_weights
+    weights = system.supports.common_weights
     m = weights.size
     coarse = np.zeros(0)
     for part in (4, 1):
@@ -179,13 +179,13 @@ def push_motion(
         else:
             driving -= drift / float(weights @ system.torque_pinion[m:])
         # The common rotation has no mean rate of its own: nominal speed is mean speed.
-        common = system.held.common / float(weights @ system.held.common)
+        common = system.supports.common / float(weights @ system.supports.common)
         until = (settling + 0.5 * own.period) * system.period  # to the middle of the record
         state[m:] -= (float(weights @ (end - states[0])[:m]) / duration - drift * until) * common
         dte = states[:, :m] @ system.deflection
         error, coarse = float(np.abs(dte - coarse).max() if coarse.size else np.inf), dte
     time = (np.arange(states.shape[0]) / samples) * system.period
-    relative = system.held.relative
+    relative = system.supports.relative
     closure = relative @ (end - states[0])[:m]
     largest = float(np.abs(states[:, :m] @ relative.T).max())
     closed = float(np.abs(closure).max()) / largest
@@ -229,27 +229,27 @@ def swinging(own: Tables, system: LTVSystem) -> Tables:
 
     ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2.
     """
-    g, held = system.pair.geometry, system.held
-    theta = system.gears[:2] @ held.common / float(held.common_weights @ held.common)
+    g, support = system.pair.geometry, system.supports
+    theta = system.gears[:2] @ support.common / float(support.common_weights @ support.common)
     way = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
     omega = np.array([g.omega_pinion, g.omega_gear])
     eccentric = own.eccentric.copy()
-    eccentric[:, 5] = way * own.constants[0] * (moments(system) @ held.common_weights) / omega**2
+    eccentric[:, 5] = way * own.constants[0] * (moments(system) @ support.common_weights) / omega**2
     return own._replace(eccentric=eccentric)
 
 
 def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift: float) -> FloatArray:
     """States without the acceleration of the common rotation that steps leave, its mean rate and mean."""
-    held, m = system.held, len(system.coordinates)
-    scale = float(held.common_weights @ held.common)
-    common = states[:, :m] @ held.common_weights / scale
-    rate = states[:, m:] @ held.common_weights / scale
+    support, m = system.supports, len(system.coordinates)
+    scale = float(support.common_weights @ support.common)
+    common = states[:, :m] @ support.common_weights / scale
+    rate = states[:, m:] @ support.common_weights / scale
     acceleration = drift / scale
     slope = rate.mean() - acceleration * time.mean()
     states = states.copy()
     line = slope * time + 0.5 * acceleration * time**2
-    states[:, :m] -= np.outer((common - line).mean() + line, held.common)
-    states[:, m:] -= np.outer(slope + acceleration * time, held.common)
+    states[:, :m] -= np.outer((common - line).mean() + line, support.common)
+    states[:, m:] -= np.outer(slope + acceleration * time, support.common)
     return states
 
 
@@ -307,8 +307,8 @@ def _power_matrix(system: LTVSystem) -> FloatArray:
     """Matrix (m, m) whose form of the rates is the power that the supports take."""
     m = len(system.coordinates)
     unit = np.eye(m)
-    single = sum(system.held.powers(unit).values())
-    both = sum(system.held.powers((unit[:, None] + unit).reshape(-1, m)).values())
+    single = sum(system.supports.powers(unit).values())
+    both = sum(system.supports.powers((unit[:, None] + unit).reshape(-1, m)).values())
     return np.asarray(0.5 * (np.reshape(both, (m, m)) - np.add.outer(single, single)), dtype=np.float64)
 
 
@@ -370,4 +370,4 @@ def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset
         one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
         attributes[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
     run = labelled(motion.time, values, attributes, further)
-    return system.held.labelled(run, motion.states)
+    return system.supports.labelled(run, motion.states)

@@ -176,10 +176,10 @@ def reduce_fields(
     one. Returned are the fields, the order of the polynomials, and the largest change of a retained frequency
     by the last increase of the order, over the highest.
     """
-    before = [_held(matrices(_FIRST_ORDER), highest)[0] for matrices in fields]
+    before = [_clamped(matrices(_FIRST_ORDER), highest)[0] for matrices in fields]
     for order in range(_FIRST_ORDER + 2, _LAST_ORDER + 1, 2):
         numbers = [matrices(order) for matrices in fields]
-        found = [_held(one, highest) for one in numbers]
+        found = [_clamped(one, highest) for one in numbers]
         change = [
             float(np.abs(old - new).max(initial=0.0)) / highest if old.size == new.size else np.inf
             for old, (new, _) in zip(before, found, strict=True)
@@ -197,7 +197,7 @@ def reduce_fields(
     )
 
 
-def _held(numbers: tuple[FloatArray, FloatArray, int], highest: float) -> tuple[FloatArray, FloatArray]:
+def _clamped(numbers: tuple[FloatArray, FloatArray, int], highest: float) -> tuple[FloatArray, FloatArray]:
     """Frequencies up to the highest, and modes (n - 1, m), with the kept coordinate held."""
     mass, stiffness, kept = numbers
     inside = np.delete(np.arange(mass.shape[0]), kept)

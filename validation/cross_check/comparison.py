@@ -161,14 +161,14 @@ def crosscheck(
     other = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
     share = 0.75 if other is not None else 1.0
 
-    def told(low: float, high: float) -> Progress:
+    def part(low: float, high: float) -> Progress:
         def tell(fraction: float, stage: str = "", /) -> None:
             if progress is not None:
                 progress(low + (high - low) * fraction)
 
         return tell
 
-    found = _compared(pair, cycles, samples_per_cycle, fidelities, limit, told(0.0, share))
+    found = _compared(pair, cycles, samples_per_cycle, fidelities, limit, part(0.0, share))
     if given is not pair:
         found = _with_own_teeth(found, given, samples_per_cycle, limit)
     if other is None:
@@ -176,7 +176,7 @@ def crosscheck(
     try:
         return replace(
             found,
-            variant=_compared(other, _VARIANT_CYCLES, _VARIANT_SAMPLES, fidelities, limit, told(share, 1.0)),
+            variant=_compared(other, _VARIANT_CYCLES, _VARIANT_SAMPLES, fidelities, limit, part(share, 1.0)),
         )
     except SpurcheckError:  # a model refuses the variant or cannot compute it
         return found

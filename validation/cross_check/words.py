@@ -38,9 +38,9 @@ _UNILATERAL = (
 def failed_checks(check: CrossCheck, most: int = 3) -> str:
     """The first checks that fail, with value and limit."""
     failed = check.failures
-    told = [_failed(j) for j in failed[:most]]
+    first = [_failed(j) for j in failed[:most]]
     more = [f"and {len(failed) - most} more"] if len(failed) > most else []
-    return "; ".join(told + more)
+    return "; ".join(first + more)
 
 
 def _failed(judgement: Judgement) -> str:
@@ -72,14 +72,14 @@ def whole_difference(check: CrossCheck) -> str:
         [quantity(value, a.unit, 3) for value in (a.peak_to_peak, a.peak_to_peak_multibody)]
         for a in (dte, worst)
     )
-    told = (
+    whole = (
         f"The transmission error of the multibody model is {other} peak to peak beside {own}, and differs by "
         f"at most {share(dte.difference)} of that"
     )
     if worst.quantity == "dte":
-        return f"{told}, limit {percent(dte.limit)}."
+        return f"{whole}, limit {percent(dte.limit)}."
     name, limit = NAMES[worst.quantity], percent(worst.limit)
-    return f"{told}; {name}, {swings[1]} beside {swings[0]}, by {share(worst.difference)}, limit {limit}."
+    return f"{whole}; {name}, {swings[1]} beside {swings[0]}, by {share(worst.difference)}, limit {limit}."
 
 
 def attribution(check: CrossCheck) -> xr.Dataset | None:

@@ -71,7 +71,7 @@ def test_every_form_is_the_same_system(shafted):
         np.testing.assert_array_equal(whole.A(time)[np.ix_(keep, keep)], other.A(time))
     assert not whole.A(time)[:, 0].any()  # the common rotation is felt by nobody
     # Opposite senses: the moments of the pinion's and the gear's shaft have opposite signs.
-    gyroscopic, owner, kind = whole.gyroscopic, whole.held.modes.shaft, whole.held.modes.kind
+    gyroscopic, owner, kind = whole.gyroscopic, whole.supports.modes.shaft, whole.supports.modes.kind
     np.testing.assert_array_equal(gyroscopic, -gyroscopic.T)
     signs = [
         np.trace(gyroscopic[np.ix_((owner == j) & (kind == 0), (owner == j) & (kind == 1))]) for j in (0, 1)
