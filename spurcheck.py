@@ -197,7 +197,7 @@ def _explained(name: str, function: Any) -> Any:
         return function(*arguments, **named)
 
     def advice(error: str, named: dict[str, Any]) -> str:
-        from lumped.schema.short_names import SHORT_NAMES
+        from lumped.schema.changes import SHORT_NAMES
 
         word = next((key for key in named if key not in signature.parameters), "")
         if "pair" in signature.parameters and (word in SHORT_NAMES or "__" in word):

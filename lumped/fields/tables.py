@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from pydantic import ValidationInfo
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
-from lumped.errors import refuse, shown
+from lumped.errors import FieldProblem, refuse, shown
 from lumped.fields.text_file import read_text
 from lumped.fields.units import to_si
 from lumped.typing import FloatArray
@@ -25,7 +25,7 @@ AXES = {
     "phase": ("phase", "1"),
 }
 #: A table may miss the ends of the path of contact by this fraction of the path.
-END_GAP = 0.02
+_END_GAP = 0.02
 _HEADER = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
 _MAX_BYTES = 10_000_000
 
@@ -86,15 +86,35 @@ def table_of(
     return table
 
 
-def check_points(points: Sequence[float], values: Sequence[float], field: str) -> None:
-    """Refuse unequal lengths, and points that do not increase."""
+def check_points(
+    points: Sequence[float], values: Sequence[float], quantity: tuple[str, str], largest: float, action: str
+) -> None:
+    """Refuse unequal lengths, points that do not increase, and values outside 0 to the largest.
+
+    Those of a quantity with a unit must be above 0; ``action`` is what to do with a value.
+    """
+    field, unit = quantity
     if len(points) != len(values):
         allowed = f"one per point, {len(points)}"
         raise refuse(field, f"{len(values)} values", allowed, "Complete the table.")
     for before, point in itertools.pairwise(points):
         if not point > before:
-            action = "Sort the rows and remove repeated points."
-            raise refuse("points", f"{point:g} after {before:g}", "increasing", action)
+            sort = "Sort the rows and remove repeated points."
+            raise refuse("points", f"{point:g} after {before:g}", "increasing", sort)
+    for value in values:
+        if not 0.0 <= value <= largest or (value == 0.0 and unit != "1"):
+            allowed = f"0 to {largest:g}" if unit == "1" else f"> 0 and <= {largest:g} {unit}"
+            raise refuse(field, f"{value:g}" if unit == "1" else f"{value:g} {unit}", allowed, action)
+
+
+def uncovered(x: FloatArray, low: float, high: float, field: str) -> FieldProblem | None:
+    """A table over xi (n,) [m] that does not reach from A to D; None where it does."""
+    gap = _END_GAP * (high - low)
+    if x[0] <= low + gap and x[-1] >= high - gap:
+        return None
+    value = f"{x[0] * 1e3:.4f} to {x[-1] * 1e3:.4f} mm from X"
+    allowed = f"at least {low * 1e3:.4f} to {high * 1e3:.4f} mm, A to D"
+    return FieldProblem(field, value, allowed, "Extend the table, or check its axis and unit.")
 
 
 def positions(points: ArrayLike, axis: str, base_radius: float) -> FloatArray:

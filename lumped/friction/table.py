@@ -13,9 +13,9 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, ValidationInfo, model_validator
 
-from lumped.errors import FieldProblem, refuse
+from lumped.errors import FieldProblem
 from lumped.fields.section import Section, Text
-from lumped.fields.tables import END_GAP, check_points, positions, spline, with_file
+from lumped.fields.tables import check_points, positions, spline, uncovered, with_file
 from lumped.fields.units import Quantity
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.gear_geometry.geometry import Geometry
@@ -66,22 +66,15 @@ class FrictionTable(Section):
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
-        check_points(self.points, self.coefficient, "coefficient")
-        for value in self.coefficient:
-            if not 0.0 <= value <= 1.0:
-                action = "Give the magnitude; the sign follows from the direction of sliding."
-                raise refuse("coefficient", f"{value:g}", "0 to 1", action)
+        action = "Give the magnitude; the sign follows from the direction of sliding."
+        check_points(self.points, self.coefficient, COEFFICIENT, 1.0, action)
         return self
 
     def problems(self, g: Geometry) -> Iterator[FieldProblem]:
         """A table that does not reach from A to D."""
         x = positions(self.points, self.axis, g.base_radius_pinion)
-        gap = END_GAP * (g.L_XD - g.L_XA)
-        if x[0] > g.L_XA + gap or x[-1] < g.L_XD - gap:
-            value = f"{x[0] * 1e3:.4f} to {x[-1] * 1e3:.4f} mm from X"
-            allowed = f"at least {g.L_XA * 1e3:.4f} to {g.L_XD * 1e3:.4f} mm, A to D"
-            action = "Extend the table, or check its axis and unit."
-            yield FieldProblem("friction.table.points", value, allowed, action)
+        if problem := uncovered(x, g.L_XA, g.L_XD, "friction.table.points"):
+            yield problem
 
     @property
     def law(self) -> FrictionLaw:

@@ -6,22 +6,20 @@ may carry any unit of that dimension (``lumped.fields.units``).
 
 from __future__ import annotations
 
-import copy
 import html
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-import numpy as np
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
 from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
-from lumped.fields.refusals import field_of, translated, unknown_key
+from lumped.fields.refusals import field_of, translated
 from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity, QuantityRange, to_stated
 from lumped.friction.base import ContactPath
@@ -30,10 +28,10 @@ from lumped.friction.table import TABLE
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, existence_problems
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
+from lumped.schema.changes import SHORT_NAMES, by_fields, changed
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.shafts import Bearings, Shafts
-from lumped.schema.short_names import SHORT_NAMES, by_fields
 from lumped.schema.teeth import TorqueRipple
 
 #: Format of parameter files; a change that older programs would misread raises it.
@@ -77,37 +75,23 @@ class OperatingPoint(Section):
 _LIGHTEST = 1e-4
 
 
-def _sources_in(value: object) -> object:
-    if not isinstance(value, dict):
-        return value
-    return tuple(sorted(value.items()))
-
-
-#: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
-_STIFFNESS = "mesh.stiffness.model"
-#: Fields of which only one can be given: naming one removes the others.
-_ALTERNATIVES = (
-    ("pinion.addendum", "pinion.tip_diameter"),
-    ("gear.addendum", "gear.tip_diameter"),
-    ("lubricant.viscosity", "lubricant.viscosity_law"),
-)
-
-Sources = Annotated[
-    tuple[tuple[str, str], ...],
-    BeforeValidator(_sources_in, json_schema_input_type=dict[str, str]),
-    PlainSerializer(dict, return_type=dict[str, str]),
-]
-
-
-def _spreads_in(value: object) -> object:
+def _pairs_in(value: object) -> object:
+    """Table of texts, or of lists of them, as pairs in order."""
     if not isinstance(value, dict):
         return value
     return tuple(sorted((path, tuple(s) if isinstance(s, list) else s) for path, s in value.items()))
 
 
+Sources = Annotated[
+    tuple[tuple[str, str], ...],
+    BeforeValidator(_pairs_in, json_schema_input_type=dict[str, str]),
+    PlainSerializer(dict, return_type=dict[str, str]),
+]
+
+
 Spreads = Annotated[
     tuple[tuple[str, str | tuple[str, ...]], ...],
-    BeforeValidator(_spreads_in, json_schema_input_type=dict[str, str | list[str]]),
+    BeforeValidator(_pairs_in, json_schema_input_type=dict[str, str | list[str]]),
     PlainSerializer(
         lambda spreads: {path: list(s) if isinstance(s, tuple) else s for path, s in spreads},
         return_type=dict[str, str | list[str]],
@@ -352,14 +336,17 @@ class GearPair(Section, metaclass=_InOurWords):
         request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
         fields = by_fields(request)
         own = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
-        pair = _varied(self, fields) if fields or not own else self
+        pair = self._changed(fields) if fields or not own else self
         for path, value in own.items():
             if path == "friction.law":
-                pair = _varied(pair, own_laws.own_friction(pair.nominal_contact, value))
+                pair = pair._changed(own_laws.own_friction(pair.nominal_contact, value))
             else:
-                pair = _varied(pair, own_laws.own_stiffness(pair.geometry, value))
+                pair = pair._changed(own_laws.own_stiffness(pair.geometry, value))
                 pair.mesh.stiffness.curve(pair)  # a table that does not fit is refused here
         return pair
+
+    def _changed(self, fields: Mapping[str, Any]) -> GearPair:
+        return validated(changed(self, fields), f"{self.name} varied")
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:
@@ -399,85 +386,6 @@ def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> Ge
         return GearPair.model_validate(fields, context={"folder": folder})
     except ValidationError as error:
         raise ParameterError(translated(error, GearPair), source) from None
-
-
-def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
-    data = pair.to_mapping()
-    sources: dict[str, str] = data.setdefault("sources", {})
-    # The model first: it decides which other keys its table may have.
-    for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
-        value = request.item() if isinstance(request, np.generic) else request
-        if _reads(pair, path, value):
-            continue
-        outdated = [path]
-        if path == _STIFFNESS:
-            outdated.append(_STIFFNESS.rpartition(".")[0])
-            _assign(data, outdated[-1], {})
-        for group in _ALTERNATIVES:
-            if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):
-                outdated += group
-                for other in group:
-                    if not path.startswith(f"{other}."):
-                        _assign(data, other, None)
-        _assign(data, path, value)
-        for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
-            del sources[known]
-        if path not in ("name", "description", "sources", "uncertainty") and value is not None:
-            sources[path] = "varied by the user"
-    return validated(data, f"{pair.name} varied")
-
-
-def _reads(pair: GearPair, path: str, value: object) -> bool:
-    """Whether a field reads as this value already."""
-    result: object = pair
-    for part in path.split("."):
-        if isinstance(result, tuple) and _is_entry(result, part):
-            result = result[int(part)]
-        elif isinstance(result, Section) and part in type(result).model_fields:
-            result = getattr(result, part)
-        else:
-            return False
-    return type(result) is type(value) and repr(result) == repr(value)
-
-
-def _assign(data: dict[str, Any], path: str, value: Any) -> None:
-    *parents, leaf = path.split(".")
-    node: Any = data
-    for part in parents:
-        node = _inside(node, path, part)
-    if isinstance(node, list):
-        if value is None:
-            raise refuse(path, "None", "a table of keys and values", "Give the list without this entry.")
-        if not _is_entry(node, leaf):
-            raise ParameterError([unknown_key(path, list(map(str, range(len(node)))), leaf)])
-        node[int(leaf)] = _plain(value)
-    elif value is None:
-        field_at(path)  # a name that does not exist is an error also where nothing is set
-        node.pop(leaf, None)
-    else:
-        node[leaf] = _plain(value)
-
-
-def _inside(node: Any, path: str, part: str) -> Any:
-    """The table, or list of tables, that a table has under a key or a list has as an entry."""
-    if isinstance(node, dict):
-        inner = node.setdefault(part, {})
-    else:
-        inner = node[int(part)] if _is_entry(node, part) else None
-    if isinstance(inner, dict) or (isinstance(inner, list) and inner and isinstance(inner[0], dict)):
-        return inner
-    known = list(node) if isinstance(node, dict) else list(map(str, range(len(node))))
-    raise ParameterError([unknown_key(path, known, part)])
-
-
-def _is_entry(node: Sequence[Any], part: str) -> bool:
-    return part in map(str, range(len(node)))
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Section):
-        return value.to_mapping()
-    return [_plain(entry) for entry in value] if isinstance(value, (list, tuple)) else copy.deepcopy(value)
 
 
 def field_at(path: str) -> FieldInfo:

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, model_validator
 from scipy.interpolate import PPoly
 
-from lumped.errors import NumericalError, refuse
-from lumped.fields.tables import END_GAP, check_points, positions, spline, with_file
+from lumped.errors import NumericalError, ParameterError, refuse
+from lumped.fields.tables import check_points, positions, spline, uncovered, with_file
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction, shifted
 from lumped.stiffness.base import MeshingPair, RampLength, StiffnessModel, check_ramp_length, ramped
@@ -63,11 +63,8 @@ class TableStiffness(StiffnessModel):
 
     @model_validator(mode="after")
     def _checked(self) -> Self:
-        check_points(self.points, self.stiffness, "stiffness")
-        for value in self.stiffness:
-            if not 0.0 < value <= _LARGEST:
-                action = "Check the unit and the sign; leave out points without contact."
-                raise refuse("stiffness", f"{value:g} N/m", f"> 0 and <= {_LARGEST:g} N/m", action)
+        action = "Check the unit and the sign; leave out points without contact."
+        check_points(self.points, self.stiffness, STIFFNESS, _LARGEST, action)
         return self
 
     def curve(self, pair: MeshingPair) -> PathFunction:
@@ -92,14 +89,8 @@ class TableStiffness(StiffnessModel):
 
 def _pair_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PathFunction:
     low, high = geometry.L_XA, geometry.L_XD
-    allowed = END_GAP * (high - low)
-    if x[0] > low + allowed or x[-1] < high - allowed:
-        raise refuse(
-            "mesh.stiffness.points",
-            f"{x[0] * 1e3:.4f} to {x[-1] * 1e3:.4f} mm from X",
-            f"at least {low * 1e3:.4f} to {high * 1e3:.4f} mm, A to D",
-            "Extend the table, or check its axis and unit.",
-        )
+    if problem := uncovered(x, low, high, "mesh.stiffness.points"):
+        raise ParameterError([problem])
     _check_gaps(np.diff(np.clip(x, low, high)).max(), geometry)
     poly = spline(x, y, model.interpolation)
     inner = x[(x > low) & (x < high)]

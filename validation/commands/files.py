@@ -132,7 +132,7 @@ def _text_of_own(
 ) -> tuple[str, str]:
     """Parameter file of a pair that the options describe, and a name for it."""
     from lumped.errors import ParameterError, refuse
-    from lumped.schema.short_names import fields_of
+    from lumped.schema.changes import fields_of
     from validation.exchange.new_pair_file import new_pair_text
 
     if teeth is None:

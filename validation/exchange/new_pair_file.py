@@ -15,10 +15,10 @@ import tomli_w
 from lumped.errors import ParameterError
 from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
+from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
 from lumped.schema.own_laws import is_own
 from lumped.schema.pair import FORMAT, GearPair, leaf_paths, stated_unit
-from lumped.schema.short_names import by_fields, fields_of
 
 GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.

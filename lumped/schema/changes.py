@@ -1,0 +1,152 @@
+"""Changes of a pair by names of its fields, short ones too: ``with_``, ``new_pair`` and --set take them."""
+
+from __future__ import annotations
+
+import copy
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from lumped.errors import ParameterError, refuse
+from lumped.fields.refusals import field_of, unknown_key
+from lumped.fields.section import Section
+
+_GEARS = ("pinion", "gear")
+#: Short name -> the fields that it sets.
+SHORT_NAMES = {
+    "speed": ("operating.pinion_speed",),
+    "torque": ("operating.pinion_torque",),
+    "range": ("operating.speed_range",),
+    "law": ("friction.law",),
+    "stiffness": ("mesh.stiffness",),
+    "damping": ("mesh.damping_ratio",),
+    "module": ("basic_rack.module",),
+    "viscosity": ("lubricant.viscosity",),
+    "oil": ("lubricant.viscosity_law.iso_vg",),
+    "temperature": ("lubricant.viscosity_law.temperature",),
+    "teeth": tuple(f"{gear}.teeth" for gear in _GEARS),
+    "face_width": tuple(f"{gear}.face_width" for gear in _GEARS),
+    "roughness": tuple(f"{gear}.roughness" for gear in _GEARS),
+    **{
+        f"bearings.{key}": tuple(f"bearings.{g}.{line}_{key}" for g in _GEARS for line in ("loa", "oloa"))
+        for key in ("stiffness", "damping_ratio")
+    },
+}
+_TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")
+_OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
+
+#: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
+_STIFFNESS = "mesh.stiffness.model"
+#: Fields of which only one can be given: naming one removes the others.
+_ALTERNATIVES = (
+    ("pinion.addendum", "pinion.tip_diameter"),
+    ("gear.addendum", "gear.tip_diameter"),
+    ("lubricant.viscosity", "lubricant.viscosity_law"),
+)
+
+
+def fields_of(name: str) -> tuple[str, ...]:
+    """Return the fields that a short name or a path sets; ``gears.`` in front means both gears."""
+    section, _, key = name.partition(".")
+    return SHORT_NAMES.get(name) or (
+        tuple(f"{gear}.{key}" for gear in _GEARS) if section == "gears" and key else (name,)
+    )
+
+
+def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Return field path -> value; teeth may be "19/41" or a tuple, oil "vg220" or 220."""
+    values: dict[str, Any] = {}
+    for name, value in request.items():
+        if name == "teeth":
+            if (teeth := _TEETH.fullmatch(str(value))) is None:
+                raise refuse("teeth", value, "PINION/GEAR", "For example 19/41.")
+            values |= dict(zip(fields_of(name), map(int, teeth.groups()), strict=True))
+        elif name == "oil":
+            if (grade := _OIL.fullmatch(str(value))) is None:
+                raise refuse("oil", value, "an ISO viscosity grade", "For example vg220.")
+            values[SHORT_NAMES[name][0]] = int(grade[1])
+        else:
+            values |= dict.fromkeys(fields_of(name), value)
+    return values
+
+
+def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the plain data of a pair with other values of some fields, whose sources are the user's."""
+    data = pair.to_mapping()
+    sources: dict[str, str] = data.setdefault("sources", {})
+    # The model first: it decides which other keys its table may have.
+    for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
+        value = request.item() if isinstance(request, np.generic) else request
+        if _reads(pair, path, value):
+            continue
+        outdated = [path]
+        if path == _STIFFNESS:
+            outdated.append(_STIFFNESS.rpartition(".")[0])
+            _assign(type(pair), data, outdated[-1], {})
+        for group in _ALTERNATIVES:
+            if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):
+                outdated += group
+                for other in group:
+                    if not path.startswith(f"{other}."):
+                        _assign(type(pair), data, other, None)
+        _assign(type(pair), data, path, value)
+        for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
+            del sources[known]
+        if path not in ("name", "description", "sources", "uncertainty") and value is not None:
+            sources[path] = "varied by the user"
+    return data
+
+
+def _reads(pair: Section, path: str, value: object) -> bool:
+    """Whether a field reads as this value already."""
+    result: object = pair
+    for part in path.split("."):
+        if isinstance(result, tuple) and _is_entry(result, part):
+            result = result[int(part)]
+        elif isinstance(result, Section) and part in type(result).model_fields:
+            result = getattr(result, part)
+        else:
+            return False
+    return type(result) is type(value) and repr(result) == repr(value)
+
+
+def _assign(root: type[Section], data: dict[str, Any], path: str, value: Any) -> None:
+    *parents, leaf = path.split(".")
+    node: Any = data
+    for part in parents:
+        node = _inside(node, path, part)
+    if isinstance(node, list):
+        if value is None:
+            raise refuse(path, "None", "a table of keys and values", "Give the list without this entry.")
+        if not _is_entry(node, leaf):
+            raise ParameterError([unknown_key(path, list(map(str, range(len(node)))), leaf)])
+        node[int(leaf)] = _plain(value)
+    elif value is None:
+        field_of(root, path)  # a name that does not exist is an error also where nothing is set
+        node.pop(leaf, None)
+    else:
+        node[leaf] = _plain(value)
+
+
+def _inside(node: Any, path: str, part: str) -> Any:
+    """The table, or list of tables, that a table has under a key or a list has as an entry."""
+    if isinstance(node, dict):
+        inner = node.setdefault(part, {})
+    else:
+        inner = node[int(part)] if _is_entry(node, part) else None
+    if isinstance(inner, dict) or (isinstance(inner, list) and inner and isinstance(inner[0], dict)):
+        return inner
+    known = list(node) if isinstance(node, dict) else list(map(str, range(len(node))))
+    raise ParameterError([unknown_key(path, known, part)])
+
+
+def _is_entry(node: Sequence[Any], part: str) -> bool:
+    return part in map(str, range(len(node)))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Section):
+        return value.to_mapping()
+    return [_plain(entry) for entry in value] if isinstance(value, (list, tuple)) else copy.deepcopy(value)
