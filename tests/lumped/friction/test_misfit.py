@@ -18,7 +18,7 @@ def sampled(function, law, path, settings):
     return np.abs(law.signed(xi.ravel(), path, settings).reshape(xi.shape) - function(xi)).max(axis=1)
 
 
-@pytest.mark.parametrize("law", sorted(set(LAWS) - {"none"}))
+@pytest.mark.parametrize("law", [name for name, law in LAWS.items() if law.analytic])
 @pytest.mark.parametrize("preset", preset_names())
 def test_the_bound_holds_everywhere_and_is_small_over_the_path(preset, law):
     for speed in (500.0, 4000.0, 20000.0):
