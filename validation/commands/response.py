@@ -174,13 +174,15 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, a
     with progress_bar("what removes jumps") as tell:
         branches = floquet.response_branches(pair, periods=(1, 2), seeds=0, progress=tell)
         removed = floquet.jumps_removed_by(branches, name)
+    names = [str(one) for one in found.data_vars if str(one).startswith("jump_")]
+    short = {one: one.removeprefix("jump_") for one in names}
     if as_json:
         print_json(
             {
                 "gear_pair": pair.name,
                 "axis": name,
                 "values": values.tolist(),
-                "jumps": _rows(found),
+                "jumps": found[names].rename(short).to_dataframe().to_dict("records"),
                 "removed_by": removed,
             }
         )
@@ -208,14 +210,6 @@ def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
         "tip_relief": (0.0, max(20.0, 2.0 * own)),
     }
     return name, np.linspace(*ends[name], _VALUES)
-
-
-def _rows(found: xr.Dataset) -> list[dict[str, float]]:
-    names = [str(name) for name in found.data_vars if str(name).startswith("jump_")]
-    return [
-        {name.removeprefix("jump_"): found[name][j].item() for name in names}
-        for j in range(found.sizes["jump"])
-    ]
 
 
 def _print_map(pair: GearPair, found: xr.Dataset, name: str, removed: tuple[JumpRemoval, ...]) -> None:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from lumped import Geometry, steady_state
 from lumped.arguments import whole_number
-from lumped.errors import refuse
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -59,8 +58,6 @@ class Prediction:
 
     def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
         """A predicted quantity [SI] at mesh cycles u; of one labelled pair where it has pairs."""
-        if quantity not in QUANTITIES or QUANTITIES[quantity][1] != (label is not None):
-            raise refuse("quantity", (quantity, label), "a channel's quantity and pair", "Correct it.")
         places, values = self._curves[quantity]
         if label is None:
             u = np.mod(np.asarray(cycles, dtype=float), 1.0)

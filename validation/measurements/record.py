@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import warnings
 from collections.abc import Mapping
@@ -138,14 +137,12 @@ class Measurement:
     abscissa : (k,) times [s], or pinion roll angles of pair A [rad], increasing
     channels : channel name -> (k,) values in the SI unit of its quantity
     noise : channel name -> standard deviation of its noise in that unit, or None where it is not known
-    sha256 : hash of the data file, "" where the record was not read from one
     """
 
     spec: MeasurementSpec
     abscissa: FloatArray
     channels: dict[str, FloatArray]
     noise: dict[str, float | None]
-    sha256: str = ""
 
     def at(self, pair: GearPair) -> GearPair:
         """The pair at the record's speed and torque."""
@@ -220,7 +217,7 @@ def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
             largest = f"up to {np.abs(values).max():g} in SI units"
             raise refuse(f"channel.{channel.name}", largest, f"< {_LARGEST:g}", "Check gain, zero and unit.")
         noise[channel.name] = None if channel.noise is None else abs(factor) * channel.noise
-    return Measurement(spec, abscissa, channels, noise, hashlib.sha256(text.encode()).hexdigest())
+    return Measurement(spec, abscissa, channels, noise)
 
 
 def _cells(spec: MeasurementSpec, text: str) -> pd.DataFrame:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -52,14 +52,11 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     return figure
 
 
-def sweep_figure(
-    sweep: xr.Dataset, operating_rpm: float, static_load: float, resonances_rpm: Sequence[float] = ()
-) -> Figure:
+def sweep_figure(sweep: xr.Dataset, operating_rpm: float, static_load: float) -> Figure:
     """Peak to peak of the transmission error, and largest and smallest tooth load, over pinion speed.
 
     Crosses mark unstable motions. ``sweep`` is of ``lumped.speed_sweep``; loads are over ``static_load``,
-    T_p/r_bp [N]; resonances are where the mesh frequency meets a natural frequency of the averaged pair
-    [rpm].
+    T_p/r_bp [N].
     """
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     top, bottom = axes[:, 0]
@@ -82,10 +79,6 @@ def sweep_figure(
     bottom.set_xlim(speed[0], speed[-1])
     mark_operation(top, operating_rpm, "operating point")
     mark_operation(bottom, operating_rpm, "")
-    for ax in (top, bottom):
-        for place in resonances_rpm:
-            if speed[0] <= place <= speed[-1]:
-                ax.axvline(place, color=GREY, linewidth=0.7, linestyle=":")
     legend_above(bottom, 3)
     return figure
 

@@ -20,15 +20,8 @@ from validation.files.output import whole_file
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
-    "#000000",
-    "#E69F00",
-    "#56B4E9",
-    "#009E73",
-    "#F0E442",
-    "#0072B2",
-    "#D55E00",
-    "#CC79A7",
-)
+    "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7",
+)  # fmt: skip
 #: Colours of lines in order; yellow is too pale for a line on white.
 LINES = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK)
 #: Line styles that go with ``LINES``, so that colour is never the only difference.

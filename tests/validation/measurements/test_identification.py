@@ -204,7 +204,6 @@ def test_a_written_record_is_read_back(truth, tmp_path):
         # nine digits are written
         np.testing.assert_allclose(again.channels[name], values, rtol=1e-8, atol=1e-6)
     assert again.noise == pytest.approx(original.noise, rel=1e-12)
-    assert len(again.sha256) == 64
     phases = [align(m, truth) for m in (original, again)]
     results = [identify_friction(m, truth, a) for m, a in zip((original, again), phases, strict=True)]
     assert results[0].estimate == pytest.approx(results[1].estimate, rel=1e-6)
