@@ -81,18 +81,24 @@ def unknown_key(path: str, known: list[str], part: str, root: type[BaseModel] | 
     """Return the problem of a key that the schema does not have; a key of a section of ``root`` is named."""
     names = list(dict.fromkeys(known))
     allowed = "one of " + ", ".join(names) if names else "no key below a value"
-    below = _below(root, part) if root is not None and path == part else ""
-    action = _ACTIONS.get(part) or below or nearest(part, names) or "Remove the key, or correct its name."
+    below = _below(root, path) if root is not None else ""
+    close = nearest(part, names)
+    guess = below or close if path == part else close or below  # names of sections are like no field's
+    action = _ACTIONS.get(part) or guess or "Remove the key, or correct its name."
     return FieldProblem(shown(path) or "(empty)", "unknown key", allowed, action)
 
 
-def _below(root: type[BaseModel], part: str) -> str:
-    """Ask whether a field of a section was meant that has this name, or as a word of it, or nearly so."""
+def _below(root: type[BaseModel], path: str) -> str:
+    """Ask whether a field one section further down has this name, or as a word of it, or nearly so."""
     fields: dict[str, list[str]] = {}
-    for section, info in root.model_fields.items():
-        for model in models_in(info.annotation):
-            for key in model.model_fields:
-                fields.setdefault(key, []).append(f"{section}.{key}")
+    *parents, part = path.split(".")
+    owners = [root]
+    for parent in parents:
+        inside = [one.model_fields[parent] for one in owners if parent in one.model_fields]
+        owners = [model for info in inside for model in models_in(info.annotation)]
+    for section, info in [item for one in owners for item in one.model_fields.items()]:
+        for key in {key: None for model in models_in(info.annotation) for key in model.model_fields}:
+            fields.setdefault(key, []).append(".".join((*parents, section, key)))
     keys = [part] if part in fields else [key for key in fields if part in key.split("_")]
     close = keys or difflib.get_close_matches(part[:80], fields, n=1, cutoff=0.8)
     paths = [repr(path) for key in close for path in fields[key]]
@@ -135,7 +141,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
     allowed = item["msg"]
     if kind == "tuple_type":
-        allowed = "a list of tables" if models else "a list"
+        keys = [f"{name} = ..." for model in models[:1] for name in model.model_fields]
+        allowed = f"a list of tables such as [{{ {', '.join(keys[:3])} }}]" if models else "a list"
     if count := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", allowed):
         allowed = f"{count[1]} instead of {count[2]}"
     for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):

@@ -31,6 +31,7 @@ _NO_PAIRS = {
     ".nc": "This is a result: name the parameter file it was computed from; 'spurcheck export' makes tables.",
     ".csv": "This is a table: name a parameter file; name the description of a measured record by --record.",
     ".json": "Name the parameter file; of a report it is data/parameters.toml.",
+    **dict.fromkeys((".xlsx", ".xls", ".ods"), "Copy its values into a parameter file: 'spurcheck init'."),
 } | dict.fromkeys((".rexs", ".rexsj", ".rexsz"), "Make a parameter file of it: 'spurcheck init --from-rexs'.")
 
 

@@ -106,9 +106,10 @@ def init(
         "--law": ("friction.law", law),
         **{f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()},
     }
-    if preset not in preset_names() and Path(preset).exists():
-        allowed = "one of " + ", ".join(preset_names())
-        raise refuse("preset", preset, allowed, "This is a file already: edit it, or copy it.")
+    if preset not in preset_names() and (Path(preset).exists() or preset.endswith(".toml")):
+        made = "This is a file already: edit it, or copy it."
+        action = made if Path(preset).exists() else f"To write this file: spurcheck init -o {preset}."
+        raise refuse("preset", preset, "one of " + ", ".join(preset_names()), action)
     text, name = preset_text(preset), preset
     if teeth is not None or any(value is not None for _, value in own.values()):
         stem = output.stem if output is not None and str(output) != "-" else None

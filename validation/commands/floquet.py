@@ -54,6 +54,9 @@ def floquet(
     from lumped.errors import refuse
     from validation.exchange.matrices import FILE_AXES, read_second_order
 
+    if source.suffix.lower() == ".toml":
+        action = f"For the gear pair of a parameter file: spurcheck stability {source}."
+        raise refuse("matrices", source, "a file of matrices, .npz or .mat", action)
     grid = opt.axes_values(axes or [], FILE_AXES)
     if files.paths and not grid:
         raise refuse("--output", files.paths[0], "a chart to write", "Give --axis, once or twice.")

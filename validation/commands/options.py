@@ -81,6 +81,7 @@ def gear_pair(
     """Load a gear pair and apply the options of the command line; None: the example, which a note says."""
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
+    from lumped.schema.changes import fields_of
     from validation.validity.plausibility import parameter_warnings
 
     asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
@@ -98,7 +99,7 @@ def gear_pair(
     try:
         varied = own.with_({path: value_of(text) for _, path, text in asked})
     except ParameterError as error:
-        options = {path: option for option, path, _ in asked}
+        options = {field: option for option, path, _ in asked for field in (path, *fields_of(path))}
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
     for warning in parameter_warnings(varied):
         note(warning)
@@ -254,11 +255,11 @@ def number_in(option: str, text: str, unit: str) -> float:
     from lumped.errors import refuse
     from lumped.fields.units import to_si, to_stated
 
-    stated = unit.replace(" ", "*")
+    stated, allowed = unit.replace(" ", "*"), "a number" if unit == "1" else f"a number in {unit}"
     try:
         number = to_stated(to_si(value_of(text.strip()), stated), stated)
     except (ValueError, TypeError) as error:
-        raise refuse(option, text, f"a number in {unit}", f"{error}.") from None
+        raise refuse(option, text, allowed, f"{error}.") from None
     if not math.isfinite(number):
-        raise refuse(option, text, f"a number in {unit}", "Correct it.")
+        raise refuse(option, text, allowed, "Correct it.")
     return number

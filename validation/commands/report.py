@@ -56,8 +56,8 @@ def report(
         ),
     ] = None,
     tolerance: Annotated[
-        float, typer.Option("--tolerance", help="With --compare: relative change of a number that passes.")
-    ] = 1e-3,
+        str, typer.Option("--tolerance", help="With --compare: relative change of a number that passes: 1%.")
+    ] = "0.1%",
     supports: Annotated[
         opt.SupportsName | None,
         typer.Option("--supports", help="springs: leave shafts out. Default: shafts where they are given."),
@@ -98,7 +98,7 @@ def report(
             quick=quick,
             record=record,
             compare=compare,
-            tolerance=tolerance,
+            tolerance=opt.number_in("--tolerance", tolerance, "1"),
             name=name,
             progress=tell,
             early=_show_early,

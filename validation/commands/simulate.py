@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
 
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Mesh orders of a run-up that are printed.
+_MESH_ORDERS = 5
 Model = Literal["lumped", "multibody"]
 Fidelity = Literal["exact", "linear"]
 Start = Literal["static", "periodic"]
@@ -28,6 +33,11 @@ def simulate(
     steady: Annotated[
         bool, typer.Option("--steady", help="Only the periodic motion over one mesh cycle (lumped).")
     ] = False,
+    run_up: Annotated[
+        str | None,
+        typer.Option("--run-up", metavar="FROM..TO", help="Speed that rises or falls evenly, rpm (lumped)."),
+    ] = None,
+    seconds: Annotated[float, typer.Option(help="Duration of --run-up.")] = 2.0,
     supports: opt.Supports = "springs",
     as_json: opt.Json = False,
 ) -> None:
@@ -43,6 +53,8 @@ def simulate(
 
     spurcheck simulate --steady --law coulomb -o steady.png
 
+    spurcheck simulate my_pair.toml --run-up 500..6000 --seconds 5 -o waterfall.png
+
     spurcheck simulate my_pair.toml --supports shafts -o on_shafts.nc
     """
     import lumped
@@ -52,6 +64,17 @@ def simulate(
     opt.check_supports(pair, supports)
     if steady and model == "multibody":
         raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")
+    if run_up is not None:
+        if steady or model == "multibody":
+            raise refuse("--run-up", run_up, "without --steady and --model", "Leave one of the two out.")
+        with progress_bar("run-up") as tell:
+            begin, _, end = run_up.partition("..")
+            if not end:
+                raise refuse("--run-up", run_up, "two speeds FROM..TO", "For example 500..6000.")
+            ends = (opt.number_in("--run-up", begin, "rpm"), opt.number_in("--run-up", end, "rpm"))
+            result = lumped.run_up(pair, ends, seconds, supports=supports, progress=tell)
+        _show_run_up(pair.name, result, as_json=as_json)
+        return files.write(result)
     with progress_bar(f"{model} model") as tell:
         common: dict[str, Any] = {"samples_per_cycle": samples, "supports": supports}
         if steady:
@@ -116,3 +139,20 @@ def simulate(
             "See 'spurcheck stability', or raise the damping."
         )
     files.write(result)
+
+
+def _show_run_up(name: str, result: xr.Dataset, *, as_json: bool) -> None:
+    """Print where each mesh order is largest."""
+    from validation.files.formatting import number, quantity
+    from validation.signals import waterfall
+
+    amplitude = waterfall(result)["amplitude"]
+    orders = range(1, _MESH_ORDERS + 1)
+    heights = [amplitude.sel(order=order, method="nearest") for order in orders]
+    at = [max(zip(one.values.tolist(), one["speed_rpm"].values.tolist(), strict=True)) for one in heights]
+    if as_json:
+        print_json({"gear_pair": name, "variable": "dte", "largest": dict(zip(orders, at, strict=True))})
+    else:
+        rows = [(f"{n}", quantity(a, "m", 3), number(rpm, 4)) for n, (a, rpm) in zip(orders, at, strict=True)]
+        title = f"{name}, run-up: transmission error"
+        stdout().print(table(title, ">mesh order", ">largest amplitude", ">at speed [rpm]", rows=rows))

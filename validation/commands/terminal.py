@@ -7,6 +7,7 @@ import inspect
 import json
 import math
 import os
+import re
 import sys
 import traceback
 import unicodedata
@@ -63,8 +64,18 @@ class PlainConsole(Console):
 _OPTIONS = {
     "samples_per_cycle": "--samples",
     "output": "--output",
-    **{name: f"--{name.replace('_', '-')}" for name in ("cycles", "tolerance", "workers", "case_seconds")},
+    **{
+        name: f"--{name.replace('_', '-')}"
+        for name in ("cycles", "tolerance", "workers", "case_seconds", "limit", "samples")
+    },
 }
+#: What the parser says of an argument -> what it says to a user.
+_PARSER = (
+    (r"^Input should be a valid integer.*", "Write a whole number, without point and exponent."),
+    (r"^Input should be a valid number.*", "Write a number."),
+    (r"^Value error, ", ""),
+    (r"^(Got unexpected extra .*)", r"\1. Put a value that has blanks in quotes: '1450 rpm'."),
+)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 #: Option that every command has, see ``guarded``.
 Quiet = Annotated[
@@ -102,6 +113,16 @@ class Once(TyperCommand):
     """Command that refuses an option which is given twice where only the last value would count."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse, and say what is wrong in plain words."""
+        try:
+            return self._parsed(ctx, args)
+        except Exception as error:
+            usage: Any = error  # an error of usage has its text as an attribute
+            for pattern, words in _PARSER if hasattr(error, "message") else ():
+                usage.message = re.sub(pattern, words, usage.message)
+            raise
+
+    def _parsed(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse as usual, after a look at the order of the parameters."""
         _, _, order = self.make_parser(ctx).parse_args(args=list(args))
         for parameter, count in Counter(order).items():

@@ -150,7 +150,7 @@ def crosscheck(
     """
     whole_number("cycles", cycles, 6, 100_000)
     whole_number("samples_per_cycle", samples_per_cycle, 32, 65536)
-    limit = real_number("limit", limit, 0.0, 1.0, above=True)
+    limit = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")
     chosen = some_of("fidelities", fidelities, FIDELITIES)
     if not chosen or len(set(chosen)) != len(chosen):
         raise refuse("fidelities", ", ".join(chosen), "at least one, each once", "Correct the list.")

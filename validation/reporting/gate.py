@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lumped.arguments import file_path
-from lumped.errors import refuse
+from lumped.errors import ParameterError, refuse
 from lumped.fields.text_file import read_text
 from validation.files.folder import FORMAT, FORMAT_VERSION
 from validation.reporting.blocks import REMARKS
@@ -96,6 +96,8 @@ def load_report(source: str | Path, *, quick: bool) -> dict[str, Any]:
     path = path / "report.json" if path.is_dir() else path
     try:
         found = json.loads(read_text(path, _MAX_BYTES, field="--compare", kind="report.json"))
+    except ParameterError:
+        raise
     except ValueError as error:
         raise refuse("--compare", path, "report.json of a report", f"It is no JSON: {error}.") from None
     layout = (found.get("format"), found.get("format_version")) if isinstance(found, dict) else ()

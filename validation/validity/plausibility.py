@@ -30,6 +30,8 @@ _OSCILLATIONS = 1000.0
 _SLOW, _SLOWLY, _CREEPING, _FASTEST = 5.0, 120.0, 0.5, 200.0
 #: Mean roughness below and above that of any flank in use, polished and as cut, and least relief made [m].
 _POLISHED, _AS_CUT, _LEAST_RELIEF = 0.01e-6, 12.5e-6, 0.5e-6
+#: Face width in modules, narrower and wider than that of any gear in use.
+_NARROW, _WIDE = 0.5, 100.0
 #: Springs and shafts are not of one machine where their stiffness differs by more than this factor.
 _FAR = 2.0
 
@@ -39,6 +41,7 @@ def parameter_warnings(pair: GearPair) -> tuple[str, ...]:
     return (
         *_bearings(pair),
         *_shafts(pair),
+        *_widths(pair),
         *_materials(pair),
         *_load(pair),
         *_speed(pair),
@@ -93,6 +96,15 @@ def _squared_frequencies(pair: GearPair) -> Iterator[float]:
         yield (bearing.loa_stiffness + mesh) / mass
         yield bearing.oloa_stiffness / mass
     yield mesh * (g.base_radius_pinion**2 / b.inertia_pinion + g.base_radius_gear**2 / b.inertia_gear)
+
+
+def _widths(pair: GearPair) -> Iterator[str]:
+    for name in ("pinion", "gear"):
+        width = getattr(pair, name).face_width
+        modules = width / pair.basic_rack.module
+        if not _NARROW <= modules <= _WIDE:
+            cause = f"Given in m? Then write '{width * 1e3:g} m'." if modules < 1.0 else "Check its unit."
+            yield f"{name}.face_width = {width * 1e3:g} mm is {modules:.2g} modules (gears: 5 to 40). {cause}"
 
 
 def _materials(pair: GearPair) -> Iterator[str]:

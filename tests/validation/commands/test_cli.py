@@ -4,6 +4,7 @@ import json
 import math
 import re
 
+import numpy as np
 import pytest
 import xarray as xr
 from typer.main import get_command
@@ -219,6 +220,15 @@ def test_simulate_prints_its_numbers():
     last = lumped.simulate("nasa_28_28", 3, samples_per_cycle=4096).isel(time=slice(-4096, None))
     assert numbers["dte_peak_to_peak"] == pytest.approx(float(last.dte.max() - last.dte.min()), rel=1e-4)
     assert (result.exit_code, numbers["gear_pair"], numbers["model"]) == (0, "nasa_28_28", "lumped")
+
+
+def test_a_run_up_prints_where_each_order_is_largest(tmp_path):
+    """So slow that the amplitude of order 1 is that of the periodic motion at that speed."""
+    result = run("simulate", "--run-up", "2000..2200", "--seconds", 1, "--json", "-o", tmp_path / "run.png")
+    amplitude, rpm = json.loads(result.stdout)["largest"]["1"]
+    periodic = lumped.steady_state(lumped.load_gear_pair("nasa_28_28").with_(speed=rpm))["dte"]
+    assert amplitude == pytest.approx(2 * abs(np.fft.rfft(periodic)[1]) / periodic.size, rel=0.01)
+    assert (tmp_path / "run.png").exists()
 
 
 def test_stability_and_crosscheck_print_their_verdicts(monkeypatch):

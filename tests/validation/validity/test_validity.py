@@ -152,6 +152,7 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
     ({"gear.tip_relief": {"amount": 0.02, "start_roll_angle": 24.0}}, "Then write '0.02 mm'."),
     ({"friction.composite_roughness": 0.8}, "Delete it if the roughnesses are meant"),
     ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
+    ({"pinion.face_width": "20 in"}, "pinion.face_width = 508 mm is 1.6e+02 modules"),
 ])  # fmt: skip
 def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, said):
     found = parameter_warnings(nasa_pair.with_(changes))
