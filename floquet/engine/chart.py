@@ -86,6 +86,7 @@ class ChartPoints:
     known : (count,) whether the point was evaluated; the others are interpolated
     gap : (count,) `gaps` of evaluated points; None where every point is evaluated
     multipliers, multiplier_errors : (count, size) the largest modulus first; None without ``everything``
+    cells : verdicts (N-1, M-1) of the cells between nodes; None: not asked for
     """
 
     def __init__(self, count: int, *, everything: bool = False) -> None:
@@ -94,6 +95,7 @@ class ChartPoints:
         self.verdict = np.zeros(count, dtype=np.int8)
         self.proven, self.known = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.gap: FloatArray | None = None
+        self.cells: IntArray | None = None
         self.multipliers: ComplexArray | None = None
         self.multiplier_errors: FloatArray | None = None
 

@@ -187,7 +187,7 @@ class _State:
                     return []
         along, up = self._ways(box, i, j, error, mixed=mixed, meeting=meeting)
         along, up = (along and wide) or not tall, (up and tall) or not wide
-        return _parts(box, along=along and wide, up=up and tall)
+        return parts_of(box, along=along and wide, up=up and tall)
 
     def _ways(
         self, box: Box, i: IntArray, j: IntArray, error: FloatArray, *, mixed: bool, meeting: bool
@@ -218,7 +218,7 @@ class _State:
             _, _, error = self.misfit(box)
             size = max(tolerance, float(error.max()))
             verdict = self.verdict[a, c]
-            for part in _parts(box, along=b - a > 1, up=d - c > 1):
+            for part in parts_of(box, along=b - a > 1, up=d - c > 1):
                 p, q, r, s = part
                 inner = slice(p, q + 1), slice(r, s + 1)
                 i, j = np.nonzero(~self.known[inner])
@@ -228,7 +228,8 @@ class _State:
         return Refined(self.radius, self.verdict, self.known, misfit)
 
 
-def _parts(box: Box, *, along: bool, up: bool) -> list[Box]:
+def parts_of(box: Box, *, along: bool, up: bool) -> list[Box]:
+    """Halves or quarters of a box."""
     a, b, c, d = box
     columns = [(a, (a + b) // 2), ((a + b) // 2, b)] if along else [(a, b)]
     rows = [(c, (c + d) // 2), ((c + d) // 2, d)] if up else [(c, d)]

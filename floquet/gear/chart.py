@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -28,9 +29,11 @@ from floquet.gear.block import feedback_system, fitted_block
 from floquet.gear.multipliers import OffLineOfAction
 from floquet.gear.regions import with_regions
 from floquet.rank_one.batch import fast_multipliers
+from floquet.rank_one.boxes import proven_cells
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import of_type, one_of, real_number
 from lumped.errors import refuse
+from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair
 from lumped.typing import FloatArray, IntArray, Progress
@@ -39,6 +42,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
+_CELLS = ("speed_rpm", "damping_ratio")  # axes of a chart whose cells can be proven
+_LEAST = (800, 200)  # parts of them, in which cells are proven, at least
 _CHUNK = 32_768  # points in memory with their matrices
 _LARGEST = 25_000_000
 
@@ -49,6 +54,7 @@ def stability_chart(
     *,
     friction_law: str | None = None,
     refine: bool = True,
+    prove: bool = False,
     rtol: float = 1e-10,
     store: Literal["all", "radius"] = "radius",
     supports: Supports = "springs",
@@ -71,6 +77,9 @@ def stability_chart(
         pitch point, the others for mu that varies along the path. With an axis friction_coefficient the law
         is scaled to that mean of |mu|.
     refine : False evaluates every node
+    prove : whether stability between the nodes is decided too, over speed and mesh damping: every cell
+        between four nodes is proven stable, proven unstable, or stays unproven, and the corners of the
+        latter are evaluated. No region is missed then outside of unproven cells.
     rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
     store : "radius"; or "all" for the multipliers too, which every node must be evaluated for: 258 bytes a
         point instead of 19
@@ -88,6 +97,9 @@ def stability_chart(
     ``region_<axis>``, the evaluated node where it is largest. Attributes ``thinnest_width`` of all regions
     and ``nearest_edge_<axis>``, where along an axis the stability changes next to the pair itself; NaN:
     nowhere.
+    With ``prove`` also ``cell_verdict`` (1 stable, -1 unstable everywhere in a cell, 0 unproven) over the
+    middles of the cells, ``speed_rpm_cell`` and ``damping_ratio_cell``, increasing, and the attribute
+    ``proven_share`` of the area.
 
     Raises
     ------
@@ -102,6 +114,8 @@ def stability_chart(
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
     one_of("store", store, ("all", "radius"))
     of_type("refine", refine, bool, "True or False")
+    if of_type("prove", prove, bool, "True or False"):
+        _check_cells(grid)
     rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
     if friction_law is not None:
         variation = replace(variation, pair=variation.pair.with_({"friction.law": friction_law}))
@@ -109,8 +123,10 @@ def stability_chart(
     if plane is not None and store == "all":
         action = "Give refine=False, which evaluates every node."
         raise refuse("store", store, '"radius" for a chart that refines itself', action)
-    found = solved(variation, grid, rtol, plane, everything=store == "all", progress=progress)
+    found = solved(variation, grid, rtol, plane, everything=store == "all", prove=prove, progress=progress)
     dataset = chart_dataset(grid, found)
+    if found.cells is not None:
+        dataset = _with_cells(dataset, found.cells)
     for name in grid:
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
@@ -118,6 +134,39 @@ def stability_chart(
     rpm, teeth = operating_rpm(variation.pair), variation.pair.pinion.teeth
     dataset = dataset.assign_attrs(operating_speed_rpm=rpm, mesh_cycles_per_revolution=teeth)
     return with_regions(variation, dataset)
+
+
+def _check_cells(grid: Mapping[str, FloatArray]) -> None:
+    """Refuse a chart between whose nodes nothing can be proven."""
+    if set(grid) != set(_CELLS) or min(values.size for values in grid.values()) < 2:
+        action = "Give two or more values of both, or leave prove out."
+        raise refuse("prove", ", ".join(grid), "axes speed_rpm and damping_ratio, no others", action)
+
+
+def _with_cells(chart: xr.Dataset, cells: IntArray) -> xr.Dataset:
+    """Add the verdicts of cells (speed, damping) and the share of the area that is proven."""
+    axes = [np.sort(chart[name].to_numpy()) for name in _CELLS]
+    area, names = np.outer(*map(np.diff, axes)), tuple(f"{name}_cell" for name in _CELLS)
+    text = "verdict everywhere in the cell: 1 stable, -1 unstable, 0 not proven"
+    middles = {
+        f"{name}_cell": (
+            0.5 * (v[1:] + v[:-1]),
+            GEAR_AXES[name].units,
+            f"{GEAR_AXES[name].long_name}, middle",
+        )
+        for name, v in zip(_CELLS, axes, strict=True)
+    }
+    found = labelled_dataset({"cell_verdict": (names, cells.astype(np.int8), "1", text)}, middles)
+    share = float(area[cells != 0].sum() / area.sum())
+    return chart.merge(found, combine_attrs="override").assign_attrs(proven_share=share)
+
+
+def _finer(values: FloatArray, least: int) -> tuple[FloatArray, int]:
+    """Increasing values with each interval in so many equal parts that there are enough, and their number."""
+    parts = max(1, -(-least // (values.size - 1)))
+    share = np.arange(parts) / parts
+    finer = values[:-1, None] * (1.0 - share) + values[1:, None] * share
+    return np.append(finer.ravel(), values[-1]), parts
 
 
 def _plane(grid: Mapping[str, FloatArray]) -> tuple[str, str] | None:
@@ -137,6 +186,7 @@ def solved(
     plane: tuple[str, str] | None = None,
     *,
     everything: bool = False,
+    prove: bool = False,
     progress: Progress | None = None,
 ) -> ChartPoints:
     """Multipliers of a variation of a pair at all points of a grid, or their spectral radii alone.
@@ -146,12 +196,16 @@ def solved(
     count = math.prod(values.size for values in grid.values())
     points = ChartPoints(count, everything=everything)
     evaluate = _Points(variation, grid, rtol, points)
+    if prove:
+        points.cells = evaluate.cells(progress)
     if plane is not None:
         cycles = grid[plane[0]] if plane[0] == "speed_rpm" else None
         lowest = plane[1] == "damping_ratio"
         refine_planes(
             grid, plane, points, evaluate, cycles=cycles, lowest_alone=lowest, progress=progress
         )  # fmt: skip
+        if points.cells is not None:
+            evaluate(evaluate.unproven(points.cells))
         return points
     # Slow axes outermost, then speed: few fits of the gains for each call.
     names, shape = list(grid), [values.size for values in grid.values()]
@@ -199,6 +253,23 @@ class _Points:
             for part in np.split(np.arange(here.size), range(_CHUNK, here.size, _CHUNK)):
                 chosen = {name: values[part] for name, values in some.items()}
                 self._slices[k].solve(places[here[part]], chosen, self.points, self.rtol)
+
+    def cells(self, progress: Progress | None) -> IntArray:
+        """Verdicts of the cells of a chart over speed and damping, both increasing."""
+        self._slices[0] = ChartSlice(self.variation, self.grid, self.inner, {})
+        return self._slices[0].cells(self.rtol, progress)
+
+    def unproven(self, cells: IntArray) -> IntArray:
+        """Nodes not evaluated yet at cells that are not proven to have their verdict."""
+        speed, damping = (np.argsort(self.grid[name]) for name in _CELLS)
+        places = np.arange(self.points.known.size).reshape(self.shape)
+        if self.inner[0] != _CELLS[0]:
+            places = places.T
+        places = places[np.ix_(speed, damping)]
+        verdict, wrong = self.points.verdict[places], np.zeros(places.shape, dtype=bool)
+        for here in ((a, b) for a in (slice(1, None), slice(-1)) for b in (slice(1, None), slice(-1))):
+            wrong[here] |= cells != verdict[here]
+        return np.asarray(places[wrong & ~self.points.known[places]])
 
 
 class ChartSlice:
@@ -257,6 +328,34 @@ class ChartSlice:
             turn = block.period * operating_rpm(variation.pair)
             self._blocks[k] = block, OffLineOfAction.of(feedback), len(levels), turn
         return self._blocks[k]
+
+    def cells(self, rtol: float, progress: Progress | None) -> IntArray:
+        """Verdicts (N-1, M-1) of the cells between neighbouring speeds and damping ratios, `proven_cells`."""
+        order = np.argsort(self.speeds)
+        speeds, damping = self.speeds[order], np.sort(self.damping)
+        verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
+        of = self._rows[0][order]
+        ends = np.concatenate([[0], 1 + np.flatnonzero(np.diff(of)), [of.size]])
+        for i, j in pairwise(ends):
+            if j - i < 2:
+                continue
+            family = self.families[of[i]]
+            block, separate, levels, turn = self._block(int(of[i]), rtol)
+            (rpm, along), (ratios, up) = (_finer(v, _LEAST[k]) for k, v in enumerate((speeds[i:j], damping)))
+
+            def factors(
+                T: FloatArray, turn: float = turn, one: FrictionFamily = family, levels: int = levels
+            ) -> FloatArray | None:
+                found = one.factors_at(turn / T)
+                return None if found is None else found[:, :levels]
+
+            found = proven_cells(block, turn / rpm[::-1], ratios, factors, progress)[::-1]
+            parts = found.reshape(j - i - 1, along, damping.size - 1, up)
+            least, most = parts.min(axis=(1, 3)), parts.max(axis=(1, 3))
+            # What moves by itself must die out, too.
+            calm = bool((separate.exponents.real + separate.errors < 0.0).all())
+            verdict[i : j - 1] = np.where(least == most, np.where(calm, least, np.minimum(least, 0)), 0)
+        return verdict
 
     def solve(self, places: IntArray, at: Mapping[str, IntArray], points: ChartPoints, rtol: float) -> None:
         """Put the multipliers of points into ``points``.

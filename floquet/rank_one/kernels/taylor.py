@@ -37,7 +37,7 @@ from floquet.rank_one.kernels.gains import (
     most_steps,
     scratch_for,
 )
-from floquet.rank_one.kernels.product import BLOCKS, carry, divide
+from floquet.rank_one.kernels.product import BLOCKS, carry, copy, divide, frobenius, multiply
 from floquet.rank_one.kernels.simd import LANES, compiled, load, plus, scaled, store, zero
 from lumped.typing import FloatArray
 
@@ -273,3 +273,37 @@ def propagate_points(
             for j in range(n):
                 M[point, i, j] = flow[i, j]
     return -1
+
+
+@compiled(nogil=True)
+def largest_flow(
+    problem: Problem, gains: FloatArray, zeta: float, T: float, limits: Limits
+) -> tuple[float, float]:
+    """Largest 2-norm of the computed flows between any two ends of steps, and the sum of the steps' errors.
+
+    |A|^8 <= |(A^T A)^4|_F, too large by at most the 16th root of n. (nan, nan): too many steps.
+    """
+    piece = scratch_for(problem)
+    n, lanes = 2 * problem.v.size, piece.unit.shape[0]
+    most = most_steps(n)
+    steps, flows, work = np.empty((most, n, lanes)), np.empty((most, n, lanes)), np.zeros((3, n, lanes))
+    local, sizes = np.empty(most), np.empty(most)
+    count = steps_of_period(problem, gains, zeta, T, limits, piece, steps, local, sizes)
+    if count < 0:
+        return math.nan, math.nan
+    largest, errors = 1.0, 0.0
+    for j in range(count):
+        errors += local[j] + 2.0 * n * n * _U * sizes[j]
+        copy(piece.unit[:n], flows[j])
+        for i in range(j + 1):
+            multiply(steps[j], flows[i], work[0])
+            copy(work[0], flows[i])
+            if frobenius(work[0]) > largest:
+                for c in range(n):
+                    for q in range(n):
+                        work[1, c, q] = work[0, q, c]
+                multiply(work[1], work[0], work[2])
+                multiply(work[2], work[2], work[0])
+                multiply(work[0], work[0], work[1])
+                largest = max(largest, math.sqrt(math.sqrt(math.sqrt(frobenius(work[1])))) * (1.0 + 1e-11))
+    return largest, errors

@@ -1,0 +1,375 @@
+"""Stability of a rank-one feedback system everywhere in boxes of period and damping, proven.
+
+Where the gains change slowly, a Lyapunov function that follows the frozen system decides for all longer
+periods (`slow_period`). Elsewhere the monodromy matrix is a polynomial of period and damping with a bound on
+its error (`FlowPolynomial`), and so are its entries in the eigenvectors of the middle of a box (`decided`).
+
+Sources: docs/theory/proven_bounds.md, "Between the nodes of a chart".
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebvander
+
+from floquet.engine.refinement import parts_of
+from floquet.rank_one.batch import fast_monodromies
+from floquet.rank_one.kernel_input import own, packed
+from floquet.rank_one.kernels.gains import Limits, Problem
+from floquet.rank_one.kernels.taylor import largest_flow
+from floquet.rank_one.piecewise import to_series
+from floquet.rank_one.system import RankOneSystem
+from lumped.typing import FloatArray, IntArray, Progress
+
+_U = 0.5 * float(np.finfo(np.float64).eps)
+#: Nodes of the polynomial along period and damping, and its terms over a box whose signs count.
+_NODES, _TERMS = (24, 16), (8, 4)
+#: What a polynomial may be wrong by; the size of its patch follows.
+_TOLERANCE = 1e-6
+_RADII = np.geomspace(1.5, 200.0, 40)  # sums of the semi-axes of the ellipses that are tried
+_ANGLE = 0.5  # of half a step whose flows `largest_flow` compares
+_CELLS = 4  # parts of a piece of the gains whose frozen systems are taken
+_ROWS = 8  # rows of cells for which one Lyapunov function is sought
+_BATCH = 512  # boxes at once
+
+#: Periods (k,) [s] -> factors (k, Q-1) on the varied gains; None: of no one system.
+Factors = Callable[[FloatArray], FloatArray | None]
+
+
+def proven_cells(
+    system: RankOneSystem,
+    periods: FloatArray,
+    damping: FloatArray,
+    factors: Factors,
+    progress: Progress | None = None,
+) -> IntArray:
+    """Verdict (N, M) of each cell of a grid: 1 stable, -1 unstable everywhere in it, 0 not proven.
+
+    Parameters
+    ----------
+    periods, damping : (N+1,) [s] and (M+1,), increasing: edges of the cells; damping is the factor on wd
+    factors : on the varied gains, powers of the period or linear in its logarithm, else nothing is proven
+    progress : told the finished fraction
+    """
+    problem, rows = packed(system), damping.size - 1
+    verdict = np.zeros((periods.size - 1, rows), dtype=np.intp)
+    ends = _scaled(np.geomspace(periods[0], periods[-1], _NODES[1]), factors)
+    if ends is None:
+        return verdict
+    ends = ends[[0, -1]]
+    for j in range(0, rows, _ROWS):
+        some = damping[[j, min(j + _ROWS, rows)]]
+        verdict[np.searchsorted(periods, slow_period(system, some, ends)) :, j : j + _ROWS] = 1
+    end = int(np.flatnonzero((verdict == 0).any(axis=1)).max(initial=-1)) + 1
+    i, growth = 0, 2.0
+    while i < end:
+        size = _Size(problem, growth)
+
+        def wide(k: int, i: int = i, size: _Size = size) -> float:
+            return 1e3 * size.error(periods[[i, k]], damping[[0, 0]])
+
+        b, c = _last(i, end, wide), 0
+        while c < rows:
+
+            def tall(k: int, c: int = c, T: FloatArray = periods[[i, b]], size: _Size = size) -> float:
+                return size.error(T, damping[[c, k]])
+
+            d = _last(c, rows, tall)
+            patch, here = None, verdict[i:b, c:d]
+            if not here.all():
+                patch = FlowPolynomial.of(system, problem, periods[[i, b]], damping[[c, d]], factors)
+            if patch is not None:
+                growth = min(1.1 * patch.growth, 10.0)
+                found = _subdivided(patch, periods[i : b + 1], damping[c : d + 1])
+                here[here == 0] = found[here == 0]
+            c = d
+        i = b
+        if progress is not None:
+            progress(i / end)
+    return verdict
+
+
+def _last(first: int, end: int, error: Callable[[int], float]) -> int:
+    """The last of first + 1 .. end at which an error is small, the first of them anyhow."""
+    return max(first, bisect_left(range(first + 1, end + 1), _TOLERANCE, key=error) + first, first + 1)
+
+
+def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray) -> float:
+    """Period from which on a system is stable for all damping and factors between two values, (2,), (2, Q-1).
+
+    On a cell of the phase |L x| grows at most with the logarithmic norm of L A L^-1, L the eigenvectors of A
+    in its middle, and from cell to cell by |L' L^-1|. A is linear in damping and in each factor and the norm
+    convex: the largest is at a corner. inf: none such; with gyroscopic terms, which change with speed.
+    """
+    if system.gyroscopic is not None:
+        return math.inf
+    form, problem = system.modal(), packed(system)
+    m, share = form.omega.size, np.repeat(np.diff(system.phases) / _CELLS, _CELLS)
+    middle = (2.0 * np.arange(_CELLS) + 1.0) / _CELLS - 1.0
+    values, spreads = zip(*(_around(poly, middle) for poly in (form.w, form.wd)), strict=True)
+    calm = np.zeros((share.size, 2 * m, 2 * m))
+    calm[:, range(m), range(m, 2 * m)], calm[:, range(m, 2 * m), range(m)] = form.omega, -form.omega
+    calm[:, m:, m:] -= form.C
+    calm[:, m:, :m] += np.outer(form.reference, form.v / form.omega)
+
+    def frozen(zeta: float, g: FloatArray) -> FloatArray:
+        A = calm.copy()
+        A[:, m:, :m] -= np.tensordot(g, values[0], 1)[:, :, None] * (form.v / form.omega)
+        A[:, m:, m:] -= zeta * np.tensordot(g, values[1], 1)[:, :, None] * form.v
+        return A
+
+    gains = np.concatenate([np.ones((2, 1)), factors], axis=1)
+    V = np.linalg.eig(frozen(float(damping.mean()), gains.mean(axis=0)))[1]
+    L = np.linalg.inv(V)
+    size = np.linalg.norm(L, axis=(1, 2)) * np.linalg.norm(V, axis=(1, 2))
+    # L is what is meant exactly; V is its inverse but for this.
+    rounding = 32.0 * (2.0 * m + 8.0) * _U * size
+    corners = [frozen(z, np.array(g)) for z in damping for g in product(*map(np.unique, gains.T))]
+    rate = np.full(share.size, -np.inf)
+    for A in corners:
+        turned = L @ A @ V
+        top = np.linalg.eigvalsh(turned + np.conj(np.swapaxes(turned, 1, 2)))[:, -1]
+        rate = np.maximum(rate, 0.5 * top + rounding * np.linalg.norm(A, axis=(1, 2)))
+    most, z, column = np.abs(gains).max(axis=0), float(damping.max()), np.abs(L[:, :, m:])
+    into = np.linalg.norm(form.v / form.omega @ V[:, :m], axis=1), np.linalg.norm(form.v @ V[:, m:], axis=1)
+    for spread, factor, row in zip(spreads, (1.0, z), into, strict=True):
+        moved = np.einsum("kij,kj->ki", column, factor * np.tensordot(most, spread, 1))
+        rate += np.linalg.norm(moved, axis=1) * row * (1.0 + 1e-9)
+    lean = np.array([np.linalg.norm(form.v / form.omega), z * np.linalg.norm(form.v)])
+    rate += size * np.repeat(problem.noise + np.tensordot(most, problem.fit_error, 1) @ lean, _CELLS)
+    total = rate @ share + size.max() * (np.tensordot(most, problem.edge_error, 1) @ lean).sum()
+    steps = np.linalg.norm(np.roll(L, -1, axis=0) @ V, 2, axis=(1, 2)) * (1.0 + rounding)
+    return float(np.log(steps).sum() / -total) * (1.0 + 1e-9) if total < 0.0 else math.inf
+
+
+def _around(poly: FloatArray, middle: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Polynomials (Q, P, m, d+1) in the middles of cells, (Q, P cells, m), and how far off within."""
+    j = np.arange(poly.shape[3])
+    choose = np.array([[math.comb(a, b) for b in j] for a in j], dtype=float)
+    power = np.maximum(j[:, None] - j, 0)
+    shift = choose * middle[:, None, None] ** power / middle.size**j
+    terms = np.einsum("qpmj,cjk->qpcmk", poly, shift).reshape(poly.shape[0], -1, *poly.shape[2:])
+    return terms[..., 0], np.abs(terms[..., 1:]).sum(axis=-1)
+
+
+class _Size:
+    """How large a patch may be: bounds on the flow of a system at complex period and damping.
+
+    Let no flow within a cycle in the middle of the patch exceed ``growth``. Then none at another place
+    exceeds growth exp(growth d), d the integral of the change of T A over the cycle (Gronwall).
+    """
+
+    def __init__(self, problem: Problem, growth: float, gains: FloatArray | None = None) -> None:
+        self.growth = growth
+        shares, lean = np.diff(problem.phases), np.linalg.norm(problem.v / problem.omega)
+        rates = (problem.sizes + problem.fit_error).transpose(2, 0, 1) @ shares * (1.0 + 1e-9)
+        edges = problem.edge_error.sum(axis=1)
+        #: Integrals of the norms of the feedback of each part over the cycle.
+        self.each = (rates[0] + edges[:, 0]) * lean, (rates[1] + edges[:, 1]) * np.linalg.norm(problem.v)
+        gains = np.ones(edges.shape[0]) if gains is None else np.abs(gains)
+        self.w, self.wd = (float(gains @ part) for part in self.each)
+        self.calm = float(problem.omega.max() + np.linalg.norm(problem.C[0]) + problem.noise)
+
+    def change(
+        self, T: FloatArray, damping: FloatArray, along: FloatArray, up: FloatArray, moved: FloatArray
+    ) -> FloatArray:
+        """Bounds d of a patch, (radii,), at so many times its half widths; moved (Q, radii): the factors."""
+        z, dz = damping.mean(), 0.5 * up * (damping[1] - damping[0])
+        half = 0.5 * along * (T[1] - T[0])
+        turned = dz * self.wd + self.each[0] @ moved + (z + dz) * (self.each[1] @ moved)
+        return np.asarray(half * (self.calm + self.w + z * self.wd) + (T.mean() + half) * turned)
+
+    def error(self, T: FloatArray, damping: FloatArray, moved: FloatArray | None = None) -> float:
+        """Bound on the error of the polynomial (Trefethen, theorem 8.2, along each axis)."""
+        semi, one, total = 0.5 * (_RADII + 1.0 / _RADII), np.ones_like(_RADII), 0.0
+        moved = np.zeros((len(self.each[0]), _RADII.size)) if moved is None else moved
+        for count, reach, weight in (
+            (_NODES[0], (semi, one, moved), 1.0),
+            (_NODES[1], (one, semi, moved[:, :1]), 1.0 + 2.0 / math.pi * math.log(_NODES[0])),
+        ):
+            log = self.growth * self.change(T, damping, *reach) - (count - 1.0) * np.log(_RADII)
+            log += np.log(4.0 * self.growth * weight / (_RADII - 1.0))
+            total += math.exp(min(float(log.min()), 700.0))
+        return total * (1.0 + 1e-9)
+
+
+@dataclass(frozen=True, eq=False)
+class FlowPolynomial:
+    """Monodromy matrices of a patch of period and damping as polynomials with a bound on their error.
+
+    Attributes
+    ----------
+    coefficients : (a, b, n, n) of T_a(x) T_b(y), x and y in [-1, 1] along period and damping
+    error : bound on the 2-norm of the error everywhere in the patch
+    growth : bound on all flows within a cycle in the middle of the patch
+    """
+
+    coefficients: FloatArray
+    error: float
+    growth: float
+
+    @classmethod
+    def of(
+        cls,
+        system: RankOneSystem,
+        problem: Problem,
+        periods: FloatArray,
+        damping: FloatArray,
+        factors: Factors,
+    ) -> FlowPolynomial | None:
+        """Between two periods and two values of damping; None: factors of no known law."""
+        (x, to_T), (y, to_z) = to_series(_NODES[0]), to_series(_NODES[1])
+        T, z = periods.mean() + 0.5 * np.diff(periods) * x, damping.mean() + 0.5 * np.diff(damping) * y
+        t, zeta = float(periods.mean()), float(damping.mean())
+        at = _scaled(np.append(T, t), factors)
+        if at is None:
+            return None
+        flow = fast_monodromies(
+            system, np.repeat(T, y.size), np.tile(z, x.size), np.repeat(at[:-1], y.size, 0), tolerance=1e-10
+        )
+        matrices = flow.matrices.reshape(x.size, y.size, *flow.matrices.shape[1:])
+        gains = np.append(1.0, at[-1])
+        largest, wrong = largest_flow(problem, own(gains), zeta, t, Limits(1e-12, _ANGLE))
+        size = _Size(problem, math.inf, gains)
+        # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
+        lean = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
+        rates = np.tensordot(np.abs(gains), problem.sizes + problem.fit_error, 1) * lean
+        lift = rates @ [0.5, 1.0] + problem.drive + problem.noise + problem.gyroscopic_drive / t
+        within = math.exp(4.0 * _ANGLE * float((lift / (size.calm + rates.sum(axis=1))).max()) * (1.0 + 1e-6))
+        if largest * wrong < 0.5:
+            size.growth = within * largest / (1.0 - largest * wrong)
+        error = size.error(periods, damping, _moved(T / t, at))
+        error += (1.0 + 2.0 / math.pi * math.log(x.size)) ** 2 * float(flow.errors.max())  # Lebesgue's
+        coefficients = np.einsum("aA,bB,ABij->abij", to_T, to_z, matrices)
+        return cls(coefficients, error if math.isfinite(error) else math.inf, size.growth)
+
+
+def _scaled(T: FloatArray, factors: Factors) -> FloatArray | None:
+    """Factors (k, Q-1) at periods, if all are powers of the period or all linear in its logarithm."""
+    at = factors(T)
+    if at is None or not at.shape[1]:
+        return at
+    log, (slope, power) = np.log(T / T[0])[:, None], _slopes(T, at)
+    lines = at[0] + log * slope, at[0] * np.exp(log * power)
+    close = 1e-9 * np.abs(at).max(axis=0)
+    return at if any((np.abs(line - at).max(axis=0) <= close).all() for line in lines) else None
+
+
+def _slopes(T: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Change of factors and of their logarithms (Q-1,) with the logarithm of the period."""
+    width, size = np.log(T[1] / T[0]), np.maximum(np.abs(at), np.finfo(float).tiny)
+    return (at[1] - at[0]) / width, np.log(size[1] / size[0]) / width
+
+
+def _moved(x: FloatArray, at: FloatArray) -> FloatArray:
+    """How far (Q, radii) factors move from the last, in the middle, on the ellipses around the others.
+
+    These are at parts x of the middle period: |ln(1 + z)| <= -ln(1 - |z|) where an ellipse does not reach 0.
+    """
+    reach = 1.01 * np.abs(x - 1.0).max() * 0.5 * (_RADII + 1.0 / _RADII)
+    depth = np.where(reach < 1.0, -np.log1p(-np.minimum(reach, 0.999)), np.inf)
+    slope, power = (np.abs(v)[:, None] for v in _slopes(x, at))
+    moved = np.maximum(slope * depth, np.abs(at[-1])[:, None] * np.expm1(power * depth))
+    return np.concatenate([np.zeros((1, _RADII.size)), np.nan_to_num(moved, nan=0.0)])
+
+
+def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray) -> IntArray:
+    """Verdicts of the cells of a patch, by boxes that are cut until they are proven or one cell."""
+    x, y = (2.0 * (v - v[0]) / (v[-1] - v[0]) - 1.0 for v in (periods, damping))
+    verdict = np.zeros((x.size - 1, y.size - 1), dtype=np.intp)
+    boxes = [(0, x.size - 1, 0, y.size - 1)]
+    while boxes:
+        now, boxes = boxes[:_BATCH], boxes[_BATCH:]
+        a, b, c, d = np.array(now).T
+        found, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
+        for k, (i, j, p, q) in enumerate(now):
+            wide, tall = j - i > 1, q - p > 1
+            if found[k]:
+                verdict[i:j, p:q] = found[k]
+            elif wide or tall:
+                along = wide and (2.0 * across[k] >= upward[k] or not tall)
+                up = tall and (2.0 * upward[k] >= across[k] or not wide)
+                boxes += parts_of((i, j, p, q), along=along, up=up)
+    return verdict
+
+
+def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Verdicts (k,) of boxes x, y (2, k) of a patch, and how much its entries vary along both.
+
+    In the eigenvectors of the middle of a box let d_k bound how near the diagonal comes to the unit circle,
+    and f_kj the moduli of the other entries. Where d_k u_k > sum_j f_kj u_j for some u > 0 (Gershgorin's
+    disks, scaled), no multiplier is on the circle, and as many are outside as diagonal entries.
+    """
+    _, low, high, f, across, upward = bounded_entries(patch, x, y)
+    margin = np.maximum(1.0 - high, low - 1.0)
+    size = margin.shape[1]
+    system = -f
+    system[:, range(size), range(size)] = np.maximum(margin, 1e-9)
+    try:
+        u = np.linalg.solve(system, np.ones((*margin.shape, 1)))[:, :, 0]
+    except np.linalg.LinAlgError:
+        u = np.zeros_like(margin)
+    good = (margin > 0.0).all(axis=1) & (u > 0.0).all(axis=1)
+    good &= (margin * u * (1.0 - 1e-12) > np.einsum("kij,kj->ki", f, u) * (1.0 + 1e-12)).all(axis=1)
+    return np.where(good, np.where((low > 1.0).any(axis=1), -1, 1), 0), across, upward
+
+
+def bounded_entries(
+    patch: FlowPolynomial, x: FloatArray, y: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Moduli of the entries of V^-1 M V over boxes, V the eigenvectors in the middle of each.
+
+    V (k, n, n), least and largest of the diagonal (k, n), largest of the others (k, n, n) with zeros on the
+    diagonal; and how much they vary along both.
+    """
+    n, (J, K) = patch.coefficients.shape[-1], _TERMS
+    E, F = _restricted(x, _NODES[0]), _restricted(y, _NODES[1])
+    count = x.shape[1]
+    parts = np.swapaxes(E[:, :, :J], 1, 2) @ patch.coefficients.reshape(_NODES[0], -1)
+    parts = np.swapaxes(F[:, None, :, :K], 2, 3) @ parts.reshape(count, J, _NODES[1], -1)
+    parts = parts.reshape(count, J * K, n, n)
+    sizes, tall, wide = np.linalg.norm(patch.coefficients, axis=(2, 3)), np.abs(E), np.abs(F)
+    every = np.einsum("ka,ab,kb->k", tall.sum(axis=2), sizes, wide.sum(axis=2))
+    some = np.einsum("ka,ab,kb->k", tall[:, :, :J].sum(axis=2), sizes, wide[:, :, :K].sum(axis=2))
+    # 64 a^2 units: values of T_a at the nodes, sums over a and b, series and their restriction.
+    rest = every - some + patch.error
+    rest += (64.0 * _NODES[0] ** 2 + 32.0 * (n + 8.0)) * _U * (every + sizes.sum())
+    V = np.linalg.eig(parts[:, 0])[1]
+    Y = np.linalg.inv(V)
+    N = (Y[:, None] @ parts @ V[:, None]).reshape(count, J, K, n, n)
+    reach = np.linalg.norm(Y, axis=2)[:, :, None] * np.linalg.norm(V, axis=1)[:, None, :]
+    moduli, off = np.abs(N), rest[:, None, None] * reach
+    f = (moduli.sum(axis=(1, 2)) + off) * (1.0 + 1e-12)
+    # Y is the inverse of V but for q.
+    q = (np.abs(np.eye(n) - Y @ V) + 4.0 * (n + 4.0) * _U * reach).sum(axis=2)
+    worst = np.minimum(q.max(axis=1), 0.5)
+    off = off + (q / (1.0 - worst)[:, None])[:, :, None] * f.max(axis=1)[:, None, :]
+    f += off
+    own = np.einsum("kJKii->kiJK", N)
+    (X, to_X), (Z, to_Z) = to_series(2 * J - 1), to_series(2 * K - 1)
+    square = to_X @ np.abs(chebvander(X, J - 1) @ own @ chebvander(Z, K - 1).T) ** 2 @ to_Z.T
+    varied = np.abs(square).sum(axis=(2, 3)) - np.abs(square[:, :, 0, 0])
+    varied += 1e-12 * np.abs(own).sum(axis=(2, 3)) ** 2
+    wrong = np.einsum("kii->ki", off) + np.where(q.max(axis=1) < 0.5, 0.0, np.inf)[:, None]
+    low = np.sqrt(np.maximum(square[:, :, 0, 0] - varied, 0.0)) * (1.0 - 1e-12) - wrong
+    high = np.sqrt(square[:, :, 0, 0] + varied) * (1.0 + 1e-12) + wrong
+    f[:, range(n), range(n)] = 0.0
+    moduli[..., range(n), range(n)] = 0.0
+    across = moduli[:, 1:, 0].sum(axis=(1, 2, 3)) + np.abs(square[:, :, 1:, 0]).sum(axis=2).max(axis=1)
+    upward = moduli[:, :, 1:].sum(axis=(1, 2, 3, 4)) + np.abs(square[:, :, :, 1:]).sum(axis=(2, 3)).max(
+        axis=1
+    )
+    return V, low, high, f, across, upward
+
+
+def _restricted(ends: FloatArray, count: int) -> FloatArray:
+    """T_a on intervals (2, k) as a series of their own: (k, a, j)."""
+    x, to = to_series(count)
+    places = ends.mean(axis=0)[:, None] + 0.5 * (ends[1] - ends[0])[:, None] * x
+    return np.asarray(np.swapaxes(chebvander(places, count - 1), 1, 2) @ to.T)
