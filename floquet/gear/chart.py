@@ -268,7 +268,7 @@ class _Points:
         places = places[np.ix_(speed, damping)]
         verdict, wrong = self.points.verdict[places], np.zeros(places.shape, dtype=bool)
         for here in ((a, b) for a in (slice(1, None), slice(-1)) for b in (slice(1, None), slice(-1))):
-            wrong[here] |= cells != verdict[here]
+            wrong[here] |= (cells == 0) | (cells != verdict[here])
         return np.asarray(places[wrong & ~self.points.known[places]])
 
 
@@ -341,7 +341,10 @@ class ChartSlice:
                 continue
             family = self.families[of[i]]
             block, separate, levels, turn = self._block(int(of[i]), rtol)
-            (rpm, along), (ratios, up) = (_finer(v, _LEAST[k]) for k, v in enumerate((speeds[i:j], damping)))
+            # What moves by itself must die out, too: else only instability can be proven.
+            calm = bool((separate.exponents.real + separate.errors < 0.0).all())
+            axes = zip((speeds[i:j], damping), _LEAST if calm else (1, 1), strict=True)
+            (rpm, along), (ratios, up) = (_finer(values, least) for values, least in axes)
 
             def factors(
                 T: FloatArray, turn: float = turn, one: FrictionFamily = family, levels: int = levels
@@ -352,8 +355,6 @@ class ChartSlice:
             found = proven_cells(block, turn / rpm[::-1], ratios, factors, progress)[::-1]
             parts = found.reshape(j - i - 1, along, damping.size - 1, up)
             least, most = parts.min(axis=(1, 3)), parts.max(axis=(1, 3))
-            # What moves by itself must die out, too.
-            calm = bool((separate.exponents.real + separate.errors < 0.0).all())
             verdict[i : j - 1] = np.where(least == most, np.where(calm, least, np.minimum(least, 0)), 0)
         return verdict
 

@@ -273,10 +273,11 @@ def _moved(x: FloatArray, at: FloatArray) -> FloatArray:
     These are at parts x of the middle period: |ln(1 + z)| <= -ln(1 - |z|) where an ellipse does not reach 0.
     """
     reach = 1.01 * np.abs(x - 1.0).max() * 0.5 * (_RADII + 1.0 / _RADII)
-    depth = np.where(reach < 1.0, -np.log1p(-np.minimum(reach, 0.999)), np.inf)
+    depth = -np.log1p(-np.minimum(reach, 0.999))
     slope, power = (np.abs(v)[:, None] for v in _slopes(x, at))
     moved = np.maximum(slope * depth, np.abs(at[-1])[:, None] * np.expm1(power * depth))
-    return np.concatenate([np.zeros((1, _RADII.size)), np.nan_to_num(moved, nan=0.0)])
+    moved[:, reach > 0.999] = np.where(slope + power > 0.0, 1e30, 0.0)
+    return np.concatenate([np.zeros((1, _RADII.size)), moved])
 
 
 def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray) -> IntArray:

@@ -58,7 +58,7 @@ def stability_figure(
     """How fast disturbances decay over the two axes of a chart, edges of instability as lines; or over one.
 
     Unstable regions are hatched, undecided nodes dotted; a cross marks a region that is at most two nodes
-    wide, beside which thinner ones may exist.
+    wide, beside which thinner ones may exist. A red dot marks a cell that a proof was tried for in vain.
 
     Parameters
     ----------
@@ -83,6 +83,8 @@ def stability_figure(
     bar = figure.colorbar(_field(ax, xs, ys, values.clip(max=0.0), norm), ax=ax, pad=0.01)
     words = f"growth of a disturbance [{unit}]; hatched: unstable"
     words += undecided.any().item() * "\ndotted: undecided"
+    if "cell_verdict" in chart:
+        words += f"\n{100.0 * chart.attrs['proven_share']:.2f} % of the area proven; red dots: not proven"
     # Not above the axes: the names of tongues stand there.
     bar.set_label(f"{words}\n{_certificate(chart)}", fontsize=8.0)
     bar.outline.set_linewidth(0.5)
@@ -100,6 +102,10 @@ def stability_figure(
         if undecided.any():
             _hatch(ax, xs, ys, undecided.astype(float), [0.5, 1.5], "none", "...", GREY)
         _mark_thin(ax, chart, x, y)
+    if "cell_verdict" in chart:
+        i, j = np.nonzero(chart["cell_verdict"].transpose(f"{x}_cell", f"{y}_cell").to_numpy() == 0)
+        places = chart[f"{x}_cell"].to_numpy()[i], chart[f"{y}_cell"].to_numpy()[j]
+        ax.plot(*places, ".", color=RED, markersize=1.5, markeredgewidth=0.0, zorder=3, label="not proven")
     if at is not None:
         mark_operating_point(ax, (at[x], at[y]))
     if x == "speed_rpm":

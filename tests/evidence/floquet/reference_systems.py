@@ -54,6 +54,12 @@ def mathieu_many(a: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     With time in units of 1/sqrt(a) it is z'' + (1 - 2 (q/a) cos) z = 0 with the period pi sqrt(a): one fit.
     """
+    found = fast_multipliers(mathieu_system(), np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13)
+    return found.multipliers, found.errors
+
+
+def mathieu_system(depth: float | None = None, damping: float = 0.0) -> RankOneSystem:
+    """z'' + damping z' + (1 - 2 depth cos) z = 0; without a depth it is the factor of a varied gain."""
     pieces, degree = 24, 8
     phases = np.linspace(0.0, 1.0, pieces + 1)
     u = np.polynomial.chebyshev.chebpts1(degree + 1)
@@ -61,14 +67,14 @@ def mathieu_many(a: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     for k, (low, high) in enumerate(itertools.pairwise(phases)):
         values = -2.0 * np.cos(2.0 * np.pi * (0.5 * (low + high) + 0.5 * (high - low) * u))
         waves[k, 0] = np.polynomial.polynomial.polyfit(u, values, degree)
-    one, none = np.ones((pieces, 1, 1)), np.zeros((pieces, 1, 1))
+    one, none = np.zeros_like(waves), np.zeros((pieces, 1, 1))
+    one[:, :, 0] = 1.0
     errors = np.tile([1e-12, 0.0], (pieces, 1))  # (2 pi/48)^9 2^-7/9! and rounding
-    system = RankOneSystem(
-        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, Gains(one, none, 0.0 * errors), np.pi,
-        np.ones(1), (Gains(waves, none, errors),),
+    calm = Gains(one + (0.0 if depth is None else depth * waves), damping * one, (depth or 0.0) * errors)
+    varied = (Gains(waves, none, errors),) if depth is None else ()
+    return RankOneSystem(
+        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, calm, np.pi, np.ones(1), varied
     )  # fmt: skip
-    found = fast_multipliers(system, np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13)
-    return found.multipliers, found.errors
 
 
 def mathieu_unstable(a: FloatArray, q: float) -> tuple[BoolArray, FloatArray]:

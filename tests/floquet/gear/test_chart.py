@@ -94,6 +94,32 @@ def test_the_full_grid_is_the_same_in_pieces_and_tells_its_progress(pair, monkey
         stability_chart(pair, axes, store="all")
 
 
+def test_cells_are_proven_and_others_evaluated() -> None:
+    """What is proven between the nodes holds at random points; axes in any order."""
+    pair = load_gear_pair("nasa_art_25_31").with_(COULOMB)
+    axes = {"damping_ratio": np.linspace(0.02, 0.0, 21), "speed_rpm": np.linspace(12000.0, 20000.0, 81)}
+    for changes in ({}, {"friction.law": "xu_kahraman"}, UNDAMPED):
+        here, rng = pair.with_(changes), np.random.default_rng(5)
+        chart = stability_chart(here, axes, rtol=1e-8, prove=True)
+        cells, share = chart.cell_verdict.to_numpy(), chart.proven_share
+        assert share == pytest.approx((cells != 0).mean())
+        assert (cells < 0).any()
+        assert (share < 0.5 and not (cells > 0).any()) if changes is UNDAMPED else share > 0.94
+        known = chart.known.transpose("speed_rpm", "damping_ratio")[:, ::-1].to_numpy()
+        for i, j in np.argwhere(cells == 0):
+            assert known[i : i + 2, j : j + 2].all()
+        more = {}
+        for name, count in (("damping_ratio", 2), ("speed_rpm", 2)):
+            edges = np.sort(axes[name])
+            more[name] = (edges[:-1] + rng.uniform(0.0, 1.0, (count, 1)) * np.diff(edges)).T.ravel()
+        full = stability_chart(here, more, rtol=1e-8, refine=False).verdict
+        wanted = np.repeat(np.repeat(cells, 2, axis=0), 2, axis=1)
+        assert (full.transpose("speed_rpm", "damping_ratio").to_numpy() == wanted)[wanted != 0].all()
+    for wrong in ({"torque": [50.0, 60.0], "speed_rpm": SPEEDS}, {"speed_rpm": SPEEDS}):
+        with pytest.raises(ParameterError, match="prove"):
+            stability_chart(pair, wrong, prove=True)
+
+
 def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     axes = {"speed_rpm": np.array([4000.0, 5000.0]), "torque": np.array([20.0, 60.0, 90.0])}
     told: list[float] = []
