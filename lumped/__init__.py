@@ -13,7 +13,6 @@ from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.run_up import run_up
-from lumped.model.solution import simulate
 from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.plane_compliance import plane_compliance
@@ -29,6 +28,7 @@ from lumped.teeth.pairs import meeting_teeth, revolution, tooth_gaps
 from lumped.teeth.static import static_sharing
 from lumped.teeth.steady_state import steady_state
 from lumped.teeth.tolerances import flank_tolerances
+from lumped.teeth.transient import simulate
 
 __all__ = [
     "Bodies",

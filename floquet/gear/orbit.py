@@ -25,7 +25,6 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
-from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -307,7 +306,7 @@ def start_of(
     g, operating, states = pair.geometry, pair.operating, np.zeros(12)
     given = operating.brake_torque != "balanced"
     torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
-    cycle = MeshCycle(g, contact_of(pair).elements(pair) if elements is None else elements)
+    cycle = MeshCycle.of(pair) if elements is None else MeshCycle(g, elements)
     absolute = LTVSystem.of(pair, "full", cycle=cycle)
     if start is not None:
         states = real_array("start", start)

@@ -41,8 +41,8 @@ from floquet.orbits.response import STARTS, Branch, Member, Response, find_respo
 from lumped.arguments import whole_number
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import averaged_matrix
+from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem
-from lumped.quasi_static.contacts import contact_of
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -377,7 +377,7 @@ def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") 
         amplitude=largest_motion(pair),
         frequency=frequency,
     )
-    elements = None if depends_on_speed(pair) else contact_of(pair).elements(pair)
+    elements = None if depends_on_speed(pair) else MeshCycle.of(pair).elements
     return Member(
         unilateral_family(pair, float(slowest * cycle), float(fastest * cycle), form),
         limits,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.arguments import real_array, whole_number
+from lumped.arguments import real_array
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import provenance
 from lumped.model.periodic_system import LTVSystem, Supports
@@ -19,7 +19,6 @@ from lumped.model.powers import power_attributes
 from lumped.model.propagation import step_maps
 from lumped.model.results import dataset
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
-from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
@@ -30,45 +29,16 @@ if TYPE_CHECKING:
 Initial = Literal["static", "periodic"]
 
 
-def simulate(
-    pair: AnyPair,
-    cycles: int = 20,
-    *,
-    samples_per_cycle: int = 256,
-    initial: Initial | ArrayLike = "static",
-    as_printed: Collection[int] = (),
-    supports: Supports = "springs",
-    progress: Progress | None = None,
+def transient(
+    pair: GearPair,
+    cycles: int,
+    samples_per_cycle: int,
+    initial: Initial | ArrayLike,
+    as_printed: Collection[int],
+    supports: Supports,
+    progress: Progress | None,
 ) -> xr.Dataset:
-    """Transient of the linear time-varying model (docs/theory/equations.md, eqs. 1 to 9).
-
-    The maps of the periodic motion take the state from output to output: steps end at every switch, and each
-    is exact to about 1e-12.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    cycles : mesh cycles, 1 to 100000
-    samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
-    initial : "static" (at rest relative to nominal rotation, mesh wound up by the mean load), "periodic"
-        (the periodic solution at t = 0) or 12 states in SI (on shafts, those of ``LTVSystem.state_names``)
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
-    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``
-    progress : called with the finished fraction
-
-    Returns
-    -------
-    xarray.Dataset over ``time`` [s] and ``pair``, see ``lumped.model.results.VARIABLES``; the attributes
-    carry the balanced brake torque and the provenance
-
-    Raises
-    ------
-    ParameterError : arguments out of range
-    NumericalError : no periodic motion exists, the motion overflows, or the speed is so low that a cycle
-        would take minutes
-    """
-    pair = load_gear_pair(pair)
-    cycles = whole_number("cycles", cycles, 1, 100_000)
+    """The result of ``lumped.simulate`` of like teeth."""
     system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     grid = sample_times(system.period, samples_per_cycle)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up

@@ -21,7 +21,6 @@ from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
-from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -132,7 +131,7 @@ def systems_over_speed(pairs: Iterable[GearPair], supports: Supports = "springs"
     for at in pairs:
         g = at.geometry
         if elements is None:
-            elements = contact_of(at).elements(at)
+            elements = MeshCycle.of(at).elements
         else:
             elements = replace(
                 elements, friction=friction_path_function(at, interval=elements.stiffness.interval)

@@ -96,7 +96,7 @@ class OwnMotion:
     @cached_property
     def number(self) -> IntArray:
         """Number of the pair in each place at each output, (pairs, k)."""
-        cycle = np.repeat(np.arange(self.period), self.tables.outputs.sum())
+        cycle = np.arange(self.time.size) // self.tables.outputs.sum()
         return np.asarray(cycle - self.tables.ahead[:, None], dtype=np.int64)
 
     @cached_property
@@ -107,19 +107,17 @@ class OwnMotion:
     @cached_property
     def pairs(self) -> PairState:
         """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
-        own, starts = self.tables, np.flatnonzero(self.tables.outputs)
-
-        def repeated(values: FloatArray) -> FloatArray:
-            return np.tile(values[starts, 0].T, self.period)
+        own = self.tables
+        step = np.resize(np.flatnonzero(own.outputs), self.time.size)
 
         touches = self.load != 0.0
         kind = own.kinds[self.teeth]
-        step, place = np.tile(starts, self.period), np.arange(own.ahead.size)[:, None]
+        place = np.arange(own.ahead.size)[:, None]
         k, c, gap = (
             np.where(touches, v[kind, step, 0, place], 0.0) for v in (own.stiffness, own.damping, own.gap)
         )
-        mu = np.where(touches, repeated(own.friction), 0.0)
-        return PairState(repeated(own.place), touches, k, c, mu, gap, np.zeros(gap.shape))
+        mu = np.where(touches, own.friction[step, 0].T, 0.0)
+        return PairState(own.place[step, 0].T, touches, k, c, mu, gap, np.zeros(gap.shape))
 
 
 def steps_of(system: LTVSystem) -> int:
@@ -343,8 +341,11 @@ def default_samples(period: int) -> int:
     return min(max(found, _LEAST_SAMPLES), _MOST_SAMPLES)
 
 
-def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset:
-    """A motion under the names of ``lumped.model.results.VARIABLES``, with the teeth of each pair."""
+def labelled_motion(motion: OwnMotion, attributes: dict[str, Any], *, periodic: bool = True) -> xr.Dataset:
+    """A motion under the names of ``lumped.model.results.VARIABLES``, with the teeth of each pair.
+
+    Not ``periodic``: a transient, about which the attributes of the periodic motion say nothing.
+    """
     system = motion.system
     values = response(system, motion.time, motion.states, motion.load, motion.pairs)
     further: dict[str, Variable] = {
@@ -357,17 +358,26 @@ def labelled_motion(motion: OwnMotion, attributes: dict[str, Any]) -> xr.Dataset
         "period_cycles": motion.period,
         "teeth": "as given",
         "touch": FORMS[motion.form],
+        "spectral_radius": motion.spectral_radius,
+    }
+    if periodic:
+        attributes |= _of_period(motion, values)
+    run = labelled(motion.time, values, attributes, further)
+    return system.supports.labelled(run, motion.states)
+
+
+def _of_period(motion: OwnMotion, values: dict[str, FloatArray]) -> dict[str, float]:
+    """Mean powers, errors and ranges of a motion that closes."""
+    found = {
         "power_sliding": motion.powers["sliding"],
         "power_tooth_dampers": motion.powers["tooth_dampers"],
         "power_bearings": motion.powers["supports"],
         "power_energy_residual": 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"],
         "closure": motion.closure,
         "error_estimate": motion.error,
-        "spectral_radius": motion.spectral_radius,
     }
-    closed = np.append(motion.time, motion.period * system.period)
+    closed = np.append(motion.time, motion.period * motion.system.period)
     for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
         one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
-        attributes[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
-    run = labelled(motion.time, values, attributes, further)
-    return system.supports.labelled(run, motion.states)
+        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
+    return found

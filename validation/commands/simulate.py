@@ -60,7 +60,6 @@ def simulate(
     import lumped
     from lumped.errors import refuse
 
-    pair = pair if steady else opt.alike(pair)
     opt.check_supports(pair, supports)
     if steady and model == "multibody":
         raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")

@@ -136,6 +136,18 @@ def test_first_law_holds_over_a_revolution_with_the_moment_of_eccentric_gears(lo
     assert np.ptp(tied.theta_p.values) == pytest.approx(np.ptp(pushed.theta_p.values), rel=0.01)
 
 
+def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(loaded):
+    pair = loaded.with_({"pinion.deviations": steps(ERRORS), "mesh.first_teeth": [3, 1]})
+    steady = lumped.steady_state(pair, samples_per_cycle=8)
+    for initial, left in (("periodic", 0), ("static", 2 * 28)):
+        run = lumped.simulate(pair, 60, samples_per_cycle=8, initial=initial)
+        assert (run.sizes["time"], run.attrs["teeth"]) == (60 * 8 + 1, "as given")
+        for name, close in (("dte", 1e-11), ("normal_load", 1e-3), ("pinion_tooth", 0.5)):
+            expected = np.take(steady[name].values, np.arange(481) % (28 * 8), axis=-1)
+            off = np.abs(run[name].values - expected)[..., left * 8 :]
+            assert off.max() < close, (initial, name)
+
+
 class TestEccentricGears:
     def test_line_of_action_of_base_circles_off_their_axes(self, unequal):
         # Exact: both base circles and their inner tangent, from the distance of the centres.
