@@ -187,7 +187,7 @@ class Results:
         # Resonances are wider the faster the pair runs.
         low, high = self.speeds
         speeds = np.linspace(low**0.5, high**0.5, self.effort.band_speeds) ** 2
-        return speed_band(self.pair, speeds, self.effort.band_samples)
+        return speed_band(self.pair, speeds, self.uncertainty, self.effort.band_samples)
 
     @cached_property
     def loses_contact(self) -> bool:

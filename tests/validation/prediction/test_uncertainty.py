@@ -2,13 +2,19 @@
 
 import numpy as np
 import pytest
-from scipy.stats import binom
+from scipy.stats import binom, qmc
 
 import floquet
 import lumped
 from lumped.errors import ParameterError
 from validation.prediction.inputs import uncertain_inputs
-from validation.prediction.uncertainty import percentile_interval, speed_band, uncertainty
+from validation.prediction.uncertainty import (
+    _importance,
+    _points,
+    percentile_interval,
+    speed_band,
+    uncertainty,
+)
 
 #: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
 LINEAR = lumped.load_gear_pair("nasa_28_28").with_(
@@ -83,10 +89,25 @@ def test_a_pair_without_uncertain_inputs_is_refused():
         uncertainty(pair, 16)
 
 
-def test_the_band_over_speed_is_about_the_sweep():
+def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
+    """Shares 0.2, 1 and 0.5: of a refused end nothing is known, and each result is measured by itself."""
+    ends = [
+        np.array([0.0, 5.0, *[0.0] * 4]),
+        None,
+        np.array([0.1, 5.0, *[0.0] * 4]),
+        *np.eye(6)[[0, 2]] * 0.5,
+    ]
+    alone = [(0, 0.05), (1, 0.05), (0, 0.95), (1, 0.05), (1, 0.95)]
+    share = _importance(3, [*alone, (2, 0.5), (2, 0.6)], [*ends, np.zeros(6), np.eye(6)[0] * 0.25])
+    np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
+    sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)
+    np.testing.assert_array_equal(_points(share, 8, 3)[:, [1, 2, 0]], sobol)
+
+
+def test_the_band_over_speed_is_about_the_sweep(torque):
     pair = exact_only(LINEAR)
     speeds = np.array([700.0, 900.0, 1100.0])
-    band = speed_band(pair, speeds, 16)
+    band = speed_band(pair, speeds, torque, 16)
     middle = lumped.speed_sweep(pair, speeds)["dte_peak_to_peak"].to_numpy()
     np.testing.assert_allclose(band["low"], middle * 0.964, rtol=0.01)
     np.testing.assert_allclose(band["high"], middle * 1.036, rtol=0.01)

@@ -1,17 +1,20 @@
 """Every number in the sentences of the report, and of page 1 as printed, against the numbers they are of."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 import lumped
 from lumped.losses import losses_of_laws
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import nearest_hazard, of_motion, pair_of
-from tests.validation.reporting.written import SMALL, pair, plain
+from tests.validation.reporting.written import SMALL, known, pair, plain
 from validation.files.formatting import prose
 from validation.reporting.first_figures import plain_name
+from validation.reporting.page_one import Verdict, page_one
 from validation.reporting.results import Results
 
 
@@ -287,3 +290,20 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
         results.__dict__["second"] = SimpleNamespace(peak_to_peak=size)
         ends = f"to 2.7 % on springs; on the shafts its transmission error is {words}."
         assert results.second_words == f"Yes: a second program agrees {ends}"
+
+
+@pytest.mark.parametrize(("diameter", "stiffness"), [(90, 1e9), (20, 2e8)], ids=["stiff", "slender"])
+def test_more_information_never_gives_a_worse_verdict(diameter, stiffness):
+    """A pair on springs, and the same on shafts: contact is kept on them too, by both programs."""
+    ends = [{"position": at, "loa_stiffness": stiffness, "oloa_stiffness": stiffness} for at in (10, 150)]
+    one = {"segments": [{"length": 160, "diameter": diameter}], "gear_position": 80, "bearings": ends}
+    given, effort = known("calm"), replace(SMALL, samples=0)
+    on_shafts = given.pair.with_({"shafts": {"damping_ratio": 0.03, "pinion": one, "gear": one}})
+    springs, shafts = Results(given.pair, effort), Results(on_shafts, effort)
+    for results in (springs, shafts):
+        results.__dict__ |= {"check": given.check, "chart": given.chart}  # on springs in both
+    first = page_one(shafts)
+    assert list(Verdict).index(first.verdict) <= list(Verdict).index(page_one(springs).verdict)
+    assert first.sure[0].startswith(page_one(springs).sure[0][:-1])
+    assert first.numbers[0].value != springs.prediction.peak_to_peak
+    assert min(shafts.prediction.least_force, shafts.second.least_force) > 0.0
