@@ -26,6 +26,8 @@ def test_edge_crack_beside_finite_elements(nasa, depth):
     scale = flank.youngs_modulus * flank.face_width
     assert scale * at_d == pytest.approx(ratio * expected, rel=0.01)
     assert at_p < 0.5 * at_d  # of the square of the arm
+    short, shorter = (Crack(tooth=1, depth=d).compliance(flank, flank.tip) for d in (2e-3, 1e-3))
+    assert short / shorter == pytest.approx(4.0, rel=0.01)
 
 
 def test_an_inclined_crack_counts_by_its_depth_across_the_tooth(nasa):

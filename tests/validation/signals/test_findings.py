@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +13,7 @@ from lumped.teeth.tolerances import flank_tolerances
 from tests.validation.commands.conftest import refused, run
 from validation.reporting.chapters import teeth as chapter
 from validation.reporting.results import QUICK, Results
+from validation.signals import indicators
 from validation.signals.findings import TeethFindings, deviations_table
 
 ONE_TOOTH = [0.0] * 27 + [4.0]
@@ -61,7 +64,11 @@ def test_one_tooth_off_is_told_as_sidebands_and_residual(found: TeethFindings) -
     assert f"every {hertz:.3g} Hz" in found.sentence
     assert "contact is kept" in found.sentence
     assert found.contact_lost == ()
+    assert "% of it at order" in found.sentence
     table = found.indicators("pinion")["value"].sel(indicator="RMS_residual")
+    quiet = indicators(found.twin, "pinion")["value"].sel(indicator="RMS", record="pair")
+    # White noise of 1 % of the average's root mean square is all that the twin's residual has.
+    assert float(table.sel(record="healthy twin")) == pytest.approx(0.01 * float(quiet), rel=0.1)
     assert float(table.sel(record="pair")) > 3.0 * float(table.sel(record="healthy twin"))
     assert f"{float(table[0] / table[1]):.2g} times the residual" in found.sentence
 
@@ -71,22 +78,42 @@ def test_like_teeth_are_refused() -> None:
         TeethFindings(PAIR.healthy)
 
 
-def test_the_report_is_about_like_teeth_and_has_a_chapter_on_those_that_differ(found: TeethFindings) -> None:
+def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> None:
     results = Results(PAIR, QUICK)
     assert results.pair is PAIR.healthy
-    results.__dict__["teeth"] = found
+    # A copy whose contact is lost at one time, and whose pinion alone carries more.
+    parted, (motion, twin, force) = copy(found), (found.motion, found.twin, found.static_force)
+    parted.__dict__.pop("contact_lost", None)
+    parted.motion = motion.assign(
+        normal_load=motion["normal_load"].where(motion["time"] != motion["time"][9], 0)
+    )
+    results.__dict__["teeth"] = parted
     content = chapter.write(results)
     assert content is not None
-    assert content.result == found.sentence
-    pictures = {block.key: block for block in content.blocks if hasattr(block, "draw")}
-    assert set(pictures) == {"teeth_turn", "teeth_loads_pinion", "teeth_orders_pinion"}
-    for picture in pictures.values():
-        picture.figure()
-    (bars,) = pictures["teeth_loads_pinion"].figure().axes
-    np.testing.assert_allclose(
-        [bar.get_height() for bar in bars.patches],
-        np.nanmax(found.largest_loads, axis=1) / found.static_force,
-    )
+    assert content.result == parted.sentence
+    assert len(parted.contact_lost) == 1
+    blocks = {block.key: block for block in content.blocks if hasattr(block, "key")}
+    numbers = [(row[1].value, row[2]) for row in blocks["teeth_numbers"].rows]
+    expected = [motion.attrs["dte_peak_to_peak"], found.load(motion) / force, 1.0]
+    assert [value for value, _ in numbers] == pytest.approx(expected)
+    assert f"{found.load(twin) / force:.3g}" in numbers[1][1]
+    rows = {(row[0], row[1]): row[2:] for row in blocks["teeth_indicators"].rows}
+    wanted = found.indicators("gear")["value"].sel(indicator="RMS_residual").to_numpy()
+    assert rows["gear", "RMS_residual"] == pytest.approx(tuple(wanted))
+    shown = blocks["teeth_turn"].data
+    cycle = shown.sizes["turn"] // 28
+    assert shown["healthy"].values[cycle:] == pytest.approx(shown["healthy"].values[:-cycle])
+    assert shown["turn"].values[-1] == pytest.approx(1.0 - 1.0 / shown.sizes["turn"])
+    figures = {
+        key: blocks[f"teeth_{key}"].figure().axes[0] for key in ("turn", "loads_pinion", "orders_pinion")
+    }
+    share = np.nanmax(found.largest_loads, axis=1) / force
+    assert [bar.get_height() for bar in figures["loads_pinion"].patches] == pytest.approx(share)
+    assert figures["loads_pinion"].lines[0].get_ydata()[0] == pytest.approx(found.load(twin) / force)
+    tops = [line[1, 1] for line in figures["orders_pinion"].collections[0].get_segments()]
+    amplitude = blocks["teeth_orders_pinion"].data["amplitude"].to_numpy()
+    assert len(tops) > 40
+    assert np.isin(np.round(tops, 9), np.round(np.multiply.outer([1.0, 1e6, 1e9], amplitude), 9)).all()
     assert chapter.write(Results(PAIR.healthy, QUICK)) is None
 
 
@@ -95,7 +122,16 @@ def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
     path.write_text(PAIR.to_toml(), encoding="utf-8")
     result = run("teeth", path, "-o", target)
     assert found.sentence in result.stdout
-    assert f"{1e6 * found.twin.attrs['dte_peak_to_peak']:.3g}" in result.stdout
+    peaks, loads = (
+        next(line for line in result.stdout.splitlines() if words in line)
+        for words in ("peak to peak", "largest load on one tooth")
+    )
+    for line, of in (
+        (peaks, lambda d: 1e6 * d.attrs["dte_peak_to_peak"]),
+        (loads, lambda d: found.load(d) / found.static_force),
+    ):
+        pair, twin = (f"{of(one):.3g}" for one in (found.motion, found.twin))
+        assert line.index(pair) < line.rindex(twin), line
     assert target.read_text(encoding="utf-8").count("\n") >= found.motion.sizes["time"]
     assert "teeth that are alike" in refused("teeth", "nasa_28_28")
 
