@@ -3,23 +3,16 @@
 from lumped.friction.iso_14179 import iso_14179_mean_coefficient
 from lumped.losses.efficiency import (
     dynamic_losses,
-    losses_of_laws,
-    quasi_static_losses,
-    sliding_power_along_path,
-)
-from lumped.losses.loss_factor import Sharing, addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
-from lumped.losses.published import (
-    anderson_loewenthal_coefficient,
-    anderson_loewenthal_sliding_loss,
     iso_14179_mesh_loss,
     iso_14179_of,
+    losses_of_laws,
+    quasi_static_losses,
 )
+from lumped.losses.loss_factor import Sharing, addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
 
 __all__ = [
     "Sharing",
     "addendum_contact_ratios",
-    "anderson_loewenthal_coefficient",
-    "anderson_loewenthal_sliding_loss",
     "dynamic_losses",
     "iso_14179_mean_coefficient",
     "iso_14179_mesh_loss",
@@ -29,5 +22,4 @@ __all__ = [
     "ohlendorf",
     "ohlendorf_of",
     "quasi_static_losses",
-    "sliding_power_along_path",
 ]

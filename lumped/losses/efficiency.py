@@ -1,7 +1,7 @@
 """Mesh efficiency and sliding power: without vibration, of a dynamic solution, and of all laws side by side.
 
 Sources: docs/theory/mesh_physics.md, "Losses"; docs/theory/equations.md, "Periodic motion and the brake
-torque".
+torque"; ISO/TR 14179-2:2001.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.errors import ParameterError, refuse
+from lumped.friction.iso_14179 import coefficient_of
 from lumped.friction.registry import laws_with_friction
 from lumped.gear_geometry.geometry import Geometry
 from lumped.labelling import labelled_dataset, provenance
@@ -19,6 +20,7 @@ from lumped.losses.loss_factor import (
     CyclePositions,
     Sharing,
     Springs,
+    loss_factor,
     mean_loss_factor,
     quadrature,
     samples,
@@ -29,7 +31,7 @@ from lumped.model.powers import balance
 from lumped.model.results import labelled
 from lumped.model.steady import periodic_cycle, sample_times
 from lumped.path_function import PathFunction
-from lumped.path_of_contact import friction_path_function
+from lumped.path_of_contact import contact_path, friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
@@ -185,29 +187,6 @@ def dynamic_losses(pair: AnyPair, solution: xr.Dataset) -> xr.Dataset:
     )
 
 
-def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
-    """Sliding power [W] and normal load [N] of one tooth pair over ``xi`` [m], from a dataset of a motion.
-
-    Every pair in contact at every time is one point; over one mesh cycle of a periodic motion the pairs
-    together cover the path once.
-    """
-    name = "friction_power_nominal" if "friction_power_nominal" in solution else "friction_power"
-    touching = solution["contact"].to_numpy().ravel() > 0.0
-    xi = solution["position"].to_numpy().ravel()[touching]
-    order = np.argsort(xi, kind="stable")
-    along = {
-        "sliding_power": (-solution[name], "W", "sliding power of one tooth pair"),
-        "normal_load": (solution["normal_load"], "N", "normal load of one tooth pair"),
-    }
-    return labelled_dataset(
-        {
-            key: ("xi", array.to_numpy().ravel()[touching][order], unit, text)
-            for key, (array, unit, text) in along.items()
-        },
-        {"xi": (xi[order], "m", "distance of the contact point from X")},
-    )
-
-
 def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
     """Mesh efficiency of every law with friction at the operating point.
 
@@ -251,3 +230,19 @@ def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
         {"left_out": left_out},
     )
     return result.assign_coords(law_title=("law", [laws[name].title for name in rows]))
+
+
+def iso_14179_of(pair: AnyPair) -> float:
+    """Mean coefficient of ISO/TR 14179-2 of a pair at its operating point, with mineral oil [-]."""
+    pair = load_gear_pair(pair)
+    return coefficient_of(contact_path(pair))
+
+
+def iso_14179_mesh_loss(pair: AnyPair) -> float:
+    """Load-dependent loss of the mesh with mineral oil after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
+
+    With the exact loss factor of equal load sharing, which is Ohlendorf's wherever his closed form holds.
+    """
+    pair = load_gear_pair(pair)
+    power = pair.operating.pinion_torque * pair.operating.pinion_speed
+    return power * iso_14179_of(pair) * loss_factor(pair, "uniform")

@@ -34,7 +34,6 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "friction.xu_kahraman": "xu_kahraman",
         "gear_geometry.tooth_profile": "involute inverse_involute",
         "losses.loss_factor": "ohlendorf",
-        "losses.published": "anderson_loewenthal_coefficient",
         "lubrication.film": "film_thickness effective_modulus "
         "hertz_half_width hertz_pressure pressure_viscosity film_parameter regime",
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density "

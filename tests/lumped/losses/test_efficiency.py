@@ -10,17 +10,14 @@ from scipy.integrate import quad
 from lumped import geometry, load_gear_pair, preset_names, steady_state
 from lumped.errors import ParameterError
 from lumped.losses import (
-    anderson_loewenthal_coefficient,
-    anderson_loewenthal_sliding_loss,
     dynamic_losses,
     iso_14179_mesh_loss,
     iso_14179_of,
     loss_factor,
     ohlendorf_of,
     quasi_static_losses,
-    sliding_power_along_path,
 )
-from lumped.path_of_contact import contact_path, pair_stiffness
+from lumped.path_of_contact import pair_stiffness
 
 
 def coulomb(name, mu, **changes):
@@ -84,20 +81,6 @@ def test_slow_dynamic_solution_is_quasi_static():
     assert differences[0] / differences[1] == pytest.approx(2.0, rel=0.02)
 
 
-def test_power_along_the_path_is_the_power_over_the_cycle():
-    # Over one cycle the pairs cover the path once, so (1/p) INTEGRAL of the local power is the mean loss.
-    pair = coulomb("fzg_c", 0.05)
-    g = geometry(pair)
-    run = quasi_static_losses(pair, samples_per_cycle=4096)
-    along = sliding_power_along_path(run)
-    xi = along["xi"].to_numpy()
-    assert (np.diff(xi) > 0).all()
-    assert (along["sliding_power"].to_numpy() >= 0).all()
-    mean = np.trapezoid(along["sliding_power"].to_numpy(), xi) / g.base_pitch
-    # trapezia across the two jumps of the load share: first order in 1/4096
-    assert mean == pytest.approx(run.attrs["power_loss"], rel=1e-3)
-
-
 def test_iso_mean_coefficient_on_fzg_c():
     # GEARpie's report of the FZG C14 gears: 200 N m, 1500 rpm, eta 13.28 mPa s, Ra 0.4/0.31 um, X_L 0.846
     # prints mu_mZ (Schlenk, the formula of ISO/TR 14179-2) = 0.0449; half its last place
@@ -111,25 +94,6 @@ def test_iso_mean_coefficient_on_fzg_c():
     # three more digits of mu follow from it: 274.37/(31415.9 * 0.1946), good to 5e-5/0.1946
     mu = 0.846 * iso_14179_mesh_loss(pair) / (31415.9 * ohlendorf_of(pair))
     assert mu == pytest.approx(274.37 / (31415.9 * 0.1946), rel=2.6e-4)
-
-
-def test_anderson_loewenthal_loss_is_its_integral():
-    # From the definition, by adaptive quadrature over the path: each position once a cycle.
-    pair = load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
-    g, path = geometry(pair), contact_path(pair)
-
-    def power(xi):
-        share = 1.0 if g.L_XB < xi < g.L_XC else 0.5
-        load = share * path.unit_load
-        slide = (g.omega_pinion + g.omega_gear) * abs(xi - g.L_XP)
-        v_sum = g.omega_pinion * xi + g.omega_gear * (g.L_XY - xi)
-        return anderson_loewenthal_coefficient(load * 1e-3, path.viscosity, slide, v_sum) * load * slide
-
-    marks = [g.L_XA, g.L_XB, g.L_XP, g.L_XC, g.L_XD]
-    whole = sum(quad(power, a, b, epsrel=1e-11)[0] for a, b in itertools.pairwise(marks))
-    expected = whole / g.base_pitch * g.face_width
-    # v_s log v_s at P: quad itself resolves it to about 1e-9
-    assert anderson_loewenthal_sliding_loss(pair) == pytest.approx(expected, rel=1e-8)
 
 
 def test_a_dataset_without_friction_power_is_refused():
