@@ -34,7 +34,7 @@ def labelled_dataset(
     coordinates: Mapping[str, Coordinate],
     attributes: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:
-    """Put arrays under their names, units and dimensions, see ``Variable`` and ``Coordinate``."""
+    """Put arrays under their names, units and dimensions; every result says the versions that made it."""
     import xarray as xr  # takes a third of a second, which an import of the package should not
 
     return xr.Dataset(
@@ -46,7 +46,7 @@ def labelled_dataset(
             name: (name, values, {"units": unit, "long_name": text})
             for name, (values, unit, text) in coordinates.items()
         },
-        attrs=dict(attributes or {}),
+        attrs={"versions": _versions()} | dict(attributes or {}),
     )
 
 
