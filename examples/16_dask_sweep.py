@@ -3,7 +3,7 @@ How do I run a sweep on a cluster?
 ==================================
 
 The same study runs in one process, on all cores or on a cluster, and gives the same file. Here the cluster is
-this machine; elsewhere, give its scheduler: ``spurcheck sweep study.toml --scheduler tcp://head:8786``.
+this machine; elsewhere, give the address of its scheduler: ``distributed.Client("tcp://head:8786")``.
 """
 
 import tempfile
@@ -32,8 +32,10 @@ def compute() -> xr.Dataset:
     with (
         tempfile.TemporaryDirectory() as folder,
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
     ):
-        run_sweep(load_study(STUDY), Path(folder, "out"), scheduler=cluster.scheduler_address)
+        executor = client.get_executor(pure=False)
+        run_sweep(load_study(STUDY), Path(folder, "out"), executor=executor, workers=2)
         return read_results(Path(folder, "out")).load()
 
 

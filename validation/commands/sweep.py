@@ -1,4 +1,4 @@
-"""spurcheck sweep: many cases of one pair, in parallel, resumable, here or on a cluster."""
+"""spurcheck sweep: many cases of one pair, in parallel, resumable."""
 
 from __future__ import annotations
 
@@ -47,12 +47,6 @@ def sweep(
             help="Worker processes; default: one per core. 0: this process, where a crash ends the sweep.",
         ),
     ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            "--scheduler", metavar="tcp://HOST:PORT", help="Run on the Dask cluster of this scheduler."
-        ),
-    ] = None,
     case_seconds: Annotated[
         float | None,
         typer.Option(
@@ -66,7 +60,7 @@ def sweep(
 ) -> None:
     """Compute every case of a study: a grid or samples of any parameters, one analysis per case.
 
-    What is computed is kept at once: after a kill, a full disk or a lost cluster the same command with
+    What is computed is kept at once: after a kill or a full disk the same command with
     --resume goes on and gives the same result. A failed case is recorded and the sweep goes on. The results
     are results.nc in the output folder (NetCDF, over the axes of the study).
 
@@ -77,8 +71,6 @@ def sweep(
     spurcheck sweep study.toml --workers 8
 
     spurcheck sweep study.toml --resume
-
-    spurcheck sweep study.toml --scheduler tcp://head:8786
     """
     from validation.studies import load_study, run_sweep
 
@@ -87,8 +79,8 @@ def sweep(
     wanted = load_study(study)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     processes = cores if workers is None else workers
-    where = f"on {scheduler}" if scheduler is not None else f"on {processes} worker(s)"
-    stderr().print(f"{wanted.name}: {wanted.count} cases, {wanted.analysis}, {where} -> {folder}")
+    what = f"{wanted.count} cases, {wanted.analysis}, on {processes} worker(s)"
+    stderr().print(f"{wanted.name}: {what} -> {folder}")
     if dry_run:
         _estimate(wanted, processes)
         return
@@ -104,7 +96,6 @@ def sweep(
                 wanted,
                 folder,
                 workers=processes,
-                scheduler=scheduler,
                 resume=resume,
                 retry_failed=retry_failed,
                 case_seconds=case_seconds,

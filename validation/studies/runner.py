@@ -65,7 +65,6 @@ def run_sweep(
     *,
     workers: int = 0,
     executor: Executor | None = None,
-    scheduler: str | None = None,
     resume: bool = False,
     retry_failed: bool = False,
     case_seconds: float | None = None,
@@ -79,8 +78,8 @@ def run_sweep(
     folder : output folder; it is created, and holds ``store.sqlite`` and ``results.nc``
     workers : processes of this machine, in which a case may crash without ending the sweep; 0 computes in
         this process, which starts faster. With ``executor``: how many calls it runs at the same time
-    executor : what runs the cases instead, any executor of ``concurrent.futures``
-    scheduler : address of a Dask scheduler that runs the cases instead
+    executor : what runs the cases instead, any executor of ``concurrent.futures``; of a Dask cluster
+        ``distributed.Client(address).get_executor(pure=False)``
     resume : go on where an earlier run of the same study in that folder ended
     retry_failed : with ``resume``, also compute the failed cases again
     case_seconds : longest time of a case [s]; with it, cases run in worker processes of this machine (one
@@ -104,7 +103,7 @@ def run_sweep(
     cases = CaseList(study)
     with (
         stopping_as_interrupt(),
-        workers_of(workers, executor, scheduler, case_seconds) as (submit, slots),
+        workers_of(workers, executor, case_seconds) as (submit, slots),
         _opened(root, cases, resume) as store,
     ):
         status = store.table().status

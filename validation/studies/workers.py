@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import multiprocessing
 import os
@@ -13,7 +12,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from itertools import islice
 from multiprocessing import forkserver
 from typing import Any
@@ -79,20 +78,15 @@ def _evaluate(evaluator: StudyEvaluator, values: tuple[Any, ...]) -> tuple[Statu
 
 
 @contextmanager
-def workers_of(
-    workers: int, executor: Executor | None, scheduler: str | None, limit: float | None
-) -> Iterator[tuple[Submit, int]]:
+def workers_of(workers: int, executor: Executor | None, limit: float | None) -> Iterator[tuple[Submit, int]]:
     """Give what starts a function call somewhere, and how many calls run there at the same time."""
     if not 0 <= workers <= 1024:
         raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
-    if limit is not None and (executor is not None or scheduler is not None):
+    if limit is not None and executor is not None:
         action = "Leave it out, or compute with worker processes of this machine."
         raise refuse("case_seconds", limit, "none on an executor or a cluster", action)
     if executor is not None:
         yield executor.submit, max(workers, 1)
-    elif scheduler is not None:
-        with _cluster(scheduler) as cluster:
-            yield cluster
     elif workers or limit is not None:
         with _processes(max(workers, 1), limit) as submit:
             yield submit, max(workers, 1)
@@ -141,27 +135,6 @@ def _context() -> Any:
         os.environ.clear()
         os.environ.update(before)
     return context
-
-
-@contextmanager
-def _cluster(address: str) -> Iterator[tuple[Submit, int]]:
-    """The Dask cluster of a scheduler; spurcheck must be installed on its workers."""
-    try:
-        distributed: Any = importlib.import_module("distributed")
-    except ImportError:
-        action = "Install the extra: pip install 'spurcheck[cluster]'."
-        raise refuse("scheduler", address, "an installation with dask.distributed", action) from None
-    try:
-        client = distributed.Client(address, timeout=20, set_as_default=False)
-        client.wait_for_workers(1, timeout=60)
-    except Exception as error:  # noqa: BLE001  (each protocol refuses an address in its own way)
-        allowed = "address of a running scheduler with workers"
-        raise refuse("scheduler", address, allowed, f"No answer: {error}.") from None
-    try:
-        yield client.get_executor(pure=False).submit, sum(client.nthreads().values())
-    finally:
-        with suppress(Exception):  # a scheduler that is gone cannot say goodbye
-            client.close(timeout=1)
 
 
 def chunks_of(

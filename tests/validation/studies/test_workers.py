@@ -138,9 +138,8 @@ def test_a_dask_cluster_gives_the_same_bytes_also_after_losing_a_worker(study, t
                 killed.append(next(iter(cluster.workers.values())).pid)
                 os.kill(killed[0], signal.SIGKILL)
 
-        address = cluster.scheduler_address
-        summary = run_sweep(study, tmp_path, scheduler=address, progress=kill_one)
+        with distributed.Client(cluster) as client:
+            executor = client.get_executor(pure=False)
+            summary = run_sweep(study, tmp_path, executor=executor, workers=2, progress=kill_one)
         assert killed
         assert summary.results.read_bytes() == undisturbed
-    with pytest.raises(ParameterError, match="scheduler"):
-        run_sweep(study, tmp_path / "none", scheduler="nonsense://x")
