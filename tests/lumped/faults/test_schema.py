@@ -18,6 +18,11 @@ INDEX = [round(0.1 * j, 1) for j in range(28)]
     ({"pinion.faults": [{"kind": "crack", "tooth": 29, "depth": 1}]}, "pinion.faults.0.tooth", "1 to 28"),
     ({"pinion.faults": [{"kind": "spall", "tooth": 1, "start_roll_angle": 20, "end_roll_angle": 19,
      "width": 1}]}, "pinion.faults.0.end_roll_angle", "> start_roll_angle"),
+    ({"pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 3.5, "angle": 90}]}, "pinion.faults.0.depth",
+     "half the root"),
+    ({"gear.faults": [{"kind": "chip", "tooth": 1, "roll_angle": 40}]}, "gear.faults.0.roll_angle", "deg"),
+    ({"pinion.faults": [{"kind": "spall", "tooth": 1, "start_roll_angle": 18, "end_roll_angle": 22,
+     "width": 7}]}, "pinion.faults.0.width", "6.35 mm"),
     ({"mesh.first_teeth": [1, 29]}, "mesh.first_teeth", "from 1 to 28"),
     ({"operating.torque_ripple": [{"shaft": "pinion", "order": 0, "amplitude": 1}]}, None, "1 to 1000"),
 ])  # fmt: skip

@@ -50,11 +50,9 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
         own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
         laws, p = Laws(own), machine(own).parameters
         (k0, _, gap0), (k, _, gap) = (laws.of_kind(kind, xi) for kind in (0, 1))
-        # Two pairs later the third teeth are in contact.
-        block, at = p[int(p[kn.OWN]) :], 2 * g.base_pitch
 
-        def found(x, block=block, p=p, at=at):
-            return own_pair(block, p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
+        def found(x, p=p, at=2 * g.base_pitch):  # two pairs later the third teeth are in contact
+            return own_pair(p[int(p[kn.OWN]) :], p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
 
         pairs = [found(x) for x in xi]
         scale = max((1.0 / k - 1.0 / k0).max(), 1e-12)
