@@ -1,4 +1,4 @@
-"""Do cracks soften a tooth as plane finite elements say? multibody/contact/test_own_teeth has spall and chip."""
+"""Do cracks soften a tooth as plane finite elements say? Spall and chip: multibody/contact/test_own_teeth."""
 
 import numpy as np
 import pytest
