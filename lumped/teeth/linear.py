@@ -112,18 +112,15 @@ def linear_motion(
     form = LinearForm(pair, system, samples, steps)
     mesh = list(form.mesh())
     maps = form.cycle_maps(mesh)
-    start, weights = _closed(system, maps)
+    whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
+    if not np.isfinite(whole).all():
+        raise NumericalError("The motion grows beyond all numbers: take smaller deviations or more damping.")
+    start, weights = balanced_start(system, whole[:, :n], whole[:, n : n + 3])
     # Rounding of the closing equations fades in a period, but that of the common rotation, which grows.
     support, m, dte = system.supports, len(system.coordinates), system.deflection
-    moved = (states_along(maps, start, weights)[-1] - start).reshape(2, m)
-    start = (
-        start
-        + (
-            moved
-            - np.outer(moved @ support.common_weights, support.common)
-            / (support.common_weights @ support.common)
-        ).ravel()
-    )
+    moved, scale = (states_along(maps, start, weights)[-1] - start).reshape(2, m), support.common_weights
+    moved -= np.outer(moved @ scale, support.common) / (scale @ support.common)
+    start = start + moved.ravel()
     cycles = states_along(maps, start, weights)
     other = states_along(coarse.cycle_maps(), start, weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
@@ -153,15 +150,6 @@ def linear_motion(
         error=float(error),
         spectral_radius=twin.spectral_radius,
     )
-
-
-def _closed(system: LTVSystem, maps: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Start and weights of the forcings of the periodic motion, from the affine maps of its cycles."""
-    whole = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0]
-    n = whole.shape[0]
-    if not np.isfinite(whole).all():
-        raise NumericalError("The motion grows beyond all numbers: take smaller deviations or more damping.")
-    return balanced_start(system, whole[:, :n], whole[:, n : n + 3])
 
 
 def _inside(
