@@ -78,6 +78,42 @@ def by_size() -> None:
             )
 
 
+def proofs() -> None:
+    """Share of charts that is proven, 500 to 20000 rpm and the pair's own; random points against it."""
+    print("| pair | rpm | damping | s | stable | unstable | not proven | contradicted |")
+    print("|---|---|---|---|---|---|---|---|")
+    names, rng = (
+        ("nasa_28_28", "fzg_c", "kahraman_blankenship_50_50", "nasa_art_25_31"),
+        np.random.default_rng(7),
+    )
+    for pair in map(load_gear_pair, names):
+        for ends in (speed_range(pair), (500.0, 20000.0)):
+            for low in (0.01, 0.001):
+                axes = {"speed_rpm": np.linspace(*ends, 801), "damping_ratio": np.linspace(low, 0.1, 201)}
+                found, seconds = cpu(lambda axes=axes, pair=pair: stability_chart(pair, axes, prove=True))
+                cells, at = (
+                    found.cell_verdict.values,
+                    rng.integers(0, [[800], [200]], (2, 500)),
+                )
+                turned = {
+                    n: v[k] + rng.uniform(size=k.size) * np.diff(v)[k]
+                    for (n, v), k in zip(axes.items(), at, strict=True)
+                }
+                wrong = 0
+                for part in np.array_split(np.arange(at.shape[1]), 50):
+                    # A chart of some speeds by some damping ratios has all of their pairs.
+                    own = {n: np.unique(v[part]) for n, v in turned.items()}
+                    full = stability_chart(pair, own, refine=False, rtol=1e-9).verdict.values
+                    i, j = (np.searchsorted(axes[n], own[n]) - 1 for n in axes)
+                    here = cells[np.ix_(i, j)]
+                    wrong += int(((full != here) & (here != 0)).sum())
+                shares = " | ".join(f"{np.mean(cells == k):.3%}" for k in (1, -1, 0))
+                rpm = f"{ends[0]:.0f} to {ends[1]:.0f}"
+                print(
+                    f"| {pair.name} | {rpm} | {low} to 0.1 | {seconds:.1f} | {shares} | {wrong} |", flush=True
+                )
+
+
 def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
     """A preset with changed damping, friction, torque and bearings, and two axes of it."""
     name, law = rng.choice(preset_names()), str(rng.choice(LAWS))
@@ -195,6 +231,7 @@ def closed_forms(n: int) -> None:
 if __name__ == "__main__":
     warnings.simplefilter("ignore")
     by_size()
+    proofs()
     for seed, damping in ((34, True), (35, False), (36, False)):
         at_random(int(sys.argv[1]) if len(sys.argv) > 1 else 40, seed, damping=damping)
     closed_forms(2000)

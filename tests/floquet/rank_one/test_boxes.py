@@ -1,10 +1,14 @@
 """Is what is proven between the nodes of a chart true everywhere, and is much proven?"""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
-from floquet import RankOneSystem
+from floquet import RankOneSystem, fast_multipliers
 from floquet.gear.block import gear_block
+from floquet.rank_one import boxes
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.boxes import FlowPolynomial, bounded_entries, proven_cells, slow_period
 from floquet.rank_one.kernel_input import packed
@@ -74,6 +78,36 @@ def test_slow_variation_is_stable_from_the_period_of_the_closed_form() -> None:
         after = T * np.linspace(1.0, 1.2, 2000)
         assert radius(after, np.full(after.size, zeta)).max() < 1.0
     assert slow_period(system, np.array([0.005, 0.02]), np.empty((2, 0))) >= gain / 0.005
+    # A gain that is 1 in the middle of every cell only looks constant.
+    w = 1.5 * np.polynomial.polynomial.polyfromroots([-0.75, -0.25, 0.25, 0.75])
+    w[0] += 1.0
+    hidden = RankOneSystem(
+        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), np.array([0.0, 1.0]),
+        Gains(w[None, None], np.full((1, 1, 1), 2.0), np.zeros((1, 2))), 1.0, np.ones(1),
+    )  # fmt: skip
+    T = np.linspace(2.0, 20.0, 400)
+    unstable = T[np.abs(fast_multipliers(hidden, T, 0.005).multipliers).max(axis=1) > 1.0]
+    assert unstable.max() < slow_period(hidden, np.full(2, 0.005), np.empty((2, 0)))
+
+
+def test_bounds_of_the_polynomial_hold_where_it_is_bad() -> None:
+    """Over far too wide a patch of damping; and the growth is that of the flows within a cycle."""
+    system, _ = meissner()
+    periods, damping = np.array([60.0, 60.001]), np.array([0.0, 1.0])
+    patch = FlowPolynomial.of(system, packed(system), periods, damping, no_factors)
+    z = np.linspace(0.0, 1.0, 101)
+    M = fast_monodromies(system, np.full(z.size, 60.0), z).matrices
+    x, y = (np.polynomial.chebyshev.chebvander(v, n - 1) for v, n in ((-1.0, 24), (2.0 * z - 1.0, 16)))
+    model = np.einsum("a,abij,kb->kij", x[0], patch.coefficients, y)
+    assert 1e-3 < np.linalg.norm(M - model, 2, axis=(1, 2)).max() < patch.error
+    narrow = FlowPolynomial.of(system, packed(system), np.array([6.0, 6.001]), damping[[0, 0]], no_factors)
+    turns = [
+        expm(np.array([[0.0, 1.0], [-k, 0.0]]) * s)
+        for k in (1.0 + DEPTH, 1.0 - DEPTH)
+        for s in np.linspace(0.0, 3.0, 31)
+    ]
+    largest = max(np.linalg.norm(a @ b, 2) for a in turns[:31] for b in turns[31:])
+    assert largest < narrow.growth < 1.8 * largest
 
 
 @pytest.fixture(scope="module")
@@ -82,18 +116,21 @@ def block() -> RankOneSystem:
     return gear_block(pair, friction_apart=True)
 
 
-def test_bounds_hold_everywhere_in_boxes(block) -> None:
+@pytest.mark.parametrize("terms", [(8, 4), (3, 1)])
+def test_bounds_hold_everywhere_in_boxes(block, terms, monkeypatch) -> None:
     """Of the polynomial, of the moduli of its entries, and none of them is loose."""
 
     def factors(T):
         return (T[:, None] / block.period) ** 0.1
 
-    periods, damping = block.period * np.array([0.42, 0.45]), np.array([0.01, 0.03])
+    periods, damping = block.period * np.array([0.35, 0.55]), np.array([0.01, 0.03])
     patch = FlowPolynomial.of(block, packed(block), periods, damping, factors)
     rng = np.random.default_rng(2)
     ends = np.sort(rng.uniform(-1.0, 1.0, (2, 2, 60)), axis=1)
-    ends[:, 1] = ends[:, 0] + 0.1 * (ends[:, 1] - ends[:, 0])
-    V, low, high, f, _, _ = bounded_entries(patch, *ends)
+    ends[:, 1, :50] = ends[:, 0, :50] + 0.1 * np.diff(ends, axis=1)[:, 0, :50]
+    ends[:, :, 50:] = np.array([-1.0, 1.0])[:, None]  # the whole patch, where the series is cut off
+    monkeypatch.setattr(boxes, "_TERMS", terms)
+    V, low, high, f, _, _ = bounded_entries(replace(patch, error=0.0), *ends)
     places = (
         ends[:, 0, :, None]
         + np.diff(ends, axis=1)[:, 0, :, None]
@@ -105,12 +142,14 @@ def test_bounds_hold_everywhere_in_boxes(block) -> None:
         np.polynomial.chebyshev.chebvander(v.ravel(), n - 1) for v, n in zip(places, (24, 16), strict=True)
     )
     model = np.einsum("ka,abij,kb->kij", x, patch.coefficients, y)
-    assert np.linalg.norm(M - model, 2, axis=(1, 2)).max() <= patch.error < 1e-5
-    moduli = np.abs(np.linalg.inv(V)[:, None] @ M.reshape(60, 5, 6, 6) @ V[:, None])
+    assert np.linalg.norm(M - model, 2, axis=(1, 2)).max() <= patch.error < 1e-2
+    moduli = np.abs(np.linalg.inv(V)[:, None] @ model.reshape(60, 5, 6, 6) @ V[:, None])
     own = np.einsum("kpii->kpi", moduli).copy()
     assert (own <= high[:, None]).all()
     assert (own >= low[:, None]).all()
     moduli[..., range(6), range(6)] = 0.0
     assert (moduli <= f[:, None]).all()
-    assert (high - low).sum() < 1.5 * np.ptp(own, axis=1).sum()
-    assert f.sum() < 1.2 * moduli.max(axis=1).sum()
+    if terms == (3, 1):  # then most is only bounded
+        return
+    assert (high - low)[:50].sum() < 1.5 * np.ptp(own, axis=1)[:50].sum()
+    assert f[:50].sum() < 1.2 * moduli.max(axis=1)[:50].sum()
