@@ -124,8 +124,8 @@ class ChartPoints:
         self.multiplier_errors[points] = np.take_along_axis(errors, ranking, 1)
 
 
-#: Charts of no more nodes are evaluated at each of them.
-SMALL = 1024
+#: Charts of no more nodes are evaluated at each of them: it takes no longer.
+SMALL = 4096
 #: Evaluates points by their place in the chart and puts them into its `ChartPoints`.
 Evaluate = Callable[[IntArray], None]
 

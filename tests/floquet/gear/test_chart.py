@@ -16,6 +16,11 @@ UNDAMPED = {f"bearings.{g}.{d}_damping_ratio": 0.0 for g in ("pinion", "gear") f
 SPEEDS = np.linspace(3000.0, 19000.0, 161)
 
 
+@pytest.fixture(autouse=True)
+def small_charts_too(monkeypatch):
+    monkeypatch.setattr(module, "SMALL", 1024)
+
+
 @pytest.fixture(scope="module")
 def pair():
     return load_gear_pair("nasa_28_28").with_(COULOMB)
