@@ -103,7 +103,8 @@ def one_of(field: str, value: object, names: Iterable[str], action: str = "Choos
     """Return a name out of ``names``, or refuse it."""
     known = tuple(names)
     if not isinstance(value, str) or value not in known:
-        raise refuse(field, shown(value), "one of " + ", ".join(known), nearest(str(value), known) or action)
+        near = nearest(str(value), known)
+        raise refuse(field, shown(value), "one of " + ", ".join(known), near or action)
     return value
 
 

@@ -124,9 +124,10 @@ def stability_chart(
         action = "Give refine=False, which evaluates every node."
         raise refuse("store", store, '"radius" for a chart that refines itself', action)
     found = solved(variation, grid, rtol, plane, everything=store == "all", prove=prove, progress=progress)
+    cells = None if found.cells is None else _verdicts_of_cells(grid, found.cells)
     dataset = chart_dataset(grid, found)
-    if found.cells is not None:
-        dataset = _with_cells(dataset, found.cells)
+    if cells is not None:
+        dataset = dataset.merge(cells, combine_attrs="override").assign_attrs(cells.attrs)
     for name in grid:
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
@@ -140,12 +141,12 @@ def _check_cells(grid: Mapping[str, FloatArray]) -> None:
     """Refuse a chart between whose nodes nothing can be proven."""
     if set(grid) != set(_CELLS) or min(values.size for values in grid.values()) < 2:
         action = "Give two or more values of both, or leave prove out."
-        raise refuse("prove", ", ".join(grid), "axes speed_rpm and damping_ratio, no others", action)
+        raise refuse("prove", "True", "over the axes speed_rpm and damping_ratio, no others", action)
 
 
-def _with_cells(chart: xr.Dataset, cells: IntArray) -> xr.Dataset:
-    """Add the verdicts of cells (speed, damping) and the share of the area that is proven."""
-    axes = [np.sort(chart[name].to_numpy()) for name in _CELLS]
+def _verdicts_of_cells(grid: Mapping[str, FloatArray], cells: IntArray) -> xr.Dataset:
+    """The verdicts of cells (speed, damping) and the share of the area that is proven."""
+    axes = [np.sort(grid[name]) for name in _CELLS]
     area, names = np.outer(*map(np.diff, axes)), tuple(f"{name}_cell" for name in _CELLS)
     text = "verdict everywhere in the cell: 1 stable, -1 unstable, 0 not proven"
     middles = {
@@ -156,9 +157,9 @@ def _with_cells(chart: xr.Dataset, cells: IntArray) -> xr.Dataset:
         )
         for name, v in zip(_CELLS, axes, strict=True)
     }
-    found = labelled_dataset({"cell_verdict": (names, cells.astype(np.int8), "1", text)}, middles)
     share = float(area[cells != 0].sum() / area.sum())
-    return chart.merge(found, combine_attrs="override").assign_attrs(proven_share=share)
+    verdicts = {"cell_verdict": (names, cells.astype(np.int8), "1", text)}
+    return labelled_dataset(verdicts, middles, {"proven_share": share})
 
 
 def _finer(values: FloatArray, least: int) -> tuple[FloatArray, int]:

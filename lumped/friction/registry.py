@@ -76,9 +76,10 @@ def file_name(spelling: object) -> object:
 
 def law_of(settings: FrictionSettings, name: str | None = None) -> FrictionLaw:
     """Return a law by its name in parameter files, or as tables call it; default the pair's own."""
-    known = one_of("friction.law", file_name(settings.law if name is None else name), NAMES)
+    known = file_name(settings.law if name is None else name)
+    one_of("friction.law", known, NAMES)
     if known != TABLE:
-        return LAWS[known]
+        return LAWS[str(known)]
     if settings.own_law is None:
         raise refuse("friction.table", None, "a table of mu over the path of contact", NO_TABLE)
     return settings.own_law

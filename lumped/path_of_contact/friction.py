@@ -69,24 +69,24 @@ def friction_path_function(
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
-    path, settings, name = _contact(pair, law, interval)
-    function = fit_law(path, settings, name)
-    warn_violations(violations_of(path, pair.friction, name))
+    path, settings, record = _contact(pair, law, interval)
+    function = fit_law(path, settings, record.name)
+    warn_violations(violations_of(path, pair.friction, record.name))
     return function
 
 
 def _contact(
     pair: GearPair, law: str | None, interval: tuple[float, float] | None
-) -> tuple[ContactPath, FrictionSettings, str]:
+) -> tuple[ContactPath, FrictionSettings, FrictionLaw]:
     """Contact, settings and law of `friction_path_function`."""
-    path, name = contact_path(pair), _name(pair, law)
+    record, path = law_of(pair.friction, law), contact_path(pair)
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
         longer = replace(path, L_XA=interval[0], L_XD=interval[1])
-        if _reads_average(law_of(settings, name), longer, settings):  # mu_avg stays the mean from A to D
+        if _reads_average(record, longer, settings):  # mu_avg stays the mean from A to D
             settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
         path = longer
-    return path, settings, name
+    return path, settings, record
 
 
 def friction_misfit(pair: GearPair, interval: tuple[float, float] | None = None) -> FloatArray:
@@ -94,15 +94,21 @@ def friction_misfit(pair: GearPair, interval: tuple[float, float] | None = None)
 
     Where mu_avg is the mean of law II, the mean bound of that counts too; law IV reaches 1.22 mu_avg.
     """
-    path, settings, name = _contact(pair, None, interval)
-    law = law_of(settings, name)
-    found = fit_misfit(fit_law(path, settings, name), law, path, settings)
+    path, settings, law = _contact(pair, None, interval)
+    _, found = _bounded(path, settings, law)
     if pair.friction.coefficient is None and _reads_average(law, path, settings):
         nominal = contact_path(pair)
-        mean = fit_law(nominal, pair.friction, BENEDICT_KELLEY.name)
-        bounds = fit_misfit(mean, BENEDICT_KELLEY, nominal, pair.friction)
+        mean, bounds = _bounded(nominal, pair.friction, BENEDICT_KELLEY)
         found = found + 1.25 * float(bounds @ np.diff(mean.breaks)) / (nominal.L_XD - nominal.L_XA)
     return found
+
+
+def _bounded(
+    path: ContactPath, settings: FrictionSettings, law: FrictionLaw
+) -> tuple[PathFunction, FloatArray]:
+    """A law over the path, and the bound on the error of each piece."""
+    function = fit_law(path, settings, law.name)
+    return function, fit_misfit(function, law, path, settings)
 
 
 def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
@@ -115,7 +121,7 @@ def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeV
     pair : the gear pair
     law : name of a friction law
     """
-    return violations_of(contact_path(pair), pair.friction, _name(pair, law))
+    return violations_of(contact_path(pair), pair.friction, law_of(pair.friction, law).name)
 
 
 def _reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> bool:
@@ -124,10 +130,6 @@ def _reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettin
         return law.coefficient
     parts = law.parts(_positions(path), path, settings)
     return any(part.coefficient and bool(inside.any()) for part, inside in parts)
-
-
-def _name(pair: GearPair, law: str | None) -> str:
-    return law_of(pair.friction, law).name
 
 
 @lru_cache(maxsize=256)
@@ -162,12 +164,11 @@ def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> t
     """Validity ranges that a contact leaves under a law."""
     law = law_of(settings, name)
     xi = _positions(path)
-    if law.parts is None:
-        return _left(law.title, law, path, settings, xi)
+    whole = [(law, np.full(xi.shape, True))]
     found: list[RangeViolation] = []
-    for part, inside in law.parts(xi, path, settings):
+    for part, inside in whole if law.parts is None else law.parts(xi, path, settings):
         if inside.any():
-            title = f"{law.title} ({part.title})"
+            title = law.title if part is law else f"{law.title} ({part.title})"
             found += _left(title, part, path, settings, xi[inside])
     return tuple(found)
 

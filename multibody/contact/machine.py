@@ -226,7 +226,7 @@ def own_block(pair: GearPair) -> FloatArray:
     if pair.healthy is pair:
         return np.zeros(0)
     unread = ["operating.torque_ripple"] if pair.operating.torque_ripple else []
-    teeth = own_teeth(pair)
+    teeth, firsts = own_teeth(pair), first_teeth(pair)
     for name, one in zip(("pinion", "gear"), teeth, strict=True):
         unread += [f"{name}.deviations.profile_slope"] if one.slope.any() else []
         unread += [f"{name}.deviations.tip_relief"] if one.relief.any() else []
@@ -235,7 +235,7 @@ def own_block(pair: GearPair) -> FloatArray:
         raise refuse(unread[0], "given", allowed, "Leave it out, or use lumped.steady_state.")
     rows = [
         (one.eccentricity, one.phase + 2.0 * math.pi * first / one.error.size, one.error.size, first)
-        for one, first in zip(teeth, first_teeth(pair), strict=True)
+        for one, first in zip(teeth, firsts, strict=True)
     ]
     faults = [
         _fault(pair, which, fault)
