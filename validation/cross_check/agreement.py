@@ -126,8 +126,8 @@ def agreement(
         scale = max(scale, _scale(quantity, history(reference, "dte"), b))
     difference = float(np.abs(a - b).max()) / scale
     if exact and not constant and quantity in ("y_p", "y_g"):
-        bearing = pair.bearings.pinion if quantity == "y_p" else pair.bearings.gear
-        pushed = float(np.ptp(history(reference, "friction_force")[keep])) / bearing.oloa_stiffness
+        gear = pair.bearings.pinion if quantity == "y_p" else pair.bearings.gear
+        pushed = float(np.ptp(history(reference, "friction_force")[keep])) / gear.oloa_stiffness
         difference = _off_line(a - b, scale, max(pushed, abs(float(b.mean()))))
     return Agreement(
         quantity=quantity,

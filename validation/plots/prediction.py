@@ -14,7 +14,7 @@ from validation.plots.style import BLACK, BLUE, GREY, IN_X, ORANGE, RED, SKY, le
 
 #: Height and width of a figure of page 1, three of which stand side by side [inch].
 SMALL = (3.0, 4.2)
-_COLUMN = 22
+_COLUMN = 26
 
 
 def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float, float] = SMALL) -> Figure:

@@ -145,7 +145,10 @@ def _linear(known: Known) -> Row:
     from validation.prediction.motion import Motion, measured
 
     sizes = _apart(known.prediction, measured(known.pair, linear, Motion.LINEAR))
-    return Row("linear", name, "form", sizes, "teeth that pull in the linear motion")
+    note = {Motion.LINEAR: "the prediction is this motion", Motion.SHAFTS: "on springs, not on the shafts"}
+    return Row(
+        "linear", name, "form", sizes, note.get(known.prediction.motion, "teeth pull in the linear motion")
+    )
 
 
 def _variation(

@@ -109,11 +109,6 @@ def plain_name(field: str) -> str:
 _WHOLE = {
     "mesh.stiffness": "tooth stiffness model",
     "mesh.stiffness_factor": "tooth stiffness",
-    "mesh.damping_ratio": "mesh damping",
-    "mesh.backlash": "backlash",
-    "friction.law": "friction law",
-    "friction.coefficient": "friction coefficient",
-    "lubricant.viscosity": "oil viscosity",
     "lubricant.viscosity_law.temperature": "oil temperature",
     "operating.pinion_torque": "torque",
 }
