@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
-from collections.abc import Callable, Mapping
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
 
 DEFAULT_PAIR = "nasa_28_28"
 _LARGEST_COUNT = 5000
+#: Fields that only some friction laws or forms of relief read.
+_READ_BY_LAWS = re.compile(r"^(friction\.(?!law$)|lubricant\.)|\.(roughness$|(tip|root)_relief)")
 
 
 def output(help: str) -> Any:
@@ -101,9 +106,39 @@ def gear_pair(
     except ParameterError as error:
         options = {field: option for option, path, _ in asked for field in (path, *fields_of(path))}
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
+    for option, path, text in asked:
+        others = {other: value_of(value) for _, other, value in asked if other != path}
+        if _READ_BY_LAWS.search(fields_of(path)[0]) and not _has_effect(own, varied, others):
+            note(f"{option} = {text} changes nothing in the motion: {_why_not(path, varied)}.")
     for warning in parameter_warnings(varied):
         note(warning)
     return varied
+
+
+def _has_effect(own: GearPair, varied: GearPair, others: Mapping[str, Any]) -> bool:
+    """Whether the laws of ``varied`` are other than those of ``own`` with the ``others`` of its changes."""
+    from lumped import LawRangeWarning
+    from lumped.errors import ParameterError
+    from lumped.quasi_static.contacts import contact_of
+
+    def laws(of: GearPair) -> list[bytes]:
+        elements = contact_of(of).elements(of)
+        functions = (elements.stiffness, elements.friction, elements.error)
+        return [array.tobytes() for law in functions for array in (law.breaks, law.coefficients)]
+
+    with warnings.catch_warnings(), suppress(ParameterError):  # of the pair without it
+        warnings.simplefilter("ignore", LawRangeWarning)
+        without = own.with_(others)
+        return without == varied or laws(without) != laws(varied)
+    return True
+
+
+def _why_not(path: str, pair: GearPair) -> str:
+    if "relief" in path:
+        return f"mesh.relief is '{pair.mesh.relief}'"
+    if path.endswith(".roughness") and pair.friction.composite_roughness is not None:
+        return "friction.composite_roughness is given"
+    return f"the law is {pair.friction.law}"
 
 
 def alike(pair: GearPair) -> GearPair:

@@ -8,6 +8,7 @@ import lumped
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import load_gear_pair, preset_names
 from validation.cli import app
+from validation.commands.options import gear_pair
 from validation.validity import flags as validity
 from validation.validity.flags import validity_state
 from validation.validity.plausibility import parameter_warnings
@@ -176,6 +177,8 @@ def test_commands_say_it_and_go_on():
     )
     assert result.exit_code == 0
     assert "note: no gear pair is named, so this is the example nasa_28_28" in result.stderr
+    changed = "note: --set friction.composite_roughness = 0.8 changes nothing in the motion: the law is none."
+    assert changed in result.stderr
     assert "note: friction.composite_roughness = 0.8 um is used for the film" in result.stderr
 
 
@@ -187,3 +190,17 @@ def test_springs_that_the_shafts_contradict_are_named(nasa_pair):
     found = [text for text in parameter_warnings(pair) if "on its shaft" in text]
     assert len(found) == 1
     assert "the gear has" in found[0]
+
+
+@pytest.mark.parametrize(("changes", "unread"), [
+    ({"friction.law": "xu_kahraman", "friction.coefficient": "0.1"}, "friction.coefficient"),
+    ({"friction.law": "none", "viscosity": "8"}, "viscosity"),
+    ({"friction.law": "benedict_kelley", "lubricant.viscosity": "8"}, None),
+    ({"friction.law": "none", "mesh.relief": "static", "pinion.tip_relief.amount": "12"}, None),
+    ({"mesh.relief": "ignored", "pinion.tip_relief.amount": "12"}, "pinion.tip_relief.amount"),
+])  # fmt: skip
+def test_a_value_that_no_law_of_the_pair_reads_is_named(changes, unread, capsys):
+    gear_pair("nasa_28_28", settings=[f"{path}={value}" for path, value in changes.items()])
+    notes = capsys.readouterr().err
+    assert ("changes nothing" in notes) == (unread is not None)
+    assert unread is None or f"--set {unread} = " in notes
