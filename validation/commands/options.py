@@ -115,7 +115,7 @@ def gear_pair(
     return varied
 
 
-def _has_effect(own: GearPair, varied: GearPair, others: Mapping[str, Any]) -> bool:
+def _has_effect(own: GearPair, varied: GearPair, others: dict[str, Any]) -> bool:
     """Whether the laws of ``varied`` are other than those of ``own`` with the ``others`` of its changes."""
     from lumped import LawRangeWarning
     from lumped.errors import ParameterError
