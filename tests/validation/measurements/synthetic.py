@@ -41,9 +41,11 @@ def synthetic_measurement(
 
 def _noise(rng, count, correlation):
     """Stationary normal noise of unit variance, first-order autoregressive."""
+    white = rng.standard_normal(count)
+    if correlation == 0.0:
+        return white
     start = [correlation * rng.standard_normal()]
-    shape = np.sqrt(1.0 - correlation**2)
-    return lfilter([shape], [1.0, -correlation], rng.standard_normal(count), zi=start)[0]
+    return lfilter([np.sqrt(1.0 - correlation**2)], [1.0, -correlation], white, zi=start)[0]
 
 
 def write_measurement(measurement, folder):
