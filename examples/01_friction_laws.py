@@ -2,9 +2,9 @@
 How do the friction laws differ?
 ================================
 
-Which coefficient does each law give the same pair, and what happens at the pitch point? I jumps there, II
-rises until its bound stops it, III vanishes, IV turns over a short length, and V is II at this thin film:
-choose a law for the film you have.
+Which coefficient does each law give the same pair, and what happens at the pitch point? Law I jumps there,
+law II rises to its upper limit, law III vanishes, and law IV changes its sign over a short length. Law V
+equals law II at this thin film. Choose the law that suits your film.
 """
 
 from itertools import cycle

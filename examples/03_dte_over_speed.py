@@ -2,9 +2,9 @@
 Where must I not run?
 =====================
 
-Where are the resonances of the periodic motion, and which mode do they belong to? The largest stands where
-the mesh frequency meets the highest mode of the averaged pair, the next where twice the mesh frequency
-does; at either the linear model may end, for teeth separate.
+Where are the resonances of the periodic motion, and which mode do they belong to? At the
+largest resonance the mesh frequency equals the highest natural frequency of the averaged pair; at the next
+one, twice the mesh frequency does. At both the teeth may separate, and then the linear model is not valid.
 """
 
 import numpy as np

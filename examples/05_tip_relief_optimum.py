@@ -3,7 +3,8 @@ Which relief for my torque?
 ===========================
 
 How much tip relief, and over which length, makes the static transmission error smallest at one torque?
-And what does it do at others (Harris map)? Relief serves one torque: well below that it makes things worse.
+And what does it do at others (Harris map)? A relief suits one torque: well below this torque it increases the
+transmission error.
 """
 
 import numpy as np

@@ -2,10 +2,10 @@
 Why does the vibration jump at resonance?
 =========================================
 
-A lightly damped 50/50 pair answers differently when the speed rises and when it falls: falling, it keeps
-the large motion, in which teeth separate, to speeds at which a rising sweep has not met it. The linear
-model has one answer. Its equations with teeth that only push have both (grey), and unstable motions between
-(dotted).
+The vibration of a lightly damped 50/50 pair differs between rising and falling speed. With falling speed the
+large motion, in which teeth separate, continues to speeds at which a rising sweep still has the small motion.
+The linear model has one motion at each speed. The same equations with teeth that only push have both motions
+(grey), and unstable motions between them (dotted).
 """
 
 from collections.abc import Sequence

@@ -3,8 +3,8 @@ What is my tooth stiffness made of?
 ===================================
 
 How much of the compliance is contact, tooth and gear body, and how far is the sum from ISO 6336-1? Gear
-bodies and teeth yield about alike, the contact half as much, and the sum lies in the scatter that the
-standard states.
+bodies and teeth have about the same compliance, the contact half as much, and the sum is within the scatter
+that the standard states.
 """
 
 import xarray as xr

@@ -2,9 +2,9 @@
 How do two tooth pairs share the load?
 ======================================
 
-How do two tooth pairs share the load, and how much longer does deflection make the contact? By halves in
-the middle of double contact; and the contact lengthens with about the root of the torque, so that the
-contact ratio of the drawing is the least there is.
+How do two tooth pairs share the load, and how much longer does deflection make the contact? In the
+middle of double contact each carries half. The length of contact grows with about the square root of the
+torque, so the contact ratio of the drawing is the smallest one.
 """
 
 import xarray as xr

@@ -2,8 +2,8 @@
 Up to which torque is the linear model right?
 =============================================
 
-Two models that agree must differ by what only one of them has. Finite deflections move the contact points, an
-effect proportional to force times deflection: the difference grows with the square of the torque.
+Only the multibody model has finite deflections. They move the contact points, an effect proportional to force
+times deflection, so the difference of both models grows with the square of the torque.
 """
 
 import numpy as np

@@ -3,7 +3,7 @@ Does Mathieu's equation come out exactly?
 =========================================
 
 x″ + (a − 2q cos 2t) x = 0 grows between the characteristic values b_m(q) and a_m(q), green, which scipy
-computes by a method of its own. What is stable has multipliers of modulus one here: no bound can decide it.
+computes by a method of its own. Stable points have multipliers of modulus one here, so no bound can decide them.
 """
 
 import numpy as np

@@ -15,12 +15,12 @@ def teeth(
 
     Teeth differ by sections of the parameter file:
 
-    \\[pinion.deviations] tolerance_class = 6, seed = 1 (random errors of an ISO 1328-1 class), or
-    index = \\[...] in um, or file = "pinion.csv"
+    \[pinion.deviations] tolerance_class = 6, seed = 1 (random errors of an ISO 1328-1 class), or
+    index = \[...] in um, or file = "pinion.csv"
 
-    \\[pinion.mounting] eccentricity = 12 (um), phase = 30 (deg)
+    \[pinion.mounting] eccentricity = 12 (um), phase = 30 (deg)
 
-    \\[\\[pinion.faults]] kind = "crack", tooth = 4, depth = 1.0 (mm); also "spall" and "chip"
+    \[\[pinion.faults]] kind = "crack", tooth = 4, depth = 1.0 (mm); also "spall" and "chip"
 
     [bold]Examples[/bold]
 
