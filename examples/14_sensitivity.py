@@ -2,9 +2,9 @@
 Which parameter moves the stability margin?
 ===========================================
 
-Which parameter moves a pair that runs beside a tongue closer to it? Speed, then bearing stiffness, which moves
-the tongue. Damping matters far less. The derivatives are central differences of the largest multiplier, whose
-error is 1e-12.
+Which parameter moves a pair that runs beside a tongue closer to it? Speed, then bearing stiffness, which
+moves the tongue. Damping matters far less. The derivatives are central differences of the largest multiplier,
+whose error is 1e-12.
 """
 
 import numpy as np

@@ -4,8 +4,8 @@ Which form of the contact fits my gears?
 
 How does a tooth pair begin its contact? Prescribed contact begins at A, with a stiffness that jumps. Loaded
 contact begins where the static load has closed the gap of the tip corner. The multibody model, whose contact
-follows from the gap and from an elastic energy, decides: at low speed loaded contact differs from it by a hundredth
-of the peak to peak, prescribed contact by more than the peak to peak itself.
+follows from the gap and from an elastic energy, decides: at low speed loaded contact differs from it by a
+hundredth of the peak to peak, prescribed contact by more than the peak to peak itself.
 """
 
 import numpy as np

@@ -3,8 +3,8 @@ What do bore and rim do to the tooth stiffness?
 ===============================================
 
 What do a bore, a thin rim and a loaded neighbour do to the stiffness of the mesh and to the transmission
-error? A bore hardly matters for a free gear until its rim bends between the teeth. The neighbour loads the same body:
-this makes two pairs softer, so that the step from one pair to two is smaller.
+error? A bore hardly matters for a free gear until its rim bends between the teeth. The neighbour loads the
+same body: this makes two pairs softer, so that the step from one pair to two is smaller.
 """
 
 import numpy as np

@@ -3,8 +3,9 @@ Can one pair run both quietly and chaotically?
 ==============================================
 
 At 5250 rpm the lightly damped 50/50 pair has a quiet periodic motion that keeps contact. Started six static
-deflections away, it loses contact and strikes, and no cycle repeats. Sampled once in each mesh cycle the motion
-is a cloud with folds, and the distance of neighbours in it grows by a factor e in seven or eight cycles.
+deflections away, it loses contact and strikes, and no cycle repeats. Sampled once in each mesh cycle the
+motion is a cloud with folds, and the distance of neighbours in it grows by a factor e in seven or eight
+cycles.
 """
 
 import numpy as np

@@ -3,7 +3,8 @@ Does Mathieu's equation come out exactly?
 =========================================
 
 x″ + (a − 2q cos 2t) x = 0 grows between the characteristic values b_m(q) and a_m(q), green, which scipy
-computes by a method of its own. Stable points have multipliers of modulus one here, so no bound can decide them.
+computes by a method of its own. Stable points have multipliers of modulus one here, so no bound can decide
+them.
 """
 
 import numpy as np

@@ -2,9 +2,9 @@
 Does a 1 mm crack show under class 6 errors?
 ============================================
 
-Not in one record. A crack of 1 mm at the root of one pinion tooth is clear in the signal of a gear whose teeth are alike. The
-signal of teeth of class 6 is ten times larger, and the crack changes it by less than a per cent: only a
-comparison with the same gear before the damage can find it.
+Not in one record. A crack of 1 mm at the root of one pinion tooth is clear in the signal of a gear whose
+teeth are alike. The signal of teeth of class 6 is ten times larger, and the crack changes it by less than a
+per cent: only a comparison with the same gear before the damage can find it.
 """
 
 import numpy as np
