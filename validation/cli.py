@@ -62,8 +62,11 @@ def spurcheck(
 
 
 def paragraphs(text: str | None) -> str:
-    """Docstring as help text: lines of a paragraph joined, so that the terminal's width wraps them."""
-    blocks = inspect.cleandoc(text or "").split("\n\n")
+    """Docstring as help text: lines of a paragraph joined, so that the terminal's width wraps them.
+
+    An example, which begins with the name of the program, is a paragraph.
+    """
+    blocks = inspect.cleandoc(text or "").replace("\nspurcheck ", "\n\nspurcheck ").split("\n\n")
     return "\n\n".join(" ".join(block.split()) for block in blocks)
 
 

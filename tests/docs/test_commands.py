@@ -33,7 +33,7 @@ AXES_OF_VIEW = {"chart": SMALL, "campbell": ["speed_rpm"], "boundaries": ["speed
 #: Commands that are meant to be refused.
 REFUSED = re.compile(r"centre_distance=80$")
 #: What makes an interactive page small: tests/validation/interactive judges it.
-COARSE = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3, branches=None)
+COARSE = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3)
 COMMAND = get_command(app)
 CLUSTER = "docs/how_to/cluster.md"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -26,15 +26,9 @@ DIFFERS = 4
 def crosscheck(
     pair: opt.Pair,
     files: opt.FigureFiles,
-    limit: Annotated[
-        str,
-        typer.Option(
-            help="Largest difference that agrees, over the peak to peak, of the transmission error, tooth "
-            "load and motions along the line of action; of what friction drives it is 20%.",
-        ),
-    ] = "5%",
-    cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 40,
-    samples: Annotated[int, typer.Option(help="Output times per mesh cycle.")] = 256,
+    limit: str = "5%",
+    cycles: int = 40,
+    samples: int = 256,
     as_json: opt.Json = False,
 ) -> None:
     """Check the lumped model against the independent multibody model.
@@ -49,10 +43,15 @@ def crosscheck(
     has no periodic motion to compare.
 
     [bold]Examples[/bold]
-
     spurcheck crosscheck
-
     spurcheck crosscheck my_pair.toml --speed 4000 --limit 2% -o agreement.png
+
+    Parameters
+    ----------
+    limit : Largest difference that agrees, over the peak to peak, of the transmission error, tooth load and
+        motions along the line of action; of what friction drives it is 20%.
+    cycles : Mesh cycles to run.
+    samples : Output times per mesh cycle.
     """
     from validation.cross_check.comparison import crosscheck as run
     from validation.cross_check.verdict import Verdict

@@ -22,9 +22,7 @@ def presets(
     """List the built-in gear pairs, or show one of them with all values, units and sources.
 
     [bold]Examples[/bold]
-
     spurcheck presets
-
     spurcheck presets nasa_28_28
     """
     from lumped import load_gear_pair, preset_names
@@ -48,26 +46,14 @@ def init(
     output: Annotated[
         Path | None, opt.output("File to write; default PRESET.toml (or FILE.toml) here. '-' prints it.")
     ] = None,
-    from_rexs: Annotated[
-        Path | None,
-        typer.Option("--from-rexs", metavar="FILE", help="Start from a spur stage of a REXS file instead."),
-    ] = None,
-    stage: Annotated[
-        int | None, typer.Option("--stage", metavar="N", help="Stage of the REXS file: 1 is the first.")
-    ] = None,
-    teeth: Annotated[
-        str | None,
-        typer.Option("--teeth", metavar="PINION/GEAR", help="Start from your own pair instead: 19/41."),
-    ] = None,
-    module: Annotated[str | None, typer.Option("--module", help="With --teeth: module, mm.")] = None,
-    face_width: Annotated[
-        str | None, typer.Option("--face-width", help="With --teeth: face width of both gears, mm.")
-    ] = None,
+    from_rexs: Path | None = None,
+    stage: int | None = None,
+    teeth: str | None = None,
+    module: str | None = None,
+    face_width: str | None = None,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
-    oil: Annotated[
-        str | None, typer.Option("--oil", help="With --teeth: ISO viscosity grade, vg220.")
-    ] = None,
+    oil: str | None = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
     force: opt.Force = False,
@@ -81,17 +67,21 @@ def init(
     does not say is marked as assumed.
 
     [bold]Examples[/bold]
-
     spurcheck init
-
     spurcheck init nasa_28_28 -o my_pair.toml
-
     spurcheck init --from-rexs gearbox.rexs --stage 2 -o my_pair.toml
-
     spurcheck init --teeth 19/41 --module 2.5 --face-width 20 --speed 1450 --torque 80 --oil vg220
-
     spurcheck init --teeth 13/41 --module 2.5 --face-width 20 --speed 1450 --torque 80
     --set pinion.profile_shift=0.4 --set 'bearings.stiffness=300 N/um'
+
+    Parameters
+    ----------
+    from_rexs FILE : Start from a spur stage of a REXS file instead.
+    stage N : Stage of the REXS file: 1 is the first.
+    teeth PINION/GEAR : Start from your own pair instead: 19/41.
+    module : With --teeth: module, mm.
+    face_width : With --teeth: face width of both gears, mm.
+    oil : With --teeth: ISO viscosity grade, vg220.
     """
     from lumped.errors import refuse
     from lumped.schema.files import preset_names, preset_text
@@ -169,10 +159,7 @@ def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
 
 @guarded
 def export(
-    source: Annotated[
-        str,
-        typer.Argument(metavar="PAIR|RESULT", help="Gear pair (preset or TOML), or a result file (.nc)."),
-    ],
+    source: str,
     output: Annotated[
         Path,
         opt.output(
@@ -194,12 +181,13 @@ def export(
     SciPy (.npz). A result is any .nc file that spurcheck wrote.
 
     [bold]Examples[/bold]
-
     spurcheck export nasa_28_28 -o pair.rexs
-
     spurcheck export nasa_28_28 --speed 4000 -o averaged.mat
-
     spurcheck export study-sweep/results.nc -o study.csv
+
+    Parameters
+    ----------
+    source PAIR|RESULT : Gear pair (preset or TOML), or a result file (.nc).
     """
     from lumped.errors import refuse
 

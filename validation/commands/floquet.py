@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -18,25 +18,10 @@ _SHOWN = 12
 
 @guarded
 def floquet(
-    source: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE",
-            help="Matrices: .npz or .mat with M, K, period in s; if wanted C, G (times 2 pi/period in C), "
-            "periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.",
-        ),
-    ],
+    source: Path,
     files: opt.ResultFiles,
-    axes: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--axis",
-            metavar="NAME=FROM:TO:COUNT",
-            help="Axis of a chart: period in s, frequency in Hz (1/period), variation (factor on the "
-            "periodic terms), damping (factor on C). Give it twice for a chart of two axes.",
-        ),
-    ] = None,
-    rtol: Annotated[float, typer.Option(help="Wanted error of the monodromy matrix.")] = 1e-10,
+    axis: list[str] | None = None,
+    rtol: float = 1e-10,
     as_json: opt.Json = False,
 ) -> None:
     """Decide whether M x'' + C(t) x' + K(t) x = 0 is stable, for any matrices with one period.
@@ -45,10 +30,16 @@ def floquet(
     disturbance grows (above 1) or dies (below 1) per period. The exit code is 1 when it is not stable.
 
     [bold]Examples[/bold]
-
     spurcheck floquet rotor.npz
-
     spurcheck floquet rotor.mat --axis frequency=10:80:71 --axis variation=0:2:41 -o chart.png
+
+    Parameters
+    ----------
+    source FILE : Matrices: .npz or .mat with M, K, period in s; if wanted C, G (times 2 pi/period in C),
+        periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.
+    axis NAME=FROM:TO:COUNT : Axis of a chart: period in s, frequency in Hz (1/period), variation (factor on
+        the periodic terms), damping (factor on C). Give it twice for a chart of two axes.
+    rtol : Wanted error of the monodromy matrix.
     """
     from floquet import monodromy, scan
     from lumped.errors import refuse
@@ -57,7 +48,7 @@ def floquet(
     if source.suffix.lower() == ".toml":
         action = f"For the gear pair of a parameter file: spurcheck stability {source}."
         raise refuse("matrices", source, "a file of matrices, .npz or .mat", action)
-    grid = opt.axes_values(axes or [], FILE_AXES)
+    grid = opt.axes_values(axis, FILE_AXES)
     if files.paths and not grid:
         raise refuse("--output", files.paths[0], "a chart to write", "Give --axis, once or twice.")
     if len(grid) > 2 or {"period", "frequency"} <= set(grid):

@@ -23,9 +23,7 @@ def interactive(
     sliders, or use the keyboard alone. Every number of it is also written as NetCDF.
 
     [bold]Examples[/bold]
-
     spurcheck interactive -o page.html
-
     spurcheck interactive my_pair.toml --set mesh.damping_ratio=0.02 -o low_damping.html
     """
     from validation.files.output import check_file

@@ -272,12 +272,12 @@ def axis_values(
     return name, found
 
 
-def axes_values(texts: list[str], known: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
+def axes_values(texts: list[str] | None, known: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
     """Axes by name, see `axis_values`; refuses a name that comes twice."""
     from lumped.errors import refuse
 
     grid: dict[str, NDArray[np.float64]] = {}
-    for text in texts:
+    for text in texts or []:
         name, values = axis_values(text, known)
         if name in grid:
             raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")

@@ -28,40 +28,12 @@ _REQUIRE = ("holds", "stable", "contact")
 def report(
     pair: opt.NamedPair,
     output: Annotated[Path, opt.output("Folder to write, new or empty.")] = Path("spurcheck-report"),
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Coarser sampling, inputs not varied, for a first look.")
-    ] = False,
-    require: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--require",
-            help="Exit 4 unless the model holds, the motion is stable, or contact is kept: holds, stable, "
-            "contact.",
-        ),
-    ] = None,
-    record: Annotated[
-        Path | None,
-        typer.Option(
-            "--record",
-            metavar="TOML",
-            help="Description of a measured transmission error at this speed and torque, to compare with.",
-        ),
-    ] = None,
-    compare: Annotated[
-        Path | None,
-        typer.Option(
-            "--compare",
-            metavar="OLD",
-            help="report.json of an earlier report, or its folder: show changes, exit 1 past tolerances.",
-        ),
-    ] = None,
-    tolerance: Annotated[
-        str, typer.Option("--tolerance", help="With --compare: relative change of a number that passes: 1%.")
-    ] = "0.1%",
-    supports: Annotated[
-        opt.SupportsName | None,
-        typer.Option("--supports", help="springs: leave shafts out. Default: shafts where they are given."),
-    ] = None,
+    quick: bool = False,
+    require: list[str] | None = None,
+    record: Path | None = None,
+    compare: Path | None = None,
+    tolerance: str = "0.1%",
+    supports: opt.SupportsName | None = None,
     force: opt.ForceFolder = False,
 ) -> None:
     """Write the verification report of a gear pair.
@@ -72,12 +44,18 @@ def report(
     a check of the program fails.
 
     [bold]Examples[/bold]
-
     spurcheck report -o report
-
     spurcheck report my_pair.toml --speed "3000 rpm" --torque "500 lbf*in" --range 200..6000 -o report_3000
-
     spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01 --require contact
+
+    Parameters
+    ----------
+    quick : Coarser sampling, inputs not varied, for a first look.
+    require : Exit 4 unless the model holds, the motion is stable, or contact is kept: holds, stable, contact.
+    record TOML : Description of a measured transmission error at this speed and torque, to compare with.
+    compare OLD : report.json of an earlier report, or its folder: show changes, exit 1 past tolerances.
+    tolerance : With --compare: relative change of a number that passes: 1%.
+    supports : springs: leave shafts out. Default: shafts where they are given.
     """
     from lumped.arguments import some_of
     from validation.files.folder import check_target

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
@@ -28,27 +26,11 @@ _VALUES = 26
 def response(
     pair: opt.AlikePair,
     files: opt.ResultFiles,
-    periods: Annotated[int, typer.Option(help="Look for motions that repeat after 1 to so many cycles.")] = 3,
-    seeds: Annotated[
-        int | None,
-        typer.Option(
-            help="Speeds an octave at which runs settle, to find motions apart from the others and beats or "
-            "chaos; default 20, of a map 0."
-        ),
-    ] = None,
-    over: Annotated[
-        str | None,
-        typer.Option(
-            "--map",
-            metavar="NAME[=FROM:TO:COUNT]",
-            help="Map the jumps over speed and torque (N m), damping_ratio (mesh) or tip_relief (um), and "
-            f"find what removes them; default {_VALUES} values around the pair's own.",
-        ),
-    ] = None,
-    speeds: Annotated[int, typer.Option(help="With --map: number of speeds.")] = 800,
-    back_side: Annotated[
-        bool, typer.Option("--back-side", help="Also let the back sides of the teeth touch.")
-    ] = False,
+    periods: int = 3,
+    seeds: int | None = None,
+    map_: str | None = None,
+    speeds: int = 800,
+    back_side: bool = False,
     as_json: opt.Json = False,
 ) -> None:
     """Follow all motions over speed, stable and unstable, with unilateral contact.
@@ -61,10 +43,18 @@ def response(
     several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
 
     [bold]Examples[/bold]
-
     spurcheck response my_pair.toml --range 200..3000 -o response.png
-
     spurcheck response my_pair.toml --map torque=20:300:26 -o jumps.png
+
+    Parameters
+    ----------
+    periods : Look for motions that repeat after 1 to so many cycles.
+    seeds : Speeds an octave at which runs settle, to find motions apart from the others and beats or chaos;
+        default 20, of a map 0.
+    map_ NAME[=FROM:TO:COUNT] : Map the jumps over speed and torque (N m), damping_ratio (mesh) or tip_relief
+        (um), and find what removes them; default 26 values around the pair's own.
+    speeds : With --map: number of speeds.
+    back_side : Also let the back sides of the teeth touch.
     """
     import numpy as np
 
@@ -73,9 +63,9 @@ def response(
     from floquet.gear.axes import operating_rpm
     from lumped.arguments import whole_number
 
-    if over is not None:
+    if map_ is not None:
         whole_number("--speeds", speeds, 2, 5000)
-        _map(pair, over, speeds, seeds or 0, files, as_json)
+        _map(pair, map_, speeds, seeds or 0, files, as_json)
         return
     whole_number("--periods", periods, 1, 8)
     with progress_bar("branches") as tell:

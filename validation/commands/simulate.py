@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
-
-import typer
+from typing import TYPE_CHECKING, Any, Literal
 
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
@@ -14,30 +12,20 @@ if TYPE_CHECKING:
 
 #: Mesh orders of a run-up that are printed.
 _MESH_ORDERS = 5
-Model = Literal["lumped", "multibody"]
-Fidelity = Literal["exact", "linear"]
-Start = Literal["static", "periodic"]
 
 
 @guarded
 def simulate(
     pair: opt.Pair,
     files: opt.ResultFiles,
-    model: Annotated[Model, typer.Option(help="Which model to run.")] = "lumped",
-    fidelity: Annotated[Fidelity, typer.Option(help="Of the multibody model.")] = "exact",
-    cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 20,
-    samples: Annotated[int, typer.Option(help="Output times per mesh cycle.")] = 256,
-    initial: Annotated[
-        Start, typer.Option(help="Start at rest under the mean load, or on the periodic motion.")
-    ] = "static",
-    steady: Annotated[
-        bool, typer.Option("--steady", help="Only the periodic motion over one mesh cycle (lumped).")
-    ] = False,
-    run_up: Annotated[
-        str | None,
-        typer.Option("--run-up", metavar="FROM..TO", help="Speed that rises or falls evenly, rpm (lumped)."),
-    ] = None,
-    seconds: Annotated[float, typer.Option(help="Duration of --run-up.")] = 2.0,
+    model: Literal["lumped", "multibody"] = "lumped",
+    fidelity: Literal["exact", "linear"] = "exact",
+    cycles: int = 20,
+    samples: int = 256,
+    initial: Literal["static", "periodic"] = "static",
+    steady: bool = False,
+    run_up: str | None = None,
+    seconds: float = 2.0,
     supports: opt.Supports = "springs",
     as_json: opt.Json = False,
 ) -> None:
@@ -46,16 +34,22 @@ def simulate(
     Prints the main numbers of the last mesh cycle; -o writes all histories (SI units: m, N, s, rad).
 
     [bold]Examples[/bold]
-
     spurcheck simulate nasa_28_28 --speed 4000 --torque 79.1 -o run.nc
-
     spurcheck simulate my_pair.toml --model multibody --cycles 50 -o run.csv
-
     spurcheck simulate --steady --law coulomb -o steady.png
-
     spurcheck simulate my_pair.toml --run-up 500..6000 --seconds 5 -o waterfall.png
-
     spurcheck simulate my_pair.toml --supports shafts -o on_shafts.nc
+
+    Parameters
+    ----------
+    model : Which model to run.
+    fidelity : Of the multibody model.
+    cycles : Mesh cycles to run.
+    samples : Output times per mesh cycle.
+    initial : Start at rest under the mean load, or on the periodic motion.
+    steady : Only the periodic motion over one mesh cycle (lumped).
+    run_up FROM..TO : Speed that rises or falls evenly, rpm (lumped).
+    seconds : Duration of --run-up.
     """
     import lumped
     from lumped.errors import refuse

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -36,39 +36,10 @@ _AXES = {
 def stability(
     pair: opt.AlikePair,
     files: opt.ResultFiles,
-    view: Annotated[
-        str,
-        typer.Option(
-            help="What to show: chart (spectral radius over axes), boundaries (tongues traced over speed and "
-            "one more axis), campbell (frequencies over speed)."
-        ),
-    ] = "chart",
-    axes: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--axis",
-            metavar="NAME=FROM:TO:COUNT",
-            help="Axis: speed_rpm, damping_ratio (mesh), friction_coefficient, torque [N m], "
-            "stiffness_variation, contact_ratio, bearing_stiffness [N/m]; ends may carry a unit: "
-            "speed_rpm=10Hz:50Hz:9. Twice for a chart; default speed and damping ratio.",
-        ),
-    ] = None,
-    tongues: Annotated[
-        bool,
-        typer.Option(
-            "--tongues",
-            help="Name the unstable regions by mode pair and order; over speed and damping also find the "
-            "damping that closes each.",
-        ),
-    ] = False,
-    prove: Annotated[
-        bool,
-        typer.Option(
-            "--prove",
-            help="Over speed and damping decide every cell between the points of the chart, too: proven "
-            "stable, proven unstable, or unproven and then marked. Takes a few seconds.",
-        ),
-    ] = False,
+    view: str = "chart",
+    axis: list[str] | None = None,
+    tongues: bool = False,
+    prove: bool = False,
     supports: opt.Supports = "springs",
     as_json: opt.Json = False,
 ) -> None:
@@ -78,23 +49,30 @@ def stability(
     cycle. The exit code is 1 when the operating point is not stable.
 
     [bold]Examples[/bold]
-
     spurcheck stability -o chart.png
-
     spurcheck stability my_pair.toml --axis speed_rpm=500:20000:1000 --axis damping_ratio=0.002:0.05:1000
     --tongues -o chart.nc -o chart.pdf
-
     spurcheck stability my_pair.toml --prove -o proven.png
-
     spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
-
     spurcheck stability my_pair.toml --supports shafts --axis speed_rpm=500:20000:1000 -o on_shafts.png
+
+    Parameters
+    ----------
+    view : What to show: chart (spectral radius over axes), boundaries (tongues traced over speed and one more
+        axis), campbell (frequencies over speed).
+    axis NAME=FROM:TO:COUNT : Axis: speed_rpm, damping_ratio (mesh), friction_coefficient, torque [N m],
+        stiffness_variation, contact_ratio, bearing_stiffness [N/m]; ends may carry a unit:
+        speed_rpm=10Hz:50Hz:9. Twice for a chart; default speed and damping ratio.
+    tongues : Name the unstable regions by mode pair and order; over speed and damping also find the damping
+        that closes each.
+    prove : Over speed and damping decide every cell between the points of the chart, too: proven stable,
+        proven unstable, or unproven and then marked. Takes a few seconds.
     """
     from floquet.gear.axes import GEAR_AXES
     from floquet.gear.multipliers import gear_pair_multipliers
     from lumped.errors import refuse
 
-    grid = opt.axes_values(axes or [], GEAR_AXES)
+    grid = opt.axes_values(axis, GEAR_AXES)
     opt.check_supports(pair, supports)
     _check(view, grid, files, tongues, supports)
     if prove and view != "chart":
@@ -116,7 +94,7 @@ def stability(
         }
         title = f"{pair.name} on {supports}: operating point"
         stdout().print(table(title, "quantity", ">value", rows=rows.items()))
-    if files.paths or axes or tongues or prove or view != "chart":
+    if files.paths or axis or tongues or prove or view != "chart":
         if view == "chart":
             data, draw = _chart(pair, grid, tongues, supports, prove)
         elif view == "boundaries":

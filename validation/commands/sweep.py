@@ -10,16 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import (
-    INTERRUPTED,
-    fail,
-    guarded,
-    note,
-    progress_bar,
-    stderr,
-    stdout,
-    table,
-)
+from validation.commands.terminal import INTERRUPTED, fail, guarded, note, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
     from validation.studies import Study, Summary
@@ -30,33 +21,15 @@ _LONG = 48.0
 
 @guarded
 def sweep(
-    study: Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")],
+    study: Path,
     output: Annotated[
         Path | None, opt.output("Output folder; default: the study file's name + '-sweep'.")
     ] = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on where an earlier run in that folder ended.")
-    ] = False,
-    retry_failed: Annotated[
-        bool, typer.Option("--retry-failed", help="With --resume: compute the failed cases again.")
-    ] = False,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers",
-            help="Worker processes; default: one per core. 0: this process, where a crash ends the sweep.",
-        ),
-    ] = None,
-    case_seconds: Annotated[
-        float | None,
-        typer.Option(
-            "--case-seconds",
-            help="Longest time of a case in seconds on this machine; a longer one is ended and recorded.",
-        ),
-    ] = None,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Check the study, count its cases, estimate the time.")
-    ] = False,
+    resume: bool = False,
+    retry_failed: bool = False,
+    workers: int | None = None,
+    case_seconds: float | None = None,
+    dry_run: bool = False,
 ) -> None:
     """Compute every case of a study: a grid or samples of any parameters, one analysis per case.
 
@@ -67,10 +40,17 @@ def sweep(
     The exit code is 1 when a case failed, 3 when the store or the workers failed, 130 when interrupted.
 
     [bold]Examples[/bold]
-
     spurcheck sweep study.toml --workers 8
-
     spurcheck sweep study.toml --resume
+
+    Parameters
+    ----------
+    study STUDY : Study file (TOML).
+    resume : Go on where an earlier run in that folder ended.
+    retry_failed : With --resume: compute the failed cases again.
+    workers : Worker processes; default: one per core. 0: this process, where a crash ends the sweep.
+    case_seconds : Longest time of a case in seconds on this machine; a longer one is ended and recorded.
+    dry_run : Check the study, count its cases, estimate the time.
     """
     from validation.studies import load_study, run_sweep
 

@@ -23,9 +23,7 @@ def teeth(
     \[\[pinion.faults]] kind = "crack", tooth = 4, depth = 1.0 (mm); also "spall" and "chip"
 
     [bold]Examples[/bold]
-
     spurcheck teeth my_pair.toml
-
     spurcheck teeth my_pair.toml --set pinion.deviations.tolerance_class=6 -o motion.nc
     """
     from validation.files.formatting import number, quantity

@@ -60,15 +60,6 @@ class PlainConsole(Console):
         super().print(*objects, **({"soft_wrap": unbroken} | options))
 
 
-#: Argument of a function -> the option that it comes from.
-_OPTIONS = {
-    "samples_per_cycle": "--samples",
-    "output": "--output",
-    **{
-        name: f"--{name.replace('_', '-')}"
-        for name in ("cycles", "tolerance", "workers", "case_seconds", "limit", "samples")
-    },
-}
 #: What the parser says of an argument -> what it says to a user.
 _PARSER = (
     (r"^Input should be a valid integer.*", "Write a whole number, without point and exponent."),
@@ -76,6 +67,8 @@ _PARSER = (
     (r"^Value error, ", ""),
     (r"^(Got unexpected extra .*)", r"\1. Put a value that has blanks in quotes: '1450 rpm'."),
 )
+#: An entry of "Parameters" in a command's docstring: name, what stands for the value, help.
+_ENTRY = re.compile(r"^(\w+)(?: (\S+))? : (.*(?:\n +.*)*)", re.MULTILINE)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 #: Option that every command has, see ``guarded``.
 Quiet = Annotated[
@@ -146,9 +139,17 @@ class Group(NamedTuple):
 def guarded(command: Callable[..., None]) -> Callable[..., None]:
     """Turn errors into one message and an exit code, warnings into notes; add the option --quiet.
 
-    A parameter marked by ``Group`` is made of its options, which take its place.
+    A parameter marked by ``Group`` is made of its options, which take its place. "Parameters" of the
+    docstring describes the others: options, and arguments where they have no default.
     """
+    text, _, entries = inspect.cleandoc(command.__doc__ or "").partition("\nParameters\n----------\n")
+    helps = {
+        name: (metavar or None, " ".join(words.split())) for name, metavar, words in _ENTRY.findall(entries)
+    }
+    annotated: Any = Annotated
     groups: dict[str, Group] = {}
+    #: Argument of a function that is called -> the option that it comes from.
+    options = {"samples_per_cycle": "--samples", "output": "--output"}
     shown: list[inspect.Parameter] = []
 
     def add(name: str, kind: Any, default: Any = None) -> None:
@@ -162,7 +163,14 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
             groups[one.name] = mark
             for name, kind in mark.options.items():
                 add(name, kind)
-        if not marks:
+        if one.name in helps:
+            metavar, words = helps[one.name]
+            info = typer.Argument(metavar=metavar, help=words)
+            if one.default is not one.empty:
+                options[one.name] = f"--{one.name.strip('_').replace('_', '-')}"
+                info = typer.Option(options[one.name], metavar=metavar, help=words)
+            add(one.name, annotated[one.annotation, info], one.default)
+        elif not marks:
             add(one.name, one.annotation, one.default)
     add("quiet", Quiet, False)
 
@@ -196,7 +204,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 }
                 command(**made, **kwargs)
         except ParameterError as error:
-            problems = [replace(p, field=_OPTIONS.get(p.field, p.field)) for p in error.problems]
+            problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
             fail(str(ParameterError(problems, error.source)), REFUSED)
         except SpurcheckError as error:
             fail(str(error), NUMERICAL)
@@ -220,6 +228,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 NUMERICAL,
             )
 
+    run.__doc__ = text
     run.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
     run.__annotations__ = {one.name: one.annotation for one in shown}
     return run

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-import typer
-
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, progress_bar, stdout, table
 
@@ -14,8 +10,8 @@ from validation.commands.terminal import guarded, progress_bar, stdout, table
 def uncertainty(
     pair: opt.Pair,
     files: opt.DataFiles,
-    samples: Annotated[int, typer.Option("--samples", help="Number of predictions.")] = 128,
-    seed: Annotated[int, typer.Option("--seed", help="Of the sampled points.")] = 1,
+    samples: int = 128,
+    seed: int = 1,
 ) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
@@ -23,10 +19,13 @@ def uncertainty(
     of a value says that it is assumed. Teeth of a tolerance class are drawn anew in every sample.
 
     [bold]Examples[/bold]
-
     spurcheck uncertainty my_pair.toml
-
     spurcheck uncertainty my_pair.toml --samples 512 -o samples.nc
+
+    Parameters
+    ----------
+    samples : Number of predictions.
+    seed : Of the sampled points.
     """
     import numpy as np
 

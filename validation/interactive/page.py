@@ -8,7 +8,6 @@ from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
-import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
@@ -23,7 +22,7 @@ from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
 
 #: Parts of the page's own script, in this order.
-_SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "start.js")
+_SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")
 
 
 def write_interactive_page(
@@ -89,8 +88,6 @@ def render(results: PageResults, data_name: str) -> str:
         law=law_of(pair.friction).title,
         found=results.found,
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
-        branches=isinstance(results.branches, xr.Dataset),
-        no_branches=results.branches if isinstance(results.branches, str) else "",
         missing={law_of(pair.friction, law).title: reason for law, reason in results.missing.items()},
         data_name=data_name,
         policy="script-src " + " ".join(map(_hash, scripts)),

@@ -7,7 +7,6 @@ import json
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from floquet.gear.axes import operating_rpm
@@ -93,26 +92,7 @@ def _sweep(results: PageResults) -> dict[str, Any]:
         "own": results.own_law,
         "states": list(STATES),
         "resonances": _numbers(results.resonances),
-        "branches": _branches(results.branches) if isinstance(results.branches, xr.Dataset) else [],
     }
-
-
-def _branches(data: xr.Dataset) -> list[dict[str, Any]]:
-    """Branches in their order."""
-    found = []
-    for branch in np.unique(data["branch"]):
-        one = data.isel(orbit=data["branch"].to_numpy() == branch)
-        found.append(
-            {
-                "n": int(one["branch_n"][0]),
-                "speed": _numbers(one["branch_speed_rpm"]),
-                "dte": _numbers(1e6 * one["branch_dte_peak_to_peak"].to_numpy()),
-                "load": _numbers(one["branch_largest_load"]),
-                "radius": _numbers(one["branch_spectral_radius"]),
-                "stable": one["branch_stable"].to_numpy().astype(int).tolist(),
-            }
-        )
-    return found
 
 
 def _number(value: float) -> float | None:

@@ -10,17 +10,15 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.axes import GEAR_AXES, chart_axes, operating_rpm, speed_range, with_point
+from floquet.gear.axes import GEAR_AXES, chart_axes, speed_range, with_point
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.regions import LabelledRegion, label_regions
-from floquet.gear.response import ResponseBranches, response_branches
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
 from lumped.friction.table import TABLE
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
-from lumped.model.results import LOAD_NOISE
 from lumped.model.sweep import resolved_sweep
 from lumped.path_of_contact import law_range_violations
 from lumped.typing import FloatArray, Progress
@@ -28,8 +26,6 @@ from validation.validity.flags import STATES, validity_state
 
 Grid = dict[str, FloatArray]
 
-#: Speeds of the motions beyond contact loss, over the operating speed.
-BRANCH_SPEEDS = (0.8, 1.25)
 #: Accuracy of the monodromy matrices; the page shows six decimals.
 _RTOL = 1e-7
 #: Factors on the bearing stiffness span what a change of bearing or housing does.
@@ -39,22 +35,16 @@ _LEAST_FRICTION_RANGE = 0.1
 
 @dataclass(frozen=True)
 class Sampling:
-    """How finely the page samples: nodes of its charts, and speeds of the response.
-
-    ``branches`` are the slowest and fastest speed of the motions beyond contact loss over the operating
-    speed; None: without them.
-    """
+    """How finely the page samples: nodes of its charts, and speeds of the response."""
 
     speeds: int = 101
     dampings: int = 17
     slices: int = 7
     sweep_speeds: int = 80
-    branches: tuple[float, float] | None = BRANCH_SPEEDS
 
 
 #: Samples per mesh cycle of the response over speed.
 _SAMPLES = 96
-_BEYOND = "motions beyond contact loss"
 FINE = Sampling()
 
 
@@ -88,8 +78,6 @@ class PageResults:
     notes : for each law of the sweep, where it is used outside its range; empty where it is not
     missing : law -> why it is not in the sweep
     resonances : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
-    branches : motions with unilateral contact, see ``branch_dataset``; why they are not available; None where
-        the linear model keeps contact at all speeds
     """
 
     pair: GearPair
@@ -100,7 +88,6 @@ class PageResults:
     notes: tuple[str, ...]
     missing: dict[str, str]
     resonances: tuple[float, ...]
-    branches: xr.Dataset | str | None
 
     def dataset(self) -> xr.Dataset:
         """Every number of the page; the charts carry ``_over_`` and their third parameter in their names."""
@@ -109,17 +96,12 @@ class PageResults:
             for key, slices in self.stability.items()
         ]
         parts.append(self.sweep)
-        parts += [self.branches] if isinstance(self.branches, xr.Dataset) else []
         merged = xr.merge(parts, join="exact", combine_attrs="override")
         merged.attrs = provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"}
         return merged
 
 
-def compute(
-    pair: GearPair,
-    sampling: Sampling = FINE,
-    progress: Progress | None = None,
-) -> PageResults:
+def compute(pair: GearPair, sampling: Sampling = FINE, progress: Progress | None = None) -> PageResults:
     """Compute the content of the page."""
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
@@ -136,12 +118,9 @@ def compute(
         tell(0.4, "response of every friction law")
         # Friction hardly moves a resonance: the speeds that resolve the pair's own law resolve every law.
         own = resolved_sweep(pair, speed_range(pair), most=sampling.sweep_speeds, samples_per_cycle=_SAMPLES)
-        sweeps, missing = _law_sweeps(pair, own, lambda f: tell(0.4 + 0.2 * f, "response over speed"))
+        sweeps, missing = _law_sweeps(pair, own, lambda f: tell(0.4 + 0.6 * f, "response over speed"))
         notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
         multipliers = gear_pair_multipliers(pair)
-        branches = _branches(
-            pair, sampling, sweeps[pair.friction.law], lambda f: tell(0.6 + 0.4 * f, _BEYOND)
-        )
     laws = xr.DataArray(
         np.array(list(sweeps), dtype=object), dims="law", name="law", attrs={"long_name": "friction law"}
     )
@@ -154,18 +133,7 @@ def compute(
         notes=notes,
         missing=missing,
         resonances=tuple(mode.resonant_speed for mode in found),
-        branches=branches,
     )
-
-
-def _branches(
-    pair: GearPair, sampling: Sampling, own: xr.Dataset, tell: Callable[[float], None]
-) -> xr.Dataset | str | None:
-    """Motions with unilateral contact, where the linear model has negative tooth loads at some speed."""
-    if sampling.branches is None or not bool((own["lowest_load"] < -LOAD_NOISE).any()):
-        return None
-    found = branches_about_operation(pair, sampling.branches, lambda fraction, _="", /: tell(fraction))
-    return found if isinstance(found, str) else branch_dataset(found)
 
 
 def _law_sweeps(
@@ -267,25 +235,3 @@ def _stiffer(pair: GearPair, factor: float) -> GearPair | None:
 
 def _ordered(chart: xr.Dataset) -> xr.Dataset:
     return chart.transpose(..., "damping_ratio", "speed_rpm")
-
-
-def branch_dataset(found: ResponseBranches) -> xr.Dataset:
-    """Return ``dataset`` of the branches, over ``orbit``; variables carry ``branch_`` before their names."""
-    data = found.dataset
-    names = {name: f"branch_{name}" for name in data.data_vars if "point" in data[name].dims}
-    return data.rename(names | {"branch": "branch", "point": "orbit"})
-
-
-def branches_about_operation(
-    pair: GearPair, factors: tuple[float, float] = BRANCH_SPEEDS, progress: Progress | None = None
-) -> ResponseBranches | str:
-    """Branches of periodic motions about the operating speed; why they cannot be computed.
-
-    ``factors`` are the slowest and fastest speed over the operating speed, cut to the pair's range.
-    """
-    own, (slowest, fastest) = operating_rpm(pair), speed_range(pair)
-    speeds = max(factors[0] * own, slowest), min(factors[1] * own, fastest)
-    try:
-        return response_branches(pair, speeds, seeds=0, progress=progress)
-    except (NumericalError, ParameterError) as error:
-        return str(error)

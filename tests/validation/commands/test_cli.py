@@ -31,10 +31,11 @@ def test_every_command_explains_itself_with_an_example(command):
     assert f"spurcheck {command}" in text
 
 
-def test_no_unit_in_a_help_text_is_taken_for_markup():
+def test_every_option_is_explained_and_no_unit_is_taken_for_markup():
     """Rich drops "[rpm]": what it takes for a tag begins with a small letter."""
     for command in get_command(app).commands.values():
-        text = " ".join(parameter.help or "" for parameter in command.params)
+        assert [one.name for one in command.params if not one.help] == []
+        text = " ".join(parameter.help for parameter in command.params)
         assert not re.search(r"(?<!\\)\[[a-z#@/]", text), command.name
 
 

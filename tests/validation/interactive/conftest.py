@@ -18,7 +18,7 @@ HOSTILE = (
     "</style></title></noscript><script>document.title='owned'</script>"
     "<img src=x onerror=\"document.title='owned'\">{{ 7*7 }} \u2028 Zahnrad & Söhne <!--<script>",
 )
-SAMPLING = Sampling(speeds=31, dampings=6, slices=3, sweep_speeds=9, branches=(0.99, 1.01))
+SAMPLING = Sampling(speeds=31, dampings=6, slices=3, sweep_speeds=9)
 WIDE, PHONE = (1280, 900), (390, 844)
 
 
@@ -56,7 +56,7 @@ def attack():
 def hostile(pair, folder, attack):
     """The page of a pair whose name and description are an attack."""
     attacked = pair.with_(dict(zip(("name", "description"), attack, strict=True)))
-    sampling = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3, branches=None)
+    sampling = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3)
     return write_interactive_page(attacked, folder / "hostile.html", sampling=sampling)
 
 

@@ -94,29 +94,3 @@ def test_a_law_shows_its_response_of_the_data_file(page, data):
             )
             factor = 1.0 if variable == "lowest_load" else 1e6
             assert shown == six_digits(factor * one[variable].to_numpy()), (law, variable)
-
-
-def test_hover_over_a_branch_shows_its_load_and_multiplier(page, data):
-    page.choose("law", list(data["law"].to_numpy()).index("xu_kahraman"))
-    page.drawn("sweep-plot", "1")
-    first = data.isel(orbit=0)
-    place = float(first["branch_speed_rpm"]), 1e6 * float(first["branch_dte_peak_to_peak"])
-    lines = page.hover("sweep-plot", *place)
-    columns = [data[f"branch_{name}"].to_numpy() for name in (
-        "speed_rpm", "dte_peak_to_peak", "largest_load", "spectral_radius")]  # fmt: skip
-    expected = [
-        [
-            f"{speed:.5g} rpm",
-            f"{1e6 * dte:.4g} µm peak to peak",
-            f"largest tooth load {load:.4g} N",
-            f"largest multiplier {radius:.4g}",
-            "repeats after 1 mesh cycle",
-            "stable",
-        ]
-        for speed, dte, load, radius in zip(*columns, strict=True)
-    ]
-    assert lines in expected  # neighbours are less than a pixel apart
-    assert ", ".join(lines) in page.text("motion-text")
-    page.choose("law", 0)
-    assert page.drawn("sweep-plot", "plot.data.some(t => t.name?.startsWith('unilateral contact'))") is False
-    assert page.run("return document.getElementById('motion-text').hidden") is True

@@ -13,7 +13,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-import floquet
 import lumped
 from floquet.gear.axes import vary
 from floquet.gear.chart import stability_chart
@@ -24,7 +23,7 @@ from validation.interactive.payload import payload, script_json
 from validation.interactive.results import Sampling, compute
 from validation.validity.flags import contact_loss, sliding_reversal
 
-TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4, branches=None)
+TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4)
 
 
 class _Page(HTMLParser):
@@ -108,24 +107,6 @@ def test_the_responses_are_those_of_the_models(data, pair):
             assert float(one["reversal"]) == pytest.approx(sliding.value / g.base_pitch, rel=1e-8, abs=1e-12)
             states = ["ok", "warning", "violated"]
             assert int(one["validity"]) == max(states.index(flag.state) for flag in (contact, sliding))
-
-
-def test_the_page_has_the_motions_of_teeth_that_push_only(data, pair, text):
-    """Sampled by the 12 states of the model, a motion found anew at its speed is the one of the page."""
-    (shown,) = json.loads(_Page(text).scripts[0])["sweep"]["branches"]
-    for key, name, factor in (
-        ("speed", "speed_rpm", 1.0), ("dte", "dte_peak_to_peak", 1e6), ("load", "largest_load", 1.0),
-        ("radius", "spectral_radius", 1.0), ("stable", "stable", 1.0),
-    ):  # fmt: skip
-        assert shown[key] == [float(f"{factor * v:.6g}") for v in data[f"branch_{name}"].to_numpy()], name
-    one = data.isel(orbit=7)
-    speed = {"operating.pinion_speed": float(one["branch_speed_rpm"])}
-    found = floquet.periodic_orbit(pair.with_(speed))
-    assert found.parts
-    assert float(one["branch_dte_rms"]) == pytest.approx(found.dte_rms, rel=1e-6)
-    assert float(one["branch_largest_load"]) == pytest.approx(found.largest_load, rel=1e-6)
-    assert float(one["branch_spectral_radius"]) == pytest.approx(found.spectral_radius, rel=1e-6)
-    assert shown["n"] == found.n == 1
 
 
 def test_every_variable_of_the_data_file_has_a_unit_and_a_name(data):

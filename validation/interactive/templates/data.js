@@ -29,6 +29,6 @@ function nearest(values, wanted) {
 function theme() {
   const style = getComputedStyle(document.documentElement);
   return Object.fromEntries(
-    ["ink", "quiet", "line", "page", "soft", "curve", "other", "branch", "bad"].map((name) =>
+    ["ink", "quiet", "line", "page", "soft", "curve", "other", "bad"].map((name) =>
       [name, style.getPropertyValue(`--${name}`).trim()]));
 }

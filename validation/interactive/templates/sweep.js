@@ -23,7 +23,6 @@ function sweepTraces(colours) {
         line: { color: colours.other, width: 1.5, dash: "dash" }, showlegend: key === "dte",
       });
     }
-    if (key === "dte") made.push(...branchTraces(colours));
     made.push({
       type: "scatter", mode: "lines", x, y: law[key], yaxis: axis, name: law.name, showlegend: key === "dte",
       line: { color: colours.curve, width: 2 }, hovertemplate: `%{x:.6~r} rpm<br>${VALUES[key]}<extra></extra>`,
@@ -52,8 +51,7 @@ function sweepTraces(colours) {
 function drawSweep() {
   const colours = theme(), x = sweep.speed, law = sweep.laws[now.law], plot = element("sweep-plot");
   const axes = Object.fromEntries(PANELS.map(({ key, axis, domain }) => {
-    const both = [...law[key], ...sweep.laws[sweep.own][key],
-      ...(key === "dte" ? shownBranches() : []).flatMap((b) => b.dte)].filter((v) => v !== null);
+    const both = [...law[key], ...sweep.laws[sweep.own][key]].filter((v) => v !== null);
     const low = Math.min(0, ...both), high = Math.max(...both);
     const span = high - low || 1;
     const range = [low && low - 0.06 * span, high + 0.08 * span];
@@ -101,7 +99,6 @@ function showSweep() {
   setRange(element("sweep-speed"), sweep.speed.length, now.speed, rpm(sweep.speed[now.speed]));
   element("sweep-text").textContent = sweepText();
   element("law-note").textContent = law.note && `Outside its fitted range at the operating point: ${law.note}.`;
-  showOrbit(orbitAt(sweep.speed[now.speed]));
   refreshSweep();
 }
 
@@ -133,6 +130,5 @@ async function startSweep() {
     "+": () => zoomBy(0.5), "-": () => zoomBy(2), 0: all,
   });
   redraw(plot, refreshSweep, all);
-  plot.on("plotly_hover", ({ points }) => { if (points[0].customdata) showOrbit(points[0].customdata.slice(0, 2)); });
   plot.on("plotly_click", ({ points }) => moveSweep({ speed: nearest(sweep.speed, points[0].x) }));
 }
