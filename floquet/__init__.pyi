@@ -1,6 +1,5 @@
 from .engine.chart import scan as scan
 from .engine.coefficients import FourierSeries as FourierSeries
-from .engine.coefficients import KnownMatrix as KnownMatrix
 from .engine.coefficients import PeriodicMatrix as PeriodicMatrix
 from .engine.coefficients import PiecewisePolynomial as PiecewisePolynomial
 from .engine.monodromy import Monodromy as Monodromy
@@ -17,9 +16,10 @@ from .gear.block import gear_block as gear_block
 from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
-from .gear.jump_map import JumpRemoval as JumpRemoval
 from .gear.jump_map import jump_map as jump_map
-from .gear.jump_map import jumps_removed_by as jumps_removed_by
+from .gear.jump_removal import JumpRemoval as JumpRemoval
+from .gear.jump_removal import jumps_removed_by as jumps_removed_by
+from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system
@@ -33,7 +33,6 @@ from .gear.revolution import RevolutionMultipliers as RevolutionMultipliers
 from .gear.revolution import revolution_multipliers as revolution_multipliers
 from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
-from .gear.tongues import stability_margins as stability_margins
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers
 from .rank_one.batch import fast_monodromies as fast_monodromies

@@ -219,55 +219,8 @@ def _known(value: Coefficient | float) -> Coefficient:
     return FourierSeries(1.0, real_number("coefficient", value))
 
 
-class KnownMatrix:
-    """A(t) whose entries are known as formulas: a `PeriodicSystem` of it has proven bounds.
-
-    Parameters
-    ----------
-    entries : (n, n) nested sequences of `Coefficient` and numbers
-
-    Attributes
-    ----------
-    dimension : n
-    breaks : times at which an entry jumps or has a kink [s]
-    """
-
-    def __init__(self, entries: Sequence[Sequence[Coefficient | float]]) -> None:
-        self.dimension = len(entries)
-        if not entries or any(len(row) != self.dimension for row in entries):
-            raise refuse("entries", f"{self.dimension} rows", "a square matrix", "Give n rows of n entries.")
-        self._entries = [
-            (i, j, _known(value))
-            for i, row in enumerate(entries)
-            for j, value in enumerate(row)
-            if isinstance(value, Coefficient) or value != 0.0
-        ]
-        self.breaks = tuple(sorted({t for _, _, entry in self._entries for t in entry.breaks}))
-
-    def __call__(self, times: FloatArray) -> FloatArray:
-        """A at times (k,) -> (k, n, n)."""
-        out = np.zeros((np.size(times), self.dimension, self.dimension))
-        for i, j, entry in self._entries:
-            out[:, i, j] = entry(times)
-        return out
-
-    def taylor(
-        self, start: FloatArray, length: FloatArray, degree: int, scaling: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Polynomials of A_ij d_j/d_i, (k, degree + 1, n, n), and bounds (k,) on the norm of their errors."""
-        out = np.zeros((start.size, degree + 1, self.dimension, self.dimension))
-        total = np.zeros(start.size)
-        for i, j, entry in self._entries:
-            factor = float(scaling[j] / scaling[i])  # powers of two: exact
-            series, error = entry.taylor(start, length, degree)
-            out[:, :, i, j] = factor * series
-            with np.errstate(over="ignore"):  # of a step that is much too long
-                total = np.hypot(total, factor * error)
-        return out, total * (1.0 + 1e-12)
-
-
-class PeriodicMatrix(KnownMatrix):
-    """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...
+class PeriodicMatrix:
+    """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...: a `PeriodicSystem` of it has proven bounds.
 
     Parameters
     ----------
@@ -306,14 +259,17 @@ class PeriodicMatrix(KnownMatrix):
         self._errors = np.zeros_like(self.matrices) if errors is None else errors
 
     def __call__(self, times: FloatArray) -> FloatArray:
-        """See `KnownMatrix`."""
+        """Values at times (k,), (k, n, n)."""
         factors = np.stack([np.ones(np.shape(times)), *(f(times) for f in self.functions)], axis=-1)
         return np.tensordot(factors, self.matrices, axes=1)
 
     def taylor(
         self, start: FloatArray, length: FloatArray, degree: int, scaling: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """See `KnownMatrix`; the scaling is by powers of two, which is exact."""
+        """Polynomials of A_ij d_j/d_i, (k, degree + 1, n, n), and bounds (k,) on the norms of their errors.
+
+        The scaling is by powers of two, which is exact.
+        """
         scale = scaling / scaling[:, None]
         matrices = self.matrices * scale
         sizes = np.linalg.norm(matrices, axis=(1, 2))

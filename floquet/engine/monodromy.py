@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from floquet.engine.coefficients import KnownMatrix
+from floquet.engine.coefficients import PeriodicMatrix
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
 from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.one_step import Propagator
@@ -64,8 +64,8 @@ def monodromy(
     ----------
     system : the periodic system; its forcing, if any, plays no part
     rtol : wanted error of the matrix relative to its norm (in balanced coordinates), 1e-14 to 1e-1
-    method : "auto": where A is a `KnownMatrix`, Taylor steps with a proven bound, else "gauss"; or a name in
-        `floquet.PROPAGATORS`, or a propagator, whose error is an estimate: nothing is known of a callable
+    method : "auto": where A is a `PeriodicMatrix`, Taylor steps with a proven bound, else "gauss"; or a name
+        in `floquet.PROPAGATORS`, or a propagator, whose error is an estimate: nothing is known of a callable
         between the samples
     max_substeps : refuse to work harder than this
 
@@ -89,7 +89,7 @@ def monodromy(
     of_type("system", system, PeriodicSystem, "a PeriodicSystem; of a gear pair: gear_pair_system")
     rtol, max_substeps = checked_effort(rtol, max_substeps)
     automatic = isinstance(method, str) and method == "auto"
-    if automatic and isinstance(system.A, KnownMatrix):
+    if automatic and isinstance(system.A, PeriodicMatrix):
         return _proven(system, system.A, rtol, max_substeps)
     step = propagator("gauss" if automatic else method)
     local = rtol
@@ -150,7 +150,7 @@ def _record(
     )
 
 
-def _proven(system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substeps: int) -> Monodromy:
+def _proven(system: PeriodicSystem, known: PeriodicMatrix, rtol: float, max_substeps: int) -> Monodromy:
     propagation, M, delta = proven_propagation(system, known, rtol, max_substeps)
     size = max(float(np.linalg.norm(M, 2)), _DEAD)
     if not delta <= rtol * size:

@@ -136,7 +136,7 @@ def propagate(
             warnings.warn(
                 f"A(t) has a feature near t = {middle[missed[0]]:g} s that the samples of a step "
                 f"had missed; it is now resolved, but others narrower than {system.period / LOOKS:.2g} s may "
-                "not be. Name such times as breakpoints, or give A as a KnownMatrix.",
+                "not be. Name such times as breakpoints, or give A as a PeriodicMatrix.",
                 ResolutionWarning,
                 stacklevel=3,
             )

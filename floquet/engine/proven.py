@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from floquet.engine.coefficients import KnownMatrix
+from floquet.engine.coefficients import PeriodicMatrix
 from floquet.engine.propagation import Propagation
 from floquet.engine.system import PeriodicSystem
 from lumped.errors import NumericalError
@@ -30,7 +30,7 @@ _FLOOR = 1e-300  # what underflow may take
 
 
 def proven_propagation(
-    system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substeps: int
+    system: PeriodicSystem, known: PeriodicMatrix, rtol: float, max_substeps: int
 ) -> tuple[Propagation, FloatArray, float]:
     """Steps of one period, their product in balanced coordinates, and a bound on its Frobenius error."""
     d = system.balancing()
@@ -66,7 +66,7 @@ def proven_propagation(
 
 
 def _steps(
-    known: KnownMatrix, start: FloatArray, end: FloatArray, whole: BoolArray, d: FloatArray, rtol: float
+    known: PeriodicMatrix, start: FloatArray, end: FloatArray, whole: BoolArray, d: FloatArray, rtol: float
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Transition matrices of the good steps, bounds (k,) on the 2-norms of the errors, and which are good.
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import matrix_balance
 
-from floquet.engine.coefficients import KnownMatrix
+from floquet.engine.coefficients import PeriodicMatrix
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 from lumped.typing import FloatArray
@@ -39,7 +39,7 @@ class PeriodicSystem:
     Parameters
     ----------
     A : callable, t [s] -> (n, n); with ``vectorized``, (k,) -> (k, n, n). It is only ever evaluated strictly
-        inside the smooth segments, so its value *at* a switch does not matter. Or a `KnownMatrix`, whose
+        inside the smooth segments, so its value *at* a switch does not matter. Or a `PeriodicMatrix`, whose
         breaks need not be named.
     period : T > 0 [s]
     breakpoints : times in [0, T] at which A jumps or has a kink; 0 and T are always segment ends
@@ -73,7 +73,7 @@ class PeriodicSystem:
             "period", self.period, 0.0, above=True, unit="s", action="Give the length of one cycle."
         )
         object.__setattr__(self, "period", period)
-        if isinstance(self.A, KnownMatrix):
+        if isinstance(self.A, PeriodicMatrix):
             inside = [t for t in self.A.breaks if 0.0 < t < period]
             object.__setattr__(self, "breakpoints", (*self.breakpoints, *inside))
             object.__setattr__(self, "vectorized", True)

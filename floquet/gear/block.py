@@ -146,12 +146,7 @@ def importance(system: LTVSystem) -> FloatArray:
 
 
 def gear_block(
-    source: AnyPair | GearVariation,
-    rtol: float = 1e-11,
-    *,
-    friction_apart: bool = False,
-    friction_level: float | None = None,
-    supports: Supports = "springs",
+    source: AnyPair | GearVariation, rtol: float = 1e-11, *, supports: Supports = "springs"
 ) -> RankOneSystem:
     """Return z = (q, x_p, x_g) of a gear pair, or on shafts modes: z'' + D z' + L z + w v.z + wd v.z' = 0.
 
@@ -164,22 +159,19 @@ def gear_block(
     ----------
     source : a gear pair, or a variation from a chart
     rtol : error of the fitted polynomials relative to the largest gain; it becomes part of the error bounds
-    friction_apart : whether what is proportional to mu becomes the ``varied`` part of the system, so that a
-        factor on mu costs nothing
-    friction_level : with friction apart, a constant |mu| that changes sign at the pitch point; mu less this,
-        and this, become two ``varied`` parts, so that mu may also rise and fall as a whole
     supports : of a pair: "springs", its ``bearings``, or its "shafts"
     """
     rtol = real_number("rtol", rtol, 1e-14, 0.1)
-    if friction_level is not None:
-        friction_level = real_number("friction_level", friction_level, 0.0, 10.0)
     variation = GearVariation.of(source, supports)
-    levels = ([0.0] if friction_level is None else [0.0, friction_level]) if friction_apart else []
-    return fitted_block(feedback_system(variation), variation.stiffness_variation, rtol, levels)
+    return fitted_block(feedback_system(variation), variation.stiffness_variation, rtol, [])
 
 
 def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
-    """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`."""
+    """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`.
+
+    With levels, what is proportional to mu is ``varied``: a factor on mu costs nothing, and with two levels
+    mu may also rise and fall as a whole.
+    """
     system, metric, m = feedback.system, feedback.metric, feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
     mesh = MeshGains(feedback, factor, levels)

@@ -85,11 +85,6 @@ class Path:
         self.orbits.append(orbit)
         self.tangents.append(tangent)
 
-    def drop_last(self) -> None:
-        self.X.pop()
-        self.orbits.pop()
-        self.tangents.pop()
-
 
 class Continuation:
     """Follows orbits of n cycles in (x, p, log 1/T), scaled so that each is of order one."""
@@ -174,9 +169,7 @@ class Continuation:
         """
         X = self.unknowns(orbit)
         if tangent is None:
-            border = np.zeros(X.size)
-            border[-1] = direction
-            X, orbit, tangent, _ = self.correct(X, border)
+            X, orbit, tangent, _ = self.correct(X, direction * np.eye(X.size)[-1])
         path = Path([X], [orbit], [tangent])
         step, doubled = _FIRST_STEP, None
         while len(path.orbits) < self.limits.points:
@@ -194,14 +187,13 @@ class Continuation:
                         break
                     step = _CORNER_STEP
                 continue
-            path.append(new, orbit, turned)
-            apart = self._apart(orbit)
-            if apart is not None:
+            if self.n % 2 == 0:  # scaled distance between the halves of the motion
+                apart = (orbit.run.states[self.n // 2] - orbit.start) / self.scale[: self.size]
                 doubled = apart if doubled is None else doubled
-                if float(apart @ doubled) <= 0.0:  # the last one lies behind the motion of half the cycles
-                    path.drop_last()
+                if float(apart @ doubled) <= 0.0:  # it lies behind the motion of half the cycles
                     path.end = "doubling"
                     break
+            path.append(new, orbit, turned)
             end = self._end(path, step)
             if end is not None:
                 path.end = end
@@ -211,12 +203,6 @@ class Continuation:
             elif iterations > 5:
                 step *= 0.6
         return path
-
-    def _apart(self, orbit: Orbit) -> FloatArray | None:
-        """Scaled distance between the halves of a motion of an even number of cycles."""
-        if self.n % 2:
-            return None
-        return np.asarray((orbit.run.states[self.n // 2] - orbit.start) / self.scale[: self.size])
 
     def _end(self, path: Path, step: float) -> End | None:
         run, rate = path.orbits[-1].run, 1.0 / path.orbits[-1].period

@@ -134,9 +134,7 @@ class FoldContinuation:
         Raises NumericalError where there is no fold at the start.
         """
         Y = np.append(self.at(value).unknowns(orbit), value / self._size)
-        border = np.zeros(Y.size)
-        border[-1] = direction
-        Y, fold, tangent = self._correct(Y, border)
+        Y, fold, tangent = self._correct(Y, direction * np.eye(Y.size)[-1])
         points, step = [fold], _FIRST_STEP
         while len(points) < _MOST_POINTS:
             try:
@@ -167,19 +165,13 @@ class FoldContinuation:
     @staticmethod
     def _border(tangent: FloatArray) -> FloatArray:
         """Normal of the plane to correct in."""
-        if abs(tangent[-1]) < _ALONG:
-            return tangent
-        border = np.zeros(tangent.size)
-        border[-1] = 1.0
-        return border
+        return tangent if abs(tangent[-1]) < _ALONG else np.eye(tangent.size)[-1]
 
     def _at_value(self, Y: FloatArray, new: FloatArray, value: float) -> list[Fold]:
         """The fold at an end of the range, between two points."""
         part = (value / self._size - Y[-1]) / (new[-1] - Y[-1])
-        border = np.zeros(Y.size)
-        border[-1] = 1.0
         try:
-            return [self._correct(Y + part * (new - Y), border)[1]]
+            return [self._correct(Y + part * (new - Y), np.eye(Y.size)[-1])[1]]
         except NumericalError:
             return []
 

@@ -252,8 +252,9 @@ class _Search:
         """Look everywhere: see `find_response`."""
         report = progress or (lambda done: None)
         rates = self.member.grid(STARTS)
-        for j, rate in enumerate(rates[::-1]):
-            self.from_start(1.0 / float(rate))
+        for j, rate in enumerate(map(float, rates[::-1])):
+            state, parameter = self.start(1.0 / rate)
+            self.follow_near(state, 1.0 / rate, 1, parameter)
             report(0.4 * (j + 1) / rates.size)
         self.doublings()
         self.subharmonics()
@@ -292,8 +293,9 @@ class _Search:
         run = self.member.exactly(motion, known)
         if run.orbit is not None and run.orbit not in known:
             self.from_settled(run.orbit)
-        elif run.orbit is None and run.run is not None:
-            self.near_beats(run.run.end, 1.0 / motion.rate, run.parameter)
+        elif run.orbit is None and run.run is not None:  # unstable motions to which beats or chaos come near
+            for n in sorted(self.periods - {1}):
+                self.follow_near(run.run.end, 1.0 / motion.rate, n, run.parameter)
         return run
 
     def from_neighbour(self, other: _Search) -> None:
@@ -303,13 +305,7 @@ class _Search:
                 orbit = branch.orbits[(2 * part + 1) * len(branch.orbits) // (2 * _NEIGHBOURS)]
                 start = orbit.start * (self.limits.length / other.limits.length)
                 parameter = orbit.parameter * self.limits.parameter / other.limits.parameter
-                system = self.family.at(orbit.period)
-                try:
-                    found = find_orbit(system, start, orbit.period, orbit.n, parameter)
-                except NumericalError:
-                    continue
-                if primitive(found) is found:
-                    self.both_ways(found)
+                self.follow_near(start, orbit.period, orbit.n, parameter)
 
     def known(self, orbit: Orbit) -> bool:
         """Whether a motion lies on a branch that was found."""
@@ -320,35 +316,21 @@ class _Search:
             for other in branch.at(orbit.period)
         )
 
-    def from_start(self, period: float) -> None:
-        """Follow the motion of one cycle near the one while all contacts hold."""
-        state, parameter = self.start(period)
+    def follow_near(self, start: FloatArray, period: float, n: int, parameter: float) -> bool:
+        """Whether there is a motion near a start; its branch is followed unless it has fewer cycles."""
         try:
-            orbit = find_orbit(self.family.at(period), state, period, 1, parameter)
+            orbit = find_orbit(self.family.at(period), start, period, n, parameter)
         except NumericalError:
-            return
-        self.both_ways(orbit)
-
-    def near_beats(self, state: FloatArray, period: float, parameter: float) -> None:
-        """Look for motions, mostly unstable there, to which beats or chaos come near."""
-        for n in sorted(self.periods - {1}):
-            try:
-                orbit = find_orbit(self.family.at(period), state, period, n, parameter)
-            except NumericalError:
-                continue
-            if primitive(orbit) is orbit:
-                self.both_ways(orbit)
+            return False
+        if primitive(orbit) is orbit:
+            self.both_ways(orbit)
+        return True
 
     def from_settled(self, orbit: Orbit) -> None:
         """Follow a stable motion, or the one that it has doubled from where it has too many cycles."""
         for n in sorted((n for n in self.periods if orbit.n % n == 0), reverse=True):
-            try:
-                relative = find_orbit(orbit.system, orbit.start, orbit.period, n, orbit.parameter)
-            except NumericalError:
-                continue
-            if primitive(relative) is relative:
-                self.both_ways(relative)
-            return
+            if self.follow_near(orbit.start, orbit.period, n, orbit.parameter):
+                return
 
     def subharmonics(self) -> None:
         """Look for motions of n cycles in those of one cycle at 1/n of the speed.
@@ -361,15 +343,8 @@ class _Search:
             for branch in singles:
                 beyond = [o for o in branch.orbits if o.parts and n / o.period <= self.limits.fastest]
                 for single in beyond[:: max(1, len(beyond) // _SUBHARMONICS)]:
-                    half = single.start.size // 2
-                    start = single.start * np.repeat([1.0, 1.0 / n], half)
-                    period = single.period / n
-                    try:
-                        orbit = find_orbit(self.family.at(period), start, period, n, single.parameter)
-                    except NumericalError:
-                        continue
-                    if primitive(orbit) is orbit:
-                        self.both_ways(orbit)
+                    start = single.start * np.repeat([1.0, 1.0 / n], single.start.size // 2)
+                    self.follow_near(start, single.period / n, n, single.parameter)
 
     def both_ways(self, orbit: Orbit) -> None:
         """Add the branch through an orbit unless it is known."""

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+    from floquet.gear.margins import StabilityMargins, TongueMargin
     from floquet.gear.regions import LabelledRegion
-    from floquet.gear.tongues import StabilityMargins, TongueMargin
     from lumped import GearPair
     from lumped.typing import FloatArray
 
@@ -177,7 +177,7 @@ def _chart(
 
 def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     """Trace the tongues over a range of speeds, and print them."""
-    from floquet.gear.tongues import stability_margins
+    from floquet.gear.margins import stability_margins
 
     with progress_bar("tongues"):
         found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))

@@ -18,8 +18,8 @@ from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
 from scipy.optimize import isotonic_regression
 
+from floquet.gear.margins import TongueMargin
 from floquet.gear.regions import LabelledRegion
-from floquet.gear.tongues import TongueMargin
 from lumped.typing import FloatArray
 from validation.plots.maps import COLOURS
 from validation.plots.style import (

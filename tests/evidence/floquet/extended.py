@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.gear.block import gear_block
+from floquet.gear.axes import GearVariation
+from floquet.gear.block import feedback_system, fitted_block
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.system import RankOneSystem
 from lumped import GearPair, load_gear_pair, preset_names
@@ -116,7 +117,7 @@ def stress_test(count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArr
         warnings.simplefilter("ignore", LawRangeWarning)  # random pairs leave the ranges of the laws
         for _ in range(count):
             pair = random_pair(rng)
-            block = gear_block(pair, rtol=1e-11, friction_apart=True)
+            block = fitted_block(feedback_system(GearVariation(pair)), 1.0, 1e-11, [0.0])
             exact = np.linalg.eigvals(extended_matrix(block).astype(float))
             ours = fast_multipliers(block)
             distance = np.abs(ours.multipliers[0][:, None] - exact)

@@ -6,7 +6,6 @@ from scipy.linalg import expm
 
 from floquet import (
     FourierSeries,
-    KnownMatrix,
     PeriodicMatrix,
     PeriodicSystem,
     PiecewisePolynomial,
@@ -27,6 +26,10 @@ def bumped(width: float) -> PeriodicSystem:
     return PeriodicSystem(A, 1.0)
 
 
+def oscillator(entry, damping):
+    return PeriodicMatrix([[0.0, 1.0], [0.0, -damping]], (entry, [[0.0, 0.0], [1.0, 0.0]]))
+
+
 def test_a_narrow_feature_of_a_callable_is_found_and_told() -> None:
     with pytest.warns(ResolutionWarning, match=r"0\.4|0\.5"):
         found = monodromy(bumped(3e-4))
@@ -39,7 +42,7 @@ def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
     entry = FourierSeries(1.0, -30.0, [-5.0]) - PiecewisePolynomial(
         [0.0, 0.3, 1.0], [[0.0, 1.0, 2.0], [1.0, 2.0, 3.0]]
     ) * FourierSeries(1.0, 1.0, [], [0.3, 0.2])
-    system = PeriodicSystem(KnownMatrix([[0.0, 1.0], [entry, -0.04]]), 1.0)
+    system = PeriodicSystem(oscillator(entry, 0.04), 1.0)
     proven, sampled = monodromy(system), monodromy(system, method="gauss")
     assert (proven.certificate, sampled.certificate) == ("proven", "estimate")
     assert (proven.resolution, proven.method) == (0.0, "taylor")
@@ -68,7 +71,7 @@ def test_errors_of_the_polynomials_of_a_formula_hold(degree: int) -> None:
 def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() -> None:
     # x'' + 3.43 (1 + cos t) x = 0: at t = T/2 nothing balances the 1.
     wave = FourierSeries(2.0 * np.pi, 3.43, [3.43])
-    found = monodromy(PeriodicSystem(KnownMatrix([[0.0, 1.0], [-wave, 0.0]]), 2.0 * np.pi))
+    found = monodromy(PeriodicSystem(oscillator(-wave, 0.0), 2.0 * np.pi))
     assert found.matrix_error < 1e-10
 
 
@@ -88,7 +91,7 @@ def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
     product, bound = proven_product(steps, errors)
     assert product[0, 0] == pytest.approx(1e-20)
     assert 1e-3 * 1e149 * 1e-170 <= bound < 1e-22
-    dead = monodromy(PeriodicSystem(KnownMatrix([[-4000.0]]), 0.2))
+    dead = monodromy(PeriodicSystem(PeriodicMatrix(-4000.0), 0.2))
     assert dead.multiplier_errors[0] >= 5e-324
     assert dead.verdict == "stable"
 
@@ -96,9 +99,9 @@ def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
 def test_what_cannot_be_proven_is_refused() -> None:
     wave = FourierSeries(1.0, -30.0, [-5.0])
     with pytest.raises(NumericalError, match="cannot be proven"):
-        monodromy(PeriodicSystem(KnownMatrix([[0.0, 1.0], [wave, -0.04]]), 400.0), 1e-14)
+        monodromy(PeriodicSystem(oscillator(wave, 0.04), 400.0), 1e-14)
     with pytest.raises(ParameterError, match="square"):
-        KnownMatrix([[0.0, 1.0]])
+        PeriodicMatrix([[0.0, 1.0]])
     with pytest.raises(ParameterError, match="coefficients"):
         PiecewisePolynomial([0.0, 1.0, 2.0], [[1.0]])
 

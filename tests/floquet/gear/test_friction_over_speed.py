@@ -5,6 +5,7 @@ import pytest
 
 from floquet import gear_block, gear_pair_multipliers, scan, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
+from floquet.gear.block import feedback_system, fitted_block
 from lumped import load_gear_pair, preset_names
 from lumped.friction import LAWS, base
 from lumped.path_of_contact.friction import contact_path, friction_path_function
@@ -151,7 +152,8 @@ def test_friction_axis_keeps_its_mean_at_every_speed() -> None:
 
 def test_level_apart_changes_nothing() -> None:
     variation = with_law("benedict_kelley")
-    whole, apart = gear_block(variation), gear_block(variation, friction_apart=True, friction_level=0.04)
+    whole = gear_block(variation)
+    apart = fitted_block(feedback_system(variation), 1.0, 1e-11, [0.0, 0.04])
     assert len(apart.parts) == 3
     t = np.linspace(0.01, 0.99, 50) * whole.period
     one, other = (block.to_periodic_system().evaluate(t) for block in (whole, apart))

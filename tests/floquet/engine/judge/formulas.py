@@ -10,7 +10,7 @@ from flint import acb, arb, arb_series, ctx
 
 from floquet import (
     FourierSeries,
-    KnownMatrix,
+    PeriodicMatrix,
     PeriodicSystem,
     PiecewisePolynomial,
     monodromy,
@@ -66,7 +66,9 @@ def formula(rng: np.random.Generator) -> list[Finding]:
     wave = FourierSeries(T, mean, a.tolist(), b.tolist())
     ripple = PiecewisePolynomial(ends, rows)
     entry = -(wave + ripple * FourierSeries(T, 0.3, [0.5]))
-    system = PeriodicSystem(KnownMatrix([[0.0, 1.0], [entry, -damping]]), T)
+    system = PeriodicSystem(
+        PeriodicMatrix([[0.0, 1.0], [0.0, -damping]], (entry, [[0.0, 0.0], [1.0, 0.0]])), T
+    )
     exact = []
     for j in range(ends.size - 1):
 
