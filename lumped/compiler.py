@@ -15,7 +15,8 @@ import pickle
 import shutil
 import sys
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -29,6 +30,8 @@ from numba.core.serialize import dumps
 from lumped.cache import cache_folder, read_whole, write_whole
 
 F = TypeVar("F", bound=Callable[..., Any])
+Part = TypeVar("Part")
+Result = TypeVar("Result")
 
 #: Folders of kernels that stay: one for each set of source files and each of its latest states.
 _MOST_FOLDERS = 40
@@ -68,6 +71,15 @@ def kernel_folder() -> Path:
     """Folder of all compiled kernels: in ``NUMBA_CACHE_DIR`` if set, else in the user's cache folder."""
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     return Path(chosen, "spurcheck") if chosen else cache_folder() / "kernels"
+
+
+def in_threads(run: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:
+    """Results of ``run`` on parts, a thread a core, for kernels that release the interpreter lock."""
+    count = min(os.cpu_count() or 1, len(parts))
+    if count <= 1:
+        return [run(part) for part in parts]
+    with ThreadPoolExecutor(count) as pool:
+        return list(pool.map(run, parts))
 
 
 class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types

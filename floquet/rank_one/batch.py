@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -22,6 +21,7 @@ from floquet.rank_one.kernels.gains import Limits, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
+from lumped.compiler import in_threads
 from lumped.errors import NumericalError, refuse, shown
 from lumped.typing import BoolArray, ComplexArray, FloatArray
 
@@ -103,7 +103,7 @@ def fast_monodromies(
         failed = propagate_points(problem, factors[part], zeta[part], T[part], limits, M[part], bound[part])
         return -1 if failed < 0 else part.start + failed
 
-    bad = [index for index in _in_threads(run, T.size) if index >= 0]
+    bad = [index for index in _in_slices(run, T.size) if index >= 0]
     if bad:
         raise NumericalError(
             f"period {T[bad[0]]:g} s needs more than {most_steps(n)} Taylor steps, or a step more terms than "
@@ -132,7 +132,7 @@ def fast_multipliers(
     `multipliers_with_bounds` decides.
     """
     flow = fast_monodromies(system, periods, damping_factors, gain_factors, tolerance=tolerance)
-    parts = _in_threads(lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size)
+    parts = _in_slices(lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size)
     return FastMultipliers(
         np.concatenate([part.multipliers for part in parts]),
         np.concatenate([part.errors for part in parts]),
@@ -159,7 +159,7 @@ def spectral_radii(
         radii[near] = np.abs(multipliers_of(matrices[near], errors[near]).multipliers).max(axis=1)
         return radii
 
-    return np.concatenate(_in_threads(largest, flow.errors.size))
+    return np.concatenate(_in_slices(largest, flow.errors.size))
 
 
 def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
@@ -191,12 +191,7 @@ def _factors(
     raise refuse(name, shown(given), f"finite, one or {each[0]}", "Give one factor per period.")
 
 
-def _in_threads(run: Callable[[slice], _T], size: int) -> list[_T]:
-    """Call ``run`` on slices of range(size), a thread a core (the kernels release the interpreter lock)."""
-    count = os.cpu_count() or 1
-    chunk = max(1, min(512, -(-size // count)))
-    parts = [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)]
-    if count == 1 or len(parts) == 1:
-        return [run(part) for part in parts]
-    with ThreadPoolExecutor(count) as pool:
-        return list(pool.map(run, parts))
+def _in_slices(run: Callable[[slice], _T], size: int) -> list[_T]:
+    """Results of ``run`` on slices of range(size)."""
+    chunk = max(1, min(512, -(-size // (os.cpu_count() or 1))))
+    return in_threads(run, [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)])

@@ -54,7 +54,7 @@ def gauss_steps(
     """Maps (k, 2m, columns) of Gauss steps, and to delta and its rate at their stages (k, 2, s, columns).
 
     ``which`` (k,) is the length of each step, a row of the next five, which are those of
-    ``lumped.model.propagation._without_mesh``; then (k, s, m) the gains of the mesh at the stages.
+    ``lumped.model.propagation.without_mesh``; then (k, s, m) the gains of the mesh at the stages.
     """
     k, stages, m = stiffness.shape
     rows, columns = stages + 2 * m, free_end.shape[2]
@@ -90,7 +90,7 @@ def gauss_steps(
                     p[row, column] += factor * start[of, i, column]
                 for column in range(stages):
                     matrix[row, column] -= factor * by_p[of, i, column]
-        _solve(matrix, p)
+        solve_in_place(matrix, p)
         for row in range(2 * stages):
             for column in range(columns):
                 inner[row, column] = start[of, row, column]
@@ -110,7 +110,7 @@ def gauss_steps(
 
 
 @compiled
-def _solve(matrix: FloatArray, right: FloatArray) -> None:
+def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
     """Solve matrix (s, s) x = right (s, columns) in place, by elimination with pivots."""
     size, columns = right.shape
     for i in range(size):

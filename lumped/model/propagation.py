@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -186,28 +186,24 @@ def _steps(
     times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
     gain = system.gain(times, np.repeat(segment, stages))
     gains = [values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error)]
-    maps, inside = maps_of_steps(system, h, extra, gains)
+    first, which = distinct_lengths(system, h)
+    maps, inside = gauss_steps(which, *without_mesh(system, h[first], extra, gauss_tableau(stages)), *gains)
     pairs = gain.pairs
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
     return Steps(h, maps, inside, teeth.reshape(*teeth.shape[:2], k, stages))
 
 
-def maps_of_steps(
-    system: LTVSystem,
-    h: FloatArray,
-    extra: FloatArray,
-    gains: Sequence[FloatArray],
-) -> tuple[FloatArray, FloatArray]:
-    """``gauss_steps`` of lengths h (k,) with the three gains of the mesh at their stages, (k, s, m) each."""
-    # Lengths that differ by the rounding of times are one: few are left where outputs are evenly spaced.
-    _, first, which = np.unique(
-        np.round(h / (_ROUNDING * system.period)), return_index=True, return_inverse=True
-    )
-    fixed = _without_mesh(system, h[first], extra, gauss_tableau(gains[0].shape[1]))
-    return gauss_steps(which, *fixed, *gains)
+def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArray]:
+    """Where each of few lengths of steps stands first, and which one every step has.
+
+    Lengths that differ by the rounding of times are one: few are left where outputs are evenly spaced.
+    """
+    whole = np.round(h / (_ROUNDING * system.period))
+    _, first, which = np.unique(whole, return_index=True, return_inverse=True)
+    return first, which
 
 
-def _without_mesh(
+def without_mesh(
     system: LTVSystem, h: FloatArray, extra: FloatArray, gauss: tuple[FloatArray, FloatArray, FloatArray]
 ) -> tuple[FloatArray, ...]:
     """What ``_steps`` needs of step lengths h (k,); columns are unit states and forcings, s stages.

@@ -1,6 +1,6 @@
-"""Compiled statics and motion of a mesh whose teeth differ, cycle by cycle over the tables of ``contact``.
+"""Compiled statics of a mesh whose teeth differ, cycle by cycle over the tables of ``contact``.
 
-Sources: docs/theory/teeth.md, "Statics", "Motion".
+Sources: docs/theory/teeth.md, "Statics".
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from lumped.quasi_static import kernels as quasi_static
 from lumped.quasi_static.kernels import corner_at, shared_loads
 from lumped.typing import FloatArray, IntArray
 
-compiled = Compiler([Path(__file__), Path(quasi_static.__file__)])
+FILES = [Path(__file__), Path(quasi_static.__file__)]
+compiled = Compiler(FILES)
 #: Of functions that allocate nothing: counting references would take most of their time.
 inlined = partial(compiled, _nrt=False, forceinline=True)
 
@@ -25,8 +26,8 @@ inlined = partial(compiled, _nrt=False, forceinline=True)
 #: linear form about the own static state.
 FIXED, FIXED_PUSH, PUSH, LINEAR = 0, 1, 2, 3
 #: Rows of the contact of all places at an approach: gap [m], its slopes over xi and over the approach, sine
-#: of the tilt, compression [m], load [N], tangent stiffness, that without neighbours [N/m].
-_GAP, _BY_XI, _BY_DELTA, _TILT, _PRESSED, _LOAD, _TANGENT, _ALONE = range(8)
+#: of the tilt, compression [m], load [N], tangent stiffness, that of the own tooth alone [N/m].
+GAP, BY_XI, BY_DELTA, TILT, PRESSED, LOAD, TANGENT, SELF = range(8)
 _STEPS = 100
 _SETTLED = 1e-12
 
@@ -176,7 +177,7 @@ def loads_at(
     half, length = 0.5 * (delta + longer), longer + moved[2]
     for i in range(k.size):
         if k[i] <= 0.0:
-            here[_LOAD, i] = here[_TANGENT, i] = here[_ALONE, i] = 0.0
+            here[LOAD, i] = here[TANGENT, i] = here[SELF, i] = 0.0
             continue
         gap, slope, rise, tilt = flat[i, 0], flat[i, 1], 0.0, 0.0
         of, xi = ends[kind[i]], place[i] + moved[7]
@@ -188,23 +189,23 @@ def loads_at(
         if late > 0.0:
             more, steep, turned = corner(late, line - of[1], line, of[4], of[3])
             gap, slope, rise, tilt = gap + more, slope + steep, rise + 0.5 * steep, tilt + turned
-        here[_GAP, i], here[_BY_XI, i], here[_BY_DELTA, i], here[_TILT, i] = gap, slope, rise, tilt
+        here[GAP, i], here[BY_XI, i], here[BY_DELTA, i], here[TILT, i] = gap, slope, rise, tilt
         pressed = delta - gap
-        here[_PRESSED, i] = pressed
+        here[PRESSED, i] = pressed
         if single:
-            here[_LOAD, i] = k[i] * pressed if pressed > 0.0 else 0.0
-            here[_TANGENT, i] = k[i] if pressed > 0.0 else 0.0
+            here[LOAD, i] = k[i] * pressed if pressed > 0.0 else 0.0
+            here[TANGENT, i] = k[i] if pressed > 0.0 else 0.0
     if not single:
         shared_loads(
-            here[_PRESSED],
+            here[PRESSED],
             k,
             coupling,
             constants[2],
             constants[0],
             constants[3],
-            here[_LOAD],
-            here[_TANGENT],
-            here[_ALONE],
+            here[LOAD],
+            here[TANGENT],
+            here[SELF],
         )
 
 
@@ -233,8 +234,8 @@ def settled(
         total, slope = -force, 0.0
         for i in range(k.size):
             if k[i] > 0.0:
-                total += here[_LOAD, i]
-                slope += here[_TANGENT, i] * (1.0 - here[_BY_DELTA, i])
+                total += here[LOAD, i]
+                slope += here[TANGENT, i] * (1.0 - here[BY_DELTA, i])
         if abs(total) <= _SETTLED * force:
             return delta
         if total < 0.0:
@@ -255,7 +256,7 @@ def settled(
     return math.nan
 
 
-@compiled
+@partial(compiled, nogil=True)
 def static_cycles(
     start: int, cycles: int, fixed: bool, own: Tables
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -293,15 +294,15 @@ def static_cycles(
                 row = sums[c, s, node]
                 row[9], row[10] = off[5], off[6]
                 for i in range(pairs):
-                    if k_at[i] <= 0.0 or not (fixed or here[_LOAD, i] > 0.0):
+                    if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
                         continue
                     c_i, rise, load = damping[kind[i], s, node, i], k_at[i], -k_at[i] * at[i, 0]
                     closing, slope, tilt = 1.0, at[i, 1], 0.0
                     if not fixed:
-                        part = min(here[_LOAD, i] / constants[4], 1.0)
+                        part = min(here[LOAD, i] / constants[4], 1.0)
                         c_i *= part * part * (3.0 - 2.0 * part)
-                        rise, load = here[_TANGENT, i], here[_LOAD, i] - here[_TANGENT, i] * static
-                        closing, slope, tilt = 1.0 - here[_BY_DELTA, i], here[_BY_XI, i], here[_TILT, i]
+                        rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
+                        closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
                     rolling = slope * speed + off[1] / duration
                     load -= c_i * rolling
                     mu = friction[s, node, i]
@@ -314,143 +315,6 @@ def static_cycles(
                     row[12] -= 2.0 * c_i * closing * rolling
                     row[13] += c_i * rolling**2
                     if node == 0:
-                        each[0, i, c, s] = here[_LOAD, i]
+                        each[0, i, c, s] = here[LOAD, i]
                         each[1, i, c, s], each[2, i, c, s], each[3, i, c, s] = rise, c_i * closing, load
     return approach, each, sums
-
-
-@compiled
-def motion_cycles(
-    corners: bool,
-    start: int,
-    cycles: int,
-    recorded: int,
-    state: FloatArray,
-    constant: FloatArray,
-    deflection: FloatArray,
-    per_load: FloatArray,
-    per_moment: FloatArray,
-    per_apart: FloatArray,
-    torque: FloatArray,
-    ripple: FloatArray,
-    per_torque: FloatArray,
-    bearing: FloatArray,
-    sliding: FloatArray,
-    own: Tables,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Motion of teeth that push only over mesh cycles by the classical Runge-Kutta method of order 4.
-
-    ``corners``: own gaps and tip corners, else the windows of the tables; ``constant`` (m, 2m) acceleration
-    of z per z and z' with the teeth apart, ``per_load`` (3, m) per N, F and F xi, ``per_moment`` (2, m) per
-    moment on pinion and gear, ``per_apart`` (m,) per force of tip corners, ``torque`` (m,) that of both
-    torques, ``ripple`` (n, 5) shaft, angle a cycle, phase, amplitude, cycles of its turn, ``per_torque``
-    (2, m) per torque; ``bearing`` (m, m) gives the power of the supports, ``sliding`` (3, m) the sliding
-    velocity per z', as constant and per xi: rows pinion, gear, y. Returned are states (outputs, 2m) and loads
-    (pairs, outputs) of the last ``recorded`` cycles, the state at the end, and over these cycles the
-    integrals of sliding, tooth dampers, supports, and work of the teeth on both gears [J].
-    """
-    m, pairs, steps = deflection.size, own.ahead.size, own.edges.size - 1
-    count = recorded * own.outputs.sum()
-    states, record = np.empty((count, 2 * m)), np.zeros((pairs, count))
-    work, power = np.zeros(4), np.zeros(4)
-    x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
-    place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
-    constants, speed, edges, outputs = own.constants, own.speed, own.edges, own.outputs
-    kind, here, normal = np.zeros(pairs, np.int64), np.zeros((8, pairs)), np.zeros(pairs)
-    k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 2))
-    moves = np.zeros((steps, 3, 8))
-    single = constants[2] == 0.0 and not coupling.any()
-    row = 0
-    for c in range(cycles):
-        cycle = start + c
-        keeps = c >= cycles - recorded
-        contact_of_cycle(cycle, own, kind, k, flat, moves)
-        for s in range(steps):
-            h = (edges[s + 1] - edges[s]) * own.duration
-            w = coupling[s if coupling.shape[0] > 1 else 0]
-            for stage in range(4):
-                node = (stage + 1) // 2
-                if stage == 0:
-                    at[:] = x
-                else:
-                    part = h if stage == 3 else 0.5 * h
-                    for j in range(2 * m):
-                        at[j] = x[j] + part * rate[stage - 1, j]
-                delta, closing = 0.0, 0.0
-                for j in range(m):
-                    delta += deflection[j] * at[j]
-                    closing += deflection[j] * at[m + j]
-                tau = edges[s] + 0.5 * node * (edges[s + 1] - edges[s])
-                k_at, gap_at, moved, xi = k[s, node], flat[s, node], moves[s, node], place[s, node]
-                e_rate = moved[1] / own.duration
-                if corners:
-                    loads_at(delta, single, k_at, gap_at, moved, xi, w[node], kind, ends, constants, here)
-                sums, friction_sum, friction_arm, apart = 0.0, 0.0, 0.0, 0.0
-                power[:] = 0.0
-                v_p, v_g, v_y = sliding[0, m], sliding[1, m], 0.0
-                for j in range(m):
-                    v_p += sliding[0, j] * at[m + j]
-                    v_g += sliding[1, j] * at[m + j]
-                    v_y += sliding[2, j] * at[m + j]
-                for i in range(pairs):
-                    normal[i] = 0.0
-                    if k_at[i] <= 0.0:
-                        continue
-                    c_i, rise, slope, tilt = damping[kind[i], s, node, i], 0.0, gap_at[i, 1], 0.0
-                    elastic = k_at[i] * (delta - gap_at[i, 0])
-                    if corners:
-                        rise, slope, tilt = here[_BY_DELTA, i], here[_BY_XI, i], here[_TILT, i]
-                        elastic = here[_LOAD, i]
-                        if elastic <= 0.0:
-                            continue
-                        part = min(elastic / constants[4], 1.0)
-                        c_i *= part * part * (3.0 - 2.0 * part)
-                    pressing = closing * (1.0 - rise) - slope * speed - e_rate
-                    load = elastic + c_i * pressing
-                    if load <= 0.0:
-                        continue
-                    normal[i] = load
-                    f = friction[s, node, i] * load
-                    sums += load
-                    apart += load * tilt
-                    friction_sum += f
-                    friction_arm += f * xi[i]
-                    power[0] += f * (v_p * xi[i] - v_g * (sliding[2, m] - xi[i]) - v_y)
-                    power[1] += c_i * pressing**2
-                # The moments of e work on the vibration too.
-                v_p, v_g = v_p - sliding[0, m], v_g - sliding[1, m]
-                power[3] = sums * (closing - e_rate - moved[5] * v_p - moved[6] * v_g) + apart * v_y
-                for j in range(m):
-                    acceleration = torque[j]
-                    acceleration += sums * (
-                        per_load[0, j] + per_moment[0, j] * moved[5] + per_moment[1, j] * moved[6]
-                    )
-                    acceleration += friction_sum * per_load[1, j] + friction_arm * per_load[2, j]
-                    acceleration += apart * per_apart[j]
-                    for n in range(2 * m):
-                        acceleration += constant[j, n] * at[n]
-                    rate[stage, j], rate[stage, m + j] = at[m + j], acceleration
-                for n in range(ripple.shape[0]):
-                    turn = ripple[n, 1] * ((cycle + tau) % ripple[n, 4]) + ripple[n, 2]
-                    size = ripple[n, 3] * math.cos(turn)
-                    for j in range(m):
-                        rate[stage, m + j] += per_torque[int(ripple[n, 0]), j] * size
-                if not keeps:
-                    continue
-                for j in range(m):
-                    along = 0.0
-                    for n in range(m):
-                        along += bearing[j, n] * at[m + n]
-                    power[2] += at[m + j] * along
-                weight = h / (3.0 if 0 < stage < 3 else 6.0)
-                for n in range(4):
-                    work[n] += weight * power[n]
-                if stage == 0 and outputs[s] == 1:
-                    for j in range(2 * m):
-                        states[row, j] = x[j]
-                    for i in range(pairs):
-                        record[i, row] = normal[i]
-                    row += 1
-            for j in range(2 * m):
-                x[j] += h / 6.0 * (rate[0, j] + 2.0 * rate[1, j] + 2.0 * rate[2, j] + rate[3, j])
-    return states, record, x, work

@@ -6,28 +6,29 @@ Sources: docs/theory/teeth.md, "The linear form", "Stability".
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
+from lumped.compiler import in_threads
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
 from lumped.model.kernels import chained, states_along
 from lumped.model.periodic_system import LTVSystem, Supports
-from lumped.model.propagation import STAGES, fastest_frequency, maps_of_steps, padded
+from lumped.model.propagation import STAGES, distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.steady import balanced_start, periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.motion import OwnMotion, moments, ripples, static_mesh, swinging, without_drift
+from lumped.teeth.motion_kernels import linear_cycles
 from lumped.typing import FloatArray
 
 #: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of that vibration, less
 #: than the touches of pairs inside steps do.
 _STEP_ANGLE = 2.4
 _LEAST_STEPS = 48
-#: Mesh cycles whose steps are in memory together; all are up to so many steps, 2.5 kB each.
-_BLOCK, _MOST_KEPT = 64, 60_000
+#: Mesh cycles that are worked on together.
+_BLOCK = 64
 
 
 def linear_steps(system: LTVSystem) -> int:
@@ -36,7 +37,7 @@ def linear_steps(system: LTVSystem) -> int:
 
 
 class LinearForm:
-    """Gauss steps through every mesh cycle of the period, in blocks of cycles.
+    """Gauss steps through every mesh cycle of the period, in blocks of cycles, a thread a block.
 
     ``system`` gives the coordinates, of any form; ``steps`` is the least number in a cycle, ``most`` ends
     the form after so many cycles.
@@ -47,50 +48,46 @@ class LinearForm:
     ) -> None:
         self.pair, self.system = pair, system
         self.laws, self.fixed = Laws(pair), pair.mesh.contact != "loaded"
-        self.own = tables(self.laws, 1.0 / steps, samples, gauss_tableau(STAGES)[2])
+        tableau = gauss_tableau(STAGES)
+        self.own = tables(self.laws, 1.0 / steps, samples, tableau[2])
         if system.form == "full":
             self.own = swinging(self.own, system)
         self.lengths = np.diff(self.own.edges) * system.period
-        self.kept: dict[int, tuple[FloatArray, FloatArray]] = {}
         torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-        self.extra = padded(system, torques)
+        extra = padded(system, torques)
+        first, which = distinct_lengths(system, self.lengths)
+        lengths = self.lengths[first]
+        end, p, feedback, _, by_p = without_mesh(system, lengths, extra, tableau)
+        m = len(system.coordinates)
+        forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
+        forces = np.vstack([forces, torques[m:].T])
+        by_force = np.einsum("fm,ksmr->ksfr", forces, feedback)
+        self.steps = (which, end, p, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
+        self.width = end.shape[2]
         count = self.own.period if most is None else min(most, self.own.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
 
-    def mesh(self) -> Iterator[FloatArray]:
-        """``sums`` of ``kernels.static_cycles`` at the stages of each block, (cycles, steps, s, 17)."""
-        for first, count in self.cycles:
-            yield static_mesh(self.own, first, count, self.fixed)[2]
+    def mesh(self, block: tuple[int, int]) -> FloatArray:
+        """``sums`` of ``kernels.static_cycles`` at the stages of a block, (cycles, steps, s, 17)."""
+        return static_mesh(self.own, *block, self.fixed)[2]
 
-    def step_maps(self, first: int, sums: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Maps of the steps of a block, and to delta and its rate inside, as ``model.propagation.Steps``."""
-        system = self.system
-        by_load = system.per_load[0] + sums[..., 9:11] @ moments(system)
-        gains = [
-            sums[..., n : n + 1] * by_load + sums[..., n + 1 : n + 3] @ system.per_load[1:] for n in (0, 3, 6)
-        ]
-        for gain, n in zip(gains, (14, 15, 16), strict=True):
-            gain += sums[..., n : n + 1] * system.per_apart
-        edges, m = self.own.edges, len(system.coordinates)
-        tau = edges[:-1, None] + np.diff(edges)[:, None] * self.own.nodes
-        at = first + np.arange(sums.shape[0])[:, None, None] + tau
-        for which, angle, phase, amplitude, turn in ripples(self.pair):
-            torque = (system.torque_gear if which else system.torque_pinion)[m:]
-            gains[2] += amplitude * np.cos(angle * (at % turn) + phase)[..., None] * torque
-        shape = (-1, self.own.nodes.size, m)
-        lengths = np.tile(self.lengths, sums.shape[0])
-        return maps_of_steps(system, lengths, self.extra, [gain.reshape(shape) for gain in gains])
+    def along(self, first: int, columns: FloatArray, sums: FloatArray, keeps: bool) -> tuple[FloatArray, ...]:
+        """``linear_cycles`` of a block that starts at the cycle ``first``."""
+        deflection = np.ascontiguousarray(self.system.deflection)
+        ripple = ripples(self.pair)
+        return linear_cycles(first, columns, keeps, sums, *self.steps, deflection, ripple, self.own)
 
-    def cycle_maps(self, mesh: list[FloatArray] | None = None) -> FloatArray:
-        """Affine map of each mesh cycle, (cycles, n, n + columns); ``mesh`` where it is known already."""
-        found = []
-        keeps = mesh is not None and self.own.period * self.lengths.size <= _MOST_KEPT
-        for (first, count), sums in zip(self.cycles, mesh or self.mesh(), strict=True):
-            steps = self.step_maps(first, sums)
-            if keeps:
-                self.kept[first] = steps
-            found.append(chained(steps[0], np.repeat(np.arange(count), self.lengths.size)))
-        return np.concatenate(found)
+    def cycle_maps(self, kept: dict[int, FloatArray] | None = None) -> FloatArray:
+        """Affine map of each mesh cycle, (cycles, n, n + columns); ``kept`` takes ``mesh`` of each block."""
+        units = np.tile(np.eye(self.width), (_BLOCK, 1, 1))
+
+        def maps(block: tuple[int, int]) -> FloatArray:
+            sums = self.mesh(block)
+            if kept is not None:
+                kept[block[0]] = sums
+            return self.along(block[0], units[: block[1]], sums, False)[0]
+
+        return np.concatenate(in_threads(maps, self.cycles))
 
 
 def linear_motion(
@@ -110,7 +107,7 @@ def linear_motion(
     steps = linear_steps(system) if steps is None else steps
     coarse = LinearForm(pair, system, 1, -(-steps // 2), _BLOCK)
     form = LinearForm(pair, system, samples, steps)
-    mesh = list(form.mesh())
+    mesh: dict[int, FloatArray] = {}
     maps = form.cycle_maps(mesh)
     whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
     if not np.isfinite(whole).all():
@@ -153,32 +150,39 @@ def linear_motion(
 
 
 def _inside(
-    form: LinearForm, mesh: list[FloatArray], cycles: FloatArray, weights: FloatArray
+    form: LinearForm, mesh: dict[int, FloatArray], cycles: FloatArray, weights: FloatArray
 ) -> tuple[FloatArray, dict[str, float]]:
     """States at the outputs, and mean powers that the motion inside the steps tells [W]."""
     system, own = form.system, form.own
     m, gears, b = len(system.coordinates), system.gears, gauss_tableau(STAGES)[1]
     rates = np.vstack([gears[:2], gears[5] - gears[4]])
-    outputs, work = [], np.zeros(3)
-    g = form.pair.geometry
-    for (first, count), sums in zip(form.cycles, mesh, strict=True):
-        maps, inside = form.kept.get(first) or form.step_maps(first, sums)
-        states = states_along(maps, cycles[first], weights)
-        outputs.append(states[:-1][np.tile(own.outputs == 1, count)])
-        columns = m * 2 + weights.size
-        known = np.hstack([states[:-1], np.broadcast_to(weights, (states.shape[0] - 1, weights.size))])
-        delta, closing = np.einsum("kdsc,kc->dks", inside[..., :columns], known)
-        lengths = np.tile(form.lengths, count)
-        n = np.moveaxis(sums.reshape(-1, b.size, sums.shape[-1]), -1, 0)
+    g, padding = form.pair.geometry, np.zeros(form.width - 2 * m - weights.size)
+
+    def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
+        first, count = block
+        start = [np.concatenate([state, weights, padding]) for state in cycles[first : first + count]]
+        _, states, inside = form.along(first, np.array(start)[..., None], mesh[first], True)
+        delta, closing = np.moveaxis(inside.reshape(*inside.shape[:2], 2, b.size), 2, 0)
+        n = np.moveaxis(mesh[first], -1, 0)
         load, taken = n[0] * delta + n[3] * closing + n[6], (n[11] * closing + n[12]) * closing + n[13]
-        turning = states[:, m:] @ rates.T
-        along = turning[:-1, None] + own.nodes[:, None] * np.diff(turning, axis=0)[:, None]
+        flat = np.vstack([states.reshape(-1, 2 * m), cycles[first + count]])[:, m:]
+        turning = flat @ rates.T
+        along = (turning[:-1, None] + own.nodes[:, None] * np.diff(turning, axis=0)[:, None]).reshape(
+            *delta.shape, 3
+        )
         late = n[9] * (g.omega_pinion + along[..., 0]) + n[10] * (g.omega_gear + along[..., 1])
         corners = (n[14] * delta + n[15] * closing + n[16]) * along[..., 2]
-        outside = np.sum(list(system.supports.powers(states[:, m:]).values()), axis=0)
-        work[0] += lengths @ (taken @ b)
-        work[1] += lengths @ ((load * (closing - late) - corners) @ b)
-        work[2] += 0.5 * (lengths @ (outside[1:] + outside[:-1]))
-    dampers, moved, supports = (float(value) for value in work / (own.period * system.period))
+        outside = np.sum(list(system.supports.powers(flat).values()), axis=0)
+        lengths = np.tile(form.lengths, count)
+        work = [
+            float(((taken @ b) @ form.lengths).sum()),
+            float((((load * (closing - late) - corners) @ b) @ form.lengths).sum()),
+            0.5 * float(lengths @ (outside[1:] + outside[:-1])),
+        ]
+        return states[:, own.outputs == 1].reshape(-1, 2 * m), np.array(work)
+
+    outputs, work = zip(*in_threads(block_of, form.cycles), strict=True)
+    duration = own.period * system.period
+    dampers, moved, supports = (float(value) for value in np.sum(work, axis=0) / duration)
     powers = {"tooth_dampers": dampers, "supports": supports, "rolling": dampers - moved}
     return np.concatenate(outputs), powers

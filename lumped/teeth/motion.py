@@ -24,6 +24,7 @@ from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.kernels import Tables
+from lumped.teeth.motion_kernels import motion_cycles
 from lumped.teeth.pairs import first_teeth, numbers
 from lumped.typing import FloatArray, IntArray
 
@@ -262,14 +263,14 @@ def run(
     state: FloatArray,
     torques: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """``kernels.motion_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
+    """``motion_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
     g, m = system.pair.geometry, len(system.coordinates)
     rates = system.gears
     sliding = np.zeros((3, m + 1))
     sliding[0, :m], sliding[1, :m], sliding[2, :m] = rates[0], rates[1], rates[4] - rates[5]
     sliding[:, m] = g.omega_pinion, g.omega_gear, g.L_XY
     supports = _power_matrix(system)
-    return kernels.motion_cycles(
+    return motion_cycles(
         corners,
         start,
         cycles,

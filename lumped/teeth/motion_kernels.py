@@ -1,0 +1,279 @@
+"""Compiled motion of a mesh whose teeth differ: steps of Runge and Kutta, and Gauss steps of the linear form.
+
+Sources: docs/theory/teeth.md, "Motion", "The linear form".
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from lumped.compiler import Compiler
+from lumped.model import kernels as gauss
+from lumped.model.kernels import solve_in_place
+from lumped.teeth.kernels import BY_DELTA, BY_XI, FILES, LOAD, TILT, Tables, contact_of_cycle, loads_at
+from lumped.typing import FloatArray, IntArray
+
+compiled = Compiler([Path(__file__), Path(gauss.__file__), *FILES])
+#: Directions of the forces of the mesh: N, its moments on both gears, F, F xi, tip corners; both torques.
+FORCES = 8
+
+
+@compiled
+def motion_cycles(
+    corners: bool,
+    start: int,
+    cycles: int,
+    recorded: int,
+    state: FloatArray,
+    constant: FloatArray,
+    deflection: FloatArray,
+    per_load: FloatArray,
+    per_moment: FloatArray,
+    per_apart: FloatArray,
+    torque: FloatArray,
+    ripple: FloatArray,
+    per_torque: FloatArray,
+    bearing: FloatArray,
+    sliding: FloatArray,
+    own: Tables,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Motion of teeth that push only over mesh cycles by the classical Runge-Kutta method of order 4.
+
+    ``corners``: own gaps and tip corners, else the windows of the tables; ``constant`` (m, 2m) acceleration
+    of z per z and z' with the teeth apart, ``per_load`` (3, m) per N, F and F xi, ``per_moment`` (2, m) per
+    moment on pinion and gear, ``per_apart`` (m,) per force of tip corners, ``torque`` (m,) that of both
+    torques, ``ripple`` (n, 5) shaft, angle a cycle, phase, amplitude, cycles of its turn, ``per_torque``
+    (2, m) per torque; ``bearing`` (m, m) gives the power of the supports, ``sliding`` (3, m) the sliding
+    velocity per z', as constant and per xi: rows pinion, gear, y. Returned are states (outputs, 2m) and loads
+    (pairs, outputs) of the last ``recorded`` cycles, the state at the end, and over these cycles the
+    integrals of sliding, tooth dampers, supports, and work of the teeth on both gears [J].
+    """
+    m, pairs, steps = deflection.size, own.ahead.size, own.edges.size - 1
+    count = recorded * own.outputs.sum()
+    states, record = np.empty((count, 2 * m)), np.zeros((pairs, count))
+    work, power = np.zeros(4), np.zeros(4)
+    x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
+    place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
+    constants, speed, edges, outputs = own.constants, own.speed, own.edges, own.outputs
+    kind, here, normal = np.zeros(pairs, np.int64), np.zeros((8, pairs)), np.zeros(pairs)
+    k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 2))
+    moves = np.zeros((steps, 3, 8))
+    single = constants[2] == 0.0 and not coupling.any()
+    row = 0
+    for c in range(cycles):
+        cycle = start + c
+        keeps = c >= cycles - recorded
+        contact_of_cycle(cycle, own, kind, k, flat, moves)
+        for s in range(steps):
+            h = (edges[s + 1] - edges[s]) * own.duration
+            w = coupling[s if coupling.shape[0] > 1 else 0]
+            for stage in range(4):
+                node = (stage + 1) // 2
+                if stage == 0:
+                    at[:] = x
+                else:
+                    part = h if stage == 3 else 0.5 * h
+                    for j in range(2 * m):
+                        at[j] = x[j] + part * rate[stage - 1, j]
+                delta, closing = 0.0, 0.0
+                for j in range(m):
+                    delta += deflection[j] * at[j]
+                    closing += deflection[j] * at[m + j]
+                tau = edges[s] + 0.5 * node * (edges[s + 1] - edges[s])
+                k_at, gap_at, moved, xi = k[s, node], flat[s, node], moves[s, node], place[s, node]
+                e_rate = moved[1] / own.duration
+                if corners:
+                    loads_at(delta, single, k_at, gap_at, moved, xi, w[node], kind, ends, constants, here)
+                sums, friction_sum, friction_arm, apart = 0.0, 0.0, 0.0, 0.0
+                power[:] = 0.0
+                v_p, v_g, v_y = sliding[0, m], sliding[1, m], 0.0
+                for j in range(m):
+                    v_p += sliding[0, j] * at[m + j]
+                    v_g += sliding[1, j] * at[m + j]
+                    v_y += sliding[2, j] * at[m + j]
+                for i in range(pairs):
+                    normal[i] = 0.0
+                    if k_at[i] <= 0.0:
+                        continue
+                    c_i, rise, slope, tilt = damping[kind[i], s, node, i], 0.0, gap_at[i, 1], 0.0
+                    elastic = k_at[i] * (delta - gap_at[i, 0])
+                    if corners:
+                        rise, slope, tilt = here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
+                        elastic = here[LOAD, i]
+                        if elastic <= 0.0:
+                            continue
+                        part = min(elastic / constants[4], 1.0)
+                        c_i *= part * part * (3.0 - 2.0 * part)
+                    pressing = closing * (1.0 - rise) - slope * speed - e_rate
+                    load = elastic + c_i * pressing
+                    if load <= 0.0:
+                        continue
+                    normal[i] = load
+                    f = friction[s, node, i] * load
+                    sums += load
+                    apart += load * tilt
+                    friction_sum += f
+                    friction_arm += f * xi[i]
+                    power[0] += f * (v_p * xi[i] - v_g * (sliding[2, m] - xi[i]) - v_y)
+                    power[1] += c_i * pressing**2
+                # The moments of e work on the vibration too.
+                v_p, v_g = v_p - sliding[0, m], v_g - sliding[1, m]
+                power[3] = sums * (closing - e_rate - moved[5] * v_p - moved[6] * v_g) + apart * v_y
+                for j in range(m):
+                    acceleration = torque[j]
+                    acceleration += sums * (
+                        per_load[0, j] + per_moment[0, j] * moved[5] + per_moment[1, j] * moved[6]
+                    )
+                    acceleration += friction_sum * per_load[1, j] + friction_arm * per_load[2, j]
+                    acceleration += apart * per_apart[j]
+                    for n in range(2 * m):
+                        acceleration += constant[j, n] * at[n]
+                    rate[stage, j], rate[stage, m + j] = at[m + j], acceleration
+                for n in range(ripple.shape[0]):
+                    turn = ripple[n, 1] * ((cycle + tau) % ripple[n, 4]) + ripple[n, 2]
+                    size = ripple[n, 3] * math.cos(turn)
+                    for j in range(m):
+                        rate[stage, m + j] += per_torque[int(ripple[n, 0]), j] * size
+                if not keeps:
+                    continue
+                for j in range(m):
+                    along = 0.0
+                    for n in range(m):
+                        along += bearing[j, n] * at[m + n]
+                    power[2] += at[m + j] * along
+                weight = h / (3.0 if 0 < stage < 3 else 6.0)
+                for n in range(4):
+                    work[n] += weight * power[n]
+                if stage == 0 and outputs[s] == 1:
+                    for j in range(2 * m):
+                        states[row, j] = x[j]
+                    for i in range(pairs):
+                        record[i, row] = normal[i]
+                    row += 1
+            for j in range(2 * m):
+                x[j] += h / 6.0 * (rate[0, j] + 2.0 * rate[1, j] + 2.0 * rate[2, j] + rate[3, j])
+    return states, record, x, work
+
+
+@partial(compiled, nogil=True)
+def linear_cycles(
+    first: int,
+    columns: FloatArray,
+    keeps: bool,
+    sums: FloatArray,
+    which: IntArray,
+    free_end: FloatArray,
+    free_p: FloatArray,
+    by_force: FloatArray,
+    by_p: FloatArray,
+    reach: FloatArray,
+    deflection: FloatArray,
+    ripple: FloatArray,
+    own: Tables,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Gauss steps of the linear form through mesh cycles from ``first`` on, each from its own start.
+
+    ``columns`` (cycles, 2m + forcings, count) are states at the starts over the weights of the forcings,
+    ``sums`` those of ``static_cycles``, ``which`` (steps,) the length of each step, a row of the next five:
+    free_end, free_p and by_p as of ``lumped.model.propagation.without_mesh``, ``by_force`` (k, s, FORCES,
+    s + 2m) its by_feedback along the directions of ``FORCES``, ``reach`` (k, s) the time to each stage [s];
+    ``ripple`` as in ``motion_cycles``. Returned are the states at the ends (cycles, 2m, count) and, where it
+    ``keeps``, of the first column the state at the start of every step (cycles, steps, 2m), and delta, then
+    its rate, at the stages (cycles, steps, 2s).
+    """
+    cycles, wide, count = columns.shape
+    steps, stages, m = sums.shape[1], sums.shape[2], deflection.size
+    n, rows = 2 * m, stages + 2 * m
+    ends, kept = np.empty((cycles, n, count)), cycles if keeps else 0
+    states, inside = np.empty((kept, steps, n)), np.empty((kept, steps, 2 * stages))
+    now, then = np.empty((wide, count)), np.empty((wide, count))
+    start, p = np.empty((2 * stages, count)), np.empty((stages, count))
+    to, matrix = np.empty((2 * stages + 1, rows)), np.empty((stages, stages))
+    strength, targets = np.zeros((3, FORCES)), np.zeros(3, np.int64)
+    fixed = 2 * stages
+    targets[2] = fixed
+    for c in range(cycles):
+        for row in range(wide):
+            for column in range(count):
+                now[row, column] = then[row, column] = columns[c, row, column]
+        for s in range(steps):
+            of = which[s]
+            for row in range(rows):
+                to[fixed, row] = 0.0
+            for stage in range(stages):
+                targets[0], targets[1] = stage, stages + stage
+                at = sums[c, s, stage]
+                for part in range(3):
+                    strength[part, 0], strength[part, 5] = at[3 * part], at[14 + part]
+                    strength[part, 1], strength[part, 2] = at[3 * part] * at[9], at[3 * part] * at[10]
+                    strength[part, 3], strength[part, 4] = at[3 * part + 1], at[3 * part + 2]
+                strength[2, 6] = strength[2, 7] = 0.0
+                tau = own.edges[s] + own.nodes[stage] * (own.edges[s + 1] - own.edges[s])
+                for i in range(ripple.shape[0]):
+                    turn = ripple[i, 1] * ((first + c + tau) % ripple[i, 4]) + ripple[i, 2]
+                    strength[2, 6 + int(ripple[i, 0])] += ripple[i, 3] * math.cos(turn)
+                for row in range(rows):
+                    to[stage, row] = to[stages + stage, row] = 0.0
+                for force in range(FORCES):
+                    for part in range(3):
+                        factor, target = strength[part, force], targets[part]
+                        if factor != 0.0:
+                            for row in range(rows):
+                                to[target, row] += factor * by_force[of, stage, force, row]
+            for column in range(count):
+                place, rate = 0.0, 0.0
+                for j in range(m):
+                    place += deflection[j] * now[j, column]
+                    rate += deflection[j] * now[m + j, column]
+                for stage in range(stages):
+                    start[stage, column] = place + reach[of, stage] * rate
+                    start[stages + stage, column] = rate
+            for row in range(stages):
+                for column in range(count):
+                    p[row, column] = to[fixed, row] * now[n, column]
+                for inner in range(wide):
+                    factor = free_p[of, row, inner]
+                    if factor != 0.0:
+                        for column in range(count):
+                            p[row, column] += factor * now[inner, column]
+                for column in range(stages):
+                    matrix[row, column] = 0.0
+                matrix[row, row] = 1.0
+                for i in range(2 * stages):
+                    factor = to[i, row]
+                    for column in range(count):
+                        p[row, column] += factor * start[i, column]
+                    for column in range(stages):
+                        matrix[row, column] -= factor * by_p[of, i, column]
+            solve_in_place(matrix, p)
+            for row in range(2 * stages):
+                for i in range(stages):
+                    factor = by_p[of, row, i]
+                    for column in range(count):
+                        start[row, column] += factor * p[i, column]
+            if keeps:
+                for row in range(n):
+                    states[c, s, row] = now[row, 0]
+                for row in range(2 * stages):
+                    inside[c, s, row] = start[row, 0]
+            for row in range(n):
+                for column in range(count):
+                    then[row, column] = to[fixed, stages + row] * now[n, column]
+                for inner in range(wide):
+                    factor = free_end[of, row, inner]  # few on springs, which couple nothing
+                    if factor != 0.0:
+                        for column in range(count):
+                            then[row, column] += factor * now[inner, column]
+                for i in range(2 * stages):
+                    factor = to[i, stages + row]
+                    for column in range(count):
+                        then[row, column] += factor * start[i, column]
+            now, then = then, now
+        for row in range(n):
+            for column in range(count):
+                ends[c, row, column] = now[row, column]
+    return ends, states, inside
