@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -175,19 +175,24 @@ def _registry() -> pint.UnitRegistry[Decimal]:
     return registry
 
 
+@lru_cache(maxsize=4096)  # variations of a pair have most numbers in common
+def _number_to_si(text: str, unit: str) -> float:
+    number = Decimal(text)
+    if not number.is_finite():
+        return float(text)
+    return float(number + _ZERO_CELSIUS if unit == "degC" else number * UNITS[unit][1])
+
+
 def to_si(value: float | str, unit: str) -> float:
     """Convert to SI: a number in the stated unit, or text with a unit; ValueError says what is wrong."""
-    si, factor, meaning, example = UNITS[unit]
+    si, _, meaning, example = UNITS[unit]
     advice = f"write a number (read as {unit}) or a string such as '{example}'"
     if isinstance(value, SIValue):
         if value.unit != si:
             raise ValueError(f"{value!r} is not {meaning}; {advice}")
         return float(value)
     if not isinstance(value, str):
-        if not math.isfinite(value):
-            return float(value)
-        number = Decimal(repr(float(value)))
-        return float(number + _ZERO_CELSIUS if unit == "degC" else number * factor)
+        return _number_to_si(repr(float(value)), unit)
     registry = _registry()
     if len(value) > 80:
         raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
@@ -232,10 +237,15 @@ def to_file(value: float, unit: str) -> float | str:
 
 def to_stated(value: float, unit: str) -> float:
     """Convert an SI number to the field's stated unit, for reading: to the shortest number that means it."""
-    number = Decimal(repr(float(value)))
+    return _stated(repr(float(value)), unit)
+
+
+@lru_cache(maxsize=4096)
+def _stated(text: str, unit: str) -> float:
+    number = Decimal(text)
     stated = number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit][1]
     short = float(f"{stated:.15g}")  # 3000 rpm, not 2999.9999999999998
-    return short if to_si(short, unit) == value else float(stated)
+    return short if to_si(short, unit) == float(text) else float(stated)
 
 
 @dataclass(frozen=True)

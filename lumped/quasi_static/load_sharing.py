@@ -140,8 +140,9 @@ def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArr
     pairs = place.shape[1]
     found = np.zeros((*place.shape, pairs))
     for apart, moved in enumerate(neighbours, 1):
-        for behind in range(pairs - apart):
-            both = near[:, behind] & near[:, behind + apart]
-            values = np.where(both, moved(place[:, behind]), 0.0)
+        if apart < pairs:
+            both = near[:, :-apart] & near[:, apart:]
+            behind = np.arange(pairs - apart)
+            values = np.where(both, moved(place[:, :-apart]), 0.0)
             found[:, behind, behind + apart] = found[:, behind + apart, behind] = values
     return found

@@ -61,10 +61,11 @@ class Loaded(Contact):
 
     def elements(self, pair: GearPair) -> MeshElements:
         """The laws about the static loaded motion; the damper takes hold as the load does."""
-        contact = loaded_contact(pair)
+        rest = at_rest(pair)
+        contact = _loaded_contact(rest)
         return MeshElements(
             stiffness=contact.stiffness,
-            damping=_damping(at_rest(pair), pair.mesh.damping_ratio),
+            damping=_damping(rest, pair.mesh.damping_ratio),
             friction=friction_path_function(pair, interval=contact.stiffness.interval),
             error=contact.error,
             gap=contact.gap,
@@ -321,30 +322,37 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     exact = max(_APPROACH * relative * deflection, 5.0 * _LENGTH)
     mesh.fit_approach(np.concatenate([marks.ravel(), law.stiffness.breaks]), exact)
 
+    known: dict[bytes, StaticPair] = {}
+
+    def static(xi: FloatArray) -> StaticPair:  # laws that are fitted alike ask for the same positions
+        if (key := xi.tobytes()) not in known:
+            known[key] = mesh.static(xi)
+        return known[key]
+
     # With a linear law of pairs that stand alone the pieces are those of the stiffness.
     ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks
 
     def fitted(value: Callable[[FloatArray], FloatArray], scale: float) -> PathFunction:
         return PathFunction.fit(value, ends, inside, tolerance=relative * scale, by_length=True)
 
-    stiffness = fitted(lambda xi: mesh.static(xi).tangent, largest)
+    stiffness = fitted(lambda xi: static(xi).tangent, largest)
     # Only the damper bends where it is whole. Its pieces are cut where those of the stiffness are: laws that
     # are cut at the same phases leave few pieces of a mesh cycle.
     full, bends = FULL_DAMPING * mesh.force, inside
     for left, right in itertools.pairwise(breaks):
-        bends = np.union1d(bends, _roots(lambda x: mesh.static(x).load - full, left, right))
+        bends = np.union1d(bends, _roots(lambda x: static(x).load - full, left, right))
     cuts = np.union1d(stiffness.breaks, bends)
 
     def engagement(xi: FloatArray) -> FloatArray:
-        share = np.clip(mesh.static(xi).load / full, 0.0, 1.0)
+        share = np.clip(static(xi).load / full, 0.0, 1.0)
         return np.asarray(share * share * (3.0 - 2.0 * share), dtype=np.float64)
 
     engaged = PathFunction.fit(engagement, cuts, bends, tolerance=relative, by_length=True)
-    error = fitted(lambda xi: mesh.static(xi).error, deflection)
+    error = fitted(lambda xi: static(xi).error, deflection)
     return LoadedContact(
         stiffness=restricted(stiffness, contact),
         error=error,
-        gap=fitted(lambda xi: mesh.static(xi).gap, deflection),
+        gap=fitted(lambda xi: static(xi).gap, deflection),
         tilt=PathFunction.fit(mesh.tilt, error.breaks, inside, tolerance=relative, by_length=True),
         engagement=restricted(engaged, contact),
         secant=PathFunction.fit(law.extended, pieces, inside, tolerance=_TOLERANCE * largest),

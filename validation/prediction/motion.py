@@ -9,6 +9,7 @@ Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Predictio
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
@@ -175,13 +176,16 @@ def dynamic_factor(pair: AnyPair) -> float:
     return predict(pair).dynamic_factor
 
 
-def predicted(pair: GearPair) -> Prediction:
-    """Return the prediction for a pair at its operating point, on its shafts where it has them."""
+def predicted(pair: GearPair, motion: Callable[..., xr.Dataset] = lumped.steady_state) -> Prediction:
+    """Return the prediction for a pair at its operating point, on its shafts where it has them.
+
+    ``motion`` computes the linear motion.
+    """
     if pair.shafts is not None:
-        return _of_cycle(pair, lumped.steady_state(pair, supports="shafts", samples_per_cycle=_SAMPLES))
+        return _of_cycle(pair, motion(pair, supports="shafts", samples_per_cycle=_SAMPLES))
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     try:
-        linear = lumped.steady_state(pair, samples_per_cycle=_SAMPLES)
+        linear = motion(pair, samples_per_cycle=_SAMPLES)
     except NumericalError:
         linear = None
     if linear is not None and float(linear["normal_load"].min()) >= _PULLS * force:
