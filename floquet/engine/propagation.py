@@ -167,9 +167,8 @@ def _unseen(
 ) -> BoolArray:
     """Steps (k,) in which A, at random points, is not what the samples at the nodes let expect.
 
-    Each step is cut into equal parts, `LOOKS` to a period, and A looked at once in each; it is compared with
-    the polynomial through its values at the nodes of both halves. What is narrower than a part may still be
-    missed: a callable can hide anything between samples.
+    A is looked at once in each of `LOOKS` parts of a period, and compared with the polynomial through its
+    values at the nodes of both halves of the step.
     """
     if start.size == 0:
         return np.zeros(0, dtype=bool)

@@ -164,8 +164,8 @@ def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -
 class _Solution:
     """B -> X = (M T)^-1 B T with bounds on the errors of its entries.
 
-    With W an approximate inverse of P = M T and G = I - W P, the error is (I - G)^-1 W (B T - P X);
-    products in the widest floating point that there is, which leaves little but the rounding of X itself.
+    With W an approximate inverse of P = M T and G = I - W P, that is (I - G)^-1 W (B T - P X), in the widest
+    floating point.
     """
 
     def __init__(self, M: FloatArray, T: FloatArray) -> None:
@@ -175,9 +175,8 @@ class _Solution:
         W = np.linalg.inv(self.P.astype(float))
         self.W, self.sizes = W.astype(_WIDE), np.abs(W)
         self.gamma = float((2.0 * n + 8.0) * np.finfo(_WIDE).eps)
-        G = np.abs(np.eye(n) - self.W @ self.P).astype(float) + self.gamma * (
-            self.sizes @ self.size + np.eye(n)
-        )
+        G = np.abs(np.eye(n) - self.W @ self.P).astype(float)
+        G += self.gamma * (self.sizes @ self.size + np.eye(n))
         self.g = float(G.sum(axis=1).max())
         if not self.g < 0.5:
             raise NumericalError("M is too badly conditioned for bounds. Choose other units or coordinates.")
@@ -188,10 +187,7 @@ class _Solution:
         for _ in range(3):
             X = (X + self.W @ (Q - self.P @ X)).astype(float)
         rest = Q - self.P @ X
-        left = (
-            np.abs(rest).astype(float)
-            + np.abs(B) @ np.abs(self.T).astype(float)
-            + 2.0 * self.size @ np.abs(X)
-        )
+        left = np.abs(rest).astype(float) + np.abs(B) @ np.abs(self.T).astype(float)
+        left += 2.0 * self.size @ np.abs(X)
         error = np.abs(self.W @ rest).astype(float) + self.gamma * (self.sizes @ left)
         return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=0)) * (1.0 + 1e-9))

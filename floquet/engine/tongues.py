@@ -87,18 +87,13 @@ def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> FloatArray:
 def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) -> Tongue:
     """Name the instability of a monodromy matrix by the shape of its fastest growing motion.
 
-    Parametric excitation at Omega couples two rotating motions whose frequencies differ by k Omega. If they
-    are mode i turning forwards and mode j turning backwards, then omega_i + omega_j = k Omega: a sum
-    resonance, of one mode with itself if i = j. If both turn the same way it is omega_j - omega_i: a
-    difference resonance, which needs a circulatory (friction) or gyroscopic coupling. So the growing
-    eigenvector tells pair and sign; the frequencies tell the order k, and refuse pairs that are detuned by
-    more than 5 % as long as another pair takes part.
+    Parametric excitation at Omega couples two rotating motions whose frequencies differ by k Omega: mode i
+    forwards and mode j backwards where omega_i + omega_j = k Omega, both the same way where it is omega_j -
+    omega_i. So the growing eigenvector tells pair and sign; the frequencies tell the order k, and refuse
+    pairs that are detuned by more than 5 % as long as another pair takes part.
 
-    Parameters
-    ----------
     matrix : (2m, 2m) monodromy matrix in the modal states (omega eta, eta') of the mean system
-    omega : (m,) natural frequencies of the mean system [rad/s]
-    excitation : Omega = 2 pi/T [rad/s]
+    omega, excitation : (m,) natural frequencies of the mean system, Omega = 2 pi/T [rad/s]
     """
     values, vectors = np.linalg.eig(np.asarray(matrix, dtype=float))
     forward, backward = mode_shares(vectors[:, np.argmax(np.abs(values))], omega)
@@ -190,8 +185,7 @@ class UnstableInterval:
 def seeded_nodes(lines: FloatArray, low: float, high: float, coarse: int, width: float = 0.03) -> FloatArray:
     """Nodes for a search in [low, high]: evenly spaced ones, and a graded cluster at every predicted line.
 
-    A tongue of relative width 1e-5 slips through any affordable even grid; it sits close to its line, so
-    offsets that grow in proportion from 1e-6 to ``width`` on both sides of the line meet it.
+    A thin tongue is close to its line: offsets grow in proportion from 1e-6 to ``width`` on both sides.
     """
     offsets = np.geomspace(1e-6, width, 25)
     offsets = np.concatenate([-offsets[::-1], [0.0], offsets])
@@ -205,9 +199,7 @@ def unstable_intervals(
 ) -> list[UnstableInterval]:
     """Find the intervals of instability that the nodes (k,) meet, with their ends to ``xtol``, relative.
 
-    Every local maximum of the sampled radius that comes near one is first refined, since a narrow peak
-    between two nodes may still exceed one. Above 1 + threshold a radius counts as unstable, so that rounding
-    makes no intervals.
+    Local maxima of the sampled radius near one are first refined. Above 1 + threshold a radius is unstable.
     """
     nodes, values = _refine_maxima(radius, nodes, radius(nodes))
     unstable = values > 1.0 + threshold

@@ -111,10 +111,7 @@ def _squares(system: LTVSystem) -> FloatArray:
 
 
 def _turn(system: LTVSystem) -> FloatArray:
-    """Combinations (m, m) of modes of equal frequency of which few count.
-
-    The first of each group has all of its deflection, the second all of the gyroscopic moments of the first.
-    """
+    """Combinations (m, m) of modes of equal frequency: one has all deflection, one all gyroscopic moments."""
     squares = _squares(system)
     turn = np.eye(squares.size)
     for group in np.split(
@@ -129,10 +126,9 @@ def _turn(system: LTVSystem) -> FloatArray:
 
 
 def importance(system: LTVSystem) -> FloatArray:
-    """How much each mode (m,) of a pair on shafts counts in the motion of the mesh, whatever the speed.
+    """Share (m,) of each mode on shafts in the static deflection by the mesh, and what it gets of others.
 
-    That is the share that the mode has of the static deflection under a mesh force, and what damping and
-    gyroscopic moments give it of the others, each at the speed where the mesh frequency is that mode's.
+    By damping and gyroscopic moments, each at the speed where the mesh frequency is that mode's.
     """
     v, squares, g = system.deflection, _squares(system), system.pair.geometry
     share = v**2 / squares / (v**2 / squares).sum()
@@ -266,21 +262,10 @@ class _Law:
 class MeshGains:
     """Gains on the coordinates of a "mesh" form as `fit_pieces` asks for them.
 
-    In this order: feedback of deflection and of its rate by normal loads (with their friction, unless it is
-    apart), the same by each part of friction. The parts of friction are mu less the sum of the ``levels``,
-    and each level but the first, which is zero.
-
-    Parameters
-    ----------
-    feedback : what the mesh couples
-    factor : on the variation of the total stiffness about its mean
-    levels : of friction apart; empty where friction goes with the normal loads
-
-    Attributes
-    ----------
-    edges : (S+1,) ends of the segments as parts of the period
-    parts : 1 + number of levels
-    count : see `PolynomialGains`
+    In this order: feedback of deflection and of its rate by normal loads (with their friction, unless there
+    are ``levels``), the same by mu less the sum of the levels, and by each level but the first, zero.
+    ``factor`` is on the variation of the total stiffness about its mean; ``edges`` (S+1,) are the ends of the
+    segments as parts of the period.
     """
 
     def __init__(self, feedback: Feedback, factor: float, levels: Sequence[float]) -> None:
@@ -379,10 +364,7 @@ class MeshGains:
 
     @property
     def jumps(self) -> FloatArray:
-        """Bounds (G, S+1) on the integral over the phase of the errors next to each edge, on either side.
-
-        Where the edge is off by rounding, the gain is for so long that of the other side.
-        """
+        """Bounds (G, S+1) on the integral over the phase of the errors by edges that are rounded."""
         return self._fixed[1]
 
     @cached_property
@@ -424,10 +406,9 @@ class MeshGains:
     def _factors(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
     ) -> tuple[list[FloatArray], list[FloatArray], FloatArray]:
-        """The factor f = (mean + factor (k - mean))/k on all stiffnesses and its root, by polynomials.
+        """The factor f = (mean + factor (k - mean))/k on stiffnesses and its root, by polynomials q and s.
 
-        f ~ q and sqrt f ~ s of degree 8 at the nodes, and bounds (k,) on the errors everywhere in the piece,
-        which follow from polynomials: |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
+        Bounds (k,) on the errors follow from |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
         |s^2 - f|/(s + sqrt f), each residual bounded by the sum of its Chebyshev coefficients. The third
         result (k,) bounds 1, q and s.
         """

@@ -137,11 +137,8 @@ def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArr
 
     Near k Omega = omega_i + omega_j two modes that decay with a and are coupled with strength g have, at the
     detuning d = (k Omega - omega_i - omega_j)/2, the exponents -a +- sqrt(g^2 - d^2) (Hsu 1963; differences
-    likewise). They are unstable somewhere only if g > a. Then the larger one is above -b for all |d| < sqrt(2
-    a b - b^2), b <= a being the least decay of all modes: it stands out of whatever else there is over |d| <
-    b at least. From one speed to the next d changes by less than omega_max times the relative step, so that
-    steps of b/omega_max put two speeds into this window. The search climbs from there
-    (`unstable_intervals`).
+    likewise), unstable somewhere only if g > a. Then the larger one stands out of all other modes, of least
+    decay b <= a, over |d| < b at least: steps of b/omega_max put two speeds into this window.
 
     Returns the speeds, and whether the steps are that small, which would at times take more than 20000.
     """

@@ -43,21 +43,14 @@ def unilateral_system(
 ) -> ContactSystem:
     """Return a gear pair with one unilateral contact for each tooth pair.
 
-    A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and that is positive, as the
-    multibody effect ``contact_loss``. Relief is clearance e; static loads cut nothing. Friction acts with its
-    nominal sign. With loaded contact the contact is the tangent at the static load, within the places where
-    the static load reaches.
+    A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and that is positive. Relief is
+    clearance e. Friction acts with its nominal sign. With loaded contact the contact is the tangent at the
+    static load, where that reaches. The rigid rotation, r_bg theta_g, is the accumulated row; the parameter
+    is the torque that holds the mean speed [N m]: T_g, or T_p where the brake torque is given.
 
-    The rigid rotation, r_bg theta_g, is the accumulated row; the parameter is the torque that holds the mean
-    speed [N m]: T_g, or T_p where the brake torque is given.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    cycle : mesh cycle with other element laws; None: ``contact_cycle``
-    form : "mesh": (q, x_p, x_g), whose motion decides that of y; "elastic": (q, x_p, x_g, y_p, y_g);
-        "back_side": the same, and the back sides of the teeth touch after the backlash, with the laws of the
-        driving flanks
+    ``form`` is "mesh", (q, x_p, x_g), whose motion decides that of y; "elastic", (q, x_p, x_g, y_p, y_g); or
+    "back_side", where back sides touch after the backlash, with the laws of the driving flanks. ``cycle`` has
+    other element laws than ``contact_cycle``.
     """
     cycle = cycle or contact_cycle(pair)
     base = LTVSystem.of(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle)
@@ -65,11 +58,8 @@ def unilateral_system(
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
     phases = cycle.breaks / cycle.period
-    flanks = [
-        _Flank(
-            rows @ s.normal, rows @ s.friction_arm, rows @ s.apart, base.deflection, 0.0, cycle.offsets, 1.0
-        )
-    ]
+    acting = rows @ s.normal, rows @ s.friction_arm, rows @ s.apart
+    flanks = [_Flank(*acting, base.deflection, 0.0, cycle.offsets, 1.0)]
     if form == "back_side":
         coast = _coast_flank(pair, cycle, rows)
         passes = np.mod((coast.offsets[0] - g.L_XA) / g.base_pitch - cycle.break_phases, 1.0)
@@ -77,23 +67,20 @@ def unilateral_system(
         phases = np.union1d(phases, passes)
         phases = phases[np.append(True, np.diff(phases) > _SAME)]
         flanks.append(coast)
-    given = pair.operating.brake_torque != "balanced"
-    torques, m = rows[:, :2] * [1.0, -1.0], len(base.coordinates)
-    known = (
-        torques[:, 1] * float(pair.operating.brake_torque) if given else torques[:, 0] * base.pinion_torque
-    )
+    brake = pair.operating.brake_torque
+    balanced, torques, m = brake == "balanced", rows[:, :2] * [1.0, -1.0], len(base.coordinates)
     # No bearing acts on the rotation.
-    held = np.pad(-base.constant[m:], ((0, 1), (0, 0)))
+    bearings = np.pad(-base.constant[m:], ((0, 1), (0, 0)))
     return ContactSystem(
-        stiffness=held[:, :m],
-        damping=held[:, m:],
-        force=known,
+        stiffness=bearings[:, :m],
+        damping=bearings[:, m:],
+        force=torques[:, 0] * base.pinion_torque if balanced else torques[:, 1] * float(brake),
         contacts=tuple(
             _contact(pair, cycle, phases, flank, offset) for flank in flanks for offset in flank.offsets
         ),
         phases=phases,
         output=base.deflection,
-        parameter_force=torques[:, 0 if given else 1],
+        parameter_force=torques[:, 1 if balanced else 0],
     )
 
 

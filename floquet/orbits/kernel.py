@@ -149,23 +149,13 @@ def propagate(
 ) -> int:  # fmt: skip
     """Propagate over whole cycles from phase 0; phase derivatives throughout, v = dz/dtau.
 
-    Parameters
-    ----------
-    x : (2m,) z and v at the start
-    T, parameter : period [s] and the free parameter
-    derivatives : whether the columns by x, T and the parameter travel along
-    phases ... H, output : see `floquet.orbits.system.ContactSystem`
-    samples : (S,) increasing phases in [0, 1) at which each cycle is recorded
-    sampled : (cycles S, 2m), out
-    loads : (cycles S, I), out: loads of the contacts
-    log : (L, 3), out: phase in cycles, contact, new state of each event; later ones are only counted
-    totals : (6,), out: integrals of y and y^2 over the phase, smallest and largest y, largest load of a
-        contact, smallest load of all together; y = output . z
-    final : (m + n, 1 or 2m + 3), out: z and v at the end, v of the accumulated rows among them, from 0
+    ``x`` is (z, v) at the start, ``derivatives`` says whether the columns by x, T and the parameter travel
+    along, ``phases`` to ``output`` are of `ContactSystem`. Out: ``sampled`` (cycles S, 2m) and ``loads``
+    (cycles S, I) at the ``samples``; ``log`` (L, 3), phase in cycles, contact, new state of each event;
+    ``totals`` (6,), integrals of y = output . z and y^2 over the phase, smallest and largest y, largest load
+    of a contact, smallest of all together; ``final`` (m + n, 1 or 2m + 3), z and v at the end.
 
-    Returns
-    -------
-    number of events, or -1 where more than 1000 a cycle happen or a number is not finite
+    Returns the number of events, or -1 where more than 1000 a cycle happen or a number is not finite.
     """
     n, m = K.shape
     contacts, pieces = u.shape[0], phases.size - 1
@@ -173,15 +163,10 @@ def propagate(
     width = k.shape[2]
     z = np.zeros((order + 1, m, columns))
     v = np.zeros((order + 1, n, columns))
-    load, d, w = (
-        np.zeros((contacts, order + 1, columns)),
-        np.zeros((contacts, order + 1, columns)),
-        np.zeros((contacts, order + 1, columns)),
-    )
-    kk, cc, ee, bb, al, be = (
-        np.zeros((contacts, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
-        np.zeros((contacts, width)), np.zeros((contacts, width)), np.zeros((contacts, width)),
-    )  # fmt: skip
+    shape = (contacts, order + 1, columns)
+    load, d, w = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    kk, cc, ee = np.zeros((contacts, width)), np.zeros((contacts, width)), np.zeros((contacts, width))
+    bb, al, be = np.zeros((contacts, width)), np.zeros((contacts, width)), np.zeros((contacts, width))
     aa = np.zeros((contacts, n, a.shape[3]))
     watch = np.zeros((contacts, order + width))
     depth = np.zeros((contacts, order + 1))

@@ -104,9 +104,7 @@ def long_run(
             continue
         exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe)
         zero = max(3.0 * uncertainty, _ZERO_EXPONENT)
-        if (
-            exponent > -zero
-        ):  # else it has left for a motion that repeats, which it will have reached next time
+        if exponent > -zero:  # else it has left for a motion that repeats, and will have reached it next time
             break
     last = system.run(state, period, observe, parameter)
     return LongRun("chaos" if exponent > zero else "beats", None, exponent, uncertainty, last, parameter)

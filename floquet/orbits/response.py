@@ -79,14 +79,10 @@ class Branch:
         for j in np.flatnonzero(away[:-1] * away[1:] <= 0.0):
             one, two = self.orbits[j], self.orbits[j + 1]
             part = away[j] / (away[j] - away[j + 1]) if away[j] != away[j + 1] else 0.5
+            start = (1.0 - part) * one.start + part * two.start
+            parameter = (1.0 - part) * one.parameter + part * two.parameter
             try:
-                orbit = find_orbit(
-                    system,
-                    (1.0 - part) * one.start + part * two.start,
-                    period,
-                    self.n,
-                    (1.0 - part) * one.parameter + part * two.parameter,
-                )
+                orbit = find_orbit(system, start, period, self.n, parameter)
             except NumericalError:
                 continue
             if not any(same_motion(orbit, other) for other in found):
@@ -210,10 +206,9 @@ def find_stack(
     seeds: int = 0,
     progress: Progress | None = None,
 ) -> list[Response]:
-    """Return the branches of several systems, each near the one before it, as over a second parameter.
+    """Return the branches of several systems, as over a second parameter, each also from its neighbours.
 
-    Each is looked at by itself as in `find_response`, and from motions of its neighbours on both sides, so
-    that an isolated branch is found wherever it exists once one member has shown it.
+    So an isolated branch is found wherever it exists once one member has shown it.
     """
     searches: list[_Search] = []
     for j, member in enumerate(members):
@@ -333,11 +328,7 @@ class _Search:
                 return
 
     def subharmonics(self) -> None:
-        """Look for motions of n cycles in those of one cycle at 1/n of the speed.
-
-        A large motion that hardly sees the coefficients change is nearly one of n cycles at n times the
-        speed.
-        """
+        """Look for motions of n cycles near large ones of one cycle at 1/n of the speed."""
         singles = [branch for branch in self.branches if branch.n == 1]
         for n in sorted(self.periods - {1}):
             for branch in singles:

@@ -103,9 +103,8 @@ def _last(first: int, end: int, error: Callable[[int], float]) -> int:
 def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray) -> float:
     """Period from which on a system is stable for all damping and factors between two values, (2,), (2, Q-1).
 
-    On a cell of the phase |L x| grows at most with the logarithmic norm of L A L^-1, L the eigenvectors of A
-    in its middle, and from cell to cell by |L' L^-1|. A is linear in damping and in each factor and the norm
-    convex: the largest is at a corner. inf: none such; with gyroscopic terms, which change with speed.
+    On a cell of the phase |L x| grows at most with the logarithmic norm of L A L^-1, from cell to cell by |L'
+    L^-1|; the norm is convex, so that the largest is at a corner. inf: none such, or gyroscopic terms.
     """
     if system.gyroscopic is not None:
         return math.inf
@@ -159,10 +158,8 @@ def _around(poly: FloatArray, middle: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 class _Size:
-    """How large a patch may be: bounds on the flow of a system at complex period and damping.
-
-    Let no flow within a cycle in the middle of the patch exceed ``growth``. Then none at another place
-    exceeds growth exp(growth d), d the integral of the change of T A over the cycle (Gronwall).
+    """How large a patch may be: flows within a cycle, at most ``growth`` in its middle, are at most growth
+    exp(growth d) at complex period and damping, d the integral of the change of T A (Gronwall).
     """
 
     def __init__(self, problem: Problem, growth: float, gains: FloatArray | None = None) -> None:
@@ -268,9 +265,9 @@ def _slopes(T: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _moved(x: FloatArray, at: FloatArray) -> FloatArray:
-    """How far (Q, radii) factors move from the last, in the middle, on the ellipses around the others.
+    """How far (Q, radii) factors move on the ellipses around parts x of the middle period, where the last is.
 
-    These are at parts x of the middle period: |ln(1 + z)| <= -ln(1 - |z|) where an ellipse does not reach 0.
+    |ln(1 + z)| <= -ln(1 - |z|) where an ellipse does not reach 0.
     """
     reach = 1.01 * np.abs(x - 1.0).max() * 0.5 * (_RADII + 1.0 / _RADII)
     depth = -np.log1p(-np.minimum(reach, 0.999))
@@ -303,9 +300,8 @@ def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray)
 def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
     """Verdicts (k,) of boxes x, y (2, k) of a patch, and how much its entries vary along both.
 
-    In the eigenvectors of the middle of a box let d_k bound how near the diagonal comes to the unit circle,
-    and f_kj the moduli of the other entries. Where d_k u_k > sum_j f_kj u_j for some u > 0 (Gershgorin's
-    disks, scaled), no multiplier is on the circle, and as many are outside as diagonal entries.
+    Where margin_k u_k > sum_j f_kj u_j for some u > 0 (Gershgorin's disks, scaled), no multiplier is on the
+    unit circle, and as many are outside as diagonal entries.
     """
     _, low, high, f, across, upward = bounded_entries(patch, x, y)
     margin = np.maximum(1.0 - high, low - 1.0)
@@ -324,10 +320,9 @@ def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> tuple[IntArr
 def bounded_entries(
     patch: FlowPolynomial, x: FloatArray, y: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Moduli of the entries of V^-1 M V over boxes, V the eigenvectors in the middle of each.
+    """V (k, n, n), eigenvectors in the middles of boxes; moduli of the entries of V^-1 M V; how they vary.
 
-    V (k, n, n), least and largest of the diagonal (k, n), largest of the others (k, n, n) with zeros on the
-    diagonal; and how much they vary along both.
+    Least and largest of the diagonal (k, n), largest of the others (k, n, n) with zeros on the diagonal.
     """
     n, (J, K) = patch.coefficients.shape[-1], _TERMS
     E, F = _restricted(x, _NODES[0]), _restricted(y, _NODES[1])

@@ -50,11 +50,8 @@ def packed(system: RankOneSystem) -> Problem:
 def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, float]:
     """Bounds on errors by rounding: of the constant part of A [1/s], of G, and the relative one of the gains.
 
-    Phi being taken as exact, its inverse is (I - E)^-1 Phi^T g with E = I - Phi^T g Phi. What that leaves of
-    the constant part is computed, with the rounding of its own computation. The gains are turned by Phi^T g,
-    weighted, added, moved to the middle of a step and scaled: 57 + m roundings of the sum of the moduli.
-
-    Sources: docs/theory/proven_bounds.md, "The matrix of a step".
+    Phi^-1 is (I - E)^-1 Phi^T g, E = I - Phi^T g Phi; the gains go through 57 + m roundings of the sum of
+    their moduli. Sources: docs/theory/proven_bounds.md, "The matrix of a step".
     """
     Phi, omega = form.shapes, form.omega
     Y = Phi.T * system.metric

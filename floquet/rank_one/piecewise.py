@@ -63,9 +63,7 @@ def to_series(count: int) -> tuple[FloatArray, FloatArray]:
 def series_rounding(count: int) -> float:
     """Bound on the sum of the errors of the coefficients by `to_series` per unit of the largest value.
 
-    Each entry is right to 8 u and each sum to count u, u being the unit of rounding; a point that is off by 2
-    u moves a value by at most 2 u count^2 (Markov), which the sum of the coefficients sees 2 count times less
-    than the first two. The constants are rounded up.
+    Entries are right to 8 u, sums to count u; a point off by 2 u moves a value by 2 u count^2 (Markov).
     """
     return 4.0 * count * (count + 12.0) * _U
 
@@ -85,23 +83,12 @@ def fit_pieces(
 ) -> tuple[FloatArray, list[FloatArray], FloatArray, npt.NDArray[np.intp]]:
     """Polynomials of G gains on pieces of the period, halved until what is dropped is small enough.
 
-    Parameters
-    ----------
-    gains : the gains, polynomials on every segment
-    edges : (S+1,) ends of the segments as parts of the period, 0 to 1
-    metric : (m,) weights of the norm of errors, sum_i metric_i e_i^2
-    degree : largest degree; where less is enough for all pieces, less is returned
-    rtol : wanted error relative to the largest value of each gain; on pieces shorter than 1/16 of the period
-        larger in proportion
+    ``edges`` (S+1,) are the ends of the segments as parts of the period, ``metric`` (m,) weights of the norm
+    of errors, ``degree`` the largest, ``rtol`` relative to the largest value of each gain; on pieces shorter
+    than 1/16 of the period larger in proportion.
 
-    Returns
-    -------
-    phases (P+1,); for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first; and (P, G) bounds on the
-    errors everywhere in each piece, rounding included; (S+1,) which of the phases are ``edges``
-
-    Raises
-    ------
-    NumericalError : the gains are not finite, or not to be had to any accuracy on a segment
+    Returns phases (P+1,); for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first; (P, G) bounds on
+    the errors everywhere in each piece, rounding included; (S+1,) which of the phases are ``edges``.
     """
     nodes, matrix = to_series(gains.count)
     root = np.sqrt(metric)

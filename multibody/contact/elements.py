@@ -28,8 +28,7 @@ _LAST_STEP = 1e-8
 def law_at(table: FloatArray, low: int, high: int, xi: float) -> tuple[float, float]:
     """A law in the rows ``low`` to ``high`` of a table at xi, and its slope; beyond its path it is constant.
 
-    The table has one row per polynomial piece: its left end, its right end, then coefficients, highest power
-    of (xi - left) first.
+    A row per piece: left end, right end, coefficients, highest power of (xi - left) first.
     """
     x = min(max(xi, table[low, 0]), table[high, 1])
     while low < high:
@@ -62,14 +61,10 @@ def stiffness_at(table: FloatArray, xi: float) -> float:
 def compliances(
     load: float, stiffness: float, softening: float, nominal: float
 ) -> tuple[float, float, float]:
-    """Compression of one tooth pair over its load, and how it grows with the load: slope, half of its bend.
+    """Compression of one tooth pair over its load p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2].
 
-    With Hertz's contact by Weber and Banaschek p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2: it grows
-    stiffer with the load, and is linear below N_1. Pulled, in a mesh that cannot lose contact, it is linear.
-
-    stiffness, nominal : k at the load N_0 [N/m], [N]
-    softening : D [m/N]; 0 is a linear spring
-    Returns p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2]
+    Hertz's contact by Weber and Banaschek, p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2, is linear
+    below N_1 and where it is pulled. ``stiffness`` is k at the load N_0 = ``nominal``, ``softening`` D [m/N].
     """
     if softening == 0.0 or load <= 0.0:
         return 1.0 / stiffness, 1.0 / stiffness, 0.0
@@ -102,10 +97,9 @@ def elastic_load(pressed: float, stiffness: float, softening: float, nominal: fl
 def stored_energy(
     load: float, stiffness: float, slope: float, softening: float, nominal: float
 ) -> tuple[float, float]:
-    """Energy that one tooth pair stores [J], and its slope along the path of contact [J/m].
+    """Energy U = N p - C of one pair [J], C the integral of p over N, and its slope along the path [J/m].
 
-    U = N p - C with the integral C of p over N, of which k alone depends on the place, as ``slope`` says
-    (docs/theory/contact_energy.md, "Energy of one pair"). The slope is at constant compression.
+    The slope is at constant compression; ``slope`` is that of k.
     """
     if stiffness <= 0.0:
         return 0.0, 0.0
@@ -211,15 +205,11 @@ def shared_loads(
     nominal: float,
     loads: FloatArray,
 ) -> None:
-    """Loads of tooth pairs that move each other, p_i = N_i c_i(N_i) + sum_j w_ij N_j where they touch.
+    """Loads N_i of tooth pairs that move each other, p_i = N_i c_i(N_i) + sum_j w_ij N_j where they touch.
 
-    Solved for the pairs that touch; then those that would pull are let go and those that would overlap are
-    taken in, until none is left. The energy is convex, so there is one answer.
-
-    pressed, stiffness : of ``count`` pairs: approach less all gaps [m], and k [N/m]
-    pulls : bits of the pairs that cannot lose contact
-    coupling : w_ij, zero on the diagonal [m/N]
-    loads : receives N_i [N]
+    Pairs that would pull are let go, those that would overlap taken in, until none is left: the energy is
+    convex, so there is one answer. ``pressed`` are p_i, approach less all gaps [m], ``pulls`` bits of the
+    pairs that cannot lose contact, ``coupling`` w_ij, zero on the diagonal [m/N].
     """
     touch = int(np.int64(0))
     for i in range(count):
@@ -267,11 +257,7 @@ def gradual(share: float) -> float:
 
 @compiled
 def relief_at(p: FloatArray, xi: float) -> tuple[float, float]:
-    """Material missing from both flanks that touch at xi [m], and its slope over xi.
-
-    Each relief grows over the roll angle of its own gear, the flank's distance from the base circle over the
-    base radius, from its start to the end of the flank.
-    """
+    """Material missing from both flanks at xi [m], each relief growing over its own roll angle; its slope."""
     error = slope = 0.0
     for i in range(int(p[kn.RELIEFS])):
         row = kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * i

@@ -102,11 +102,10 @@ def _change(law: PathFunction, j: int, step: float) -> float:
 
 @compiled
 def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArray, flags: int) -> float:
-    """How far beyond D the pinion's tip corner lets go: its damper would pull as much as it presses [m].
+    """How far beyond D the pinion's tip corner, the flanks pressed by ``gap``, lets go [m].
 
-    Where the compression falls at the rate u that is where the load is c u, or with the share x^2 (3 - 2 x)
-    of a damper that acts gradually, at the load x N_f, where c u x (3 - 2 x) = N_f. ``gap`` is the approach
-    of the flanks [m].
+    There the damper pulls as the spring presses: at the load c u, u the rate at which the compression falls,
+    or where it acts with the share x^2 (3 - 2 x) at x N_f, where c u x (3 - 2 x) = N_f.
     """
     rp, rg, tip, length = line.radius_p, line.radius_g, p[kn.TIP_P], line.length
     vx, vy = v[0] - v[3], v[1] - v[4]
@@ -135,10 +134,7 @@ def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArra
 
 @compiled
 def moved_by_others(at: float, contacts: FloatArray, count: int, p: FloatArray) -> float:
-    """How much of the approach of a pair at xi = ``at`` the loads of the others take [m].
-
-    The others are whole pitches off; ``contacts`` are the ``count`` records of the present contacts.
-    """
+    """How much of the approach of a pair at xi = ``at`` the loads of the others, pitches off, take [m]."""
     moved = 0.0
     for i in range(count):
         apart = math.floor((contacts[i, kn.XI] - at) / p[kn.PITCH] + 0.5)
@@ -163,9 +159,8 @@ def distance(
     """How far one tooth pair has to travel along the path of contact to an event, modulo the base pitch [m].
 
     Friction jumps or bends at a sliding velocity v_s, given by the place where the nominal motion slides so
-    fast, xi = L_XP + v_s/(Omega_p + Omega_g). The actual v_s is linear along the line of action, so the place
-    where it takes that value is exact. ``contacts`` are the ``count`` pairs whose loads move a tip corner,
-    none where pairs stand alone.
+    fast, xi = L_XP + v_s/(Omega_p + Omega_g); the actual one is linear along the line of action. ``contacts``
+    are the ``count`` pairs whose loads move a tip corner, none where pairs do not move each other.
     """
     line, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
     length = line.length

@@ -64,10 +64,7 @@ def hertz_pressure(f: FloatArray, radius: float, w: float) -> float:
 
 @compiled
 def film_parameter(f: FloatArray, rolling: float, radius: float, w: float) -> float:
-    """Film parameter Lambda, equation (21): Dowson and Toyoda's central film over the filtered roughness.
-
-    Without load w [N/m] the film is unbounded; ``radius`` is the reduced radius of curvature [m].
-    """
+    """Film parameter Lambda, equation (21): Dowson and Toyoda's central film over the filtered roughness."""
     if w <= 0.0:
         return math.inf
     modulus = f[MODULUS]
@@ -80,10 +77,7 @@ def film_parameter(f: FloatArray, rolling: float, radius: float, w: float) -> fl
 
 @compiled
 def benedict_kelley(f: FloatArray, sliding: float, rolling: float, w: float) -> float:
-    """Law II before its bounds, equation (14); w in N/mm, eta in mPa s, S in um there.
-
-    The sliding velocity is held at ``SLOWEST`` from below, because the law is infinite at the pitch point.
-    """
+    """Law II before its bounds, equation (14); w in N/mm, eta in mPa s, S in um there; v_s >= ``SLOWEST``."""
     if w <= 0.0:
         return 0.0
     slow = max(sliding, f[SLOWEST])
@@ -115,10 +109,7 @@ def smoothed_coulomb(f: FloatArray, distance: float) -> float:
 
 @compiled
 def reduced_radius(rho_p: float, rho_g: float) -> float:
-    """Reduced radius of curvature [m], equation (15).
-
-    Vibration may carry a contact past a base circle, where there is no involute: the radius is held above 0.
-    """
+    """Reduced radius of curvature [m], equation (15); above 0 also past a base circle, without involute."""
     least = 1e-6 * (rho_p + rho_g)
     return max(rho_p, least) * max(rho_g, least) / (rho_p + rho_g)
 
@@ -141,12 +132,9 @@ def branch(f: FloatArray, sliding: float, rolling: float, rho_p: float, rho_g: f
 def magnitude(
     f: FloatArray, sliding: float, rolling: float, rho_p: float, rho_g: float, distance: float, w: float
 ) -> float:
-    """Size of the friction coefficient at one contact.
+    """Size of the friction coefficient at one contact: v_s >= 0, v_e [m/s], rho_p, rho_g [m], w [N/m].
 
-    sliding, rolling : v_s >= 0, and v_e, the sum of the rolling velocities [m/s]
-    rho_p, rho_g : radii of curvature of the flanks at the contact [m]
-    distance : law IV's argument: from the pitch point to where the nominal motion slides as fast [m]
-    w : load per face width [N/m]
+    ``distance`` is law IV's argument: from the pitch point to where the nominal motion slides as fast [m].
     """
     law = int(f[LAW])
     if law == _NONE:

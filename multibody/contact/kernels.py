@@ -193,11 +193,8 @@ def contact_forces(
                 bound |= 1 << i
             known[kn.POSITION, i], known[kn.PRESSED, i], known[kn.PRESSING, i] = xi, pressed, pressing
             known[kn.RELIEF_SLOPE, i] = error_slope
-            known[kn.BY_P, i], known[kn.BY_G, i], known[kn.BY_L, i] = (
-                corners.by_p,
-                corners.by_g,
-                corners.by_length,
-            )
+            known[kn.BY_P, i], known[kn.BY_G, i] = corners.by_p, corners.by_g
+            known[kn.BY_L, i] = corners.by_length
             k, slope = stiffness_and_slope(table, xi)
             share = 1.0 / (1.0 + own_teeth.softer * k)
             known[kn.STIFFNESS, i] = share * k
@@ -218,11 +215,8 @@ def contact_forces(
             shared_loads(pairs, pressed_by, stiff, bound, coupling, softening, nominal, loads)
         for i in range(pairs):
             xi, pressed, pressing = known[kn.POSITION, i], known[kn.PRESSED, i], known[kn.PRESSING, i]
-            elastic, stiffness, error_slope = (
-                known[kn.NORMAL, i],
-                known[kn.STIFFNESS, i],
-                known[kn.RELIEF_SLOPE, i],
-            )
+            elastic, stiffness = known[kn.NORMAL, i], known[kn.STIFFNESS, i]
+            error_slope = known[kn.RELIEF_SLOPE, i]
             own, moved, moved_slope = pressed, 0.0, 0.0
             if coupled:
                 for j in range(pairs):
@@ -258,12 +252,8 @@ def contact_forces(
                 by_p, by_g = normal * known[kn.BY_P, i] + along, normal * known[kn.BY_G, i] - along
                 add_gradient(wrench, line, by_p, by_g, normal * known[kn.BY_L, i])
             record = contacts[count]
-            record[kn.XI], record[kn.LOAD], record[kn.FRICTION_FORCE], record[kn.MU] = (
-                xi,
-                normal,
-                mu * normal,
-                mu,
-            )
+            record[kn.XI], record[kn.LOAD], record[kn.MU] = xi, normal, mu
+            record[kn.FRICTION_FORCE] = mu * normal
             record[kn.K], record[kn.C], record[kn.SLIDE] = stiffness, damping, slide
             record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.FLANK] = pressed, pressing, flank
             record[kn.CLOSING], record[kn.ELASTIC], record[kn.ENERGY] = rate, elastic, stored

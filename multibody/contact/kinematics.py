@@ -1,39 +1,10 @@
-r"""Contact kinematics of two involute gears as rigid bodies in the plane, exact for finite motions.
+"""Contact kinematics of two involute gears as rigid bodies in the plane, exact for finite motions.
 
 Nothing here knows a stiffness, a load or a nominal motion: only centre positions, rotation angles (counter-
-clockwise, rad), velocities, base radii and tip radii.
+clockwise, rad), velocities, base radii and tip radii. The line of action runs from the pinion's tangent point
+X to the gear's, Y; along it are e, the flank distances rho_p and rho_g from X and Y, and the overlap delta.
 
-Derivation
-----------
-Let :math:`d = c_g - c_p` be the vector between the actual centres, :math:`a = |d|`, :math:`R = r_{bp} +
-r_{bg}` and :math:`J` the rotation by +90 degrees. A drive flank (s = +1) and its mirror image, the coast
-flank (s = -1), each have their own line of action, the crossed common tangent of the base circles. With its
-unit vector :math:`e` pointing from the pinion's tangent point X to the gear's tangent point Y, :math:`n = s
-J e` and :math:`L = |XY|`,
-
-.. math:: X = c_p + r_{bp} n, \quad Y = c_g - r_{bg} n, \quad d = L e + s R J e
-          \;\Rightarrow\; L = \sqrt{a^2 - R^2}, \quad e = (L d - s R J d)/a^2 .
-
-An involute is traced by the end of a taut string, so a flank crosses the line of action at right angles, at a
-distance :math:`\rho` from the tangent point that equals the arc unwound from its base circle. With
-:math:`\psi` the angle of e and :math:`\chi` a constant of the flank (where its involute starts, in the body
-frame),
-
-.. math:: \rho_p = s r_{bp} (\psi - \phi_p - \chi_p), \qquad
-          \rho_g = s r_{bg} (\psi + \pi - \phi_g - \chi_g), \qquad \delta = \rho_p + \rho_g - L ,
-
-modulo the base pitch. :math:`\delta > 0` is the overlap of the two flanks along their common normal; it is
-the same for every pair of teeth in contact, because involutes are conjugate at any centre distance.
-Differentiating, all terms with :math:`\dot\psi` and :math:`\dot L` combine to
-
-.. math:: \dot\delta = e \cdot (\dot c_p - \dot c_g) - s (r_{bp} \dot\phi_p + r_{bg} \dot\phi_g) ,
-
-which is minus the power of a unit force pair along the line of action: the wrench is the gradient of the
-overlap.
-
-The overlap is shared by both flanks, so the contact point lies in its middle:
-:math:`P = X + (\rho_p - \delta/2) e = Y - (\rho_g - \delta/2) e`. The formulas do not change when pinion
-and gear are exchanged.
+Sources: docs/theory/multibody.md, "Line of action", "Overlap, wrench and contact point".
 """
 
 from __future__ import annotations
@@ -135,10 +106,8 @@ def mesh_phase(
     phi_p, phi_g : rotation angles beyond the rolling [rad]
     rolled : arc by which both base circles have turned in the drive sense, pinion clockwise [m]
     chi_p : angle of the pinion's flank [rad]
-    overlap : of the flanks at psi = phi_p = phi_g = 0 and L = L_0 [m], which is
-        -s (r_bp chi_p + r_bg (chi_g - pi)) - L_0
-    Returns (rho, delta) : distance of the first pinion flank from X in [0, pitch), the others follow at whole
-        pitches; overlap of the flanks, positive when pressed [m]
+    overlap : at psi = phi_p = phi_g = 0, L = L_0: -s (r_bp chi_p + r_bg (chi_g - pi)) - L_0 [m]
+    Returns (rho, delta) : distance of the first pinion flank from X in [0, pitch), overlap of the flanks [m]
     """
     rho_p = flank * radius_p * (psi - phi_p - chi_p)
     turned = (radius_p + radius_g) * psi - radius_p * phi_p - radius_g * phi_g
@@ -188,13 +157,9 @@ def add_wrench(
 
 @compiled
 def add_gradient(wrench: FloatArray, line: Line, by_p: float, by_g: float, by_length: float) -> None:
-    """Add the generalised force by_p grad(rho_p) + by_g grad(rho_g) + by_length grad(L) to ``wrench``.
+    """Add by_p grad(rho_p) + by_g grad(rho_g) + by_length grad(L) to ``wrench``: the force of any energy.
 
-    The three lengths are all that two flanks know of each other, so every contact energy gives such a force.
-    It obeys action and reaction in force and moment identically, because a rigid motion of both gears
-    together changes none of the lengths (docs/theory/contact_energy.md, "Wrench").
-
-    by_p, by_g, by_length : minus the derivatives of the energy by the flank distances and the length [N]
+    The factors are minus its derivatives [N]; source: docs/theory/contact_energy.md, "Wrench".
     """
     ex, ey, length, flank, radius_p, radius_g = line
     tilt = flank * (radius_p + radius_g) / length
@@ -213,17 +178,14 @@ def add_gradient(wrench: FloatArray, line: Line, by_p: float, by_g: float, by_le
 def corner_gap(
     beyond: float, tip: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float]:
-    """How much more two teeth have to approach until the tip corner of one meets the flank of the other.
+    """How much more two teeth have to approach until the tip corner of one meets the flank of the other [m].
 
-    The line of action has left the flank of the gear that ends first: its corner stands off the line, and
-    touches the mate's involute along a tangent of the mate's base circle (docs/theory/contact_energy.md,
-    "Tip corner").
+    It touches along a tangent of the mate's base circle (docs/theory/contact_energy.md, "Tip corner").
 
     beyond : flank distance of the gear with the corner, less that of its tip circle [m]
     tip, radius : tangent length of the tip circle and base radius of the gear with the corner [m]
     length, mate : of the line of action, and base radius of the other gear [m]
-    Returns (gap, by_distance, by_length) : the gap [m], zero up to the tip, and its derivatives by the flank
-        distance and by the length of the line of action
+    Returns the gap, zero up to the tip; its derivatives by the flank distance and by ``length``
     """
     if beyond <= 0.0:
         return 0.0, 0.0, 0.0
@@ -242,11 +204,9 @@ def corner_gap(
 
 @compiled
 def corner_reach(gap: float, tip: float, length: float, radius: float, mate: float) -> float:
-    """How far beyond its tip circle a corner still touches, given the approach of the flanks [m].
+    """How far beyond its tip circle a corner still touches: the inverse of ``corner_gap`` [m].
 
-    The inverse of ``corner_gap``, whose arguments it takes; its leading term
-    gap = (tip/radius)^2 (1/tip + 1/rho) beyond^2/2, with rho the mate's radius of curvature at the corner, is
-    where Newton's method starts.
+    Newton's method from gap = (tip/radius)^2 (1/tip + 1/rho) beyond^2/2, rho the mate's radius of curvature.
     """
     if gap <= 0.0 or length <= tip:
         return 0.0
@@ -264,11 +224,10 @@ def corner_reach(gap: float, tip: float, length: float, radius: float, mate: flo
 def pairs_in_contact(
     rho: float, delta: float, length: float, pitch: float, tip_p: float, tip_g: float, arms: FloatArray
 ) -> int:
-    """Find every pair of teeth whose flanks meet within both tip circles; returns their number.
+    """Find every pair of teeth whose flanks meet between base and tip circles; returns their number.
 
-    A flank reaches from its base circle (rho = 0) to its tip circle (rho = tip_p, tip_g: the tangent length
-    sqrt(r_a^2 - r_b^2)). ``arms`` (MAX_PAIRS, 2) receives the flank distances (rho_p, rho_g), newest pair
-    first [m]; the other arguments are those of ``mesh_phase`` and ``Line``.
+    tip_p, tip_g : rho at the tip circles, tangent lengths sqrt(r_a^2 - r_b^2) [m]
+    arms : (MAX_PAIRS, 2) receives the flank distances (rho_p, rho_g), newest pair first [m]
     """
     count = 0
     rho_p = rho
@@ -283,10 +242,9 @@ def pairs_in_contact(
 
 
 class Corners(NamedTuple):
-    """Gap that tip corners beyond the path of contact leave [m]; only one of them is ever beyond its tip.
+    """Gap that tip corners beyond the path leave [m], its derivatives by both flank distances and the length.
 
-    by_p, by_g, by_length : its derivatives by the flank distances of pinion and gear, and by the length of
-        the line of action
+    Only one of them is ever beyond its tip.
     """
 
     gap: float
@@ -310,9 +268,7 @@ def mesh_position(
 ) -> tuple[Line, float, float, float]:
     """Line of action of one side of the teeth, and where they stand on it; arguments as ``contact_forces``.
 
-    Returns (line, delta, rho, xi) : the line; overlap; flank distance rho_p of one tooth pair from X, with
-        which ``engaged`` finds the pairs in contact, and its position on the path of contact [m]. The other
-        pairs follow at whole pitches
+    Returns the line, the overlap, and of one tooth pair rho_p for ``engaged`` and its position xi [m]
     """
     rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
     tau = min(max(t, p[kn.T_LOW]), p[kn.T_HIGH])

@@ -92,11 +92,9 @@ class Machine:
 
     @cached_property
     def bodies(self) -> FloatArray:
-        """Constant coefficients of the bodies' equations of motion, (4, 6).
+        """Inertia, bearing stiffness and damping, load of (x_p, y_p, phi_p, x_g, y_g, phi_g), rows (4, 6).
 
-        Rows: inertia, bearing stiffness, bearing damping, constant load of the coordinates (x_p, y_p, phi_p,
-        x_g, y_g, phi_g). The pinion turns clockwise, so its driving torque is negative; the brake's acts
-        against the gear.
+        The pinion turns clockwise, so its driving torque is negative; the brake's acts against the gear.
         """
         rows = np.zeros((4, 2, 3))
         rows[0, :, :2], rows[0, :, 2] = self.mass[:, None], self.inertia
@@ -106,16 +104,12 @@ class Machine:
 
     @cached_property
     def vibrations_per_cycle(self) -> float:
-        """Swings of the fastest natural mode in one mesh cycle, with every pair at its largest stiffness.
-
-        The mesh acts along the nominal line of action, without friction and damping. On shafts dampers count,
-        where they answer faster.
-        """
+        """Swings of the fastest mode in one mesh cycle; on shafts of dampers where they are faster."""
         return self.rates[1] * self.period / (2.0 * np.pi)
 
     @cached_property
     def rates(self) -> tuple[float, float]:
-        """Frequency of the fastest natural mode, and the largest rate that dampers make of it [rad/s]."""
+        """Frequency of the fastest mode, pairs at largest stiffness; largest rate of dampers [rad/s]."""
         left, right = self.table[:, 0], self.table[:, 1]
         places = np.concatenate([left, 0.5 * (left + right), right])
         largest = max(abs(stiffness_at(self.table, xi)) for xi in places)
@@ -281,10 +275,7 @@ def _highest(machine: Machine) -> float:
 
 
 def _loaded_laws(cycle: MeshCycle, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Table of the lumped loaded contact's laws, one below the other, and its switches as phases.
-
-    The linear mesh with loaded contact checks the equations alone: it reads the lumped element laws.
-    """
+    """Table of the lumped loaded contact's laws, one below the other, and its switches as phases."""
     e = cycle.elements
     assert e.gap is not None
     assert e.tilt is not None
@@ -307,9 +298,7 @@ def _mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
 def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
     """Turn the unloaded gears so that it is the loaded pair, in its static state q, that is at A at t = 0.
 
-    Wind-up and bearing deflection move the contact along the path, by a constant in the mean. The rigid
-    rotation of a free gear train is arbitrary, so that constant is no difference between models but a
-    choice of the time origin; it is taken out.
+    Wind-up and bearing deflection move the contact by a constant, which is a choice of the time origin.
     """
     p = machine.parameters.copy()
     along, off = (q[3] - q[0], q[4] - q[1]) if flags & kn.MOVING_LINE else (0.0, 0.0)

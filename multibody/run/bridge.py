@@ -53,10 +53,7 @@ def bridge(
     To start exudyn's solver costs as much as three of its steps; behind an event the step size is found here.
 
     ordinary : step of exudyn away from events, and the first to try [s]
-    times : (n,) receives the ends of the steps; the first is given [s]
-    states : (3, n, 6) coordinates, velocities and accelerations, of which the first rows are given
-    bodies : (4, 6) as ``Machine.bodies``
-    rtol, atol : largest error of a step: rtol times the value, and atol
+    times, states : (n,) ends of the steps [s], (3, n, 6) coordinates, rates, accelerations; the first given
     tableau : ``TABLEAU``; as a constant it would be compiled into unrolled loops
     Returns number of rows filled, step to go on with [s], number of force evaluations
     """

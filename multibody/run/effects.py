@@ -4,10 +4,8 @@ With all of them off the exact model solves the lumped equations, so every diffe
 is the sum of what these switches add. A new effect is its physics and its bit in ``kernels`` and its entry
 here.
 
-The momentary load in the friction law is no finite motion. The laws are stated for the full static load, and
-reading them at a pair's own load changes the coefficient by some ten per cent however small the torque is: a
-change that does not vanish with the motion would hide those that do. So it acts only where it is asked for,
-and the attribution shows what it does.
+The momentary load in the friction law is no finite motion: it changes the coefficient however small the
+torque is. So it acts only where it is asked for, and the attribution shows what it does.
 """
 
 from __future__ import annotations

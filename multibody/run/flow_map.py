@@ -109,10 +109,11 @@ def monodromy(
     setup = prepare(pair, fidelity, "periodic", effects, _RTOL[fidelity] if rtol is None else rtol)
     orbit = find_orbit(setup)
     end = orbit.flow(orbit.state) if fidelity == "linear" else None
-    full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity], end)
+    scale = state_scale(orbit.machine, setup.deflection)
+    full = _differences(orbit.flow, orbit.state, scale * _STEP[fidelity], end)
     read, lift = _relative(orbit.machine)
-    torque = orbit.machine.torque_gear
-    return FlowMap(read @ full @ lift, full, read, lift, orbit.state, torque, orbit.closure)
+    brake = orbit.machine.torque_gear
+    return FlowMap(read @ full @ lift, full, read, lift, orbit.state, brake, orbit.closure)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,15 +139,14 @@ def find_orbit(
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
     Broyden's method (Math. Comp. 19 (1965) 577-593) starts from the monodromy matrix of the lumped model, on
-    shafts from that of the model's own linear mesh. It differs from that of the motion looked for by a few
-    per cent, and by much where friction sticks for a time. Each step runs the cycles and corrects the
-    matrix along the way it went; the motion found does not depend on the matrix.
+    shafts from that of the model's own linear mesh. Each step runs the cycles and corrects the matrix along
+    the way it went; the motion found does not depend on the matrix.
 
     near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
     near : motion of the pair with other effects, to start from with its matrix
     Raises NumericalError : the iteration does not close the cycle
     """
-    scale, machine = _scale(setup), setup.machine
+    machine, scale = setup.machine, state_scale(setup.machine, setup.deflection)
     if near is None:
         state = _packed(machine, setup.q, setup.v)
         matrix = _first_matrix(setup, state, scale, cycles, near_lumped)
@@ -197,8 +197,10 @@ def _first_matrix(
             more.torque_gear - machine.torque_gear
         )
     if machine.train is None:
-        return _bordered(transition, by_torque, machine, scale)
-    return bordered(transition, by_torque, machine.train, scale, machine.torque_gear)
+        turn = machine.inertia / machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+    else:
+        turn = machine.train.mass @ machine.train.free_turn
+    return bordered(transition, by_torque, turn, scale, machine.torque_gear)
 
 
 def steady_state(
@@ -236,15 +238,8 @@ def steady_state(
     """
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 64)
-    setup = prepare(
-        pair,
-        fidelity,
-        "periodic" if initial is None else initial,
-        effects,
-        rtol,
-        friction_velocity,
-        supports=supports,
-    )
+    start = "periodic" if initial is None else initial
+    setup = prepare(pair, fidelity, start, effects, rtol, friction_velocity, supports)
     orbit = find_orbit(setup, cycles, near_lumped=initial is None and cycles == 1)
     return cycles_of(orbit, samples_per_cycle, cycles)
 
@@ -304,15 +299,6 @@ def _unpacked(machine: Machine, state: FloatArray) -> tuple[FloatArray, FloatArr
     )
 
 
-def _scale(setup: Setup) -> FloatArray:
-    """Sizes of the states in a vibration: static deflection, and that over the mesh cycle times 2 pi."""
-    if setup.machine.train is not None:
-        return state_scale(setup.machine, setup.deflection)
-    p = setup.machine.parameters
-    lengths = setup.deflection * np.array([1 / p[kn.RADIUS_P], 1 / p[kn.RADIUS_G], 1, 1, 1, 1])
-    return np.concatenate([lengths, lengths * 2 * np.pi / setup.machine.period])
-
-
 def _differences(
     flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None = None
 ) -> FloatArray:
@@ -325,17 +311,6 @@ def _differences(
         change = (flow(ahead) - flow(behind)) / 2.0 if end is None else flow(ahead) - end
         columns.append(change / h)
     return np.stack(columns, axis=1)
-
-
-def _bordered(full: FloatArray, by_torque: FloatArray, machine: Machine, scale: FloatArray) -> FloatArray:
-    """I - map, (13, 13), bordered by the brake torque as unknown and the rigid rotation as held; scaled."""
-    p = machine.parameters
-    matrix = np.zeros((13, 13))
-    matrix[:12, :12] = (np.eye(12) - full) * scale / scale[:, None]
-    matrix[:12, 12] = -by_torque * machine.torque_gear / scale
-    rigid = machine.inertia / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])
-    matrix[12, :2] = rigid * scale[:2] / (rigid * scale[:2]).max()
-    return matrix
 
 
 def _relative(machine: Machine) -> tuple[FloatArray, FloatArray]:

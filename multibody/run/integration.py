@@ -1,11 +1,9 @@
 """Time integration by exudyn's DOPRI5, interval by interval, with dense output.
 
 Each interval ends where the nominal element laws switch (linear) or at the end of a mesh cycle (exact). The
-latter is cut further where the motion itself will make the contact force jump or bend
-(``multibody.contact.events``): the integrator stops before, a few steps of the same method without exudyn
-(``bridge``) and a Taylor step lead across, and the integrator starts again. Between the steps
-the state is a quintic Hermite polynomial through coordinates, velocities and accelerations; its error, of
-sixth order in the step, stays below the integrator's, of fifth.
+latter is cut further at events (``multibody.contact.events``): the integrator stops before, a few steps
+without exudyn (``bridge``) and a Taylor step lead across. Between the steps the state is a quintic Hermite
+polynomial, whose error, of sixth order in the step, stays below the integrator's, of fifth.
 """
 
 from __future__ import annotations
@@ -255,10 +253,8 @@ def _run(
 ) -> Segment:
     """Run exudyn from start to stop, or to where it stands still.
 
-    Its error is scaled by atol + rtol max(x, x before), without taking the size of x. A negative coordinate
-    or rate therefore meets a place, x = -atol/rtol, where no error is small enough: a step leads across only
-    if what rounding leaves of the error is small against the step. Where it stands still the steps so far
-    hold; with another atol that place is elsewhere.
+    Its error is scaled by atol + rtol max(x, x before), without taking the size of x: at x = -atol/rtol no
+    error is small enough. The steps so far hold; with another atol that place is elsewhere.
     """
     ti, system, budget = s.timeIntegration, model.system, model.budget
     budget.watch(start, _STANDSTILL * model.machine.period)

@@ -66,7 +66,8 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     unknown = 2 if brake is None else 1
     weights = np.array([1.0, 0.0, 0.0 if brake is None else brake])
     scale = state_scale(machine, 1.0)
-    matrix = bordered(transition, forced[:, unknown], train, scale, machine.torque_pinion)
+    turn = train.mass @ train.free_turn
+    matrix = bordered(transition, forced[:, unknown], turn, scale, machine.torque_pinion)
     size = np.linalg.norm(matrix, axis=0)
     condition = float(np.linalg.cond(matrix / size))
     if not condition < _WORST_CONDITION:
@@ -89,24 +90,27 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
 
 
 def state_scale(machine: Machine, deflection: float) -> FloatArray:
-    """Sizes of the 2n states in a vibration: a deflection [m], and that over the mesh cycle times 2 pi."""
-    train, radii = _train(machine), machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
-    lengths = np.full(train.size, deflection)
-    for angles, radius in zip(train.angles, radii, strict=True):
+    """Sizes of the states in a vibration: a deflection [m], and that over the mesh cycle times 2 pi.
+
+    On shafts of the 2n states, else of the lumped ones, whose first two are angles.
+    """
+    radii, lengths = machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]], np.full(machine.size, deflection)
+    places = machine.train.angles if machine.train else (np.array([0]), np.array([1]))
+    for angles, radius in zip(places, radii, strict=True):
         lengths[angles] *= 1.0 / radius  # an angle that moves the base circle by as much
     return np.concatenate([lengths, lengths * 2.0 * np.pi / machine.period])
 
 
 def bordered(
-    transition: FloatArray, by_torque: FloatArray, train: Train, scale: FloatArray, torque: float
+    transition: FloatArray, by_torque: FloatArray, turn: FloatArray, scale: FloatArray, torque: float
 ) -> FloatArray:
-    """I - map, bordered by a torque as unknown (over ``torque``) and the free turn as held, scaled."""
-    n = train.size
-    matrix = np.zeros((2 * n + 1, 2 * n + 1))
-    matrix[:-1, :-1] = (np.eye(2 * n) - transition) * scale / scale[:, None]
+    """I - map, bordered by a torque as unknown (over ``torque``) and the free turn as zero, scaled."""
+    n = turn.size
+    matrix = np.zeros((scale.size + 1, scale.size + 1))
+    matrix[:-1, :-1] = (np.eye(scale.size) - transition) * scale / scale[:, None]
     matrix[:-1, -1] = -by_torque * torque / scale
-    held = (train.mass @ train.free_turn) * scale[:n]
-    matrix[-1, :n] = held / np.abs(held).max()
+    row = turn * scale[:n]
+    matrix[-1, :n] = row / np.abs(row).max()
     return matrix
 
 

@@ -39,13 +39,11 @@ CALL_LIMIT, _ORDINARY_VIBRATIONS = 400_000, 80
 _MOST_VIBRATIONS = 500
 #: Largest static deflection over the base pitch: the pairing of flanks is lost at half a pitch.
 _MOST_DEFLECTION = 0.25
-#: exudyn has one absolute tolerance for coordinates and rates. It is set for the rates: this share of a
-#: static deflection per mesh cycle, times rtol. With much less, a rate that is zero when an impact starts
-#: would have to be found to the last bit. The coordinates are the rates' integrals and no less accurate for
-#: it.
+#: exudyn has one absolute tolerance for coordinates and rates, set for the rates: this share of a static
+#: deflection per mesh cycle, times rtol. With much less, a rate that is zero when an impact starts would have
+#: to be found to the last bit.
 _ATOL_SHARE = 0.1
-#: On shafts a hundred times that: else their fastest modes, which hardly move, set the step. At rtol 1e-8 the
-#: transmission error then errs by 1e-8 of itself, and a mesh cycle takes half the time.
+#: On shafts a hundred times that: else their fastest modes, which hardly move, set the step.
 _ATOL_SHARE_ON_SHAFTS = 10.0
 
 
@@ -280,10 +278,9 @@ _PLACES = 101  # at which the largest coefficient is looked for
 def choose_friction_velocity(machine: Machine) -> tuple[float, str]:
     """Choose the velocity over which friction changes its sign [m/s], 0 for the sign function; and say why.
 
-    At the pitch point sliding passes zero with a_s = (Omega_p + Omega_g) Omega_p r_bp. Friction that jumps
-    accelerates it by up to a_f = mu N/m_s, with 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g. Where less
-    than a_f is left of a_s, friction can stick: sign() has no solution there. Vibration takes away at most
-    Q = 1/(2 zeta) times a_f, so sign() is safe where a_s > (1 + Q) a_f.
+    At the pitch point sliding passes zero with a_s = (Omega_p + Omega_g) Omega_p r_bp; friction changes it by
+    a_f = mu N/m_s, 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g, and vibration by up to a_f/(2 zeta). Where
+    less than a_f may be left friction can stick, and sign() has no solution.
     """
     p, place = machine.parameters, float(machine.parameters[kn.L_XP])
     beside = max(abs(nominal_friction(p, place + side * _BESIDE)) for side in (-1.0, 1.0))

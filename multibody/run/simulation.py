@@ -230,11 +230,9 @@ def record(
     progress: Progress | None = None,
     run: Run | None = None,
 ) -> tuple[xr.Dataset, FloatArray, FloatArray]:
-    """Run a model and keep the variables of the last cycles.
+    """Variables of a run from ``first_cycle`` on, and the state q, v (size,) at its end.
 
-    first_cycle : the first one whose variables are kept
-    run : visits the segments of a run that was made; None makes it
-    Returns (dataset, q, v) : the variables, and the state (size,) at the end in the model's coordinates
+    ``run`` visits the segments of a run that was made; None makes it.
     """
     period = setup.machine.period
     grid = sample_times(period, samples_per_cycle)
@@ -262,12 +260,8 @@ def at_mean_speed(
 ) -> xr.Dataset:
     """Run that starts as a lumped motion, with the brake torque under which it keeps the mean speed.
 
-    Under the lumped one it would turn faster or slower, and the phase of contact with it: a first run tells
-    by how much the common rotation leaves its swing, and how it accelerates.
-
-    reference : the lumped motion at the times of the run, ``samples`` a mesh cycle
-    swing : (k,) common rotation of both base circles at these times [m]
-    settling : mesh cycles of the first run that are left out
+    A first run, without ``settling`` cycles, tells by how much the common rotation of the base circles leaves
+    its ``swing`` (k,) [m]. ``reference`` is the lumped motion at the times, ``samples`` a mesh cycle.
     """
     names = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
     state = np.array([float(reference[name][0]) for name in names])

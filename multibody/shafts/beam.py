@@ -170,11 +170,10 @@ Matrices = Callable[[int], tuple[FloatArray, FloatArray, int]]
 def reduce_fields(
     fields: Sequence[Matrices], highest: float, modal_masses: Sequence[float]
 ) -> tuple[tuple[Reduced, ...], int, float]:
-    """Raise the order of all fields of a shaft until their kept modes stand, and reduce them.
+    """Raise the order of all fields of a shaft until modes up to ``highest`` [rad/s] stand; reduce them.
 
-    Modes above ``highest`` [rad/s] are left out; ``modal_masses`` give modal coordinates the size of the kept
-    one. Returned are the fields, the order of the polynomials, and the largest change of a retained frequency
-    by the last increase of the order, over the highest.
+    ``modal_masses`` give modal coordinates the size of the physical one. Returns the fields, the order of the
+    polynomials, and the largest change of a frequency by its last increase, over the highest.
     """
     before = [_clamped(matrices(_FIRST_ORDER), highest)[0] for matrices in fields]
     for order in range(_FIRST_ORDER + 2, _LAST_ORDER + 1, 2):

@@ -87,10 +87,9 @@ def reduced_shaft(
     damping_ratio: float,
     highest: float,
 ) -> ReducedShaft:
-    """Assemble and reduce one shaft that turns at ``speed`` [rad/s], counter-clockwise in (x, y) positive.
+    """Assemble and reduce one shaft that turns at ``speed`` [rad/s], counter-clockwise positive.
 
-    ``damping_ratio`` is of every mode that deforms, teeth apart; modes with the gear held are kept up to
-    ``highest`` [rad/s].
+    ``damping_ratio`` is of every mode that deforms; modes with the gear fixed go up to ``highest`` [rad/s].
     """
     places = [shaft.gear_position, *(bearing.position for bearing in shaft.bearings)]
     if coupled is not None:

@@ -368,11 +368,10 @@ def _entries(
 
 @compiled(_nrt=False, forceinline=True)
 def _disks(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: FloatArray) -> None:
-    """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij.
+    """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij, with R_i = sum_j f_ij.
 
-    R_i = sum_j f_ij. Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), scaling the i-th coordinate
-    by tau = max_j 2 f_ji/|lambda_i - lambda_j| leaves disk i apart from the others and shrinks its radius to
-    f_ii + tau (R_i - f_ii): hardly more than the first order, f_ii.
+    Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), scaling the i-th coordinate by tau = max_j 2
+    f_ji/|lambda_i - lambda_j| leaves disk i apart and shrinks its radius to f_ii + tau (R_i - f_ii).
     """
     n = values.size
     for i in range(n):
@@ -415,18 +414,11 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
 def spectra(
     M: FloatArray, delta: FloatArray, values: ComplexArray, radii: FloatArray, safe: npt.NDArray[np.bool_]
 ) -> None:
-    """Eigenvalues of N matrices, each with a disk that holds as many exact ones, when M is wrong by delta.
+    """Eigenvalues (N, n) of M (N, n, n) wrong by delta (N,), 2-norm, each with a disk for as many exact ones.
 
-    However the eigenvalues and vectors were found, the disks follow from what is left of X^-1 M X - D
-    (`_entries`, `_disks`), computed with its rounding.
-
-    Parameters
-    ----------
-    M : (N, n, n)
-    delta : (N,) bound on the 2-norm of the error of each
-    values, radii : (N, n), out
-    safe : (N,), out: the eigenvectors are good enough, so that each radius is a bound for its own eigenvalue;
-        where disks overlap it reaches around all of those that hang together
+    The radii follow from what is left of X^-1 M X - D, computed with its rounding. Where ``safe`` (N,) the
+    eigenvectors are good enough, so that each is a bound for its own eigenvalue; where disks overlap it
+    reaches around all of those that hang together.
     """
     n = M.shape[1]
     A, f, sizes = np.empty((n, n)), np.empty((n, n)), np.empty((3, n))

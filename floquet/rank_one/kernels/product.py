@@ -136,11 +136,9 @@ def carry(
 ) -> float:
     """Product of the steps; returns a bound on the Frobenius norm of its error, rounding included.
 
-    With Q_j the computed product of the steps before step j, E_j the error of step j with the rounding of its
-    multiplication, and S_j the *exact* flow from the end of step j to that of the period, the error of the
-    product is sum S_j E_j Q_j, no term left out. S_j is known as a product of at most log2 of as many blocks,
-    each the computed product of 2^k steps (a binary counter, from the last step backwards), so that its own
-    error stays small.
+    With Q_j the computed product before step j, E_j its error and S_j the *exact* flow behind it, that is
+    the sum of S_j E_j Q_j (docs/theory/proven_bounds.md, "The product"). S_j is known as a
+    product of blocks of 2^k steps, a binary counter from the last step backwards.
 
     Steps are (count, n, lanes), ``local`` bounds |E_j|, ``sizes`` the Frobenius norms of the steps; the
     product goes to ``flow``. Scratch: ``before`` bounds |Q_j|, ``work`` is (2 BLOCKS + 1, n, lanes),
