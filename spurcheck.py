@@ -165,6 +165,13 @@ __all__ = [
     "write_rexs",
 ]
 
+#: What to type instead of a name that no package has.
+_INSTEAD = {
+    "predict(pair).efficiency": "efficiency losses power_loss",
+    "floquet.gear_pair_multipliers(pair).verdict": "is_stable stable",
+    "order_spectrum(motion)": "fft spectrum",
+    "preset_names()": "presets list_presets",
+}
 _NAMES = tuple(__all__)
 __all__.clear()  # help() would print all that it names, 1,500 lines
 
@@ -217,6 +224,9 @@ def _nearest(name: str) -> str:
     """Ask whether names that contain this one, or the most similar one, were meant."""
     import difflib
 
+    for instead, words in _INSTEAD.items():
+        if name.lower() in words.split():
+            return f". Use {instead}"
     known = [*_NAMES, *(f"{one}.{other}" for one in _PACKAGES for other in import_module(one).__all__)]
     close = [one for one in known if name.lower() in one.lower()] or difflib.get_close_matches(name, known)
     return f". Did you mean {' or '.join(f'spurcheck.{one}' for one in close[:3])}?" if close else ""

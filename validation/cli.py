@@ -9,9 +9,10 @@ import os
 import sys
 from contextlib import suppress
 from importlib import metadata
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from validation.commands.crosscheck import crosscheck
 from validation.commands.files import export, init, presets
@@ -27,8 +28,39 @@ from validation.commands.terminal import NUMERICAL, Once, unprinted
 from validation.commands.uncertainty import uncertainty
 from validation.stop_signals import interrupt_once
 
+#: What to type instead of a word that is no command.
+_INSTEAD = {
+    word: line
+    for line, words in {
+        "spurcheck --help": "help commands",
+        "spurcheck --version": "version",
+        "spurcheck init": "new create import",
+        "spurcheck report": "run analyse plot figures",
+        "spurcheck report PAIR --record FILE": "measurement measure",
+        "spurcheck crosscheck": "check compare verify validate",
+        "spurcheck response": "jumps branches",
+        "spurcheck interactive": "gui explore",
+    }.items()
+    for word in words.split()
+}
+
+
+class Commands(TyperGroup):
+    """The commands; what is none of them gets the one that was meant."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return the command of a line."""
+        line = f"spurcheck report {args[0]}" if args[0].endswith(".toml") else _INSTEAD.get(args[0])
+        return (
+            ctx.fail(f"No such command '{args[0]}'. Type: {line}")
+            if line
+            else super().resolve_command(ctx, args)
+        )
+
+
 app = typer.Typer(
     name="spurcheck",
+    cls=Commands,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",

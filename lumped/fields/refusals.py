@@ -28,6 +28,8 @@ _ELSEWHERE = {
     ("power", "input_power"): "Write pinion_torque: in N m it is 9549.3 times the power in kW over the "
     "speed in rpm.",
     ("module", "normal_module", "pressure_angle"): "Both gears have one rack: write it in basic_rack.",
+    ("material", "steel"): "Write youngs_modulus, poisson_ratio and density; without them it is steel.",
+    ("eccentricity", "runout"): "Write mounting.eccentricity in the section of the gear.",
     ("mu", "friction_coefficient"): "For a constant mu write law = 'coulomb' and coefficient in friction.",
 }
 _ACTIONS = {key: action for keys, action in _ELSEWHERE.items() for key in keys}
@@ -131,7 +133,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         return [_choice(path, item.get("input"), names)]
     if kind in _NO_TABLE:
         keys = [name for model in models for name in model.model_fields]
-        action = f"Set one of its keys: {path}.{keys[0]}." if parts and keys else "Write a section."
+        listed = ", ".join(f"{path}.{key}" for key in keys)
+        action = f"Set its keys one by one: {listed}." if parts and keys else "Write a section."
         return [FieldProblem(path or "file", value, "a table of keys and values", action)]
     if kind == "string_too_short":
         return [FieldProblem(path, value, "text that is not empty", "Write it.")]

@@ -122,7 +122,7 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
 }
 _ZERO_CELSIUS = Decimal("273.15")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
-_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°º%²³⁻¹·⋅×]")
+_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°º%²³⁻¹·⋅×]|%%")
 
 
 class SIValue(float):

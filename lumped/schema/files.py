@@ -68,9 +68,9 @@ def load_gear_pair(source: AnyPair) -> GearPair:
         return source
     if isinstance(source, (str, Path)):
         return _from_file(source)
-    if not isinstance(source, Mapping):
+    if not isinstance(source, Mapping) or hasattr(source, "dims"):  # a dataset is a mapping, too
         allowed = "a preset name, a TOML file, a mapping or a GearPair"
-        raise refuse("pair", shown(source), allowed, "Give one of these.")
+        raise refuse("pair", type(source).__name__, allowed, "Give one of these.")
     return validated(source, "mapping")
 
 

@@ -87,9 +87,10 @@ def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
     """Fields of a pair with a friction law of the user, sampled at the operating point of its contact."""
     name, field = "table", "friction.law"
     if isinstance(law, (int, float)):
-        raise refuse(
-            field, law, _GIVE, "For a constant mu give law = 'coulomb' and friction.coefficient = 0.05."
-        )
+        numerals: dict[float, str] = dict(enumerate(("I", "II", "III", "IV", "V"), 1))
+        numeral = numerals.get(law)
+        constant = "For a constant mu give law = 'coulomb' and friction.coefficient = 0.05."
+        raise refuse(field, law, _GIVE, f"Law {law} is written '{numeral}'." if numeral else constant)
     made_at: dict[str, Any] = {
         "speed": path.omega_pinion * 30.0 / math.pi,
         "unit_load": path.unit_load * 1e-3,

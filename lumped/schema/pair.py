@@ -38,6 +38,13 @@ from lumped.schema.teeth import TorqueRipple
 FORMAT = 1
 #: Largest speed of a pinion [rpm].
 LARGEST_SPEED = 200000.0
+#: Name that a pair does not have -> what to write.
+_INSTEAD = {
+    **dict.fromkeys(("save", "write", "to_file"), "Path(...).write_text(pair.to_toml())"),
+    **dict.fromkeys(("to_dict", "as_dict"), "pair.to_mapping()"),
+    "contact_ratio": "pair.geometry.contact_ratio",
+    "mesh_frequency": "1 / pair.geometry.mesh_period",
+}
 
 
 class OperatingPoint(Section):
@@ -263,8 +270,8 @@ class GearPair(Section, metaclass=_InOurWords):
                 raise AttributeError(
                     f"a pair has no {name!r}: read pair.{' or pair.'.join(SHORT_NAMES[name])}"
                 )
-            if name in ("save", "write", "to_file"):
-                raise AttributeError(f"a pair has no {name!r}: use Path(...).write_text(pair.to_toml())")
+            if instead := _INSTEAD.get(name):
+                raise AttributeError(f"a pair has no {name!r}: use {instead}")
             return super().__getattr__(name)
 
     def __repr__(self) -> str:

@@ -6,7 +6,8 @@ import math
 import re
 import tomllib
 import warnings
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -90,14 +91,10 @@ def gear_pair(
     from validation.validity.plausibility import parameter_warnings
 
     asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
-    for option, path, text in (
-        ("--speed", "operating.pinion_speed", speed),
-        ("--torque", "operating.pinion_torque", torque),
-        ("--law", "friction.law", law),
-        ("--range", "operating.speed_range", speed_range),
-    ):
+    for name, text in (("speed", speed), ("torque", torque), ("law", law), ("range", speed_range)):
         if text is not None:
-            asked.append((option, path, text))
+            asked.append((f"--{name}", fields_of(name)[0], text))
+    once(field for _, path, _ in asked for field in fields_of(path))
     if pair is None:
         note(f"no gear pair is named, so this is the example {DEFAULT_PAIR}: name your parameter file.")
     own = load_gear_pair(pair or DEFAULT_PAIR)
@@ -204,6 +201,15 @@ NamedPair = Annotated[
 AlikePair = Annotated["GearPair", Group(_RANGED, lambda **options: alike(gear_pair(**options)))]
 
 
+def once(fields: Iterable[str]) -> None:
+    """Refuse a field that two options set, of which only the last would count."""
+    from lumped.errors import refuse
+
+    for field, count in Counter(fields).items():
+        if count > 1:
+            raise refuse(field, f"set {count} times", "one value", "Leave the others out.")
+
+
 def set_fields(settings: list[str] | None) -> dict[str, str]:
     """Return field path -> text of its value of every --set."""
     from lumped.errors import refuse
@@ -213,6 +219,7 @@ def set_fields(settings: list[str] | None) -> dict[str, str]:
         path, separator, text = item.partition("=")
         if not separator or not path.strip():
             raise refuse("--set", item, "FIELD=VALUE", "For example --set mesh.damping_ratio=0.03.")
+        once([*found, path.strip()])
         found[path.strip()] = text.strip()
     return found
 

@@ -55,11 +55,18 @@ def simulate(
     from lumped.errors import refuse
 
     opt.check_supports(pair, supports)
-    if steady and model == "multibody":
-        raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")
+    rising, exact = run_up is not None, model == "multibody"
+    for option, wrong, allowed in (
+        ("--steady", steady and exact, "without --model multibody"),
+        ("--run-up", rising and (steady or exact), "without --steady and --model multibody"),
+        ("--seconds", seconds != 2.0 and not rising, "with --run-up"),
+        ("--fidelity", fidelity != "exact" and not exact, "with --model multibody"),
+        ("--cycles", cycles != 20 and (steady or rising), "without --steady and --run-up"),
+        ("--initial", initial != "static" and (steady or rising), "without --steady and --run-up"),
+    ):
+        if wrong:
+            raise refuse(option, "given", allowed, "Here it has no effect: leave it out.")
     if run_up is not None:
-        if steady or model == "multibody":
-            raise refuse("--run-up", run_up, "without --steady and --model", "Leave one of the two out.")
         with progress_bar("run-up") as tell:
             begin, _, end = run_up.partition("..")
             if not end:

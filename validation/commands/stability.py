@@ -75,8 +75,10 @@ def stability(
     grid = opt.axes_values(axis, GEAR_AXES)
     opt.check_supports(pair, supports)
     _check(view, grid, files, tongues, supports)
-    if prove and view != "chart":
-        raise refuse("--prove", view, "--view chart", "Leave it out.")
+    if (prove or tongues) and view != "chart":
+        raise refuse("--prove" if prove else "--tongues", view, "--view chart", "Leave it out.")
+    if prove and grid and set(grid) != {"speed_rpm", "damping_ratio"}:
+        raise refuse("--prove", ", ".join(grid), "the axes speed_rpm and damping_ratio", "Name both or none.")
     found = gear_pair_multipliers(pair, supports=supports)
     margin = 1.0 - found.spectral_radius
     if as_json:

@@ -170,6 +170,9 @@ def load_measurement(source: str | Path | Mapping[str, Any]) -> Measurement:
         data, folder, name = dict(source), Path(), "mapping"
     else:
         path = file_path("measurement", source)
+        if path.suffix.lower() == ".csv":
+            action = "Describe the table in a TOML file, whose field 'data' names it."
+            raise refuse("measurement", path, "the description of a record, a .toml file", action)
         folder, name = path.parent, str(path)
         data = parse_toml(read_text(path, _MAX_FILE_BYTES, kind="TOML file"), name)
     try:
