@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
 
 import multibody
@@ -28,6 +29,11 @@ MEASURES = (
     "action are measured by that of the transmission error, the load by the force that bends the teeth by "
     "it, and the mean off the line of action by the deflection under the friction force, where these are "
     "larger."
+)
+#: Swing of the rotation, over the base pitch, that moves the contact in time; and what a machine has.
+_TURNS = 0.01
+_INERTIA = (
+    "motor and brake hold a real machine steadier: add their inertia to pinion.inertia and gear.inertia."
 )
 _UNILATERAL = (
     "The lumped motion has the places of contact of the mean load; in the exact contact they follow the "
@@ -109,7 +115,12 @@ def cause_of_difference(check: CrossCheck, found: xr.Dataset | None = None) -> s
     if alone.isnull().all():  # it does not move without effects
         alone = found["alone"].sel(quantity="dte")[:parts]
     cause = str(alone.idxmax("cause").item())
-    return f"Most of it comes from one effect: {CAUSES[cause]}, alone {share(float(alone.max()))}."
+    words = f"Most of it comes from one effect: {CAUSES[cause]}, alone {share(float(alone.max()))}."
+    g = check.pair.geometry
+    turn = float(np.ptp(check.multibody["exact"]["theta_p"].to_numpy())) * g.base_radius_pinion / g.base_pitch
+    if cause == "contact" and turn > _TURNS:
+        words += f" Friction turns the free shafts to and fro by {percent(turn)} of a base pitch; {_INERTIA}"
+    return words
 
 
 def share(ratio: float) -> str:

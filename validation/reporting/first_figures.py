@@ -31,7 +31,7 @@ def first_figures(results: Results) -> tuple[Picture, ...]:
     found = [
         Picture(
             "over_speed",
-            "Transmission error over speed",
+            f"Transmission error over speed{results.on_springs}",
             over,
             partial(over_speed_figure, operating_rpm=results.operating_rpm),
         ),

@@ -13,6 +13,7 @@ import xarray as xr
 from floquet.gear.response import ResponseBranches
 from lumped.outcomes import Absent
 from validation.files.formatting import number, quantity, read_table
+from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.motion import QUANTITIES, Prediction
 from validation.reporting.first_figures import plain_name
 from validation.reporting.results import Results, failed_checks
@@ -165,7 +166,9 @@ def six_numbers(results: Results) -> tuple[Number, ...]:
     low, high = (_rpm(speed) for speed in results.speeds)
     label = "Distance to the nearest unstable speed, jump or chaos"
     if hazard is None:
-        rows.append(Number("hazard", label, math.nan, "rpm", note=f"none from {low} to {high}"))
+        rows.append(
+            Number("hazard", label, math.nan, "rpm", note=f"none from {low} to {high}{results.on_springs}")
+        )
     else:
         rows.append(
             Number(
@@ -173,7 +176,7 @@ def six_numbers(results: Results) -> tuple[Number, ...]:
                 label,
                 hazard[0] - results.operating_rpm,
                 "rpm",
-                note=f"{hazard[1]} at {_rpm(hazard[0])}",
+                note=f"{hazard[1]} at {_rpm(hazard[0])}{results.on_springs}",
             )
         )
     return tuple(rows)
@@ -230,10 +233,12 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
     found = results.uncertainty
     given, assumed, word = results.inputs
     inputs = f"{assumed} of {given + assumed} inputs are {word}"
-    if isinstance(found, Absent):
+    half = 0.0
+    if isinstance(found, xr.Dataset):
+        low, middle, high = found["dte_peak_to_peak_percentile"].to_numpy()
+        half = 0.5 * (high - low) / middle
+    elif assumed or uncertain_inputs(results.pair):
         return Verdict.COMPARE, Verdict.COMPARE.value, f"{calm} But {inputs}, and they were not varied."
-    low, middle, high = found["dte_peak_to_peak_percentile"].to_numpy()
-    half = 0.5 * (high - low) / middle
     measured = results.measured_error
     if measured is not None and not measured.explained and abs(measured.error) > ABSOLUTE * measured.measured:
         text = f"{calm} But the record differs by {100 * abs(measured.error) / measured.measured:.0f} %"
@@ -324,7 +329,8 @@ def advice_on_inputs(results: Results) -> list[Action]:
     """What to do about the inputs that move the result most, one action a kind of input."""
     found = results.uncertainty
     if isinstance(found, Absent):
-        return [Action("Vary the assumed inputs", f"spurcheck uncertainty {results.name}", "")]
+        vary = Action("Vary the assumed inputs", f"spurcheck uncertainty {results.name}", "")
+        return [vary] if uncertain_inputs(results.pair) else []
     given = results.prediction.peak_to_peak
     swing = found["dte_peak_to_peak_swing"].to_numpy()
     actions: dict[str, Action] = {}

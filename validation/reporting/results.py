@@ -304,6 +304,11 @@ class Results:
         return tuple(f.detail for f in self.flags if f.state == "violated" and f.key not in skip)
 
     @property
+    def on_springs(self) -> str:
+        """Added to what is said of stability and jumps of a pair with shafts."""
+        return "" if self.pair.shafts is None else ", on the springs of [bearings]"
+
+    @property
     def second_words(self) -> str:
         """Whether both programs agree, in a sentence; on the shafts by the peak to peak."""
         words = self._second_words
@@ -326,9 +331,10 @@ class Results:
             return f"Yes: a second program agrees to {apart}."
         own = check.worst("exact")
         swings = (quantity(v, own.unit, 3) for v in (own.peak_to_peak_multibody, own.peak_to_peak))
+        rest = "" if own is worst else f", the transmission error by {apart}"
         return (
             f"Yes, but the second program, with exact contact, differs: {own.long_name}, "
-            f"{' beside '.join(swings)}, by {share(own.difference)}, the transmission error by {apart}."
+            f"{' beside '.join(swings)}, by {share(own.difference)}{rest}."
         )
 
     @cached_property

@@ -82,9 +82,9 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     ratio, springs, static = max(found)
     if ratio > math.log(_FAR):
         yield (
-            "Stability and curves over speed stand on the springs of [bearings] and not on the shafts. There "
-            f"the {springs} the line of action, on its shaft {static:.3g} N/m. The springs that stand for "
-            "the shafts are those of lumped.condensed_bearings."
+            f"Stability, jumps and curves over speed are those of the springs of [bearings]: the {springs} "
+            f"the line of action there, on its shaft {static:.3g} N/m. lumped.condensed_bearings gives "
+            "springs that stand for the shafts."
         )
 
 

@@ -79,6 +79,8 @@ def curves_and_their_names(written, name):
             close(line.get_ydata() * factor, values)
             close(line.get_xdata(), x)
             assert line.get_label() == _NAMES[name][key]
+            if name == "mesh_force":
+                assert words == "mesh force"
             if name == "tooth_forces":
                 assert words == ("friction force" if key.startswith("friction") else "normal load")
             seen.add(key)
@@ -282,3 +284,21 @@ def test_the_map_of_orders(written):
     assert found <= {round(one, 3) for one in resonances}
     inside = {round(r, 3) for r in resonances if edges[0] <= r / 10.0 and r <= edges[-1]}
     assert inside <= found
+
+
+def test_the_stability_chart(written):
+    """Growth ln(rho) times the mesh frequency, at most 0, at its nodes; operating point; regions."""
+    chart, ax = written.data("stability"), written.figures["stability_chart"].axes[0]
+    radius = chart["spectral_radius"].transpose("damping_ratio", "speed_rpm").to_numpy()
+    speed, damping = chart["speed_rpm"].to_numpy(), chart["damping_ratio"].to_numpy()
+    rate = np.log(radius) * speed / 60.0 * written.parameters["pinion"]["teeth"]
+    drawn = (*ax.images, *(one for one in ax.collections if hasattr(one, "get_coordinates")))[0]
+    close(np.asarray(drawn.get_array()).reshape(radius.shape), np.minimum(rate, 0.0), 1e-6)
+    assert (ax.get_xlim(), ax.get_ylim()) == ((speed[0], speed[-1]), (damping[0], damping[-1]))
+    assert "[1/s]" in written.figures["stability_chart"].axes[1].get_ylabel()
+    mark = next(line for line in ax.lines if line.get_marker() == "o" and len(line.get_xdata()) == 1)
+    operating = written.parameters["operating"]["pinion_speed"], written.parameters["mesh"]["damping_ratio"]
+    assert (mark.get_xdata()[0], mark.get_ydata()[0]) == operating
+    regions = written.curves("stability_chart")
+    for name in ("radius", "nodes", "width", "speed_rpm", "damping_ratio"):
+        close(column(regions, name)[0], chart[f"region_{name}"])

@@ -1,6 +1,7 @@
 """Is each curve of the report the result that it is labelled with, in the unit of its axis?"""
 
 import base64
+import re
 
 import numpy as np
 import pandas as pd
@@ -35,6 +36,9 @@ def test_every_picture_is_in_the_page_with_its_table(written):
     files = {path.stem for path in (written.folder / "figures").glob("*.svg")}
     assert set(names) <= files
     assert len(files) <= 14
+    for kind, first in (("Figure", len(files) - len(names) + 1), ("Table", 1)):
+        numbers = list(map(int, re.findall(rf"<b>{kind} (\d+)</b>", written.page)))
+        assert numbers == list(range(first, first + len(numbers)))
     for name in files:
         data = base64.b64encode((written.folder / "figures" / f"{name}.svg").read_bytes()).decode()
         assert data in written.page, name

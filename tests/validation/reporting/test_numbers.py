@@ -10,17 +10,24 @@ import math
 import re
 import tomllib
 from importlib import resources
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 
 import lumped
+from floquet import gear_pair_multipliers
 from lumped.losses import iso_14179_mesh_loss
 from lumped.model.averaged import modes
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from lumped.path_of_contact import pair_stiffness
 from tests.validation.reporting import recomputed as own
+from tests.validation.reporting.written import known
+from validation.reporting.blocks import plain
+from validation.reporting.chapters import contact_loss
+from validation.reporting.chapters.evidence import source_hash
+from validation.validity.flags import validity_flags
 
 _UNITS = {
     "module": "mm", "face_width": "mm", "bore": "mm", "backlash": "mm", "film_length": "mm",
@@ -235,9 +242,41 @@ def test_the_table_of_jumps(written):
             unit = jump.attrs["units"]
             value = float(jump[at]) if np.isfinite(jump[at]) else None
             assert one[column] == {"value": value if value is None else close(value), "unit": unit}, name
+        assert one["motion"] == str(motions["jump_after"].to_numpy()[at])
         assert one["way"] == ("up" if motions["jump_rising"].to_numpy()[at] else "down")
         # Rising, a motion cannot end below the speeds that were looked at.
         assert motions.attrs["speed_low_rpm"] <= one["speed"]["value"] <= motions.attrs["speed_high_rpm"]
+
+
+def test_the_motions_at_the_operating_speed_and_the_share_of_the_starts(written):
+    if nearest_hazard(written) is None:
+        return
+    results = known("lost")
+    here = 2 * tuple(results.branches.at(results.operating_rpm))
+    names = "kind n dte_peak_to_peak largest_load share share_interval starts"
+    values = (
+        ("beats", 0, 2e-6, 900.0, 0.2, (0.1, 0.4), 3),
+        ("periodic", 2, 1e-6, 700.0, 0.8, (0.6, 0.9), 12),
+    )
+    basins = [SimpleNamespace(**dict(zip(names.split(), one, strict=True))) for one in values]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(results.branches), "at", lambda *_: here)
+        patch.setattr(type(results.branches), "basins", lambda _: basins)
+        blocks = contact_loss.write(results).blocks
+    rows = {
+        block.key: [tuple(map(plain, row)) for row in block.rows]
+        for block in blocks
+        if hasattr(block, "rows")
+    }
+    shown = [(o.n, o.stable, o.dte_range[1] - o.dte_range[0], o.largest_load) for o in here]
+    assert [
+        tuple(v["value"] if isinstance(v, dict) else v for v in row) for row in rows["motions_here"]
+    ] == shown
+    for row, (kind, n, size, load, share, ends, _) in zip(rows["basins"], values, strict=True):
+        assert row[:2] == (kind, n)
+        assert [(one["value"], one["unit"]) for one in row[2:]] == [
+            (size, "m"), (load, "N"), *((v, "1") for v in (share, *ends))
+        ]  # fmt: skip
 
 
 def test_the_table_of_stability(written):
@@ -252,6 +291,10 @@ def test_the_table_of_stability(written):
     if hazard is not None:
         expected["nearest hazard"] = (hazard[0], "rpm", f"jump, running {hazard[1]}")
     share = float((chart["spectral_radius"].to_numpy() > 1.0).mean())
+    caption = written.document["chapters"]["stability"]["captions"]["stability_chart"]
+    own.assert_says(
+        caption, r".*instability\. (.*) % of the nodes.*", (100.0 * chart["known"].mean().item(), "1")
+    )
     expected["unstable share of the chart"] = (share, "1")
     if chart.sizes["region"]:
         expected["thinnest tongue"] = (float(chart["region_width"].min()), "rpm", "at its widest")
@@ -413,6 +456,16 @@ def test_the_tables_of_evidence(written):
         shares = [abs(c["value"] - c.get("theory", 0.0)) / c["limit"] for c in kind["checks"] if c["limit"]]
         assert (one["checks"], one["use"]) == (len(kind["checks"]), close(max(shares)))
         assert one["state"]["text"] == ("ok" if max(shares) <= 1.0 else "failed")
+    chapter, faults = written.document["chapters"]["evidence"], stored["faults"]
+    note = (
+        f"Of {faults['all']} faults put into the program, {faults.get('missed', 0)} are missed by all checks."
+    )
+    assert chapter["tables"]["evidence"]["note"] == note
+    assert ("They are of this source." in chapter["text"][1][0]) == (stored["source_sha256"] == source_hash())
+    flags = validity_flags(pair_of(written), written.data("linear"), gear_pair_multipliers(pair_of(written)))
+    assert [(one["name"], one["detail"], one["action"]) for one in written.table("assumptions")] == [
+        (flag.name, flag.detail, flag.action) for flag in flags
+    ]
     states = {one["name"]: one["state"]["text"] for one in written.table("assumptions")}
     total = written.data("linear")["normal_load"].sum("pair").min().item()
     assert states["Teeth stay in contact"] == ("ok" if total > 0.0 else "violated")

@@ -1,5 +1,6 @@
 """Every number in the sentences of the report, and of page 1 as printed, against the numbers they are of."""
 
+import fnmatch
 import re
 from dataclasses import replace
 from types import SimpleNamespace
@@ -9,13 +10,17 @@ import pytest
 
 import lumped
 from lumped.losses import losses_of_laws
+from lumped.schema.pair import leaf_paths
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import nearest_hazard, of_motion, pair_of
 from tests.validation.reporting.written import SMALL, known, pair, plain
-from validation.files.formatting import prose
+from validation.files.formatting import prose, read_table
+from validation.reporting.chapters import contact_loss, stability
 from validation.reporting.first_figures import plain_name
 from validation.reporting.page_one import Verdict, page_one
 from validation.reporting.results import Results
+
+_ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
 
 
 def speed_of(written):
@@ -49,6 +54,8 @@ def test_page_1_prints_the_numbers(written):
             assert value == "none"
         elif key != "hazard":
             own.assert_printed(value, times * number["value"], unit, digits)
+            shown_digits = re.sub(r"\D", "", value.partition(" ")[0]).lstrip("0")
+            assert unit == "%" or "." not in value or len(shown_digits) <= digits
         else:
             assert value == f"{number['value']:+.0f} rpm"
         if low is None:
@@ -138,6 +145,11 @@ def test_the_actions(written):
             np.abs(swing.max(axis=1) - own.read(high)[0]) <= rounding[1]
         )
         assert fits.any(), gain
+        fields = [str(field) for field in samples["input"].to_numpy()[fits]]
+        advice = [next((a for a in _ADVICE if fnmatch.fnmatchcase(f, a["field"])), None) for f in fields]
+        assert next(one for one in actions if plain(one["gain"]) == gain)["text"] in [
+            a["text"] for a in advice if a
+        ]
         found.append(width[fits].max())
     assert all(one >= 0.05 * given for one in found)
     assert found == sorted(found, reverse=True)
@@ -260,7 +272,8 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     assert text.startswith(
         f"{samples.sizes['sample']} samples (scrambled Sobol points, seed {samples.attrs['seed']})"
     )
-    assert f"Contact is lost in {lost} of them, {samples.attrs['unstable']} are unstable" in text
+    unstable, refused = samples.attrs["unstable"], samples.attrs["refused"]
+    assert f"; {refused} were refused. Contact is lost in {lost} of them, {unstable} are unstable" in text
     assert said["evidence"] == "Every check of the program passes."
 
 
@@ -281,9 +294,7 @@ def test_every_uncertain_input_has_words_of_its_own(written):
 def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
     """Agreement on springs says nothing about another machine."""
     own = pair("shafts", "19/41", 1450.0, 80.0)
-    ends = [{"position": at, "loa_stiffness": 2e8, "oloa_stiffness": 2e8} for at in (10, 210)]
-    one = {"segments": [{"length": 220, "diameter": 30}], "gear_position": 110, "bearings": ends}
-    results = Results(own.with_({"shafts": {"damping_ratio": 0.03, "pinion": one, "gear": one}}), SMALL)
+    results = Results(own.with_(shafts_of(30, 2e8)), SMALL)
     monkeypatch.setattr(Results, "_second_words", "Yes: a second program agrees to 2.7 %.")
     results.__dict__ |= {"prediction": SimpleNamespace(peak_to_peak=5e-6)}
     for size, words in ((5.5e-6, "10 % larger"), (4e-6, "20 % smaller")):
@@ -292,18 +303,37 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
         assert results.second_words == f"Yes: a second program agrees {ends}"
 
 
-@pytest.mark.parametrize(("diameter", "stiffness"), [(90, 1e9), (20, 2e8)], ids=["stiff", "slender"])
-def test_more_information_never_gives_a_worse_verdict(diameter, stiffness):
-    """A pair on springs, and the same on shafts: contact is kept on them too, by both programs."""
+def shafts_of(diameter, stiffness):
     ends = [{"position": at, "loa_stiffness": stiffness, "oloa_stiffness": stiffness} for at in (10, 150)]
     one = {"segments": [{"length": 160, "diameter": diameter}], "gear_position": 80, "bearings": ends}
+    return {"shafts": {"damping_ratio": 0.03, "pinion": one, "gear": one}}
+
+
+@pytest.mark.parametrize("what", ["sources", "stiff shafts", "slender shafts"])
+def test_more_information_never_gives_a_worse_verdict(what):
+    """A pair on springs, and the same with every source stated, and on shafts, where contact is kept too."""
     given, effort = known("calm"), replace(SMALL, samples=0)
-    on_shafts = given.pair.with_({"shafts": {"damping_ratio": 0.03, "pinion": one, "gear": one}})
-    springs, shafts = Results(given.pair, effort), Results(on_shafts, effort)
-    for results in (springs, shafts):
+    changes = {
+        "sources": {"sources": dict.fromkeys((*leaf_paths(given.pair), "mesh.stiffness"), "drawing")},
+        "stiff shafts": shafts_of(90, 1e9),
+        "slender shafts": shafts_of(20, 2e8),
+    }
+    less, more = Results(given.pair, effort), Results(given.pair.with_(changes[what]), effort)
+    for results in (less, more):
         results.__dict__ |= {"check": given.check, "chart": given.chart}  # on springs in both
-    first = page_one(shafts)
-    assert list(Verdict).index(first.verdict) <= list(Verdict).index(page_one(springs).verdict)
-    assert first.sure[0].startswith(page_one(springs).sure[0][:-1])
-    assert first.numbers[0].value != springs.prediction.peak_to_peak
-    assert min(shafts.prediction.least_force, shafts.second.least_force) > 0.0
+    poorer, first = page_one(less), page_one(more)
+    assert list(Verdict).index(first.verdict) <= list(Verdict).index(poorer.verdict)
+    values = sum(map(int, re.findall(r"\d+", poorer.sure[1])))
+    assert f"{less.inputs[1]} of {values} inputs are assumed, and they were not varied." in poorer.reason
+    on_springs = ", on the springs of [bearings]"
+    if what == "sources":  # all is known: for absolute levels, and nothing to vary
+        assert (first.verdict, first.actions) == (Verdict.ABSOLUTE, ())
+        more.__dict__["inputs"] = (values - 1, 1, "assumed")  # of no stated range
+        assert page_one(more).verdict is Verdict.COMPARE
+        assert not first.numbers[-1].note.endswith(on_springs)
+        return
+    assert first.numbers[-1].note.endswith(on_springs)
+    assert all(f"{on_springs}." in chapter.write(more).result for chapter in (contact_loss, stability))
+    assert first.sure[0].startswith(poorer.sure[0][:-1])
+    assert first.numbers[0].value != less.prediction.peak_to_peak
+    assert min(more.prediction.least_force, more.second.least_force) > 0.0

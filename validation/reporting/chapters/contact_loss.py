@@ -24,13 +24,16 @@ def write(results: Results) -> Content:
     if isinstance(branches, Absent):
         low, high = (number(f * results.operating_rpm, 5) for f in BRANCH_SPEEDS)
         kept = branches.outcome is Outcome.CONTACT_NOT_LOST
-        words = f"Contact is never lost from {low} to {high} rpm." if kept else str(branches)
+        words = (
+            f"Contact is never lost from {low} to {high} rpm{results.on_springs}." if kept else str(branches)
+        )
         shared = _load_sharing(results)
         return Content(words, (Text(shared),) if shared else ())
     jumps = branches.jumps
     lost = "Contact is lost" if results.prediction.contact_lost else "Contact is kept"
     low, high = (number(speed, 5) for speed in branches.speeds_rpm)
-    result = f"{lost} at the operating point. From {low} to {high} rpm {_count(len(jumps), 'jump')} found."
+    found = f"{_count(len(jumps), 'jump')} found{results.on_springs}"
+    result = f"{lost} at the operating point. From {low} to {high} rpm {found}."
     blocks: list[Block] = [
         Picture(
             "motions_over_speed",

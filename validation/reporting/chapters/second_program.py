@@ -7,6 +7,7 @@ import xarray as xr
 
 from lumped.labelling import labelled_dataset
 from lumped.outcomes import Absent
+from validation.cross_check.conservation import worst_of_each
 from validation.cross_check.words import MEASURES
 from validation.plots.prediction import overlay_figure
 from validation.reporting.blocks import Badge, Block, Content, Picture, Text, table_of
@@ -45,8 +46,8 @@ def write(results: Results) -> Content:
     blocks.append(
         table_of(
             "conservation",
-            "Conservation laws, checked on both programs.",
-            check.conservation,
+            "Conservation laws, checked on both programs: of each the check that uses most of its limit.",
+            worst_of_each(check.conservation),
             {
                 "check": ("check", lambda j: j.check),
                 "value": ("residual", lambda j: j.value),

@@ -22,7 +22,8 @@ def write(results: Results) -> Content:
     some = "no speed" if share == 0.0 else f"{100 * share:.2g} % of the speeds"
     result = (
         f"At the operating point the linear motion is {here.verdict}; at the given damping {some} from {low} "
-        f"to {high} rpm {'is' if some == 'no speed' else 'are'} unstable."
+        f"to {high} rpm {'is' if some == 'no speed' else 'are'} unstable"
+        f"{results.on_springs}."
     )
     margin, damping = results.nearest_hazard, results.pair.mesh.damping_ratio
     edge, thinnest = chart.attrs["nearest_edge_damping_ratio"], chart.attrs["thinnest_width"]
@@ -48,9 +49,9 @@ def write(results: Results) -> Content:
     )
     words = (
         "How fast a disturbance grows or decays over speed and mesh damping. Black line: edge of "
-        f"instability. {100 * float(chart['known'].mean()):.2g} % of the nodes are evaluated: the lowest "
-        "damping and both sides of every edge. A region can only be missed that lies between evaluated nodes "
-        "and does not reach the lowest damping. All nodes are in stability.nc."
+        f"instability. {number(100 * float(chart['known'].mean()), 2)} % of the nodes are evaluated: the "
+        "lowest damping and both sides of every edge. A region can only be missed that lies between "
+        "evaluated nodes and does not reach the lowest damping. All nodes are in stability.nc."
     )
     at = {"speed_rpm": results.operating_rpm, "damping_ratio": damping}
     regions = labelled_dataset(
