@@ -103,19 +103,8 @@ def paragraphs(text: str | None) -> str:
 
 
 COMMANDS = (
-    report,
-    presets,
-    init,
-    simulate,
-    export,
-    crosscheck,
-    uncertainty,
-    stability,
-    floquet,
-    response,
-    teeth,
-    interactive,
-    sweep,
+    *(report, presets, init, simulate, export, crosscheck, uncertainty, stability, floquet, response, teeth),
+    *(interactive, sweep),
 )
 for command in COMMANDS:
     app.command(cls=Once, help=paragraphs(command.__doc__))(command)

@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import INTERRUPTED, fail, guarded, note, progress_bar, stderr, stdout, table
+from validation.commands.terminal import (
+    FAILED,
+    INTERRUPTED,
+    fail,
+    guarded,
+    note,
+    progress_bar,
+    stderr,
+    stdout,
+    table,
+)
 
 if TYPE_CHECKING:
     from validation.studies import Study, Summary
@@ -85,7 +95,7 @@ def sweep(
             text = f"Stopped. What was computed is in {folder}; run the same command with --resume."
             fail(text, INTERRUPTED)
     _print(summary)
-    raise typer.Exit(summary.exit_code)
+    raise typer.Exit(FAILED if summary.failed else 0)
 
 
 def _estimate(study: Study, processes: int) -> None:

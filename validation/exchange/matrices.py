@@ -28,7 +28,6 @@ from lumped.typing import FloatArray
 
 MATRIX_SUFFIXES = (".npz", ".mat")
 FILE_AXES: Mapping[str, ChartAxis] = {
-    "period": ChartAxis("s", "period", low=0.0, open_low=True),
     "frequency": ChartAxis("Hz", "frequency of the variation", low=0.0, open_low=True),
     "variation": ChartAxis("1", "factor on the periodic terms", low=0.0),
     "damping": ChartAxis("1", "factor on C", low=0.0),
@@ -74,15 +73,12 @@ class SecondOrderModel:
     def system(
         self,
         *,
-        period: float | None = None,
         frequency: float | None = None,
         variation: float = 1.0,
         damping: float = 1.0,
     ) -> SecondOrderSystem:
         """Return the periodic system, varied as ``FILE_AXES`` say; None: as in the file."""
-        if period is not None and frequency is not None:
-            raise refuse("frequency", shown(frequency), "one of period and frequency", "Leave one out.")
-        T = period or (1.0 / frequency if frequency else self.period)
+        T = 1.0 / frequency if frequency else self.period
 
         def matrix(name: str, constant: FloatArray, factor: float) -> PeriodicMatrix:
             terms: list[tuple[Coefficient, FloatArray]] = []

@@ -1,7 +1,6 @@
-"""A record beside its prediction: aligned by mesh phase, sample by sample, and as metrics with intervals.
+"""A record beside its prediction: aligned by mesh phase, sample by sample, and as metrics.
 
-Sources: least squares over the phase, docs/theory/equations.md, "Frame", for what the phase is; bootstrap of
-whole blocks, Davison and Hinkley, Bootstrap Methods and their Application, 1997, section 8.2.
+Source: docs/theory/equations.md, "Frame", for what the phase is.
 """
 
 from __future__ import annotations
@@ -10,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from lumped.arguments import real_number
 from lumped.errors import NumericalError
@@ -18,7 +16,7 @@ from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.measurements.prediction import Prediction
-from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
+from validation.measurements.record import QUANTITIES, Channel, Measurement
 
 _COARSE = 32  # trial shifts per mesh cycle
 _COARSE_SAMPLES = 2000
@@ -26,14 +24,13 @@ _ZOOM = 4
 _FINEST = 1e-6  # mesh cycles
 _FARTHEST = 1e9  # mesh cycles, where double precision still resolves the finest shift
 
-#: Metric -> plain name. The first two are in the channel's unit.
+#: Metric -> unit, plain name.
 METRICS = {
-    "bias": "mean of measured - predicted",
-    "rms": "root mean square of measured - predicted",
-    "relative_rms": "rms over the prediction's peak to peak",
-    "correlation": "Pearson correlation of measured and predicted",
+    "bias": ("SI, by channel", "mean of measured - predicted"),
+    "rms": ("SI, by channel", "root mean square of measured - predicted"),
+    "relative_rms": ("1", "rms over the prediction's peak to peak"),
+    "correlation": ("1", "Pearson correlation of measured and predicted"),
 }
-_RESAMPLES, _FEWEST_BLOCKS = 999, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +141,13 @@ def overlay(
 ) -> xr.Dataset:
     """Measured and predicted values over one engagement (pair channels) or one mesh cycle, in phase bins.
 
-    Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0.
+    Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0. ``METRICS`` of all
+    samples are over ``channel``; the relative one is NaN where the prediction is constant.
     """
-    rows = []
+    rows, metrics = [], []
+    one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
     for channel in measurement.spec.channel:
-        age, y, p, _ = _samples(measurement, prediction, alignment, channel)
+        age, y, p = _samples(measurement, prediction, alignment, channel)
         reach = prediction.geometry.contact_ratio if channel.pair else 1.0
         place = np.minimum((age / reach * bins).astype(np.int64), bins - 1)
         count = np.bincount(place, minlength=bins)
@@ -157,6 +156,10 @@ def overlay(
             measured, predicted, error, square = sums / count
         scatter = np.sqrt(np.maximum((square - error**2) * count / np.maximum(count - 1, 1), 0.0))
         rows.append((measured, predicted, scatter, (np.arange(bins) + 0.5) * reach / bins, count))
+        # A constant prediction, such as no friction, has no scale.
+        span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair))) or np.nan
+        rms, vary = float(np.sqrt(np.mean((y - p) ** 2))), bool(np.ptp(y) and np.ptp(p))
+        metrics.append((float(np.mean(y - p)), rms, rms / span, np.corrcoef(y, p)[0, 1] if vary else 0.0))
     measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
     dims, own = ("channel", "bin"), "SI, by channel"
     units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
@@ -168,77 +171,28 @@ def overlay(
             "phase": (dims, phase, "1", "middle of the bin, mesh cycles since A"),
             "count": (dims, count, "1", "samples in the bin"),
             "units": ("channel", units, "1", "SI unit of the channel"),
+        }
+        | {
+            name: ("channel", list(column), unit, words)
+            for (name, (unit, words)), column in zip(METRICS.items(), zip(*metrics, strict=True), strict=True)
         },
         {"channel": ([c.name for c in measurement.spec.channel], "1", "channel")},
         {"record": measurement.spec.name, "source": measurement.spec.source},
     )
 
 
-def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment: Alignment) -> xr.Dataset:
-    """How far a record is from its prediction, with 95 % percentile intervals of a bootstrap.
-
-    Whole blocks are resampled with replacement (one engagement of a labelled pair or one mesh cycle each; a
-    record with fewer than eight is cut into eight runs of samples), because neighbouring samples are not
-    independent.
-
-    Returns a dataset over ``channel``: each metric of ``METRICS``, with ``<metric>_low`` and
-    ``<metric>_high``; the relative one is NaN where the prediction is constant.
-    """
-    rng = np.random.default_rng(0)
-    one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
-    columns: dict[str, list[float]] = {}
-    for channel in measurement.spec.channel:
-        _, y, p, block = _samples(measurement, prediction, alignment, channel)
-        number = numbered_blocks(block)
-        blocks = int(number.max()) + 1
-        e = y - p
-        terms = (np.ones(y.size), e, e**2, y, p, y * p, y**2, p**2)
-        sums = np.stack([np.bincount(number, weights=term, minlength=blocks) for term in terms])
-        span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair)))
-        draws = rng.integers(0, blocks, (_RESAMPLES, blocks))
-        whole = _metrics(sums.sum(axis=1), span)
-        spread = _metrics(sums[:, draws].sum(axis=2), span)
-        for name, value in whole.items():
-            low, high = np.percentile(spread[name], [2.5, 97.5])
-            for key, end in ((name, value), (f"{name}_low", low), (f"{name}_high", high)):
-                columns.setdefault(key, []).append(float(end))
-    return xr.Dataset(
-        {name: ("channel", values) for name, values in columns.items()},
-        coords={"channel": [c.name for c in measurement.spec.channel]},
-        attrs={"level": 0.95, "resamples": _RESAMPLES, "definitions": str(METRICS)},
-    )
-
-
-def numbered_blocks(block: FloatArray) -> NDArray[np.int64]:
-    """Block of each sample, numbered from 0; eight runs of samples where there are fewer blocks."""
-    if np.unique(block).size < _FEWEST_BLOCKS:
-        return np.arange(block.size) * _FEWEST_BLOCKS // block.size
-    return np.unique(block, return_inverse=True)[1].astype(np.int64)
-
-
-def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:
-    n, e, e2, y, p, yp, y2, p2 = sums
-    whole = span or np.nan  # a constant prediction, such as no friction, has no scale
-    rms = np.sqrt(e2 / n)
-    spread = np.sqrt(np.maximum(n * y2 - y**2, 0.0) * np.maximum(n * p2 - p**2, 0.0))
-    correlation = np.where(spread > 0.0, (n * yp - y * p) / np.where(spread > 0.0, spread, 1.0), 0.0)
-    return {"bias": e / n, "rms": rms, "relative_rms": rms / whole, "correlation": correlation}
-
-
 def _samples(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, channel: Channel
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Phase since A, measured, predicted and block number of a channel's samples (pairs: in contact only)."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Phase since A, measured and predicted of a channel's samples (pairs: in contact only)."""
     u, y = alignment.cycles, measurement.channels[channel.name]
     if channel.pair is None:
         age, inside = np.mod(u, 1.0), np.ones(u.shape, dtype=bool)
-        block = np.floor(u)
     else:
         age, inside = prediction.age(u, channel.pair), prediction.contact(u, channel.pair)
-        block = np.floor((u - PAIR_LABELS.index(channel.pair)) / prediction.recurrence)
     if not inside.any():
         raise NumericalError(
             f"No sample of {channel.name} is in contact; check the abscissae, the shift and the pair labels."
         )
     p = prediction.value(channel.quantity, u, channel.pair)
-    return age[inside], y[inside], p[inside], block[inside]
+    return age[inside], y[inside], p[inside]

@@ -32,13 +32,7 @@ from lumped.friction.registry import file_name, laws_with_friction
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
-from validation.measurements.comparison import (
-    Alignment,
-    align,
-    numbered_blocks,
-    overlay,
-    overlay_metrics,
-)
+from validation.measurements.comparison import Alignment, align, overlay
 from validation.measurements.prediction import Prediction, predict
 from validation.measurements.record import PAIR_LABELS, Measurement
 
@@ -46,7 +40,7 @@ from validation.measurements.record import PAIR_LABELS, Measurement
 LEVEL = 0.95
 #: What may be identified besides a scale on a friction law.
 CONSTANT = "mu"
-_FEWEST = 20
+_FEWEST, _FEWEST_BLOCKS = 20, 8
 
 
 @dataclass(frozen=True)
@@ -97,9 +91,7 @@ class Evaluation:
     prediction : at the record's speed and torque, with the pair's friction law
     alignment : mesh phase of the record
     points : over ``channel`` and ``bin`` of one engagement or one mesh cycle: phase, measured and predicted
-        means, scatter, count
-    metrics : over ``channel``: bias, rms, relative_rms, correlation, each with its 95 % interval ``_low`` to
-        ``_high`` from resampled mesh cycles
+        means, scatter, count; over ``channel``: bias, rms, relative_rms, correlation
     found : identified friction, in the order asked for
     """
 
@@ -107,7 +99,6 @@ class Evaluation:
     prediction: Prediction
     alignment: Alignment
     points: xr.Dataset
-    metrics: xr.Dataset
     found: tuple[Identification, ...]
 
 
@@ -139,7 +130,6 @@ def evaluate(
         prediction=prediction,
         alignment=phase,
         points=overlay(measurement, prediction, phase),
-        metrics=overlay_metrics(measurement, prediction, phase),
         found=tuple(
             identify_friction(measurement, prediction, phase, law=None if name == CONSTANT else name)
             for name in wanted
@@ -263,6 +253,10 @@ def _standard_error(s: _Samples, beta: float) -> tuple[float, int]:
 
     h = 1e-5 * (abs(beta) or 1.0)  # the summed slope is smooth in beta: central differences
     curvature = (scores(beta + h).sum() - scores(beta - h).sum()) / (2.0 * h)
-    sums = np.bincount(numbered_blocks(s.block), weights=scores(beta))
+    count = s.block.size
+    number = np.unique(s.block, return_inverse=True)[1]
+    if number.max() + 1 < _FEWEST_BLOCKS:  # runs of samples where there are fewer engagements
+        number = np.arange(count) * _FEWEST_BLOCKS // count
+    sums = np.bincount(number, weights=scores(beta))
     variance = float(sums @ sums) * sums.size / (sums.size - 1)
     return float(np.sqrt(variance)) / abs(curvature), sums.size

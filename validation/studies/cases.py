@@ -100,16 +100,6 @@ class CaseList:
             digest.update(np.ascontiguousarray(self._shares).tobytes())
         return digest.hexdigest()
 
-    @property
-    def definition(self) -> str:
-        """The study's text."""
-        return self.study.to_toml()
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """Names of the numbers that are kept of a case."""
-        return self.study.outputs
-
 
 @dataclass(frozen=True)
 class StudyEvaluator:

@@ -18,9 +18,6 @@ from validation.studies.schema import load_study
 from validation.studies.store import STORE, Status, Table, read_definition, read_table
 
 RESULTS = "results.nc"
-#: Resamplings of the confidence interval of Sobol indices.
-RESAMPLES = 200
-CONFIDENCE = 0.95
 
 
 def read_results(folder: str | Path) -> xr.Dataset:
@@ -118,7 +115,7 @@ def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
 
 
 def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.Dataset:
-    """Add ``sobol_first`` and ``sobol_total`` over (output, axis) with their bootstrap intervals.
+    """Add ``sobol_first`` and ``sobol_total`` over (output, axis).
 
     A failed case would bias the estimators, so they are left out then; attribute ``sensitivity`` says why.
     """
@@ -130,23 +127,20 @@ def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.D
         text = f"no indices: {failed} of {cases.count} cases failed, {missing} are not computed yet"
         return result.assign_attrs(sensitivity=text)
     axes, values = [axis.label for axis in cases.study.axes], table.values.T
-    found = indices(values, len(axes), cases.study.design.seed)
     result = result.assign_coords(
         output=("output", np.array(cases.study.outputs, dtype=object)),
         axis=("axis", np.array(axes, dtype=object)),
     )
     words = {"sobol_first": "first-order Sobol index", "sobol_total": "total Sobol index"}
-    for name, array in found.items():
-        base, _, end = name.partition("_ci_")
-        text = words[base] + (f", {end} end of its {100 * CONFIDENCE:g} % interval" if end else "")
+    for (name, text), array in zip(words.items(), indices(values, len(axes)), strict=True):
         result[name] = (("output", "axis"), array, {"units": "1", "long_name": text})
     constant = [name for name, row in zip(cases.study.outputs, values, strict=True) if np.ptp(row) == 0.0]
     note = f"; not defined for the constant {', '.join(constant)}" if constant else ""
-    return result.assign_attrs(sensitivity=f"scipy.stats.sobol_indices, bootstrap of {RESAMPLES}{note}")
+    return result.assign_attrs(sensitivity=f"scipy.stats.sobol_indices{note}")
 
 
-def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
-    """Sobol indices with percentile bootstrap intervals, each (outputs, axes); NaN for a constant output.
+def indices(values: FloatArray, axes: int) -> FloatArray:
+    """Sobol indices, first order and total, (2, outputs, axes); NaN for a constant output.
 
     ``values`` is (outputs, n (axes + 2)) in the blocks A, B, AB_1 ... AB_axes. The estimators are those of
     Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270, Table 2 (b) and (f), as in
@@ -154,35 +148,16 @@ def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
     """
     from scipy import stats  # takes a third of a second, and most studies have no use for it
 
-    names = ("sobol_first", "sobol_total")
-    found = {
-        f"{name}{end}": np.full((len(values), axes), np.nan)
-        for name in names
-        for end in ("", "_ci_low", "_ci_high")
-    }
+    found = np.full((2, len(values), axes), np.nan)
     varies = np.ptp(values, axis=1) > 0.0
-    if not varies.any():
-        return found
-    # The estimators are invariant under shift and scale. About a zero mean they lose fewer digits, and their
-    # squares of numbers of order 1 neither vanish nor overflow.
-    values = values[varies]
-    values = (values - values.mean(axis=1, keepdims=True)) / np.ptp(values, axis=1)[:, None]
-    blocks = values.reshape(len(values), axes + 2, -1).transpose(1, 0, 2)
-    n = blocks.shape[-1]
-
-    def both(which: Any) -> FloatArray:
-        func: Any = {"f_A": blocks[0][:, which], "f_B": blocks[1][:, which], "f_AB": blocks[2:][:, :, which]}
-        with np.errstate(invalid="ignore", divide="ignore"):
-            found: Any = stats.sobol_indices(func=func, n=n)
-        return np.stack([found.first_order, found.total_order])
-
-    # ``SobolResult.bootstrap`` takes no seed, and its BCa intervals n more evaluations.
-    best = both(np.arange(n))
-    options: Any = {"n_resamples": RESAMPLES, "confidence_level": CONFIDENCE, "batch": 1}
-    interval: Any = stats.bootstrap(
-        (np.arange(n),), both, vectorized=False, method="percentile", rng=seed, **options
-    ).confidence_interval
-    for j, name in enumerate(names):
-        found[name][varies] = best[j]
-        found[f"{name}_ci_low"][varies], found[f"{name}_ci_high"][varies] = interval.low[j], interval.high[j]
+    if varies.any():
+        # The estimators are invariant under shift and scale. About a zero mean they lose fewer digits, and
+        # their squares of numbers of order 1 neither vanish nor overflow.
+        values = values[varies]
+        values = (values - values.mean(axis=1, keepdims=True)) / np.ptp(values, axis=1)[:, None]
+        blocks = values.reshape(len(values), axes + 2, -1).transpose(1, 0, 2)
+        func: Any = {"f_A": blocks[0], "f_B": blocks[1], "f_AB": blocks[2:]}
+        with np.errstate(invalid="ignore", divide="ignore"):  # A and B alike, as of one sample
+            result: Any = stats.sobol_indices(func=func, n=blocks.shape[-1])
+        found[:, varies] = np.reshape([result.first_order, result.total_order], (2, -1, axes))
     return found

@@ -53,11 +53,6 @@ class Summary:
         """Cases without outputs."""
         return sum(number for status, number in self.statuses if status.failed)
 
-    @property
-    def exit_code(self) -> int:
-        """0 when every case has its outputs, else 1."""
-        return 1 if self.failed else 0
-
 
 def run_sweep(
     study: Study,

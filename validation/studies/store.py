@@ -214,7 +214,7 @@ def _translated(path: Path) -> Iterator[None]:
 
 
 def _about(cases: CaseList) -> dict[str, str]:
-    return {"definition": cases.definition, "cases_sha256": cases.sha256, "outputs": " ".join(cases.outputs)}
+    return {"definition": cases.study.to_toml(), "cases_sha256": cases.sha256}
 
 
 def _check_same(db: sqlite3.Connection, path: Path, cases: CaseList) -> None:
@@ -238,7 +238,8 @@ def _runs(db: sqlite3.Connection) -> list[Provenance]:
 
 def _table(db: sqlite3.Connection, cases: CaseList) -> Table:
     table = Table(
-        np.full(cases.count, Status.MISSING, np.int8), np.full((cases.count, len(cases.outputs)), np.nan)
+        np.full(cases.count, Status.MISSING, np.int8),
+        np.full((cases.count, len(cases.study.outputs)), np.nan),
     )
     for case, status, outputs, message in db.execute("SELECT * FROM result ORDER BY number"):
         table.status[case] = status

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import contact_path
@@ -17,8 +18,6 @@ from lumped.shafts.equivalents import condensed_bearings
 
 #: Hertzian pressure that no steel bears [Pa].
 _PRESSURE = 4.2e9
-#: Bearing stiffness below that of any gear shaft [N/m].
-_SOFT = 2e6
 #: Share of the module that a loaded mesh may give way.
 _GIVES_WAY = 0.1
 #: Backlash of teeth that are to have none, over the module: the rounding of lengths.
@@ -28,38 +27,52 @@ _OSCILLATIONS = 1000.0
 #: Speed below which a point that parts thousands is likelier than the speed [rpm], and one below which turns
 #: a second may be meant [rpm]; speeds of the pitch line below and above those of gears in use [m/s].
 _SLOW, _SLOWLY, _CREEPING, _FASTEST = 5.0, 120.0, 0.5, 200.0
-#: Mean roughness below and above that of any flank in use, polished and as cut, and least relief made [m].
-_POLISHED, _AS_CUT, _LEAST_RELIEF = 0.01e-6, 12.5e-6, 0.5e-6
 #: Face width in modules, narrower and wider than that of any gear in use.
 _NARROW, _WIDE = 0.5, 100.0
 #: Springs and shafts are not of one machine where their stiffness differs by more than this factor.
 _FAR = 2.0
+_SOFT = ("N/m", 1.0, 2e6, math.inf, "is softer than any gear shaft. Given in N/um? Then write '{:g} N/um'.")
+_THIN = ("um", 1e6, 0.5, math.inf, "is less than can be made. Given in mm? Then write '{:g} mm'.")
+#: Field -> unit, factor to it, least and greatest value of gears in use, what a value beyond them means.
+_SIZES = {
+    "bearings.{}.loa_stiffness": _SOFT,
+    "bearings.{}.oloa_stiffness": _SOFT,
+    "{}.youngs_modulus": ("GPa", 1e-9, 0.5, 800.0, "is no material of gears (steel 206, plastics 1 to 10). "
+                          "Given in another unit? Write it: '206000 MPa'."),
+    "{}.roughness": ("um", 1e6, 0.01, 12.5, "is that of no flank (0.1 to 3 um). Write a number in um, or "
+                     "text with its unit: '0.4 um'."),
+    "{}.tip_relief.amount": _THIN,
+    "{}.root_relief.amount": _THIN,
+}  # fmt: skip
 
 
 def parameter_warnings(pair: GearPair) -> tuple[str, ...]:
     """Return one sentence for each value that hardly can be meant: field, value, likely cause."""
     return (
-        *_bearings(pair),
+        *_sizes(pair),
+        *_frequencies(pair),
         *_shafts(pair),
         *_widths(pair),
-        *_materials(pair),
         *_load(pair),
         *_speed(pair),
         *_roughness(pair),
-        *_flanks(pair),
     )
 
 
-def _bearings(pair: GearPair) -> Iterator[str]:
-    for name in ("pinion", "gear"):
-        bearing = getattr(pair.bearings, name)
-        for field in ("loa_stiffness", "oloa_stiffness"):
-            stiffness = getattr(bearing, field)
-            if stiffness < _SOFT:
-                yield (
-                    f"bearings.{name}.{field} = {stiffness:g} N/m is softer than any gear shaft. "
-                    f"Given in N/um? Then write '{stiffness:g} N/um'."
-                )
+def _sizes(pair: GearPair) -> Iterator[str]:
+    """Values beyond those of any gear in use."""
+    for pattern, (unit, factor, low, high, words) in _SIZES.items():
+        for gear in ("pinion", "gear"):
+            path = pattern.format(gear)
+            whole: Any = pair
+            for key in path.split("."):
+                whole = getattr(whole, key, None)  # no relief, no amount
+            value = factor * (whole or 0.0)
+            if value and not low <= value <= high:
+                yield f"{path} = {value:g} {unit} {words.format(value)}"
+
+
+def _frequencies(pair: GearPair) -> Iterator[str]:
     fastest = math.sqrt(max(_squared_frequencies(pair)))
     oscillations = fastest * pair.geometry.mesh_period / (2.0 * math.pi)
     if oscillations > _OSCILLATIONS:
@@ -105,16 +118,6 @@ def _widths(pair: GearPair) -> Iterator[str]:
         if not _NARROW <= modules <= _WIDE:
             cause = f"Given in m? Then write '{width * 1e3:g} m'." if modules < 1.0 else "Check its unit."
             yield f"{name}.face_width = {width * 1e3:g} mm is {modules:.2g} modules (gears: 5 to 40). {cause}"
-
-
-def _materials(pair: GearPair) -> Iterator[str]:
-    for name in ("pinion", "gear"):
-        modulus = getattr(pair, name).youngs_modulus * 1e-9
-        if not 0.5 <= modulus <= 800.0:
-            yield (
-                f"{name}.youngs_modulus = {modulus:g} GPa is no material of gears (steel 206, "
-                "plastics 1 to 10). Given in another unit? Write it: '206000 MPa'."
-            )
 
 
 def _load(pair: GearPair) -> Iterator[str]:
@@ -171,23 +174,3 @@ def _roughness(pair: GearPair) -> Iterator[str]:
             f"friction.composite_roughness = {given * 1e6:.3g} um is used for the film, not the root sum "
             f"square {both * 1e6:.3g} um of both roughnesses. Delete it if the roughnesses are meant."
         )
-
-
-def _flanks(pair: GearPair) -> Iterator[str]:
-    """Lengths on the flank that were given in another unit."""
-    for name in ("pinion", "gear"):
-        gear = getattr(pair, name)
-        roughness = gear.roughness * 1e6
-        if 0.0 < gear.roughness < _POLISHED or gear.roughness > _AS_CUT:
-            yield (
-                f"{name}.roughness = {roughness:g} um is that of no flank (0.1 to 3 um). Write a number in "
-                "um, or text with its unit: '0.4 um'."
-            )
-        for field in ("tip_relief", "root_relief"):
-            relief = getattr(gear, field)
-            if relief is not None and 0.0 < relief.amount < _LEAST_RELIEF:
-                amount = relief.amount * 1e6
-                yield (
-                    f"{name}.{field}.amount = {amount:g} um is less than can be made. Given in mm? Then "
-                    f"write '{amount:g} mm'."
-                )

@@ -22,7 +22,7 @@ from reproductions.he_cho_singh_2008.twins import (
     twins,
 )
 from validation.measurements import Measurement, predict
-from validation.measurements.comparison import align, overlay, overlay_metrics
+from validation.measurements.comparison import align, overlay
 from validation.measurements.record import PAIR_LABELS
 
 LAW = "xu_kahraman"
@@ -79,7 +79,6 @@ def measured_points(pair: GearPair, measurement: Measurement, *, bins: int = 48)
     prediction = predict(measurement.at(pair.with_({"friction.law": LAW})), recurrence=spec.recurrence)
     phase = align(measurement, prediction)
     points = overlay(measurement, prediction, phase, bins=bins)
-    points = points.merge(overlay_metrics(measurement, prediction, phase), combine_attrs="override")
     points["quantity"] = ("channel", [c.quantity for c in spec.channel])
     points["label"] = ("channel", [c.pair or "" for c in spec.channel])
     # Pair B follows A by one mesh cycle, C by two.

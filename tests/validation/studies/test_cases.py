@@ -140,11 +140,6 @@ def test_indices_of_the_ishigami_function(result):
     # 512 quasi-random points: the error is below that of plain sampling, 1/sqrt(512) = 4 %.
     np.testing.assert_allclose(at.sobol_first, first, atol=0.03)
     np.testing.assert_allclose(at.sobol_total, total, atol=0.03)
-    for name, exact in (("sobol_first", first), ("sobol_total", total)):
-        low, high = at[f"{name}_ci_low"], at[f"{name}_ci_high"]
-        assert (low < high).all()
-        # The bootstrap takes the points as random, so its 95 % interval holds the smaller quasi-random error.
-        assert ((low <= exact) & (exact <= high)).all()
 
 
 def test_a_constant_output_has_no_indices_and_says_so(result):
@@ -180,14 +175,14 @@ def test_before_the_last_case_there_are_no_indices(make_study, tmp_path):
 def test_indices_do_not_depend_on_the_unit():
     rng = np.random.default_rng(2)
     values = rng.random((1, 5 * 64))
-    one, other = indices(values, 3, 0), indices(1e-9 * values + 5.0, 3, 0)
+    one, other = indices(values, 3), indices(1e-9 * values + 5.0, 3)
     # A range of 1e-9 about 5 keeps 16 - 10 = 6 digits; the estimators square differences of it.
-    np.testing.assert_allclose(one["sobol_total"], other["sobol_total"], rtol=1e-5)
+    np.testing.assert_allclose(one[1], other[1], rtol=1e-5)
     for scale in (1e-200, 1e200):  # where squares vanish and overflow
-        scaled = indices(scale * values, 3, 0)
+        scaled = indices(scale * values, 3)
         # The estimators are differences of means of 64 numbers of order 1.
-        np.testing.assert_allclose(one["sobol_total"], scaled["sobol_total"], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(one[1], scaled[1], rtol=0, atol=1e-12)
 
 
 def test_where_every_output_is_constant_no_index_is_a_number():
-    assert all(np.isnan(array).all() for array in indices(np.full((2, 5 * 8), 3.0), 3, 0).values())
+    assert np.isnan(indices(np.full((2, 5 * 8), 3.0), 3)).all()

@@ -56,7 +56,6 @@ def test_failed_cases_are_recorded_and_the_others_go_on(study, tmp_path):
     assert result.sizes["failure"] == summary.failed == 24
     assert all("wedge" in str(text) for text in result.failure_message.to_numpy())
     assert result.failed_case.to_numpy().tolist() == list(range(0, 120, 5))
-    assert summary.exit_code == 1
 
 
 @pytest.mark.parametrize(("raised", "status"), [
