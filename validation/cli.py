@@ -30,18 +30,14 @@ from validation.stop_signals import interrupt_once
 
 #: What to type instead of a word that is no command.
 _INSTEAD = {
-    word: line
-    for line, words in {
-        "spurcheck --help": "help commands",
-        "spurcheck --version": "version",
-        "spurcheck init": "new create import",
-        "spurcheck report": "run analyse plot figures",
-        "spurcheck report PAIR --record FILE": "measurement measure",
-        "spurcheck crosscheck": "check compare verify validate",
-        "spurcheck response": "jumps branches",
-        "spurcheck interactive": "gui explore",
-    }.items()
-    for word in words.split()
+    "help": "spurcheck --help",
+    "version": "spurcheck --version",
+    "measurement": "spurcheck report PAIR --record FILE",
+    "jumps": "spurcheck response",
+    "gui": "spurcheck interactive",
+    **dict.fromkeys(("new", "create"), "spurcheck init"),
+    **dict.fromkeys(("run", "plot", "figures"), "spurcheck report"),
+    **dict.fromkeys(("check", "compare", "verify", "validate"), "spurcheck crosscheck"),
 }
 
 

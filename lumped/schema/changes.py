@@ -30,8 +30,9 @@ SHORT_NAMES = {
     "face_width": tuple(f"{gear}.face_width" for gear in _GEARS),
     "roughness": tuple(f"{gear}.roughness" for gear in _GEARS),
     **{
-        f"bearings.{key}": tuple(f"bearings.{g}.{line}_{key}" for g in _GEARS for line in ("loa", "oloa"))
+        start + key: tuple(f"bearings.{g}.{line}_{key}" for g in _GEARS for line in ("loa", "oloa"))
         for key in ("stiffness", "damping_ratio")
+        for start in ("bearings.", "bearing_")
     },
 }
 _TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")

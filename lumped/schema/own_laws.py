@@ -74,12 +74,8 @@ def is_own(path: str, value: object) -> bool:
         return False
     if isinstance(value, str):
         return path == "mesh.stiffness"
-    array = (
-        isinstance(value, (int, float))
-        or hasattr(value, "__array__")
-        or hasattr(value, "columns")
-        or isinstance(value, (list, tuple))
-    )
+    array = isinstance(value, int | float | list | tuple) or hasattr(value, "__array__")
+    array = array or hasattr(value, "columns")
     return callable(value) or array or (isinstance(value, Mapping) and "model" not in value)
 
 

@@ -103,13 +103,14 @@ def _figure(check: CrossCheck) -> Figure:
 
 def _tables(check: CrossCheck) -> list[Table]:
     from validation.cross_check.conservation import worst_of_each
+    from validation.cross_check.words import NAMES
     from validation.files.formatting import number
 
     name, found = check.pair.name, []
     for fidelity, title in (("linear", "same equations"), ("exact", "exact contact")):
         shown = table(f"{name}: {title}", "quantity", ">difference", ">limit", "verdict")
         for a in check.of(fidelity):  # type: ignore[arg-type]
-            shown.add_row(a.quantity, number(a.difference, 3), number(a.limit, 3), _word(a.within))
+            shown.add_row(NAMES[a.quantity], number(a.difference, 3), number(a.limit, 3), _word(a.within))
         found.append(shown)
     judged = [(f"{name}: conservation", worst_of_each(check.conservation))]
     if check.variant is not None:

@@ -72,7 +72,7 @@ _ENTRY = re.compile(r"^(\w+)(?: (\S+))? : (.*(?:\n +.*)*)", re.MULTILINE)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 #: Option that every command has, see ``guarded``.
 Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Print nothing but errors, and what --json prints.")
+    bool, typer.Option("--quiet", "-q", help="Print errors only: no tables, notes or progress.")
 ]
 
 
