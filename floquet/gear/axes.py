@@ -313,7 +313,7 @@ class _Law:
     def at(self, rpm: float) -> ContactPath:
         return self.path.at_speed(rpm * np.pi / 30.0)
 
-    def alone(self, rpm: float) -> FrictionLaw | None:
+    def in_force(self, rpm: float) -> FrictionLaw | None:
         """The law in force on the whole path, the law itself unless it is made of others; None: several."""
         if self.law.parts is None:
             return self.law
@@ -331,7 +331,7 @@ class _Law:
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
-        law, members, found = self.alone(reference), [], []
+        law, members, found = self.in_force(reference), [], []
         for i, rpm in enumerate(map(float, speeds_rpm)):
             weights = self._pair(law, reference, rpm)
             if weights is not None:
@@ -343,7 +343,7 @@ class _Law:
         """Weights at a speed, by the formula of the law in force alone; None: mu is no such sum."""
         if rpm == reference:
             return 1.0, 0.0
-        if law is None or self.alone(rpm) is not law:
+        if law is None or self.in_force(rpm) is not law:
             return None
         before, now = self.at(reference), self.at(rpm)
         if law.factor is not None:

@@ -28,8 +28,8 @@ def packed(system: RankOneSystem) -> Problem:
     degrees = np.stack([_degrees(form.w), _degrees(form.wd)], axis=1)
     return Problem(
         phases=own(system.phases),
-        w=_lanes(form.w),
-        wd=_lanes(form.wd),
+        w=_in_lanes(form.w),
+        wd=_in_lanes(form.wd),
         degrees=degrees,
         sizes=own(np.stack([w_size, wd_size], axis=2)),
         ratios=ratios,
@@ -111,7 +111,7 @@ def _ratios(w: FloatArray, wd: FloatArray, wd_size: FloatArray) -> tuple[FloatAr
     return rho, unequal
 
 
-def _lanes(poly: FloatArray) -> FloatArray:
+def _in_lanes(poly: FloatArray) -> FloatArray:
     """(Q, P, m, d+1) -> (Q, P, d+1, lanes), a whole number of `LANES`."""
     Q, P, m, count = poly.shape
     out = np.zeros((Q, P, count, -(-m // LANES) * LANES))

@@ -39,7 +39,7 @@ class _Lanes(types.Type):  # type: ignore[misc,unused-ignore]
         super().__init__(name="Lanes8")
 
 
-_lanes = _Lanes()
+_vector = _Lanes()
 
 
 @register_model(_Lanes)
@@ -72,7 +72,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.load(_pointer(context, builder, signature.args, *args), align=_UNALIGNED)
 
-    return _lanes(array, index), code
+    return _vector(array, index), code
 
 
 @intrinsic
@@ -84,7 +84,7 @@ def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
         builder.store(args[2], pointer, align=_UNALIGNED)
         return context.get_dummy_value()
 
-    return types.void(array, index, _lanes), code
+    return types.void(array, index, _vector), code
 
 
 @intrinsic
@@ -94,7 +94,7 @@ def zero(typing: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return ir.Constant(_VECTOR, [0.0] * LANES)
 
-    return _lanes(), code
+    return _vector(), code
 
 
 @intrinsic
@@ -104,7 +104,7 @@ def scaled(typing: Any, factor: Any, x: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.fmul(_splat(builder, args[0]), args[1], flags=_CONTRACT)
 
-    return _lanes(types.float64, _lanes), code
+    return _vector(types.float64, _vector), code
 
 
 @intrinsic
@@ -115,7 +115,7 @@ def plus(typing: Any, factor: Any, x: Any, total: Any) -> Any:
         product = builder.fmul(_splat(builder, args[0]), args[1], flags=_CONTRACT)
         return builder.fadd(product, args[2], flags=_CONTRACT)
 
-    return _lanes(types.float64, _lanes, _lanes), code
+    return _vector(types.float64, _vector, _vector), code
 
 
 @intrinsic
@@ -126,7 +126,7 @@ def plus_square(typing: Any, x: Any, total: Any) -> Any:
         product = builder.fmul(args[0], args[0], flags=_CONTRACT)
         return builder.fadd(product, args[1], flags=_CONTRACT)
 
-    return _lanes(_lanes, _lanes), code
+    return _vector(_vector, _vector), code
 
 
 def _folded(builder: Any, value: Any, join: Any) -> Any:
@@ -145,7 +145,7 @@ def total(typing: Any, x: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return _folded(builder, args[0], builder.fadd)
 
-    return types.float64(_lanes), code
+    return types.float64(_vector), code
 
 
 @intrinsic
@@ -158,4 +158,4 @@ def least(typing: Any, x: Any, y: Any) -> Any:
 
         return _folded(builder, smaller(args[0], args[1]), smaller)
 
-    return types.float64(_lanes, _lanes), code
+    return types.float64(_vector, _vector), code
