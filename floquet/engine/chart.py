@@ -175,13 +175,13 @@ def refine_planes(
             if progress is not None:
                 progress((k + fraction) / index.shape[2])
 
-        found = refined(index.shape[:2], smooth, ask, rows=rows, progress=tell)
-        rest = ~found.known.ravel()
+        result = refined(index.shape[:2], smooth, ask, rows=rows, progress=tell)
+        rest = ~result.known.ravel()
         points.radius[here[rest]], points.error[here[rest]] = (
-            found.radius.ravel()[rest],
-            found.misfit.ravel()[rest],
+            result.radius.ravel()[rest],
+            result.misfit.ravel()[rest],
         )
-        points.verdict[here[rest]] = found.verdict.ravel()[rest]
+        points.verdict[here[rest]] = result.verdict.ravel()[rest]
         tell(1.0)
 
 
@@ -262,10 +262,10 @@ def scan(
 
 def _at_point(evaluate: Family, rtol: float, point: dict[str, float]) -> Spectrum:
     try:
-        found = evaluate(point)
-        if isinstance(found, PeriodicSystem):
-            return monodromy(found, rtol)
-        return of_type("evaluate", found, Spectrum, "a function that returns a PeriodicSystem or a Spectrum")
+        result = evaluate(point)
+        if isinstance(result, PeriodicSystem):
+            return monodromy(result, rtol)
+        return of_type("evaluate", result, Spectrum, "a function that returns a PeriodicSystem or a Spectrum")
     except NumericalError as failure:
         raise NumericalError(f"at {_place(point)}: {failure}") from failure
 

@@ -155,8 +155,8 @@ class _State:
         a, b, c, d = box
         i, j = np.nonzero(self.known[a : b + 1, c : d + 1])
         i, j = i + a, j + c
-        found = np.exp(self._bilinear(box, i, j) / self.cycles[i, j])
-        return i, j, np.abs(found - self.radius[i, j])
+        result = np.exp(self._bilinear(box, i, j) / self.cycles[i, j])
+        return i, j, np.abs(result - self.radius[i, j])
 
     def _bilinear(self, box: Box, i: npt.NDArray[np.intp], j: npt.NDArray[np.intp]) -> FloatArray:
         a, b, c, d = box

@@ -100,15 +100,15 @@ def _checked(
     """C or K as a `PeriodicMatrix`, or the callable that it is."""
     if callable(value) and not isinstance(value, PeriodicMatrix):
         return value
-    found = value if isinstance(value, PeriodicMatrix) else PeriodicMatrix(square(name, value, n))
-    if found.dimension != n:
-        shape = f"({found.dimension}, {found.dimension})"
+    result = value if isinstance(value, PeriodicMatrix) else PeriodicMatrix(square(name, value, n))
+    if result.dimension != n:
+        shape = f"({result.dimension}, {result.dimension})"
         raise refuse(name, f"shape {shape}", f"that of M, ({n}, {n})", "Check the coordinates of both.")
-    for k, function in enumerate(found.functions, 1):
+    for k, function in enumerate(result.functions, 1):
         if not function.repeats(period):
             allowed = f"a function that repeats after the period, {period:g} s"
             raise refuse(f"{name}, term {k}", "another period", allowed, "Correct one of the two periods.")
-    return found
+    return result
 
 
 def _function(

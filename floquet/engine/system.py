@@ -85,11 +85,11 @@ class PeriodicSystem:
         # Two switches that differ only by rounding are one switch; keep 0 and T themselves.
         inner = edges[1:-1]
         gap = 4.0 * _INSET * self.period
-        kept = [0.0]
+        separate = [0.0]
         for t in inner:
-            if t - kept[-1] > gap and self.period - t > gap:
-                kept.append(float(t))
-        object.__setattr__(self, "edges", np.array([*kept, self.period]))
+            if t - separate[-1] > gap and self.period - t > gap:
+                separate.append(float(t))
+        object.__setattr__(self, "edges", np.array([*separate, self.period]))
         object.__setattr__(self, "breakpoints", tuple(float(t) for t in breaks))
 
         probe = np.asarray(self._call(np.array([0.5 * (self.edges[0] + self.edges[1])])))
@@ -102,15 +102,14 @@ class PeriodicSystem:
     def _call(self, times: FloatArray) -> FloatArray:
         values = self.A(times) if self.vectorized else [self.A(float(t)) for t in times]
         try:
-            found = np.asarray(values)
+            result = np.asarray(values)
         except ValueError:
-            found = np.empty(0, dtype=object)
-        if found.dtype.kind not in "fiu":  # complex numbers and text would become numbers without a word
-            kind = (
-                "numbers of different shapes" if found.dtype.kind == "O" else f"values of type {found.dtype}"
-            )
+            result = np.empty(0, dtype=object)
+        if result.dtype.kind not in "fiu":  # complex numbers and text would become numbers without a word
+            shapes = result.dtype.kind == "O"
+            kind = "numbers of different shapes" if shapes else f"values of type {result.dtype}"
             raise refuse("A", kind, "real numbers", "Return real numbers of one shape for every time.")
-        return found.astype(float)
+        return result.astype(float)
 
     def evaluate(self, times: npt.ArrayLike) -> FloatArray:
         """Return A at times [s] strictly inside smooth segments, (k,) -> (k, n, n); checked finite."""

@@ -205,9 +205,9 @@ def speed_range(pair: GearPair) -> tuple[float, float]:
 
     The default runs from near zero to about twice the operating speed; its upper end has two digits.
     """
-    given = pair.operating.speed_range
-    if given is not None:
-        return to_stated(given[0], "rpm"), to_stated(given[1], "rpm")
+    request = pair.operating.speed_range
+    if request is not None:
+        return to_stated(request[0], "rpm"), to_stated(request[1], "rpm")
     top = 2.0 * operating_rpm(pair)
     digit = 10.0 ** (np.floor(np.log10(top)) - 1)
     top = min(float(np.ceil(top / digit * (1.0 - 1e-9)) * digit), LARGEST_SPEED)
@@ -216,11 +216,11 @@ def speed_range(pair: GearPair) -> tuple[float, float]:
 
 def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float]:
     """Slowest and fastest speed [rpm] that an argument gives, or its refusal."""
-    given = np.atleast_1d(real_array(field, speeds))
-    if given.shape != (2,) or not 0.0 < given[0] < given[1] <= LARGEST_SPEED:
+    request = np.atleast_1d(real_array(field, speeds))
+    if request.shape != (2,) or not 0.0 < request[0] < request[1] <= LARGEST_SPEED:
         allowed = f"slowest and fastest speed, 0 < low < high <= {LARGEST_SPEED:g} rpm"
         raise refuse(field, shown(speeds), allowed, "Give (low, high) in rpm.")
-    return float(given[0]), float(given[1])
+    return float(request[0]), float(request[1])
 
 
 def chart_axes(pair: GearPair, speeds: int = 801, dampings: int = 201) -> dict[str, FloatArray]:
@@ -270,7 +270,7 @@ class FrictionFamily:
 
 
 def depends_on_speed(pair: GearPair) -> bool:
-    """Say whether mu(xi) changes with speed: every law but a constant one whose coefficient is given."""
+    """Say whether mu(xi) changes with speed: every law but a constant one whose coefficient is request."""
     return not law_of(pair.friction).is_constant(pair.friction)
 
 
@@ -331,13 +331,13 @@ class _Law:
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
-        law, members, found = self.in_force(reference), [], []
+        law, members, result = self.in_force(reference), [], []
         for i, rpm in enumerate(map(float, speeds_rpm)):
             weights = self._pair(law, reference, rpm)
             if weights is not None:
                 members.append(i)
-                found.append(weights)
-        return np.array(members, dtype=np.intp), np.array(found).reshape(-1, 2)
+                result.append(weights)
+        return np.array(members, dtype=np.intp), np.array(result).reshape(-1, 2)
 
     def _pair(self, law: FrictionLaw | None, reference: float, rpm: float) -> tuple[float, float] | None:
         """Weights at a speed, by the formula of the law in force alone; None: mu is no such sum."""

@@ -64,9 +64,9 @@ def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
     system = _in_modes(system, eigh(mesh - system.constant[m:, :m])[1])
     whole = _in_modes(system, _turn(system))
     order = np.argsort(-importance(whole), kind="stable")
-    kept, left = (np.sort(part) for part in (order[:MODES], order[MODES:]))
-    separate = -0.5 * np.diag(whole.constant[m:, m:])[left], _squares(whole)[left]
-    return Feedback(_in_modes(whole, np.eye(m)[:, kept]), np.ones(kept.size), separate, misfit)
+    leading, rest = (np.sort(part) for part in (order[:MODES], order[MODES:]))
+    separate = -0.5 * np.diag(whole.constant[m:, m:])[rest], _squares(whole)[rest]
+    return Feedback(_in_modes(whole, np.eye(m)[:, leading]), np.ones(leading.size), separate, misfit)
 
 
 def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:

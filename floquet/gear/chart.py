@@ -123,9 +123,9 @@ def stability_chart(
     if plane is not None and store == "all":
         action = "Give refine=False, which evaluates every node."
         raise refuse("store", store, '"radius" for a chart that refines itself', action)
-    found = solved(variation, grid, rtol, plane, everything=store == "all", prove=prove, progress=progress)
-    cells = None if found.cells is None else _verdicts_of_cells(grid, found.cells)
-    dataset = chart_dataset(grid, found)
+    result = solved(variation, grid, rtol, plane, everything=store == "all", prove=prove, progress=progress)
+    cells = None if result.cells is None else _verdicts_of_cells(grid, result.cells)
+    dataset = chart_dataset(grid, result)
     if cells is not None:
         dataset = dataset.merge(cells, combine_attrs="override").assign_attrs(cells.attrs)
     for name in grid:
@@ -350,11 +350,11 @@ class ChartSlice:
             def factors(
                 T: FloatArray, turn: float = turn, one: FrictionFamily = family, levels: int = levels
             ) -> FloatArray | None:
-                found = one.factors_at(turn / T)
-                return None if found is None else found[:, :levels]
+                result = one.factors_at(turn / T)
+                return None if result is None else result[:, :levels]
 
-            found = proven_cells(block, turn / rpm[::-1], ratios, factors, progress)[::-1]
-            parts = found.reshape(j - i - 1, along, damping.size - 1, up)
+            result = proven_cells(block, turn / rpm[::-1], ratios, factors, progress)[::-1]
+            parts = result.reshape(j - i - 1, along, damping.size - 1, up)
             least, most = parts.min(axis=(1, 3)), parts.max(axis=(1, 3))
             verdict[i : j - 1] = np.where(least == most, np.where(calm, least, np.minimum(least, 0)), 0)
         return verdict
@@ -380,12 +380,12 @@ class ChartSlice:
             block, separate, levels, turn = self._block(int(k), rtol)
             T = turn / self.speeds[speed[part]]
             factors = friction[part, None] * family.factors[row[speed[part]]]
-            found = fast_multipliers(block, T, damping[part], factors[:, :levels], tolerance=2e-4 * rtol)
+            result = fast_multipliers(block, T, damping[part], factors[:, :levels], tolerance=2e-4 * rtol)
             values, errors = separate.multipliers(T)
             points.put(
                 places[part],
-                np.concatenate([found.multipliers, values], axis=1),
-                np.concatenate([found.errors, errors], axis=1),
+                np.concatenate([result.multipliers, values], axis=1),
+                np.concatenate([result.errors, errors], axis=1),
                 True,
-                found.multipliers.shape[1],
+                result.multipliers.shape[1],
             )

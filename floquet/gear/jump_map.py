@@ -45,7 +45,7 @@ _NO_LOAD = 1e-9
 #: Variable of the map, field of a row, unit, name.
 _OVER_SPEED = (
     ("motions", "motions", "1", "stable periodic motions"),
-    ("contact_kept", "kept", "1", "always some tooth load"),
+    ("contact_kept", "contact", "1", "always some tooth load"),
     ("dte_rms_smallest", "smallest", "m", "smallest dynamic transmission error, rms"),
     ("dte_rms_largest", "largest", "m", "largest dynamic transmission error, rms"),
     ("largest_load", "load", "N", "largest normal load"),
@@ -68,15 +68,15 @@ def _with_relief(variation: GearVariation, micrometres: float) -> GearVariation:
 
 def _relieved(pair: GearPair) -> list[str]:
     """Gears with tip relief that acts, or the refusal of a pair that has none."""
-    found = [name for name in ("pinion", "gear") if getattr(pair, name).tip_relief is not None]
-    if pair.mesh.relief == "ignored" or not found:
+    result = [name for name in ("pinion", "gear") if getattr(pair, name).tip_relief is not None]
+    if pair.mesh.relief == "ignored" or not result:
         raise refuse(
             "axes['tip_relief']",
-            "a pair whose relief is ignored" if found else "a pair without tip relief",
+            "a pair whose relief is ignored" if result else "a pair without tip relief",
             "a pair with tip relief that acts",
             'Give pinion.tip_relief or gear.tip_relief, and mesh.relief = "static".',
         )
-    return found
+    return result
 
 
 def _own_relief(pair: GearPair) -> float:
@@ -196,7 +196,7 @@ class _Row:
     """What the map has over the speeds (k,), for one value of the second axis."""
 
     def __init__(self, one: Member, response: Response, speeds: FloatArray, cycle: float) -> None:
-        self.motions, self.kept = np.zeros(speeds.size, dtype=int), np.ones(speeds.size, dtype=bool)
+        self.motions, self.contact = np.zeros(speeds.size, dtype=int), np.ones(speeds.size, dtype=bool)
         self.smallest, self.largest, self.load = np.full((3, speeds.size), [[np.inf], [-np.inf], [-np.inf]])
         for branch in response.branches:
             _add(self, branch, speeds, cycle)
@@ -214,14 +214,14 @@ def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
     apart = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
     table = np.array([(cycle / o.period, o.run.rms, o.run.largest_load) for o in orbits])[apart]
-    s, kept = s[apart], [orbit for orbit, new in zip(orbits, apart, strict=True) if new]
+    s, distinct = s[apart], [orbit for orbit, new in zip(orbits, apart, strict=True) if new]
     if s.size < 2:
         return
     fine = np.interp(np.arange(_BETWEEN * (s.size - 1) + 1) / _BETWEEN, np.arange(s.size), s)
     speed, rms, load = PchipInterpolator(s, table)(fine).T
-    radius = np.array([orbit.spectral_radius for orbit in kept])
+    radius = np.array([orbit.spectral_radius for orbit in distinct])
     stable = np.repeat(np.maximum(radius[:-1], radius[1:]) < MARGINAL, _BETWEEN)
-    lost = np.repeat(_contact_lost(branch, kept), _BETWEEN)
+    lost = np.repeat(_contact_lost(branch, distinct), _BETWEEN)
     way = np.where(stable, np.sign(np.diff(speed)), 0.0)
     for piece in np.split(np.arange(way.size), np.flatnonzero(np.diff(way)) + 1):
         if way[piece[0]] == 0.0:
@@ -239,7 +239,7 @@ def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
         row.largest[here] = np.maximum(row.largest[here], values)
         row.load[here] = np.maximum(row.load[here], np.interp(speeds[here], speed[points], load[points]))
         between = np.searchsorted(speed[points], speeds[here], side="right") - 1
-        row.kept[here] &= ~lost[piece][np.clip(between, 0, piece.size - 1)]
+        row.contact[here] &= ~lost[piece][np.clip(between, 0, piece.size - 1)]
 
 
 def _contact_lost(branch: Branch, orbits: list[Orbit]) -> BoolArray:
@@ -270,10 +270,10 @@ def _run_through(
         run = _observed(one, state, cycle / float(speeds[j]), parameter, settle)
         if run is None:
             row.smallest[j] = row.largest[j] = row.load[j] = np.nan
-            row.kept[j] = False
+            row.contact[j] = False
             continue
         row.smallest[j] = row.largest[j] = run.rms
-        row.load[j], row.kept[j] = run.largest_load, not _without_load(run)
+        row.load[j], row.contact[j] = run.largest_load, not _without_load(run)
         state, settle = run.end, _SETTLE
 
 
@@ -298,7 +298,7 @@ class _Jump(NamedTuple):
 
 def _jumps(one: Member, response: Response, cycle: float) -> list[_Jump]:
     """Where the root mean square changes at once on running up or down."""
-    found = []
+    result = []
     for branch in response.branches:
         for b, behind in lost_stability(branch):
             before = b.orbit.run.rms
@@ -306,8 +306,8 @@ def _jumps(one: Member, response: Response, cycle: float) -> list[_Jump]:
             after = np.nan if run is None else run.rms
             if run is None or abs(after - before) >= JUMP * before:
                 rising = behind < b.orbit.period
-                found.append(_Jump(cycle / b.orbit.period, rising, before, after, branch.n))
-    return sorted(found)
+                result.append(_Jump(cycle / b.orbit.period, rising, before, after, branch.n))
+    return sorted(result)
 
 
 def _dataset(

@@ -102,11 +102,11 @@ def _range(axis: str, own: float, within: tuple[float, float] | None) -> tuple[f
             "damping_ratio": (own, min(1.0, max(0.2, 4.0 * own))),
             "tip_relief": (0.0, 3.0 * own),
         }[axis]
-    given = np.atleast_1d(real_array("within", within))
-    if given.size != 2 or not given[0] <= own <= given[1] or given[0] == given[1]:
+    request = np.atleast_1d(real_array("within", within))
+    if request.size != 2 or not request[0] <= own <= request[1] or request[0] == request[1]:
         raise refuse("within", within, f"a range around the pair's own value, {own:g}", "Give (low, high).")
-    JUMP_AXES[axis].check(axis, given)
-    return float(given[0]), float(given[1])
+    JUMP_AXES[axis].check(axis, request)
+    return float(request[0]), float(request[1])
 
 
 def _folds(response: Response) -> list[tuple[int, Orbit]]:

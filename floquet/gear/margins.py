@@ -156,16 +156,16 @@ def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> Stabilit
     low, high = checked_range("speed_rpm", speed_rpm)
     rpm, here = operating_rpm(pair), pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))
-    held = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
-    radius = _radius(held)
-    lines = np.array(list(predicted_lines(held, _ORDERS).values()))
+    constant = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
+    radius = _radius(constant)
+    lines = np.array(list(predicted_lines(constant, _ORDERS).values()))
 
     def unstable(damping: float, low: float = low, high: float = high) -> list[UnstableInterval]:
         nodes = seeded_nodes(lines, low, high, _SPEED_NODES)
         return unstable_intervals(lambda speeds: radius(speeds, damping), nodes, xtol=1e-8)
 
     def tongue(interval: UnstableInterval, window: tuple[float, float]) -> TongueMargin:
-        return _tongue(radius, held, interval, window)
+        return _tongue(radius, constant, interval, window)
 
     undamped = unstable(0.0)
     tongues = tuple(map(tongue, undamped, _windows(undamped, low, high)))
@@ -194,8 +194,8 @@ def _radius(pair: GearPair) -> Radius:
     def radius(speeds: npt.ArrayLike, dampings: npt.ArrayLike) -> FloatArray:
         rpm, zeta = np.broadcast_arrays(np.asarray(speeds, dtype=float), np.asarray(dampings, dtype=float))
         periods = block.period * operating_rpm(pair) / rpm.ravel()
-        found = spectral_radii(block, periods, zeta.ravel() / _LARGEST_DAMPING, tolerance=1e-3 * _RTOL)
-        return found.reshape(rpm.shape)
+        result = spectral_radii(block, periods, zeta.ravel() / _LARGEST_DAMPING, tolerance=1e-3 * _RTOL)
+        return result.reshape(rpm.shape)
 
     return radius
 

@@ -204,6 +204,6 @@ def gear_pair_multipliers(
 def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
     """Multipliers of the feedback block by the compiled kernel."""
     block = fitted_block(feedback, factor, max(0.01 * rtol, 1e-13), [])
-    found = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
-    order = np.argsort(-np.abs(found.multipliers[0]), kind="stable")
-    return Spectrum(found.multipliers[0][order], found.errors[0][order], block.period, certificate="proven")
+    result = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
+    order = np.argsort(-np.abs(result.multipliers[0]), kind="stable")
+    return Spectrum(result.multipliers[0][order], result.errors[0][order], block.period, certificate="proven")

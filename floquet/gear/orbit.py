@@ -304,8 +304,8 @@ def start_of(
         # Displacements and phase rates of a neighbouring speed are nearer than its rates.
         return _of_form(_wide(start.orbit.start), form), start.orbit.parameter
     g, operating, states = pair.geometry, pair.operating, np.zeros(12)
-    given = operating.brake_torque != "balanced"
-    torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
+    balanced = operating.brake_torque == "balanced"
+    torque = operating.pinion_torque * (g.omega_pinion / g.omega_gear if balanced else 1.0)
     cycle = MeshCycle.of(pair) if elements is None else MeshCycle(g, elements)
     absolute = LTVSystem.of(pair, "full", cycle=cycle)
     if start is not None:
@@ -316,7 +316,7 @@ def start_of(
     else:
         try:
             linear = periodic_solution(absolute, np.zeros(1), estimate_error=False)
-            states, torque = linear.states[0], linear.pinion_torque if given else linear.brake_torque
+            states, torque = linear.states[0], linear.brake_torque if balanced else linear.pinion_torque
         except NumericalError:
             states[2] = static_deflection(pair)
     relative = absolute.supports.relative

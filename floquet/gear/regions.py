@@ -113,12 +113,12 @@ def with_regions(variation: GearVariation, chart: xr.Dataset) -> xr.Dataset:
     for name in names:
         values = np.array([r.point[name] for r in regions])
         each[f"region_{name}"] = "region", values, GEAR_AXES[name].units, GEAR_AXES[name].long_name
-    found = labelled_dataset(each, {})
+    result = labelled_dataset(each, {})
     labels = np.array([str(r.label) for r in regions], dtype=object)
-    found = found.assign_coords(region_label=("region", labels))
+    result = result.assign_coords(region_label=("region", labels))
     attrs = {"thinnest_width": float(widths.min(initial=np.inf)) if regions else np.nan}
     attrs |= {f"nearest_edge_{name}": _edge(variation, chart, name) for name in names}
-    return chart.merge(found, combine_attrs="override").assign_attrs(attrs)
+    return chart.merge(result, combine_attrs="override").assign_attrs(attrs)
 
 
 def _edge(variation: GearVariation, chart: xr.Dataset, name: str) -> float:

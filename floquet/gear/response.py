@@ -172,7 +172,7 @@ class ResponseBranches:
         At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
         speed further on. Where a motion that does not repeat ends is found within 0.1 %.
         """
-        found = []
+        result = []
         for branch in self.branches:
             for b, behind in lost_stability(branch):
                 last, before = b.orbit, b.orbit.run
@@ -182,15 +182,17 @@ class ResponseBranches:
                 run = long_run(system, last.start, behind, last.parameter, amplitude=limit)
                 size = np.array([before.rms, before.least, before.most])
                 rising, load = behind < last.period, before.largest_load
-                found.append(_jump(self._rpm(last), rising, size, load, branch.n, run))
+                result.append(_jump(self._rpm(last), rising, size, load, branch.n, run))
         for one in self.response.attractors:
             for side, rising in enumerate((False, True)):
                 end, last_run = one.ends[side], one.runs[-side]
                 if end is not None and self._inside(self._cycle * end.rate):
                     n = last_run.orbit.n if last_run.orbit else 0
                     load = last_run.largest_load
-                    found.append(_jump(self._cycle * end.rate, rising, end.size, load, n, end.after))
-        changed = (jump for jump in found if not abs(jump.dte_rms_after - jump.dte_rms) < JUMP * jump.dte_rms)
+                    result.append(_jump(self._cycle * end.rate, rising, end.size, load, n, end.after))
+        changed = (
+            jump for jump in result if not abs(jump.dte_rms_after - jump.dte_rms) < JUMP * jump.dte_rms
+        )
         return tuple(sorted(changed, key=lambda jump: jump.speed_rpm))
 
     @cached_property
@@ -204,13 +206,13 @@ class ResponseBranches:
             for branch in self.branches
             for b, _ in lost_stability(branch)
         ]
-        found, (slowest, fastest) = list[GearAttractor](), self.speeds_rpm
+        result, (slowest, fastest) = list[GearAttractor](), self.speeds_rpm
         for one in self.response.attractors:
             low, high = (self._cycle * end_rate(one, side, losses) for side in (0, 1))
             if low < fastest and high > slowest:
                 ends = max(low, slowest), min(high, fastest)
-                found.append(gear_attractor(one, self._cycle, self.pair.geometry.normal_backlash, *ends))
-        return tuple(found)
+                result.append(gear_attractor(one, self._cycle, self.pair.geometry.normal_backlash, *ends))
+        return tuple(result)
 
     def basins(self, speed_rpm: float | None = None, starts: int = 256, seed: int = 1) -> tuple[Basin, ...]:
         """To which motions start states lead at a pinion speed [rpm], the operating speed by default.
@@ -242,12 +244,12 @@ class ResponseBranches:
             for two in pairwise(branch.orbits)
             if max(orbit.spectral_radius for orbit in two) < MARGINAL
         )
-        found, reached = list[tuple[float, float]](), low
+        result, reached = list[tuple[float, float]](), low
         for start, end in [*calm, (high, high)]:
             if min(start, high) - reached > _GAP * (high - low):
-                found.append((reached, min(start, high)))
+                result.append((reached, min(start, high)))
             reached = max(reached, end)
-        return tuple(found)
+        return tuple(result)
 
     @cached_property
     def dataset(self) -> xr.Dataset:
@@ -328,9 +330,9 @@ def response_branches(
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
-    found = member(pair, low, high, form_with(back_side=back_side))
-    response = find_response(found, periods=wanted, seeds=seeds, progress=progress)
-    return ResponseBranches(pair, (low, high), back_side, response, found)
+    result = member(pair, low, high, form_with(back_side=back_side))
+    response = find_response(result, periods=wanted, seeds=seeds, progress=progress)
+    return ResponseBranches(pair, (low, high), back_side, response, result)
 
 
 def _jump(rpm: float, rising: bool, size: FloatArray, load: float, n: int, after: LongRun) -> Jump:
@@ -341,7 +343,7 @@ def _jump(rpm: float, rising: bool, size: FloatArray, load: float, n: int, after
 
 def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
     """Places where a branch loses its stability, and T 0.1 % of the speed behind each."""
-    found = []
+    result = []
     marginal = {id(b.orbit) for b in branch.bifurcations if b.kind != "grazing"}
     for b in branch.bifurcations:
         at = branch.orbits.index(b.orbit)
@@ -356,8 +358,8 @@ def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
         calm = (o.period / b.orbit.period for o in branch.orbits[at + way :: way])
         ratio = next((ratio for ratio in calm if abs(ratio - 1.0) > _CORNER), 1.0)
         if ratio != 1.0:
-            found.append((b, b.orbit.period * (1.0 - _BEYOND if ratio > 1.0 else 1.0 + _BEYOND)))
-    return found
+            result.append((b, b.orbit.period * (1.0 - _BEYOND if ratio > 1.0 else 1.0 + _BEYOND)))
+    return result
 
 
 def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:

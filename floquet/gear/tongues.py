@@ -112,7 +112,7 @@ def stability_boundaries(
     if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
         raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
     name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
-    found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
+    intervals: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
     complete = np.ones(values.size, dtype=bool)
     for index, value in enumerate(values):
         here = vary(own, {name: float(value)} if axes else {})
@@ -125,10 +125,10 @@ def stability_boundaries(
         start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
         for interval in unstable_intervals(radius, start, xtol=xtol):
             label = label_variation(vary(here, {"speed_rpm": interval.peak}))
-            found.setdefault(label, {}).setdefault(index, []).append(interval)
+            intervals.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)
-    result = _boundaries_dataset(own.pair, found, name, values, complete).assign_attrs(supports=supports)
+    result = _boundaries_dataset(own.pair, intervals, name, values, complete).assign_attrs(supports=supports)
     return result if axes else result.isel({name: 0}, drop=True)
 
 
@@ -150,18 +150,18 @@ def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArr
 
 def _boundaries_dataset(
     pair: GearPair,
-    found: dict[Tongue, dict[int, list[UnstableInterval]]],
+    result: dict[Tongue, dict[int, list[UnstableInterval]]],
     name: str,
     values: FloatArray,
     complete: npt.NDArray[np.bool_],
 ) -> xr.Dataset:
-    tongues = sorted(found)
+    tongues = sorted(result)
     shape = (len(tongues), values.size)
-    most = max((len(parts) for columns in found.values() for parts in columns.values()), default=0)
+    most = max((len(parts) for columns in result.values() for parts in columns.values()), default=0)
     ends, numbers = np.full((2, *shape, most), np.nan), np.full((4, *shape), np.nan)
     open_end, count = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=np.int64)
     for row, tongue in enumerate(tongues):
-        for column, parts in found[tongue].items():
+        for column, parts in result[tongue].items():
             lower, upper = np.array([(part.lower, part.upper) for part in parts]).T
             top = max(parts, key=lambda part: part.peak_radius)
             ends[:, row, column, : len(parts)] = lower, upper

@@ -111,30 +111,30 @@ class Survey:
         self.grown = list[Motion]()
         for j, rate in enumerate(rates):
             motions = [Motion(at, state, parameter, _NONE) for at, state, parameter in starts if at == rate]
-            found, grows = self._settle(motions, np.full(len(motions), rate))
+            result, grows = self._settle(motions, np.full(len(motions), rate))
             for i, motion in enumerate(motions):
                 if grows[i]:
                     self.grown.append(motion)
                 else:
-                    self._enter(j, found, i, motion.parameter).starts += 1
+                    self._enter(j, result, i, motion.parameter).starts += 1
         while sum(self._carry(j, way) for way in (1, -1) for j in range(rates.size)[::way]):
             pass
 
     def _settle(self, motions: list[Motion], rates: FloatArray) -> tuple[Settled, BoolArray]:
         """Settle from motions at speeds; the runs, and which of them grow."""
-        found = settle(
+        result = settle(
             self.family, self.limits, np.array([motion.state for motion in motions]), 1.0 / rates,
             np.array([motion.parameter for motion in motions]),
         )  # fmt: skip
-        return found, found.grown(self.limits.amplitude)
+        return result, result.grown(self.limits.amplitude)
 
-    def _enter(self, j: int, found: Settled, i: int, parameter: float) -> Motion:
+    def _enter(self, j: int, result: Settled, i: int, parameter: float) -> Motion:
         """The motion at a speed that a run is like; a new one where there is none and room is left."""
-        level, size = self.levels[j], found.sizes[i]
+        level, size = self.levels[j], result.sizes[i]
         like = [motion for motion in level if alike(motion.size, size)]
         if like or len(level) >= _MOST:
             return min(like or level, key=lambda motion: abs(float(motion.size[0] - size[0])))
-        level.append(Motion(float(self.rates[j]), found.states[i], parameter, size))
+        level.append(Motion(float(self.rates[j]), result.states[i], parameter, size))
         return level[-1]
 
     def _carry(self, j: int, way: int) -> bool:
@@ -142,9 +142,9 @@ class Survey:
         moved = [motion for motion in self.levels[j] if way not in motion.next]
         if not moved or not 0 <= j + way < self.rates.size:
             return False
-        found, grows = self._settle(moved, np.full(len(moved), self.rates[j + way]))
+        result, grows = self._settle(moved, np.full(len(moved), self.rates[j + way]))
         for i, motion in enumerate(moved):
-            motion.next[way] = None if grows[i] else self._enter(j + way, found, i, motion.parameter)
+            motion.next[way] = None if grows[i] else self._enter(j + way, result, i, motion.parameter)
         return True
 
     def attractors(
@@ -156,7 +156,7 @@ class Survey:
             [motion for motion in level if wanted(motion.run) and self._lasts(motion)]
             for level in self.levels
         ]
-        found = list[Attractor]()
+        result = list[Attractor]()
         for j, level in enumerate(left):
             while level:
                 chain, ends = [level.pop(0)], list[AttractorEnd | None]()
@@ -169,8 +169,8 @@ class Survey:
                             chain.insert(0 if way < 0 else len(chain), last)
                     ends.append(end)
                 rates = np.array([motion.rate for motion in chain])
-                found.append(Attractor(rates, tuple(motion.run for motion in chain), (ends[0], ends[1])))
-        return tuple(found)
+                result.append(Attractor(rates, tuple(motion.run for motion in chain), (ends[0], ends[1])))
+        return tuple(result)
 
     def _onward(
         self, last: Motion, way: int, to: int, level: list[Motion]
@@ -192,15 +192,15 @@ class Survey:
         """Go on from a motion in small steps to another speed: the motion there, or where it ended before."""
         good, states = last, self._replicas(last)
         for step in last.rate * (rate / last.rate) ** (np.arange(1.0, _STEPS + 1.0) / _STEPS):
-            found, left = self._left(states, float(step), good)
+            result, left = self._left(states, float(step), good)
             if np.count_nonzero(left) > 1:
                 i = int(np.flatnonzero(left)[0])
-                gone = Motion(float(step), found.states[i], good.parameter, found.sizes[i])
+                gone = Motion(float(step), result.states[i], good.parameter, result.sizes[i])
                 after = self.identify(gone) if np.isfinite(gone.size).all() else grown(good.parameter)
                 return good, AttractorEnd(good.rate, good.size, 1.0 / float(step), after)
             stay = np.flatnonzero(~left)
-            states = found.states[np.where(left, stay[0], np.arange(_REPLICAS))]
-            good = Motion(float(step), states[0], good.parameter, found.sizes[stay].mean(axis=0))
+            states = result.states[np.where(left, stay[0], np.arange(_REPLICAS))]
+            good = Motion(float(step), states[0], good.parameter, result.sizes[stay].mean(axis=0))
         size = good.size
         good.identify(self.identify(good))
         if self.wanted(good.run) and alike(size, good.size, _FOLLOWS):
@@ -211,20 +211,20 @@ class Survey:
         """Whether runs stay on a motion; chaos that they leave soon is a way to another motion."""
         states, count = self._replicas(motion), 0
         for _ in range(_LONG):
-            found, left = self._left(states, motion.rate, motion)
-            states, count = found.states[~left], count + int(np.count_nonzero(left))
+            result, left = self._left(states, motion.rate, motion)
+            states, count = result.states[~left], count + int(np.count_nonzero(left))
             if count > 1:
                 return False
         return True
 
     def _left(self, states: FloatArray, rate: float, motion: Motion) -> tuple[Settled, BoolArray]:
         """Runs at a speed, and which of them are no longer like a motion."""
-        found, grows = self._settle(
+        result, grows = self._settle(
             [Motion(rate, state, motion.parameter, motion.size) for state in states],
             np.full(len(states), rate),
         )
-        apart = [not alike(motion.size, size, _FOLLOWS) for size in found.sizes]
-        return found, grows | np.array(apart)
+        apart = [not alike(motion.size, size, _FOLLOWS) for size in result.sizes]
+        return result, grows | np.array(apart)
 
     @staticmethod
     def _replicas(motion: Motion) -> FloatArray:

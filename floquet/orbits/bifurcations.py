@@ -51,7 +51,7 @@ class Bifurcation:
     sharp: bool
 
 
-def with_bifurcations(along: Continuation, path: Path, found: list[Bifurcation]) -> list[Orbit]:
+def with_bifurcations(along: Continuation, path: Path, result: list[Bifurcation]) -> list[Orbit]:
     """The orbits of a path with those of its bifurcations in their places, so that folds are among them.
 
     Between two bifurcations of one step stands a motion as well: theirs, with a multiplier of modulus one but
@@ -59,9 +59,9 @@ def with_bifurcations(along: Continuation, path: Path, found: list[Bifurcation])
     """
     places = [
         *((float(j), orbit) for j, orbit in enumerate(path.orbits)),
-        *((b.place, b.orbit) for b in found),
+        *((b.place, b.orbit) for b in result),
     ]
-    ordered = sorted(b.place for b in found)
+    ordered = sorted(b.place for b in result)
     for one, two in pairwise(ordered):
         j, middle = int(one), 0.5 * (one + two)
         if two < j + 1 and two > one:
@@ -74,11 +74,11 @@ def with_bifurcations(along: Continuation, path: Path, found: list[Bifurcation])
 
 def bifurcations(along: Continuation, path: Path) -> list[Bifurcation]:
     """Return the bifurcations between the points of a path in order, each refined."""
-    found = []
+    result = []
     for j in range(len(path.orbits) - 1):
         points = [_refined(along, path, j, kind, test) for kind, test in _tests(path, j)]
-        found += [point for point in points if point.kind != "Neimark-Sacker" or _turns(point.orbit)]
-    return found
+        result += [point for point in points if point.kind != "Neimark-Sacker" or _turns(point.orbit)]
+    return result
 
 
 def doubling_direction(along: Continuation, orbit: Orbit) -> FloatArray:
@@ -97,16 +97,16 @@ def _tests(path: Path, j: int) -> list[tuple[Kind, _Test]]:
     if abs(_unstable_pairs(one[0]) - _unstable_pairs(two[0])) == 2:
         rank = min(int(np.sum(np.abs(orbit.multipliers) > 1.0)) for orbit, _ in ends)
         tests.append(("Neimark-Sacker", lambda o, _: float(np.abs(o.multipliers[rank])) - 1.0))
-    found = [
+    result = [
         (kind, test)
         for kind, test in tests
         if test(*one) * test(*two) < 0.0 and min(abs(test(*one)), abs(test(*two))) > _ROUNDING
     ]
     if one[0].parts != two[0].parts:
-        found.append(("grazing", lambda o, _: 1.0 if o.parts else -1.0))
+        result.append(("grazing", lambda o, _: 1.0 if o.parts else -1.0))
     elif one[0].strikes != two[0].strikes:
-        found.append(("grazing", lambda o, _: 1.0 if o.strikes else -1.0))
-    return found
+        result.append(("grazing", lambda o, _: 1.0 if o.strikes else -1.0))
+    return result
 
 
 def _speed_along(orbit: Orbit, tangent: FloatArray) -> float:
@@ -154,9 +154,9 @@ def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -
         value(part)
     except (NumericalError, RuntimeError):
         part = places[int(np.argmin([abs(one.value) for one in known]))]
-    found = known[places.index(part)]
-    sharp = kind != "grazing" and abs(found.value) <= _ZERO * around
-    return Bifurcation(kind, found.orbit, j + part, sharp)
+    result = known[places.index(part)]
+    sharp = kind != "grazing" and abs(result.value) <= _ZERO * around
+    return Bifurcation(kind, result.orbit, j + part, sharp)
 
 
 class _Known:

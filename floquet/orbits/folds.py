@@ -177,13 +177,13 @@ class FoldContinuation:
 
     def _turning(self, Y: FloatArray, tangent: FloatArray, step: float, beyond: Fold) -> Fold:
         """The fold of the extreme value, less than a step ahead."""
-        found = [beyond]
+        result = [beyond]
 
         def along(ahead: float) -> float:
             _, fold, turned = self._correct(Y + ahead * tangent, tangent)
-            found.append(fold)
+            result.append(fold)
             return float(turned[-1] * np.sign(tangent[-1]))
 
         with contextlib.suppress(NumericalError, ValueError):
             brentq(along, 0.0, step, xtol=_TURN * step)
-        return max(found, key=lambda fold: fold.value * np.sign(tangent[-1]))
+        return max(result, key=lambda fold: fold.value * np.sign(tangent[-1]))

@@ -75,7 +75,7 @@ class Branch:
     def at(self, period: float) -> list[Orbit]:
         """All orbits of the branch at a period, by Newton's method from the neighbours."""
         away = self.rates - 1.0 / period
-        system, found = self.family.at(period), list[Orbit]()
+        system, result = self.family.at(period), list[Orbit]()
         for j in np.flatnonzero(away[:-1] * away[1:] <= 0.0):
             one, two = self.orbits[j], self.orbits[j + 1]
             part = away[j] / (away[j] - away[j + 1]) if away[j] != away[j + 1] else 0.5
@@ -85,9 +85,9 @@ class Branch:
                 orbit = find_orbit(system, start, period, self.n, parameter)
             except NumericalError:
                 continue
-            if not any(same_motion(orbit, other) for other in found):
-                found.append(orbit)
-        return found
+            if not any(same_motion(orbit, other) for other in result):
+                result.append(orbit)
+        return result
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,22 +109,22 @@ class Response:
 
     def at(self, period: float) -> list[Orbit]:
         """All orbits that were found at a period, of few cycles first."""
-        found: list[Orbit] = []
+        result: list[Orbit] = []
         for branch in sorted(self.branches, key=lambda branch: branch.n):
-            found += [o for o in branch.at(period) if not any(same_motion(o, other) for other in found)]
-        return found
+            result += [o for o in branch.at(period) if not any(same_motion(o, other) for other in result)]
+        return result
 
     def basins(self, member: Member, rate: float, places: FloatArray) -> list[tuple[LongRun, int]]:
         """To what runs from places (k, 2) of the unit square settle at a speed, and how many of them."""
         survey = Survey(member.family, member.limits, np.array([rate]), member.apart(rate, places))
-        orbits, found = self.at(1.0 / rate), list[tuple[Motion, int]]()
+        orbits, result = self.at(1.0 / rate), list[tuple[Motion, int]]()
         for motion in survey.levels[0]:
             motion.identify(member.exactly(motion, orbits))
-            same = [j for j, (other, _) in enumerate(found) if _same(motion, other)]
+            same = [j for j, (other, _) in enumerate(result) if _same(motion, other)]
             for j in same[:1]:
-                found[j] = found[j][0], found[j][1] + motion.starts
-            found += [] if same else [(motion, motion.starts)]
-        shares = [(motion.run, count) for motion, count in found]
+                result[j] = result[j][0], result[j][1] + motion.starts
+            result += [] if same else [(motion, motion.starts)]
+        shares = [(motion.run, count) for motion, count in result]
         shares += [(grown(survey.grown[0].parameter), len(survey.grown))] if survey.grown else []
         return sorted(shares, key=lambda share: -share[1])
 
@@ -366,9 +366,9 @@ class _Search:
         inner = [path.orbits[part * len(path.orbits) // 4] for part in (1, 2, 3)]
         if sum(self.known(orbit) for orbit in inner) > 1:
             return
-        found = bifurcations(along, path)
-        orbits = tuple(with_bifurcations(along, path, found))
-        self.branches.append(Branch(self.family, along.n, orbits, tuple(found), (first_end, path.end)))
+        result = bifurcations(along, path)
+        orbits = tuple(with_bifurcations(along, path, result))
+        self.branches.append(Branch(self.family, along.n, orbits, tuple(result), (first_end, path.end)))
 
     def doublings(self) -> None:
         """Follow the branches that leave period doublings, as long as their cycles are wanted."""

@@ -86,8 +86,8 @@ def fast_monodromies(
         raise refuse(
             "coordinates", system.v.size, f"at most {MOST}", "Use floquet.monodromy for larger systems."
         )
-    given = system.period if periods is None else periods
-    T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
+    request = system.period if periods is None else periods
+    T = own(real_numbers("periods", request, 0.0, above=True, unit="s"))
     tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
     factors = np.ones((T.size, len(system.parts)))
     gains = _factors("gain_factors", gain_factors, T.shape, factors[:, 1:].shape)
@@ -179,16 +179,16 @@ def _quick(matrices: FloatArray, errors: FloatArray) -> tuple[ComplexArray, Floa
 
 
 def _factors(
-    name: str, given: npt.ArrayLike, each: tuple[int, ...], parts: tuple[int, ...] | None = None
+    name: str, request: npt.ArrayLike, each: tuple[int, ...], parts: tuple[int, ...] | None = None
 ) -> FloatArray:
     """Factors, one per variant, or where ``parts`` is a shape, one per variant and part."""
-    array = real_array(name, given)
+    array = real_array(name, request)
     if np.isfinite(array).all():
         if parts is not None and array.shape == parts:
             return array
         if array.shape in ((), (1,), each):
             return np.broadcast_to(array, each)
-    raise refuse(name, shown(given), f"finite, one or {each[0]}", "Give one factor per period.")
+    raise refuse(name, shown(request), f"finite, one or {each[0]}", "Give one factor per period.")
 
 
 def _in_slices(run: Callable[[slice], _T], size: int) -> list[_T]:

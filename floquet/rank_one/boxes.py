@@ -86,8 +86,8 @@ def proven_cells(
                 patch = FlowPolynomial.of(system, problem, periods[[i, b]], damping[[c, d]], factors)
             if patch is not None:
                 growth = min(1.1 * patch.growth, 10.0)
-                found = _subdivided(patch, periods[i : b + 1], damping[c : d + 1])
-                here[here == 0] = found[here == 0]
+                result = _subdivided(patch, periods[i : b + 1], damping[c : d + 1])
+                here[here == 0] = result[here == 0]
             c = d
         i = b
         if progress is not None:
@@ -285,11 +285,11 @@ def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray)
     while boxes:
         now, boxes = boxes[:_BATCH], boxes[_BATCH:]
         a, b, c, d = np.array(now).T
-        found, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
+        result, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
         for k, (i, j, p, q) in enumerate(now):
             wide, tall = j - i > 1, q - p > 1
-            if found[k]:
-                verdict[i:j, p:q] = found[k]
+            if result[k]:
+                verdict[i:j, p:q] = result[k]
             elif wide or tall:
                 along = wide and (2.0 * across[k] >= upward[k] or not tall)
                 up = tall and (2.0 * upward[k] >= across[k] or not wide)

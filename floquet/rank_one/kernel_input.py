@@ -63,9 +63,9 @@ def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, flo
     def moduli(matrix: FloatArray) -> FloatArray:
         return np.asarray(absolute @ np.abs(matrix) @ np.abs(Phi))
 
-    given = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
+    turning = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
     noise = E * np.linalg.norm(form.C) + twice * np.linalg.norm(moduli(system.damping))
-    moving = E * np.linalg.norm(form.gyroscopic) + twice * np.linalg.norm(moduli(given))
+    moving = E * np.linalg.norm(form.gyroscopic) + twice * np.linalg.norm(moduli(turning))
     turned = Y @ system.stiffness @ Phi
     feedback = np.outer(form.reference, form.v)
     rest = np.abs(turned + feedback - np.diag(omega**2)) + E * np.linalg.norm(turned)

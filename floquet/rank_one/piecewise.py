@@ -116,11 +116,11 @@ def fit_pieces(
                 raise NumericalError(f"the feedback is not smooth near {centre[~good][0]:g} of the period.")
             good[:] = True
         if good.any():
-            kept = _padded(series[:, good, : degree + 1], degree)
+            fitted = _padded(series[:, good, : degree + 1], degree)
             errors = errors[:, good] + beyond[:, good] + fixed[:, good]
             errors += series_rounding(gains.count) * largest[:, good]
-            _drop_powers(kept, errors, 0.03 * allowed[:, good])
-            fits.append(_to_powers(kept, errors))
+            _drop_powers(fitted, errors, 0.03 * allowed[:, good])
+            fits.append(_to_powers(fitted, errors))
             misfits.append(errors.T)
             starts.append(centre[good] - half[good])
         rest, quarter, owner = centre[~good], 0.5 * half[~good], segment[~good]

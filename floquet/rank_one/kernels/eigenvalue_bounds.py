@@ -49,9 +49,9 @@ def _vectors_of(
         pivots[k] = p
         if p != k:
             for j in range(n):
-                held = LU[k, j]
+                other = LU[k, j]
                 LU[k, j] = LU[p, j]
-                LU[p, j] = held
+                LU[p, j] = other
         if most < tiny:
             LU[k, k] = tiny
         # The pivot is kept as its inverse: complex divisions are slow.
@@ -80,9 +80,9 @@ def _vectors_of(
         for j in range(i + 1, n):
             y[i] -= LU[j, i] * y[j]
     for k in range(n - 1, -1, -1):
-        held = y[k]
+        other = y[k]
         y[k] = y[pivots[k]]
-        y[pivots[k]] = held
+        y[pivots[k]] = other
     _normalise(y)
     dot = 0.0 + 0.0j
     for i in range(n):

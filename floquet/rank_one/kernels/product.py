@@ -27,12 +27,12 @@ def frobenius(rows: FloatArray) -> float:
 
 
 @compiled(_nrt=False, forceinline=True)
-def copy(given: FloatArray, out: FloatArray) -> None:
-    """Out = given, as many rows as out has."""
+def copy(source: FloatArray, out: FloatArray) -> None:
+    """Out = source, as many rows as out has."""
     n = out.shape[0]
     for c in range(0, n, LANES):
         for i in range(n):
-            store(out, (i, c), load(given, (i, c)))
+            store(out, (i, c), load(source, (i, c)))
 
 
 @compiled(_nrt=False, forceinline=True)
