@@ -1,9 +1,5 @@
 """Transition matrices with proven errors of systems whose A(t) is known as a formula.
 
-In every step X' = h (sum_j A_j s^j + E) X, |E| <= e, 0 <= s <= 1: Taylor coefficients (k+1) X_{k+1} = h sum_j
-A_j X_{k-j}, what is left out bounded before it is computed, rounding along the recurrence, and the product
-over the period without a term left out.
-
 Sources: docs/theory/proven_bounds.md, "The matrix of a step" and "The product".
 """
 

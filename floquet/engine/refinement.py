@@ -1,14 +1,8 @@
 """Charts over two axes that are evaluated near the edges of instability and interpolated elsewhere.
 
 A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
-cycles in a unit of time, is bilinear in it to the tolerance; else it is cut. Whole rows of the second axis
-are evaluated first to seed the search: the lowest alone of damping, where tongues are widest; of other
-parameters three. A box is also cut where two multipliers may meet in it, since tongues begin there: until
-their angles change by no more than 1.5 times their decay in a cycle, so that a tongue of any order shows at
-a node.
-
-Both sides of every edge are evaluated. A region can be missed that lies wholly inside a leaf and touches
-neither these rows nor an evaluated node.
+cycles in a unit of time, is bilinear in it to the tolerance, and no two multipliers may meet in it; else it
+is cut. Whole rows of the second axis seed the search.
 
 Sources: docs/theory/floquet.md, "Charts that refine themselves".
 """

@@ -1,8 +1,7 @@
 """Periodic systems of their matrices of mass, damping and stiffness.
 
-M x'' + C(t) x' + K(t) x = 0 is written in coordinates x = T z in which the mean of a conservative system is
-diagonal: z'' = -P^-1 C T z' - P^-1 K T z with P = M T. Multipliers do not depend on T, bounds on their errors
-do: in these coordinates free vibrations keep their norm, in those of finite elements they seem to grow.
+Coordinates are x = T z in which the mean of a conservative system is diagonal: z'' = -P^-1 C T z' - P^-1 K T
+z with P = M T. Multipliers do not depend on T, bounds on their errors do.
 
 Sources: docs/theory/floquet.md, "From matrices of mass, damping and stiffness".
 """

@@ -1,8 +1,7 @@
 """Taylor propagation of a system with unilateral contacts, with its events and its derivatives, compiled.
 
-Between events the system is linear with polynomial coefficients, so the Taylor coefficients of the state and
-of its derivatives follow from one recursion, and the functions whose zeros are events are polynomials of the
-step. A step is cut at an event by evaluating these polynomials there: nothing is integrated twice.
+The Taylor coefficients of the state and of its derivatives follow from one recursion, and the functions whose
+zeros are events are polynomials of the step, which is cut at an event by evaluating them there.
 
 Sources: docs/theory/orbits.md, "Propagation" and "Jump matrices"; step size from the last two terms: Jorba
 and Zou, Experimental Mathematics 14 (2005) 99.

@@ -55,7 +55,6 @@ def proven_cells(
     ----------
     periods, damping : (N+1,) [s] and (M+1,), increasing: edges of the cells; damping is the factor on wd
     factors : on the varied gains, powers of the period or linear in its logarithm, else nothing is proven
-    progress : told the finished fraction
     """
     problem, rows = packed(system), damping.size - 1
     verdict = np.zeros((periods.size - 1, rows), dtype=np.intp)
@@ -357,10 +356,9 @@ def bounded_entries(
     high = np.sqrt(square[:, :, 0, 0] + varied) * (1.0 + 1e-12) + wrong
     f[:, range(n), range(n)] = 0.0
     moduli[..., range(n), range(n)] = 0.0
-    across = moduli[:, 1:, 0].sum(axis=(1, 2, 3)) + np.abs(square[:, :, 1:, 0]).sum(axis=2).max(axis=1)
-    upward = moduli[:, :, 1:].sum(axis=(1, 2, 3, 4)) + np.abs(square[:, :, :, 1:]).sum(axis=(2, 3)).max(
-        axis=1
-    )
+    across, square = moduli[:, 1:, 0].sum(axis=(1, 2, 3)), np.abs(square)
+    across += square[:, :, 1:, 0].sum(axis=2).max(axis=1)
+    upward = moduli[:, :, 1:].sum(axis=(1, 2, 3, 4)) + square[:, :, :, 1:].sum(axis=(2, 3)).max(axis=1)
     return V, low, high, f, across, upward
 
 

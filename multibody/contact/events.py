@@ -1,9 +1,8 @@
 """When the contact force will next jump or bend: a tooth enters or leaves, passes a switch, or sliding turns.
 
-A step that straddles a jump of the force is no longer of the integrator's order: it is repeated until it is
-tiny, and what it leaves behind is larger than the tolerance. The motion of the gears themselves, continued
-from the present state by its Taylor polynomial, says when that will be, so that the integrator can stop there
-and start again behind it. A wrong prediction costs time and nothing else: the force does not depend on it.
+A step that straddles a jump of the force is no longer of the integrator's order. The Taylor polynomial of the
+motion says when that will be, so that the integrator can stop there and start again behind it. A wrong
+prediction costs time and nothing else: the force does not depend on it.
 """
 
 from __future__ import annotations

@@ -1,13 +1,10 @@
-r"""The published friction laws, evaluated at the multibody model's own contact.
+"""The published friction laws, evaluated at the multibody model's own contact.
 
-Written from the printed laws (docs/theory/friction.md), with conversions of its own from SI to the units in
-which each law was fitted, and without a line or a table of ``lumped.friction``: a wrong unit or factor on
-either side shows as a difference between the two models. A law that is not written here has the code
-``TABLE``: the contact reads the lumped model's mu(xi) (``kernels.friction_size``), and
-``multibody.study.shared`` says so.
+Written from the printed laws (docs/theory/friction.md), with conversions of its own from SI and without a
+line or a table of ``lumped.friction``: a wrong unit or factor on either side shows as a difference. A law
+that is not written here has the code ``TABLE``: the contact reads the lumped model's mu(xi).
 
-A contact is described by what the law reads: sliding velocity :math:`v_s`, sum of the rolling velocities
-:math:`v_e`, radii of curvature :math:`\rho_p, \rho_g` and the load per face width w.
+v_s is the sliding velocity, v_e the sum of the rolling velocities, w the load per face width.
 """
 
 from __future__ import annotations

@@ -1,9 +1,5 @@
 """Forces of the tooth contacts for one state of the two bodies: the compiled heart of the exact model.
 
-The geometry comes from ``multibody.contact.kinematics``, stiffness, relief and loads of a tooth pair from
-``multibody.contact.elements``, the friction laws from ``multibody.contact.friction``; this file puts them
-together, as the switches of the finite-motion effects say (``multibody.run.effects``).
-
 State: q = (x_p, y_p, phi_p, x_g, y_g, phi_g), deviations from the nominal position and rotation, world axes
 x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise and the gear counter-clockwise.
 """

@@ -1,8 +1,6 @@
 """The finite-motion effects of the exact model, each of which can be switched off to see what it does.
 
-With all of them off the exact model solves the lumped equations, so every difference between the two models
-is the sum of what these switches add. A new effect is its physics and its bit in ``kernels`` and its entry
-here.
+With all of them off the exact model solves the lumped equations.
 
 The momentary load in the friction law is no finite motion: it changes the coefficient however small the
 torque is. So it acts only where it is asked for, and the attribution shows what it does.

@@ -1,9 +1,8 @@
 """Periodic motion and stability as the multibody model sees them: perturbed states over one mesh cycle.
 
 The 12-state map has a double multiplier +1, the rigid rotation of the free gear train. The verdict is taken
-on the 10 states of the relative form (q, x_p, x_g, y_p, y_g and rates, q = r_bp theta_p - r_bg theta_g):
-the rotations are perturbed with the rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg held fixed, and q is
-read off.
+on the 10 states of the relative form (q, x_p, x_g, y_p, y_g and rates, q = r_bp theta_p - r_bg theta_g),
+perturbed with the rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg fixed.
 
 Sources: docs/theory/multibody.md, "Stability".
 """

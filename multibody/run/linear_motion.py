@@ -1,8 +1,7 @@
 """Periodic motion of a pair on shafts with the linear mesh: from the model's own matrices, without exudyn.
 
-The linear mesh acts by the overlap and its rate alone, along directions that depend on time alone; its wrench
-is read off the compiled forces. The 2n states have a double multiplier +1, the free turn of the train: so one
-torque must balance, and the turn is held.
+The linear mesh acts by the overlap and its rate alone; its wrench is read off the compiled forces. The 2n
+states have a double multiplier +1, the free turn of the train: so one torque must balance.
 
 Sources: docs/theory/shafts.md, "The machine"; DOP853 after E. Hairer, S. P. Norsett and G. Wanner, Solving
 Ordinary Differential Equations I (1993), II.5.

@@ -1,9 +1,8 @@
 """The exudyn model: two planar rigid bodies in bearings, one massless object that carries the tooth contacts.
 
-Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g): the bodies
-turn through finite angles (the contact core adds the nominal rotation), while the integrator's relative
-tolerance acts on the vibration and not on the many turns of the shafts. A frame that turns at constant
-speed about each body's own centre of mass adds no inertia terms in the plane.
+Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g), which contacts
+add: so the relative tolerance acts on the vibration. A frame that turns at constant speed about each body's
+own centre of mass adds no inertia terms in the plane.
 """
 
 from __future__ import annotations

@@ -2,8 +2,7 @@
 
 Deflection w and rotation of the section psi have shape functions of their own: the two linear ones that carry
 the values at the ends of an interval, and integrals of Legendre polynomials, which vanish there. w has one
-order more than psi, so that the shear w' - psi can vanish everywhere: nothing locks, and three functions of w
-already hold the exact deflection under a force at a node. Accuracy is raised by the order, not by the mesh.
+order more than psi, so that nothing locks. Accuracy is raised by the order, not by the mesh.
 
 Sources: S. P. Timoshenko, Phil. Mag. 41 (1921) 744; shear coefficient G. R. Cowper, J. Appl. Mech. 33 (1966)
 335, hollow circle; hierarchical functions B. Szabo and I. Babuska, Finite Element Analysis (1991), 3.1.

@@ -1,14 +1,10 @@
 """Both shafts of a pair with gears, bearings and coupled inertias as one system of numbers, teeth apart.
 
 The gear is a rigid disc at its station. Its centre (x, y) and its angle phi are retained; the rest of bending
-and twist and the coupled inertia are left to modes with these fixed: an inertia behind a coupling, however
-light, then has no mode above the highest frequency, which would stall an explicit integrator.
+and twist and the coupled inertia are left to modes with these fixed. Gyroscopic moments on the slopes beta of
+x and alpha of y are -J_p Omega alpha' and +J_p Omega beta', Omega counter-clockwise positive.
 
-Slopes beta of x and alpha of y over z turn the axis of a spinning section by the vector (-alpha, beta). By
-Euler's law the gyroscopic moments on beta and alpha are -J_p Omega alpha' and +J_p Omega beta', with Omega
-counter-clockwise positive: of opposite signs for pinion and gear.
-
-Sources: docs/theory/shafts.md.
+Sources: docs/theory/shafts.md, "The machine".
 """
 
 from __future__ import annotations

@@ -1,13 +1,9 @@
 """What the Taylor kernel works on: gains over one piece and one step, and how many terms are enough.
 
-The Taylor coefficients x_k of x' = A(u) x, A(u) = sum_j A_j u^j, obey (k+1) x_{k+1} = sum_j A_j x_{k-j};
-hence |x_k| <= r_k with r_0 = 1, (k+1) r_{k+1} = sum_j a_j r_{k-j}, for any a_j >= |A_j|. The r_k are the
-coefficients of exp g(R), g(R) = sum_j a_j R^(j+1)/(j+1). They are not negative, so that r_k R^k <= exp g(R)
-for every R > 0, and for every R > 1 the terms beyond degree p sum to at most
+With a_j >= |A_j|, g(R) = sum_j a_j R^(j+1)/(j+1), the terms of x' = sum_j A_j u^j x beyond degree p sum to at
+most exp(g(R)) R^-p/(R - 1) for all |u| <= 1 and R > 1, which gives p before any vector is computed.
 
-    exp(g(R)) R^-p/(R - 1)   for all |u| <= 1.
-
-This gives p before any vector is computed.
+Sources: docs/theory/proven_bounds.md, "The matrix of a step".
 """
 
 from __future__ import annotations

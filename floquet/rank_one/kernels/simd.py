@@ -1,8 +1,7 @@
 """The compiler of the kernels, and eight numbers side by side as one value of compiled code.
 
-The compiler does not turn loops of eight turns over possibly overlapping arrays into vector instructions, so
-the kernels say it themselves. ``load`` and ``store`` move eight numbers of the last axis of an array;
-everything else works on registers. For kernels only: none of these can be called from Python.
+The compiler does not turn short loops over possibly overlapping arrays into vector instructions. ``load`` and
+``store`` move eight numbers of the last axis of an array; everything else works on registers.
 """
 
 from __future__ import annotations

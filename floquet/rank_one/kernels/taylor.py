@@ -1,22 +1,11 @@
 """Taylor propagation of a rank-one feedback system with a majorant error bound, compiled.
 
-In modal coordinates of a reference problem (`floquet.rank_one.system`) the system reads
+In energy coordinates x = (omega eta, eta') of `ModalForm` a step of length 2 h has A(u) = sum_j A_j u^j, |u|
+<= 1, with |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|), the others likewise without
+omega and C. The series starts in the middle of the step; its sums at u = 1 and -1 are the flows E and S to
+the end and the start, and P = E S^-1 is that of the step.
 
-    eta'' + C eta' + omega^2 eta + w(t) (v . eta) + wd(t) (v . eta') = 0,
-
-with w, wd polynomials on every piece of the period. In the energy coordinates x = (omega eta, eta') the
-part omega^2 is skew, so that one step of length 2 h has the matrix A(u) = sum_j A_j u^j, -1 <= u <= 1, with
-
-    |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|),   |A_j| <= a_j likewise without
-    omega, C,
-
-which is what `floquet.rank_one.kernels.gains` needs.
-
-The series starts in the middle of the step, where it needs fewer terms and where powers of u are small. Its
-sums at u = 1 and -1 are the flows E and S from the middle to the end and back to the start, and P = E S^-1 is
-that of the step. Let E and S be wrong by at most d each, and let r be what P S - E comes to. Then P is wrong
-by at most (r + (1 + |P|) d) |S^-1|, and |S^-1|, the flow from the start to the middle, is bounded by the
-growth of energy.
+Sources: docs/theory/proven_bounds.md, "The matrix of a step".
 """
 
 from __future__ import annotations
