@@ -143,7 +143,7 @@ def contact_forces(
     count = int(np.int64(0))
     for side in range(2 if flags & kn.BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
-        own_teeth = OwnPair(0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G])
+        own_teeth = OwnPair(0.0, 0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G])
         line, delta, rho, _ = mesh_position(t, q, p, flags, flank)
         ex, ey, length = line.ex, line.ey, line.length
         if not math.isfinite(delta):
@@ -166,6 +166,7 @@ def contact_forces(
                 own_teeth = own_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
             late, tip_p, tip_g = own_teeth.error, own_teeth.tip_p, own_teeth.tip_g
             error, error_slope = relief_at(p, xi)
+            error_slope += own_teeth.rise
             pressed, pressing = delta - error - late, rate - error_slope * xi_rate
             corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
             if flags & kn.TIP_CONTACT:

@@ -332,12 +332,13 @@ def move_moments(ways: FloatArray, wrench: FloatArray) -> None:
 class OwnPair(NamedTuple):
     """What its two teeth make of a pair.
 
-    error : material missing on both flanks [m]
+    error, rise : material missing on both flanks [m], and its slope along the path of contact
     softer, slope : compliance that faults add [m/N], and its slope along the path of contact
     tip_p, tip_g : where the flanks end, distances from X and Y [m]
     """
 
     error: float
+    rise: float
     softer: float
     slope: float
     tip_p: float
@@ -360,10 +361,13 @@ def own_pair(
     z_p, z_g = int(own[kn.TEETH]), int(own[kn.OWN_COLUMNS + kn.TEETH])
     pinion = (int(own[kn.FIRST]) + number_p) % z_p
     gear = (int(own[kn.OWN_COLUMNS + kn.FIRST]) + number_g) % z_g
-    error = own[kn.OWN_ERRORS + pinion] + own[kn.OWN_ERRORS + z_p + gear]
+    errors, rises = own[kn.OWN_ERRORS :], own[kn.OWN_ERRORS + z_p + z_g :]
+    rise, held = rises[pinion] - rises[z_p + gear], min(max(xi, p[kn.L_XA]), p[kn.L_XD])
+    error = errors[pinion] + errors[z_p + gear] + rise * (held - p[kn.L_XP])
+    rise = rise if held == xi else 0.0
     softer, slope, tip_p, tip_g = 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G]
     for i in range(int(own[kn.OWN_FAULTS])):
-        row = kn.OWN_ERRORS + z_p + z_g + kn.FAULT_COLUMNS * i
+        row = kn.OWN_ERRORS + 2 * (z_p + z_g) + kn.FAULT_COLUMNS * i
         of_gear = own[row + kn.FAULT_GEAR] == 1.0
         if own[row + kn.FAULT_TOOTH] != (gear if of_gear else pinion):
             continue
@@ -382,4 +386,4 @@ def own_pair(
         if own[row + kn.SPALL_START] <= place < own[row + kn.SPALL_END]:
             softer += own[row + kn.SPALL]
             error += own[row + kn.PIT]
-    return OwnPair(error, softer, slope, tip_p, tip_g)
+    return OwnPair(error, rise, softer, slope, tip_p, tip_g)

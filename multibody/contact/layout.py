@@ -41,8 +41,8 @@ FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
 N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
 
 # Places in the block of teeth that differ: of pinion and gear eccentricity [m], its angle at t = 0 [rad],
-# number of teeth, tooth at A at t = 0; then the number of faults, the errors of the pinion's teeth and of the
-# gear's [m], and a row for each fault.
+# number of teeth, tooth at A at t = 0; then the number of faults, the errors of the pinion's teeth and of
+# the gear's [m], their rise along the own base tangents from the pitch point [-], and a row for each fault.
 ECCENTRICITY, ANGLE, TEETH, FIRST, OWN_COLUMNS = range(5)
 OWN_FAULTS = 2 * OWN_COLUMNS
 OWN_ERRORS = OWN_FAULTS + 1

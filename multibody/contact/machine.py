@@ -222,10 +222,11 @@ def own_block(pair: GearPair) -> FloatArray:
     unread = ["operating.torque_ripple"] if pair.operating.torque_ripple else []
     teeth, firsts = own_teeth(pair), first_teeth(pair)
     for name, one in zip(("pinion", "gear"), teeth, strict=True):
-        unread += [f"{name}.deviations.profile_slope"] if one.slope.any() else []
         unread += [f"{name}.deviations.tip_relief"] if one.relief.any() else []
     if unread:
-        allowed = "index deviations, eccentricity and faults, all that the multibody model has of own teeth"
+        allowed = (
+            "index, profile slopes, eccentricity and faults, all that the multibody model has of own teeth"
+        )
         raise refuse(unread[0], "given", allowed, "Leave it out, or use lumped.steady_state.")
     rows = [
         (one.eccentricity, one.phase + 2.0 * math.pi * first / one.error.size, one.error.size, first)
@@ -236,7 +237,9 @@ def own_block(pair: GearPair) -> FloatArray:
         for which, gear in enumerate((pair.pinion, pair.gear))
         for fault in gear.faults
     ]
-    return np.concatenate([np.ravel(rows), [len(faults)], *(one.error for one in teeth), *faults])
+    flanks = (pair.flank(0), pair.flank(1))
+    rises = [-one.slope / (flank.tip - flank.start) for one, flank in zip(teeth, flanks, strict=True)]
+    return np.concatenate([np.ravel(rows), [len(faults)], *(one.error for one in teeth), *rises, *faults])
 
 
 def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:

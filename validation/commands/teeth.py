@@ -7,10 +7,7 @@ from validation.commands.terminal import guarded, progress_bar, stdout, table
 
 
 @guarded
-def teeth(
-    pair: opt.Pair,
-    files: opt.DataFiles,
-) -> None:
+def teeth(pair: opt.Pair, files: opt.DataFiles) -> None:
     r"""Show what teeth that differ do: loads, sidebands, indicators, beside the twin with like teeth.
 
     Teeth differ by sections of the parameter file:

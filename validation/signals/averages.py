@@ -209,10 +209,7 @@ def indicators(
     table = [_numbers(one, teeth, 0.5 * (spread[1] + own)) for one, own in zip(averages, spread, strict=True)]
     return labelled_dataset(
         {"value": (("indicator", "record"), np.array(table).T, "1", "condition indicator")},
-        {
-            "indicator": (list(_INDICATORS), "1", "name"),
-            "record": (["pair", "healthy twin"], "1", "record"),
-        },
+        {"indicator": (list(_INDICATORS), "1", "name"), "record": (["pair", "healthy twin"], "1", "record")},
         result.attrs | {"shaft": shaft, "teeth": teeth, "noise_floor": floor, "unit": found.unit},
     )
 

@@ -7,9 +7,12 @@ import pytest
 
 import lumped
 from lumped.quasi_static.kernels import corner_at
+from lumped.quasi_static.loaded import FULL_DAMPING
+from lumped.schema.bodies import bodies_of
 from lumped.teeth import kernels
+from lumped.teeth.contact import Laws, tables
 from lumped.teeth.linear import linear_motion
-from lumped.teeth.motion import push_motion
+from lumped.teeth.motion import push_motion, static_mesh
 
 COS = np.cos(np.radians(20.0))
 ERRORS = np.random.default_rng(5).normal(size=28) * 5.0
@@ -108,8 +111,7 @@ def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):
     swing = np.ptp(twin.y_p.values)  # of corners too, which push off the line of action
     assert fine.states[:SAMPLES, 4] == pytest.approx(twin.y_p.values, abs=2e-3 * swing)
     assert fine.brake_torque - fine.powers["rolling"] / pair.geometry.omega_gear == pytest.approx(
-        lumped.steady_state(loaded).attrs["brake_torque"],
-        rel=1e-6,
+        lumped.steady_state(loaded).attrs["brake_torque"], rel=1e-6
     )
 
 
@@ -189,28 +191,61 @@ class TestEccentricGears:
         assert side["steps"] > 5.0 * side["turning"]
 
 
-class TestStatics:
+def inside(pair, found):
+    """Gap of each pair at each output, whether it carries away from the tips, and k of a rectangular pair."""
+    g, teeth = pair.geometry, (found.pinion_tooth.values - 1, found.gear_tooth.values - 1)
+    phase = found.phase.values if "phase" in found.coords else found.time.values / g.mesh_period
+    ahead = found.sizes["pair"] - 2 - np.arange(found.sizes["pair"])  # the last one is behind A
+    position = g.L_XA + ((phase + 1e-12) % 1.0 + ahead[:, None]) * g.base_pitch
+    inner = (position > g.L_XA + 1.5e-4) & (position < g.L_XD - 1.5e-4) & (found.normal_load.values > 0.0)
+    k = float(lumped.mesh_stiffness(pair).attrs["mean"]) / g.contact_ratio
+    return lumped.tooth_gaps(pair).gap.values[teeth], inner, k
+
+
+class TestOfEveryPair:
     def test_loads_carry_the_force_with_every_pair_on_its_own_gap(self, loaded):
         pair = loaded.with_(
             {"pinion.deviations": steps(3.0 * ERRORS), "gear.deviations": steps(ERRORS[::-1])}
         )
         found = lumped.static_sharing(pair, samples_per_cycle=16)
-        g, force = pair.geometry, 56.5 / pair.geometry.base_radius_pinion
+        force = 56.5 / pair.geometry.base_radius_pinion
         assert found.normal_load.sum("pair").values == pytest.approx(force, rel=1e-9)
-        gap = lumped.tooth_gaps(pair).gap.values
-        k = float(lumped.mesh_stiffness(pair).attrs["mean"]) / g.contact_ratio
         # Away from the tips a pair is a rectangle of stiffness: where two press, both give the same approach.
-        ahead = found.sizes["pair"] - 2 - np.arange(found.sizes["pair"])  # the last one is behind A
-        position = g.L_XA + (found.phase.values % 1.0 + ahead[:, None]) * g.base_pitch
-        teeth = found.pinion_tooth.values - 1, found.gear_tooth.values - 1
-        inner = (position > g.L_XA + 1.5e-4) & (position < g.L_XD - 1.5e-4) & (found.normal_load.values > 0.0)
-        own = found.normal_load.values / k + gap[teeth]
+        gap, inner, k = inside(pair, found)
+        own = found.normal_load.values / k + gap
         approach = np.broadcast_to(found.transmission_error.values, own.shape)
         assert inner.sum() > 300
         assert own[inner] == pytest.approx(approach[inner], rel=1e-9)
         largest = found.largest_load.values
         assert np.isfinite(largest).sum() == 28
         assert np.nanmax(largest) >= found.normal_load.values.max()
+
+    def test_dampers_begin_together_with_the_elastic_load(self, loaded):
+        pair = loaded.with_({"pinion.deviations": steps(3.0 * ERRORS), "operating.pinion_speed": 4000})
+        run = lumped.steady_state(pair, samples_per_cycle=64)
+        gap, inner, k = inside(pair, run)
+        elastic = k * (run.dte.values - gap)
+        part = np.clip(elastic / FULL_DAMPING / (56.5 / pair.geometry.base_radius_pinion), 0.0, 1.0)
+        c = 2.0 * pair.mesh.damping_ratio * np.sqrt(k * bodies_of(pair).effective_mass)
+        damper = c * part**2 * (3.0 - 2.0 * part) * run.dte_dot.values
+        assert (inner & (part < 0.9) & (abs(damper) > 0.1)).sum() > 20
+        assert (run.normal_load.values - elastic)[inner] == pytest.approx(damper[inner], abs=1e-5)
+
+    def test_a_sloping_profile_is_read_where_the_swing_of_the_free_train_has_moved_the_contact(self, loaded):
+        slopes = {"profile_slope": [8.0] * 28, "first_order": "steps"}
+        mounted = {"eccentricity": 20, "phase": 50}
+        pair, way = loaded.with_({"pinion.deviations": slopes, "pinion.mounting": mounted}), 3.0
+        own = tables(Laws(pair), 1.0 / 32, 1)
+        own.eccentric[0, 5] = way
+        moved, loads, _ = static_mesh(own, 0, 28)
+        own.eccentric[0, 5] = 0.0
+        unmoved, others, _ = static_mesh(own, 0, 28)
+        single = (loads[0] + others[0] > 0.0).sum(axis=0) == 1
+        turn = 2.0 * np.pi / 28 * (np.arange(28)[:, None] + own.edges[:-1]) + np.radians(50.0)
+        flank = pair.flank(0)
+        expected = -8e-6 / (flank.tip - flank.start) * way * 20e-6 * np.sin(turn)
+        assert single.sum() > 150
+        assert (moved - unmoved)[..., 0][single] == pytest.approx(expected[single], abs=1e-12)
 
 
 def test_slope_of_a_tip_corner_is_the_rate_of_its_gap(nasa):

@@ -12,8 +12,8 @@ from multibody.contact.machine import machine
 
 ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
 OWN = {
-    "pinion.deviations": {"index": ERRORS, "first_order": "steps"},
-    "gear.deviations": {"index": ERRORS[::-1], "first_order": "steps"},
+    "pinion.deviations": {"index": ERRORS, "profile_slope": ERRORS[::-1], "first_order": "steps"},
+    "gear.deviations": {"index": ERRORS[::-1], "profile_slope": ERRORS, "first_order": "steps"},
     "pinion.mounting": {"eccentricity": 4, "phase": 70},
     "gear.mounting": {"eccentricity": 6},
 }
@@ -66,7 +66,7 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
 
 
 @pytest.mark.parametrize(("changes", "field"), [
-    ({"gear.deviations": {"profile_slope": [1.0] * 28}}, "gear.deviations.profile_slope"),
+    ({"gear.deviations": {"tip_relief": [1.0] * 28}}, "gear.deviations.tip_relief"),
     ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, "torque_ripple"),
 ])  # fmt: skip
 def test_what_it_does_not_have_is_refused(pair, changes, field):

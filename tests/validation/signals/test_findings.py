@@ -16,7 +16,7 @@ from validation.reporting.results import QUICK, Results
 from validation.signals import indicators
 from validation.signals.findings import TeethFindings, deviations_table
 
-ONE_TOOTH = [0.0] * 27 + [4.0]
+ONE_TOOTH = [1.5] + [0.0] * 25 + [2.0, 4.0]
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     {"pinion.deviations": {"index": ONE_TOOTH, "first_order": "steps"}, "friction.law": "none"}
 )
@@ -30,10 +30,10 @@ def found() -> TeethFindings:
 def test_deviations_are_compared_with_the_standard() -> None:
     table = deviations_table(PAIR).sel(gear="pinion")
     assert float(table["cumulative"]) == pytest.approx(4e-6)
-    assert float(table["pitch"]) == pytest.approx(4e-6)  # one tooth off: a step there and one back
+    assert float(table["pitch"]) == pytest.approx(2.5e-6)  # from the last tooth to the first
     held = int(table["tolerance_class"])
     limits = [flank_tolerances(28, PAIR.basic_rack.module, number)["f_p"] for number in (held - 1, held)]
-    assert limits[0] < 4e-6 <= limits[1]
+    assert limits[0] < 2.5e-6 <= limits[1]
     drawn = PAIR.with_({"pinion.deviations": {"tolerance_class": 6, "seed": 2}})
     assert int(deviations_table(drawn)["tolerance_class"][0]) == 6
     worse = PAIR.with_({"pinion.deviations": {"index": [0.0] * 27 + [500.0]}})
@@ -72,6 +72,8 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     parted.motion = motion.assign(
         normal_load=motion["normal_load"].where(motion["time"] != motion["time"][9], 0)
     )
+    parted.largest_loads = found.largest_loads.copy()
+    parted.largest_loads[3, 5] = 2.0 * force
     results.__dict__["teeth"] = parted
     content = chapter.write(results)
     assert content is not None
@@ -95,6 +97,10 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     share = np.diag(found.largest_loads) / force  # 28/28: tooth i meets tooth i alone
     assert share.max() == pytest.approx(found.load(motion) / force)
     assert np.isfinite(found.largest_loads).sum() == 28
+    share[3] = 2.0
+    table = blocks["teeth_deviations"]
+    assert [cell.value for cell in table.rows[0][1:4]] == pytest.approx([4e-6, 2.5e-6, 0.0])
+    assert list(table.columns)[1:4] == ["cumulative", "pitch", "eccentricity"]
     assert [bar.get_height() for bar in figures["loads_pinion"].patches] == pytest.approx(share)
     assert figures["loads_pinion"].lines[0].get_ydata()[0] == pytest.approx(found.load(twin) / force)
     tops = [line[1, 1] for line in figures["orders_pinion"].collections[0].get_segments()]

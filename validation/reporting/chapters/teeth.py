@@ -110,10 +110,7 @@ def _pictures(found: TeethFindings) -> list[Block]:
         {"turn": (turn[:shown_count], "1", "turns of the pinion")},
     )
     caption = f"Transmission error over {min(turns, _MOST_TURNS):g} of the {turns:g} turns of the period."
-    shown: list[Block] = [
-        Picture("teeth_turn", caption, over_turn, turn_figure),
-        *_loads(found),
-    ]
+    shown: list[Block] = [Picture("teeth_turn", caption, over_turn, turn_figure), *_loads(found)]
     for gear in GEARS:
         if getattr(pair, gear).has_own_teeth:
             data = found.spectrum(gear).assign_attrs(teeth=getattr(pair, gear).teeth)
