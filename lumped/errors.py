@@ -117,7 +117,7 @@ class LawRangeWarning(UserWarning):
 
 
 class LikeTeethWarning(UserWarning):
-    """A function that has like teeth alone was given a pair whose teeth differ: the result is the twin's."""
+    """A function that takes all teeth as alike got a pair whose teeth differ: the result is of like teeth."""
 
 
 class ResolutionWarning(UserWarning):

@@ -67,7 +67,7 @@ def monodromy(
     method : "auto": where A is a `PeriodicMatrix`, Taylor steps with a proven bound, else "gauss"; or a name
         in `floquet.PROPAGATORS`, or a propagator, whose error is an estimate: nothing is known of a callable
         between the samples
-    max_substeps : refuse to work harder than this
+    max_substeps : largest number of substeps; more are refused
 
     Returns
     -------
@@ -76,7 +76,7 @@ def monodromy(
     Warns
     -----
     ResolutionWarning
-        A second look between the samples found features that they had missed.
+        Further samples between the steps found features that the first ones had missed.
 
     Raises
     ------

@@ -31,7 +31,7 @@ _U = 0.5 * float(np.finfo(np.float64).eps)
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
-    The double +1 of the free rotation is no part of them: it means a free choice of angle and speed.
+        They do not include the double +1 of the free rotation, which means that angle and speed are arbitrary.
 
     Attributes
     ----------

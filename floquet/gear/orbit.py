@@ -253,7 +253,7 @@ def long_run(
     ----------
     pair : the gear pair
     start : 12 states or a motion as in ``periodic_orbit``; None: the motion of the linear model
-    settle_cycles : mesh cycles before it is looked at
+    settle_cycles : mesh cycles before the observation
     cycles : mesh cycles of the observation, over which the Lyapunov exponent is a mean
     back_side : whether the back sides of the teeth touch after the backlash
 

@@ -59,7 +59,7 @@ def quasi_static_losses(
     *,
     samples_per_cycle: int = 512,
 ) -> xr.Dataset:
-    """Loads, friction power and mesh efficiency over one mesh cycle at vanishing speed of vibration.
+    """Loads, friction power and mesh efficiency over one mesh cycle in slow motion, without vibration.
 
     At every instant T_p = SUM (r_bp + X_pi mu_i) N_i fixes the mesh load. Its shares are those of springs
     under the frictionless load T_p/r_bp, and T_g = SUM (r_bg + X_gi mu_i) N_i. The efficiency

@@ -45,8 +45,8 @@ def run_up(
     """Motion while the speed goes evenly from one value to another (docs/theory/equations.md, "Run-up").
 
     The phase of the mesh is the integral of the speed. Coefficients stay over a mesh cycle, or over several
-    while the speed changes by less than 0.1 %, each with its exact duration. Drive and brake bear the torques
-    that accelerate the shafts, so the mean load of the mesh stays that of the pair. The run begins on the
+    while the speed changes by less than 0.1 %, each with its exact duration. Drive and brake supply the
+    torques that accelerate the shafts, so the mean load of the mesh is that of the pair. The run begins on the
     periodic motion of the first speed.
 
     Parameters

@@ -50,7 +50,7 @@ def condensed_bearings(pair: AnyPair, frequency: float = 0.0) -> GearPair:
     Parameters
     ----------
     pair : a gear pair with shafts
-    frequency : at which the gears' centres and rims feel the same resistance as on their shafts [Hz]. At 0
+    frequency : at which centres and rims of the gears have the dynamic stiffness of their shafts [Hz]. At 0
         all inertia that turns with a gear is its own; at a mesh frequency far above the couplings, that of
         motor and load is not
 

@@ -120,7 +120,7 @@ def crosscheck(
     the whole history is compared; any difference beyond integration error is a fault of the program. At
     "exact" the model's own periodic motion is compared, with the brake torque that balances its own losses:
     under the lumped one it would drift, and the phase with it. The largest difference over the peak to peak
-    of the lumped motion is the answer; beyond its limit the model, not the program, is in question. Where the
+    of the lumped motion is the answer; beyond its limit the lumped model is not accurate enough. Where the
     lumped motion is unstable, or the exact model has no periodic motion near it, the end of a run from the
     lumped motion is shown and not judged. Where the linear motion needs teeth that pull, the lumped motion is
     the one with unilateral contact (``floquet.periodic_orbit``), and so are the equations of "linear".
