@@ -31,7 +31,7 @@ _U = 0.5 * float(np.finfo(np.float64).eps)
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
-        They do not include the double +1 of the free rotation, which means that angle and speed are arbitrary.
+    They do not include the double +1 of the free rotation: angle and speed of the pair are arbitrary.
 
     Attributes
     ----------

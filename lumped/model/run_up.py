@@ -46,8 +46,8 @@ def run_up(
 
     The phase of the mesh is the integral of the speed. Coefficients stay over a mesh cycle, or over several
     while the speed changes by less than 0.1 %, each with its exact duration. Drive and brake supply the
-    torques that accelerate the shafts, so the mean load of the mesh is that of the pair. The run begins on the
-    periodic motion of the first speed.
+    torques that accelerate the shafts, so the mean load of the mesh is that of the pair. The run begins on
+    the periodic motion of the first speed.
 
     Parameters
     ----------
