@@ -18,7 +18,7 @@ from floquet.gear.tongues import predicted_lines
 from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import NumericalError
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 
@@ -105,7 +105,7 @@ def campbell(
             "mode": (np.arange(1, modes.size + 1), "1", "mode of the mean system"),
             "mesh_order": (mesh_order, "1", "multiple of the mesh frequency"),
         },
-        {"title": f"Campbell diagram of {pair.name}"},
+        provenance(pair) | {"title": f"Campbell diagram of {pair.name}"},
     ).assign_coords(tongue_coordinates("line", lines))
 
 

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, note, stderr, stdout, table
-
-if TYPE_CHECKING:
-    from lumped import GearPair
 
 
 @guarded
@@ -190,44 +187,30 @@ def export(
     source PAIR|RESULT : Gear pair (preset or TOML), or a result file (.nc).
     """
     from lumped.errors import refuse
+    from validation.exchange import write_rexs, write_state_space
+    from validation.exchange.results import STATE_SPACE_SUFFIXES, one_table, read_netcdf, write_results
+    from validation.exchange.rexs.encodings import FORMS
+    from validation.files.output import DATA_SUFFIXES, check_file
 
     if source.lower().endswith(".nc"):
         options = {"--speed": speed, "--torque": torque, "--law": law, "--set": settings}
         if given := [name for name, value in options.items() if value is not None]:
             raise refuse(given[0], "with a result file", "a gear pair", "Leave it out.")
-        _export_result(source, output, force=force)
+        check_file(output, DATA_SUFFIXES, force=force)
+        result = read_netcdf(source)
+        if output.suffix.lower() == ".csv":
+            result, left_out = one_table(result)
+            if left_out:
+                names = ", ".join(left_out)
+                stderr().print(f"left out, for they have other axes: {names}; .mat and .nc hold everything")
+        write_results(result, output, force=force)
     else:
         pair = opt.gear_pair(source, speed, torque, law, settings)
-        _export_pair(pair, output, force=force)
+        check_file(output, (*FORMS, *STATE_SPACE_SUFFIXES), force=force)
+        if output.suffix.lower() in STATE_SPACE_SUFFIXES:
+            write_state_space(pair, output, force=force)
+        else:
+            write_rexs(pair, output, force=force)
+            kept = "bearings, shafts, damping, friction law, stiffness model and inertia"
+            note(f"REXS is written without {kept}: keep the parameter file")
     stderr().print(f"wrote {output}")
-
-
-def _export_pair(pair: GearPair, output: Path, *, force: bool) -> None:
-    from validation.exchange import write_rexs, write_state_space
-    from validation.exchange.results import STATE_SPACE_SUFFIXES
-    from validation.exchange.rexs.encodings import FORMS
-    from validation.files.output import check_file
-
-    if output.suffix.lower() in STATE_SPACE_SUFFIXES:
-        write_state_space(pair, output, force=force)
-        return
-    check_file(output, (*FORMS, *STATE_SPACE_SUFFIXES), force=force)
-    write_rexs(pair, output, force=force)
-    note(
-        "REXS is written without bearings, shafts, damping, friction law, stiffness model and inertia: "
-        "keep the parameter file"
-    )
-
-
-def _export_result(source: str, output: Path, *, force: bool) -> None:
-    from validation.exchange.results import one_table, read_netcdf, write_results
-    from validation.files.output import DATA_SUFFIXES, check_file
-
-    check_file(output, DATA_SUFFIXES, force=force)
-    result = read_netcdf(source)
-    if output.suffix.lower() == ".csv":
-        result, left_out = one_table(result)
-        if left_out:
-            names = ", ".join(left_out)
-            stderr().print(f"left out, for they have other axes: {names}; .mat and .nc hold everything")
-    write_results(result, output, force=force)

@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from lumped import GearPair
     from lumped.typing import FloatArray
 
-    #: What is written as data, and its figure, None for that of ``plot``.
-    View = tuple[xr.Dataset, Callable[[], Figure] | None]
-
 #: Speeds and damping ratios of a chart.
 _CHART = (801, 201)
 _AXES = {
@@ -68,7 +65,8 @@ def stability(
     prove : Over speed and damping decide every cell between the points of the chart, too: proven stable,
         proven unstable, or unproven and then marked. Takes a few seconds.
     """
-    from floquet.gear.axes import GEAR_AXES
+    from floquet.gear.axes import GEAR_AXES, chart_axes
+    from floquet.gear.campbell import campbell
     from floquet.gear.multipliers import gear_pair_multipliers
     from lumped.errors import refuse
 
@@ -98,12 +96,11 @@ def stability(
         stdout().print(table(title, "quantity", ">value", rows=rows.items()))
     if files.paths or axis or tongues or prove or view != "chart":
         if view == "chart":
-            data, draw = _chart(pair, grid, tongues, supports, prove)
+            files.write(*_chart(pair, grid, tongues, supports, prove))
         elif view == "boundaries":
-            data, draw = _boundaries(pair, grid, supports)
+            files.write(_boundaries(pair, grid, supports))
         else:
-            data, draw = _campbell(pair, grid)
-        files.write(data, draw)
+            files.write(campbell(pair, grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])))
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 
@@ -136,7 +133,7 @@ def _check(
 
 def _chart(
     pair: GearPair, axes: Mapping[str, FloatArray], tongues: bool, supports: opt.SupportsName, prove: bool
-) -> View:
+) -> tuple[xr.Dataset, Callable[[], Figure]]:
     from floquet import predicted_lines
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.chart import stability_chart
@@ -221,7 +218,7 @@ def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
     return regions
 
 
-def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.SupportsName) -> View:
+def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.SupportsName) -> xr.Dataset:
     from floquet import stability_boundaries
     from floquet.gear.axes import GEAR_AXES, chart_axes
 
@@ -243,18 +240,4 @@ def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.Su
     headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
     none = f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value"
     stdout().print(table(f"tongues over {GEAR_AXES[name].long_name}", *headings, rows=rows) if rows else none)
-    return found, None
-
-
-def _campbell(pair: GearPair, axes: Mapping[str, FloatArray]) -> View:
-    from floquet.gear.axes import chart_axes, operating_rpm
-    from floquet.gear.campbell import campbell
-
-    diagram = campbell(pair, axes.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"]))
-
-    def draw() -> Figure:
-        from validation.plots.stability import campbell_figure
-
-        return campbell_figure(diagram, operating_rpm(pair))
-
-    return diagram, draw
+    return found

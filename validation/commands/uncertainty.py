@@ -7,12 +7,7 @@ from validation.commands.terminal import guarded, progress_bar, stdout, table
 
 
 @guarded
-def uncertainty(
-    pair: opt.Pair,
-    files: opt.DataFiles,
-    samples: int = 128,
-    seed: int = 1,
-) -> None:
+def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: int = 1) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
     Inputs vary as the section \\[uncertainty] of the file states, and by documented defaults where the source

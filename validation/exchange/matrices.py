@@ -71,11 +71,7 @@ class SecondOrderModel:
     steps: tuple[tuple[str, FloatArray, FloatArray], ...]
 
     def system(
-        self,
-        *,
-        frequency: float | None = None,
-        variation: float = 1.0,
-        damping: float = 1.0,
+        self, *, frequency: float | None = None, variation: float = 1.0, damping: float = 1.0
     ) -> SecondOrderSystem:
         """Return the periodic system, varied as ``FILE_AXES`` say; None: as in the file."""
         T = 1.0 / frequency if frequency else self.period

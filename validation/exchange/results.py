@@ -163,13 +163,8 @@ def write_state_space(
         return np.array(labels, dtype=object if matlab else np.str_)
 
     contents = {
-        "A": plant.A,
-        "B": plant.B,
-        "C": plant.C,
-        "D": plant.D,
-        "inputs": names(plant.input_labels),
-        "outputs": names(plant.output_labels),
-        "states": names(plant.state_labels),
+        **{name: getattr(plant, name) for name in "ABCD"},
+        **{f"{kind}s": names(getattr(plant, f"{kind}_labels")) for kind in ("input", "output", "state")},
         "gear_pair": pair.name,
         "parameters": pair.to_toml(),
     }

@@ -78,18 +78,12 @@ def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
             raise
         except OSError as error:
             raise StorageError.of(target, error) from error
-    except BaseException:
-        _remove(work)
+    finally:
+        if work is not None:
+            shutil.rmtree(work, ignore_errors=True)
         for folder in missing:
-            with suppress(OSError):  # of another one
+            with suppress(OSError):  # of another one, and of what holds the report
                 folder.rmdir()
-        raise
-    _remove(work)
-
-
-def _remove(folder: Path | None) -> None:
-    if folder is not None:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _files(folder: Path) -> set[str]:

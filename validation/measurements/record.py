@@ -27,17 +27,9 @@ if TYPE_CHECKING:
 #: Quantity of a channel -> (SI unit, whether it belongs to one tooth pair). Names are those of the models'
 #: results.
 QUANTITIES: dict[str, tuple[str, bool]] = {
-    "normal_load": ("N", True),
-    "friction_force": ("N", True),
-    "dte": ("m", False),
-    "x_p": ("m", False),
-    "x_g": ("m", False),
-    "y_p": ("m", False),
-    "y_g": ("m", False),
-    "bearing_force_x_p": ("N", False),
-    "bearing_force_x_g": ("N", False),
-    "bearing_force_y_p": ("N", False),
-    "bearing_force_y_g": ("N", False),
+    **dict.fromkeys(("normal_load", "friction_force"), ("N", True)),
+    **dict.fromkeys(("dte", "x_p", "x_g", "y_p", "y_g"), ("m", False)),
+    **dict.fromkeys((f"bearing_force_{end}" for end in ("x_p", "x_g", "y_p", "y_g")), ("N", False)),
 }
 PAIR_LABELS = "ABCDEFGH"
 #: Largest description and record read: a bound against a wrong path.

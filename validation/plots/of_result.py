@@ -73,7 +73,9 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "measured": overlay_figure,
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
-    "mesh_frequency": campbell_figure,
+    "mesh_frequency": lambda result: campbell_figure(
+        result, to_stated(_pair(result).operating.pinion_speed, "rpm")
+    ),
     "interval_lower": boundaries_figure,
     "verdict": _chart,
     "amplitude": _spectrum,

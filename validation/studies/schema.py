@@ -51,24 +51,16 @@ class Design(Section):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        grid, samples = self.method == "grid", self.samples
-        problems: list[FieldProblem] = []
-
-        def refused(wrong: bool, *problem: str) -> None:
-            problems.extend([FieldProblem(*problem)] if wrong else [])
-
-        refused(
-            grid and samples is not None, "samples", str(samples), "none for a grid", "Remove it, or sample."
+        grid, sobol, samples = self.method == "grid", self.method == "sobol", self.samples
+        near, given = 1 << ((samples or 1).bit_length() - 1), str(samples)
+        power = "a power of two (the balance of a Sobol sequence)"
+        cases = (
+            (grid and samples is not None, "samples", given, "none for a grid", "Remove it, or sample."),
+            (not grid and samples is None, "samples", "missing", "number of samples", "Give it."),
+            (sobol and samples not in (None, near), "samples", given, power, f"Take {near} or {2 * near}."),
+            (self.sensitivity and not sobol, "sensitivity", "true", "method = 'sobol'", "Change the method."),
         )
-        refused(not grid and samples is None, "samples", "missing", "number of samples", "Give it.")
-        if self.method == "sobol" and samples is not None:
-            near = 1 << (samples.bit_length() - 1)
-            allowed = "a power of two (the balance of a Sobol sequence)"
-            refused(near != samples, "samples", str(samples), allowed, f"Take {near} or {2 * near}.")
-        refused(
-            self.sensitivity and self.method != "sobol",
-            *("sensitivity", "true", "method = 'sobol'", "Change the method or leave it out."),
-        )
+        problems = [FieldProblem(*problem) for wrong, *problem in cases if wrong]
         if problems:
             raise ParameterError(problems)
         return self
@@ -149,29 +141,24 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
     labels = [axis.label for axis in study.axes]
     paths = [path for axis in study.axes for path in axis.field]
     taken = {*study.outputs, *NAMES}
-    grid = study.design.method == "grid"
+    grid, floquet = study.design.method == "grid", study.analysis == "floquet"
+    vary = "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead."
     problems: list[FieldProblem] = []
     for j, axis in enumerate(study.axes):
-        found: list[FieldProblem] = []
-        if labels.count(axis.label) > 1 or axis.label in taken:
-            allowed = "a name that no other axis or result has"
-            found.append(FieldProblem("name", repr(axis.label), allowed, "Give the axis a name."))
+        listed, name = axis.values is not None or axis.count is not None, axis.label
+        own, needed = "a name that no other axis or result has", "values, or low, high and count, for a grid"
+        cases = [
+            (labels.count(name) > 1 or name in taken, "name", repr(name), own, "Give the axis a name."),
+            (grid and not listed, "count", "missing", needed, "Add it."),
+            (listed and not grid, "values", "given", "low and high, for samples", "Give the range only."),
+        ]
         for path in axis.field:
-            if paths.count(path) > 1:
-                found.append(
-                    FieldProblem("field", repr(path), "a field that no other axis changes", "Remove one.")
-                )
-            if target_of(path).floquet_only and study.analysis != "floquet":
-                action = "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead."
-                found.append(FieldProblem("field", repr(path), "an axis of analysis = 'floquet'", action))
-        listed = axis.values is not None or axis.count is not None
-        if grid and not listed:
-            found.append(
-                FieldProblem("count", "missing", "values, or low, high and count, for a grid", "Add it.")
-            )
-        if listed and not grid:
-            action = "Give the range only, or use a grid."
-            found.append(FieldProblem("values", "given", "low and high, for samples", action))
+            twice, charted = paths.count(path) > 1, target_of(path).floquet_only
+            cases += [
+                (twice, "field", repr(path), "a field that no other axis changes", "Remove one."),
+                (charted and not floquet, "field", repr(path), "an axis of analysis = 'floquet'", vary),
+            ]
+        found = [FieldProblem(*problem) for wrong, *problem in cases if wrong]
         try:
             if not found:
                 axis.listed()

@@ -6,6 +6,7 @@ One tree serves both encodings: the JSON document of the specification, as neste
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -134,12 +135,7 @@ def _attribute(node: dict[str, Any]) -> Attribute:
 def _id(value: object) -> int:
     """Whole number; XML has it as text."""
     text = str(value)
-    if (
-        isinstance(value, (str, int))
-        and text.isascii()
-        and text.removeprefix("-").isdigit()
-        and len(text) < 20
-    ):
+    if isinstance(value, (str, int)) and re.fullmatch(r"-?[0-9]{1,19}", text):
         return int(text)
     raise ValueError(f"an id is {text[:40]!r} instead of a whole number")
 

@@ -17,9 +17,8 @@ WRITTEN = VERSIONS[:-1]
 UNITS = {
     "none": ("1", ""), "": ("1", ""), "mm": ("mm", "mm"), "mum": ("um", "um"), "deg": ("deg", "deg"),
     "°": ("deg", "deg"), "rad": ("deg", "rad"), "1 / min": ("rpm", "rpm"), "N m": ("N*m", "N*m"),
-    "kg": ("kg", "kg"),
-    "kg / dm^3": ("kg/m**3", "kg/dm**3"), "N / mm^2": ("GPa", "N/mm**2"), "MPa": ("GPa", "MPa"),
-    "mm^2 / s": ("mm**2/s", "mm**2/s"), "C": ("degC", "degC"),
+    "kg": ("kg", "kg"), "kg / dm^3": ("kg/m**3", "kg/dm**3"), "N / mm^2": ("GPa", "N/mm**2"),
+    "MPa": ("GPa", "MPa"), "mm^2 / s": ("mm**2/s", "mm**2/s"), "C": ("degC", "degC"),
 }  # fmt: skip
 #: (REXS value type, REXS unit) -> attributes.
 _NAMES = {
