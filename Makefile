@@ -46,6 +46,7 @@ $(VENV)/.ready: pyproject.toml
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@echo "Installing spurcheck and its dependencies into $(VENV) ..."
 	@$(PIP) --editable .
+	@$(BIN)/python -m compileall -q lumped multibody floquet validation spurcheck.py
 	@touch $@
 
 $(VENV)/.ready-test: $(VENV)/.ready

@@ -21,7 +21,7 @@ def compute() -> xr.Dataset:
     result = losses_of_laws(pair)
     result = result.assign_coords(mu=[0.1, 0.01, 0.001, 1e-6])
     constant = [pair.with_(friction__law="coulomb", friction__coefficient=mu) for mu in result["mu"].values]
-    loss = [1 - quasi_static_losses(one, sharing="uniform").attrs["mesh_efficiency"] for one in constant]
+    loss = [1 - quasi_static_losses(one, sharing="uniform").mesh_efficiency for one in constant]
     result["loss_over_mu"] = ("mu", np.array(loss) / result["mu"].values)
     return result.assign_attrs(ohlendorf=ohlendorf_of(pair), iso_coefficient=iso_14179_of(pair))
 

@@ -67,13 +67,6 @@ _GAP = re.compile(r"(?<=\d)\s+(?=\d{3}(?!\d))")
 _COMMA = re.compile(r"\s*([+-]?[\d.]*\d),(\d+)(?=$|[^\d,])")
 
 
-def as_pint_reads(text: str, unit: str) -> str:
-    """Return a quantity in pint's grammar; "lb" is a force where the stated unit is a torque, else a mass."""
-    for pattern, instead in (*_EVERYWHERE, *_WHERE.get(unit, ())):
-        text = pattern.sub(instead, text)
-    return text
-
-
 def about_digits(text: str) -> str:
     """Return what to write instead of a number with a comma or with gaps; nothing where it has neither."""
     if _GAP.search(text):  # pint would multiply the parts
@@ -203,8 +196,11 @@ def to_si(value: float | str, unit: str) -> float:
         raise ValueError(f"{value!r}: {gap}")
     if not any(character.isdigit() for character in value):
         raise ValueError(f"'{value}' has no number; {advice}")
+    text = value  # in pint's grammar; "lb" is a force where the stated unit is a torque, else a mass
+    for pattern, instead in (*_EVERYWHERE, *_WHERE.get(unit, ())):
+        text = pattern.sub(instead, text)
     try:
-        quantity: pint.Quantity[Decimal] = registry.Quantity(as_pint_reads(value, unit))
+        quantity: pint.Quantity[Decimal] = registry.Quantity(text)
     except (InvalidOperation, Overflow, DivisionByZero):
         raise ValueError(f"'{value}' is no finite quantity; {advice}") from None
     except Exception as error:  # noqa: BLE001  (pint lets tokenizer, attribute and arithmetic errors through)
@@ -384,13 +380,8 @@ class QuantityList(Quantity):
 
     def json_schema(self) -> JsonSchemaValue:
         """A list of numbers."""
-        return {
-            "type": "array",
-            "items": super().json_schema(),
-            "minItems": 1,
-            "unit": self.unit,
-            "si_unit": UNITS[self.unit][0],
-        }
+        items = {"type": "array", "items": super().json_schema(), "minItems": 1}
+        return items | {"unit": self.unit, "si_unit": UNITS[self.unit][0]}
 
 
 def _ends(text: str) -> list[float | str]:

@@ -15,9 +15,7 @@ import numpy as np
 from lumped.arguments import one_of
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
-from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.contacts import CONTACTS
-from lumped.quasi_static.prescribed import loaded_mesh
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -25,10 +23,8 @@ from lumped.typing import BoolArray, FloatArray
 #: Exact to degree 15: a fitted mu of degree 8 times a sliding velocity of degree 1, and a load share.
 _NODES = 8
 _SAME = 1e-13  # of a base pitch: edges closer than this are one
-#: "elements": stiffness and tooth error as the dynamic model has them; "loaded": with the relief of the
-#: flanks under the operating torque; "stiffness": the stiffness model without tooth errors; "uniform": equal
-#: shares.
-Sharing = Literal["elements", "loaded", "stiffness", "uniform"]
+#: "elements": stiffness and tooth error as the dynamic model has them; "uniform": equal shares.
+Sharing = Literal["elements", "uniform"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,18 +58,8 @@ def quadrature(g: Geometry, functions: Iterable[PathFunction]) -> CyclePositions
     half = 0.5 * np.diff(edges)
     phase = (edges[:-1] + half)[:, None] + half[:, None] * nodes
     weight = np.asarray(half[:, None] * weights / g.base_pitch, dtype=np.float64)
-    return _at(g, phase.ravel(), weight.ravel())
-
-
-def samples(g: Geometry, count: int) -> CyclePositions:
-    """Evenly spaced instants of the cycle, from the entry at A, the end left out."""
-    phase = np.asarray(np.arange(count) * (g.base_pitch / count), dtype=np.float64)
-    return _at(g, phase, np.full(count, 1.0 / count))
-
-
-def _at(g: Geometry, phase: FloatArray, weight: FloatArray) -> CyclePositions:
-    position = g.L_XA + np.arange(g.pairs - 1, -1, -1)[:, None] * g.base_pitch + phase
-    return CyclePositions(weight, position, position < g.L_XD)
+    position = g.L_XA + np.arange(g.pairs - 1, -1, -1)[:, None] * g.base_pitch + phase.ravel()
+    return CyclePositions(weight.ravel(), position, position < g.L_XD)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,10 +95,8 @@ def springs(pair: GearPair, sharing: Sharing) -> Springs:
     one_of("sharing", sharing, get_args(Sharing))
     if sharing == "uniform":
         return Springs(PathFunction.constant(1.0, g.L_XA, g.L_XD), None, force)
-    if sharing == "stiffness":
-        return Springs(pair_stiffness(pair), None, force)
     # Positions are those from A to D, so contact is the prescribed one.
-    laws = loaded_mesh(pair) if sharing == "loaded" else CONTACTS["prescribed"].elements(pair)
+    laws = CONTACTS["prescribed"].elements(pair)
     return Springs(laws.stiffness, laws.error, force)
 
 
@@ -156,15 +140,12 @@ def ohlendorf(
     return math.pi * (u + 1.0) / (teeth_pinion * u) * overlap
 
 
-def addendum_contact_ratios(g: Geometry) -> tuple[float, float]:
-    """eps_1 = (L_XD - L_XP)/p of the pinion's addendum and eps_2 = (L_XP - L_XA)/p of the gear's [-]."""
-    return (g.L_XD - g.L_XP) / g.base_pitch, (g.L_XP - g.L_XA) / g.base_pitch
-
-
 def ohlendorf_of(pair: AnyPair) -> float:
     """Ohlendorf's loss factor of a gear pair [-], see ``ohlendorf``."""
     pair = load_gear_pair(pair)
-    return ohlendorf(pair.pinion.teeth, pair.gear.teeth, *addendum_contact_ratios(pair.geometry))
+    g = pair.geometry
+    addenda = (g.L_XD - g.L_XP) / g.base_pitch, (g.L_XP - g.L_XA) / g.base_pitch
+    return ohlendorf(pair.pinion.teeth, pair.gear.teeth, *addenda)
 
 
 def loss_factor(pair: AnyPair, sharing: Sharing = "uniform") -> float:

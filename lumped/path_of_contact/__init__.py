@@ -7,18 +7,12 @@ from lumped.path_of_contact.friction import (
     law_range_violations,
 )
 from lumped.path_of_contact.plane_compliance import plane_compliance
-from lumped.path_of_contact.stiffness import (
-    iso_comparison,
-    mesh_stiffness,
-    pair_stiffness,
-    stiffness_components,
-)
+from lumped.path_of_contact.stiffness import mesh_stiffness, pair_stiffness, stiffness_components
 
 __all__ = [
     "contact_path",
     "friction_path_function",
     "friction_profile",
-    "iso_comparison",
     "law_range_violations",
     "mesh_stiffness",
     "pair_stiffness",

@@ -1,7 +1,7 @@
 """Quasi-static meshing: profile modification, load sharing, static transmission error, best relief."""
 
 from lumped.quasi_static.load_sharing import LoadSharing, share_load
-from lumped.quasi_static.relief_optimum import OptimalRelief, optimal_relief, relief_map, with_tip_relief
+from lumped.quasi_static.relief_optimum import OptimalRelief, optimal_relief, with_tip_relief
 from lumped.quasi_static.transmission_error import mesh_positions, static_transmission_error
 
 __all__ = [
@@ -9,7 +9,6 @@ __all__ = [
     "OptimalRelief",
     "mesh_positions",
     "optimal_relief",
-    "relief_map",
     "share_load",
     "static_transmission_error",
     "with_tip_relief",

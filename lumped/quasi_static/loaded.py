@@ -62,7 +62,7 @@ class Loaded(Contact):
     def elements(self, pair: GearPair) -> MeshElements:
         """The laws about the static loaded motion; the damper takes hold as the load does."""
         rest = at_rest(pair)
-        contact = _loaded_contact(rest)
+        contact = loaded_contact(rest)
         return MeshElements(
             stiffness=contact.stiffness,
             damping=_damping(rest, pair.mesh.damping_ratio),
@@ -265,15 +265,10 @@ class StaticMesh:
         return found[:, 0], found[:, 1], found[:, 2]
 
 
-def loaded_contact(pair: GearPair) -> LoadedContact:
-    """Contact of a tooth pair in the mesh under the mean torque."""
-    return _loaded_contact(at_rest(pair))
-
-
 @lru_cache(maxsize=_KEPT)
 def _damping(pair: GearPair, ratio: float) -> PathFunction:
     """C = 2 zeta sqrt(k m_e) of a pair ``at_rest``, taking hold with the load, with zeta = ``ratio``."""
-    contact = _loaded_contact(pair)
+    contact = loaded_contact(pair)
     low, high = contact.stiffness.interval
     scale = 2.0 * ratio * np.sqrt(bodies_of(pair).effective_mass)
 
@@ -291,7 +286,8 @@ def _damping(pair: GearPair, ratio: float) -> PathFunction:
 
 
 @lru_cache(maxsize=_KEPT)
-def _loaded_contact(pair: GearPair) -> LoadedContact:
+def loaded_contact(pair: GearPair) -> LoadedContact:
+    """Contact of a tooth pair in the mesh under the mean torque, of a pair ``at_rest``."""
     mesh, g = StaticMesh(pair), pair.geometry
     law, near = mesh.law, _SAME * pair.geometry.base_pitch
     starts = relief_starts(pair) if pair.mesh.relief == "static" else np.empty(0)

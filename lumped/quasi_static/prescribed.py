@@ -9,13 +9,12 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from lumped.errors import NumericalError
-from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
@@ -42,8 +41,7 @@ class Prescribed(Contact):
     def elements(self, pair: GearPair) -> MeshElements:
         """Stiffness of the model, and the error of the reliefs, from A to D."""
         if pair.mesh.relief == "static":
-            loaded = loaded_mesh(pair)
-            stiffness, error = loaded.stiffness, loaded.error
+            stiffness, error = _loaded_mesh(at_rest(pair))
         else:
             stiffness = pair_stiffness(pair)
             error = PathFunction.constant(0.0, *stiffness.interval)
@@ -69,30 +67,22 @@ class Prescribed(Contact):
         return load, contact
 
 
-@dataclass(frozen=True, eq=False)
-class LoadedMesh:
-    """k(xi; T) [N/m], zero where the loaded pair is apart, e(xi) [m], and the intervals of contact (n, 2)."""
-
-    stiffness: PathFunction
-    error: PathFunction
-    contact: FloatArray
-
-
-def loaded_mesh(pair: GearPair) -> LoadedMesh:
-    """Stiffness and unloaded error of a tooth pair for the linear model at the operating torque."""
-    return _loaded_mesh(at_rest(pair))
-
-
 @lru_cache(maxsize=32)
-def _loaded_mesh(pair: GearPair) -> LoadedMesh:
+def _loaded_mesh(pair: GearPair) -> tuple[PathFunction, PathFunction]:
+    """k(xi; T) [N/m] at the operating torque, zero where the loaded pair is apart, and e(xi) [m]."""
     g, torque = pair.geometry, pair.operating.pinion_torque
     k, error = pair_stiffness(pair), error_function(pair)
     if not error.coefficients.any():
-        return LoadedMesh(k, error, np.array([[g.L_XA, g.L_XD]]))
-    force = torque / g.base_radius_pinion
+        return k, error
+    force, shifts = torque / g.base_radius_pinion, np.arange(1 - g.pairs, g.pairs) * g.base_pitch
 
     def clearance(xi: FloatArray) -> FloatArray:
-        return _clearance(xi, k, error, force, g)
+        """Approach minus error of the pair at xi, with its neighbours a pitch apart; (n,) [m]."""
+        place = xi[:, None] + shifts
+        outside = (place < g.L_XA) | (place > g.L_XD)
+        e = np.where(outside, np.inf, error(place))
+        delta = share_load(np.where(outside, 0.0, k(place)), e, force).transmission_error
+        return np.asarray(delta - e[:, g.pairs - 1], dtype=np.float64)
 
     kinks = np.concatenate([[g.L_XA, g.L_XD], k.switches, error.switches])
     kinks = np.add.outer(kinks, np.arange(-g.pairs, g.pairs + 1) * g.base_pitch)
@@ -101,17 +91,7 @@ def _loaded_mesh(pair: GearPair) -> LoadedMesh:
         raise NumericalError(
             f"At {torque:g} N m no tooth pair carries load: raise the torque or lower the relief."
         )
-    return LoadedMesh(restricted(k, contact), error, contact)
-
-
-def _clearance(xi: FloatArray, k: PathFunction, error: PathFunction, force: float, g: Geometry) -> FloatArray:
-    """Approach minus error of the pair at xi, with its neighbours a pitch apart; (n,) [m]."""
-    shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
-    place = xi[:, None] + shifts
-    outside = (place < g.L_XA) | (place > g.L_XD)
-    e = np.where(outside, np.inf, error(place))
-    delta = share_load(np.where(outside, 0.0, k(place)), e, force).transmission_error
-    return np.asarray(delta - e[:, g.pairs - 1], dtype=np.float64)
+    return restricted(k, contact), error
 
 
 def _damping(stiffness: PathFunction, ratio: float, mass: float) -> PathFunction:

@@ -1,4 +1,4 @@
-"""Tip relief for least static transmission error at a design torque: map over amount and length, optimum.
+"""Tip relief of both gears for least static transmission error at a design torque.
 
 Both gears get the same tip relief, given by its amount and its length along the line of action: back from D
 on the pinion and from A on the gear. With one constant stiffness per pair the best linear relief is known:
@@ -12,24 +12,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
-from lumped.arguments import real_number, real_numbers
-from lumped.errors import refuse
+from lumped.arguments import real_number
 from lumped.gear_geometry.geometry import Geometry
-from lumped.labelling import labelled_dataset
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: Weight of the amount against the transmission error: breaks ties, leaves the bottom of a V-shaped valley.
 _LEAST_MATERIAL = 1e-2
@@ -58,38 +51,6 @@ class OptimalRelief:
     torque: float
 
 
-def relief_map(
-    pair: AnyPair,
-    amounts: ArrayLike,
-    lengths: ArrayLike,
-) -> xr.Dataset:
-    """Peak to peak static transmission error over amount and length of linear tip relief on both gears.
-
-    Parameters
-    ----------
-    pair : a validated gear pair; its own tip relief is replaced, root relief kept
-    amounts : (a,) [m], >= 0
-    lengths : (l,) along the line of action, 0 < length < path of contact [m]
-
-    Returns
-    -------
-    xarray.Dataset : ``peak_to_peak`` [m] over ``amount`` [m] and ``length`` [m]
-    """
-    pair = load_gear_pair(pair)
-    amount = real_numbers("amounts", amounts, 0.0, unit="m", action="Give the material removed at the tip.")
-    length = real_numbers("lengths", lengths, 0.0, above=True, unit="m")
-    g, bare, force = _prepared(pair, None)
-    path = g.L_XD - g.L_XA
-    if not (length < path).all():
-        raise refuse("lengths", length, f"> 0 and < {path:.6g} m, the path of contact", "Shorten the relief.")
-    values = np.stack([_peak_to_peak(bare, g, force, amount, float(one)) for one in length], axis=1)
-    return labelled_dataset(
-        {"peak_to_peak": (("amount", "length"), values, "m", "peak to peak static transmission error")},
-        {"amount": (amount, "m", "amount of tip relief"), "length": (length, "m", "length of tip relief")},
-        {"pair": pair.name, "torque": force * g.base_radius_pinion},
-    )
-
-
 def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalRelief:
     """Linear tip relief of both gears for the least peak to peak static transmission error.
 
@@ -107,7 +68,10 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
     ParameterError : the design torque is not positive
     """
     pair = load_gear_pair(pair)
-    g, bare, force = _prepared(pair, torque)
+    given = pair.operating.pinion_torque if torque is None else torque
+    moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
+    plain_tips = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
+    g, bare, force = pair.geometry, mesh_positions(plain_tips), moment / pair.geometry.base_radius_pinion
     plain = share_load(bare.stiffness, bare.error, force, bare.coupling).transmission_error
     scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
     amounts, lengths = np.linspace(0.0, 2.0 * scale, 41), np.linspace(0.02, 0.6, 40) * path
@@ -158,14 +122,6 @@ def with_tip_relief(pair: AnyPair, optimum: OptimalRelief) -> GearPair:
         pinion__tip_relief=section(optimum.start_roll_angle_pinion),
         gear__tip_relief=section(optimum.start_roll_angle_gear),
     )
-
-
-def _prepared(pair: GearPair, torque: float | None) -> tuple[Geometry, MeshPositions, float]:
-    given = pair.operating.pinion_torque if torque is None else torque
-    moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
-    bare = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
-    g = bare.geometry
-    return g, mesh_positions(bare), moment / g.base_radius_pinion
 
 
 def _peak_to_peak(

@@ -38,6 +38,7 @@ from lumped.schema.teeth import TorqueRipple
 FORMAT = 1
 #: Largest speed of a pinion [rpm].
 LARGEST_SPEED = 200000.0
+_RUNNING = "Give the running speed; the pinion drives in its positive sense."
 #: Name that a pair does not have -> what to write.
 _INSTEAD = {
     **dict.fromkeys(("save", "write", "to_file"), "Path(...).write_text(pair.to_toml())"),
@@ -50,15 +51,9 @@ _INSTEAD = {
 class OperatingPoint(Section):
     """Where the pair runs. The pinion drives, in its positive sense."""
 
-    pinion_speed: Annotated[
-        float,
-        Quantity(
-            "rpm",
-            above=0,
-            at_most=LARGEST_SPEED,
-            action="Give the running speed; the pinion drives in its positive sense.",
-        ),
-    ] = Field(description="nominal speed of the pinion")
+    pinion_speed: Annotated[float, Quantity("rpm", above=0, at_most=LARGEST_SPEED, action=_RUNNING)] = Field(
+        description="nominal speed of the pinion"
+    )
     pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
         description="torque driving the pinion"
     )
@@ -193,22 +188,12 @@ class GearPair(Section, metaclass=_InOurWords):
 
     def _wheel(self, gear: Gear) -> Wheel:
         rack = self.basic_rack
-        tooth = ToothProfile(
-            gear.teeth,
-            rack.module,
-            rack.pressure_angle,
-            gear.profile_shift,
-            rack.dedendum_coefficient,
-            rack.fillet_radius_coefficient,
-        )
-        return Wheel(tooth, self._tip_radius(gear), gear.face_width, gear.bore)
-
-    def _tip_radius(self, gear: Gear) -> float:
-        if gear.tip_diameter is not None:
-            return 0.5 * gear.tip_diameter
-        rack = self.basic_rack
+        sizes = rack.dedendum_coefficient, rack.fillet_radius_coefficient
+        tooth = ToothProfile(gear.teeth, rack.module, rack.pressure_angle, gear.profile_shift, *sizes)
         addendum = rack.module * (rack.addendum_coefficient + gear.profile_shift)
-        return 0.5 * rack.module * gear.teeth + (addendum if gear.addendum is None else gear.addendum)
+        tip = 0.5 * rack.module * gear.teeth + (addendum if gear.addendum is None else gear.addendum)
+        tip = tip if gear.tip_diameter is None else 0.5 * gear.tip_diameter
+        return Wheel(tooth, tip, gear.face_width, gear.bore)
 
     def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
         """Mass or inertia that no gear of this size has: its vibration would take years to compute."""
@@ -357,9 +342,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:
-    """Return every set field of a pair as dotted path -> value in file units.
-
-    The tables ``sources`` and ``uncertainty`` are left out.
+    """Return every set field of a pair as dotted path -> value in file units; no sources, no uncertainty.
 
     An entry of a list of tables has its number, from 0 on, as part of its path.
     """

@@ -9,7 +9,7 @@ import pytest
 import floquet
 import lumped
 import multibody
-from lumped import friction, losses, quasi_static
+from lumped import friction, losses
 from lumped.errors import ParameterError
 from lumped.lubrication import film
 from lumped.model.averaged import averaged_state_space
@@ -39,9 +39,8 @@ CALLS = {
     lumped.plane_compliance: ({"pair": PAIR}, "plane support phases"),
     lumped.static_transmission_error: ({"pair": PAIR}, "torques phases"),
     lumped.optimal_relief: ({"pair": PAIR}, "torque"),
-    quasi_static.relief_map: ({"pair": PAIR, "amounts": 1e-5, "lengths": 1e-3}, "amounts lengths"),
     friction_profile: ({"pair": PAIR}, "points"),
-    losses.quasi_static_losses: ({"pair": PAIR}, "law sharing samples_per_cycle"),
+    losses.quasi_static_losses: ({"pair": PAIR}, "law sharing"),
     losses.loss_factor: ({"pair": PAIR}, "sharing"),
     multibody.simulate: ({"pair": PAIR}, _RUN),
     multibody.power_balance: ({"pair": PAIR}, "cycles initial effects fidelity rtol friction_velocity"),

@@ -13,10 +13,12 @@ from floquet import fast_multipliers, gear_block, gear_pair_multipliers
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.errors import NumericalError, ParameterError
-from lumped.losses import dynamic_losses, ohlendorf_of, quasi_static_losses
+from lumped.losses import ohlendorf_of, quasi_static_losses
 from lumped.model.averaged import modes
-from lumped.path_of_contact import friction_profile, iso_comparison
+from lumped.path_of_contact import friction_profile
 from lumped.quasi_static.contacts import mesh_elements
+from lumped.stiffness import iso6336
+from lumped.stiffness.energy import energy_curve
 from lumped.typing import FloatArray
 from validation.prediction.motion import predicted
 
@@ -103,7 +105,9 @@ def _path(pair: GearPair) -> dict[str, FloatArray]:
             at = (profile["xi"].to_numpy() - low) / (high - low)
             found[f"path {quantity}"] = np.array([np.interp(grid, at, row) for row in rows])
     found |= _numbers(friction_profile(pair, points=101)[["mean_mu"]], "path")
-    return found | _numbers(iso_comparison(pair), "ISO 6336")
+    for hertz in ("weber_banaschek", "linear"):
+        found[f"path energy stiffness, {hertz}"] = energy_curve(pair, hertz)(np.linspace(low, high, 51)[1:-1])
+    return found | {"ISO 6336": np.array([iso6336.single_of(pair), iso6336.mean_of(pair)])}
 
 
 def _motion(pair: GearPair) -> dict[str, FloatArray]:
@@ -120,9 +124,7 @@ def _motion(pair: GearPair) -> dict[str, FloatArray]:
 def _report(pair: GearPair) -> dict[str, FloatArray]:
     """Arithmetic of the report."""
     prediction = predicted(pair)
-    motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
-    static = quasi_static_losses(pair, samples_per_cycle=SAMPLES)
-    losses = dynamic_losses(pair, motion)
+    static = dataclasses.asdict(quasi_static_losses(pair))
     found = {
         "speed": np.array([operating_rpm(pair)]),
         "static load": np.array([prediction.static_force]),
@@ -132,11 +134,7 @@ def _report(pair: GearPair) -> dict[str, FloatArray]:
         "natural frequencies": np.array([mode.natural_frequency for mode in modes(pair)]),
         "resonant speeds": np.array([mode.resonant_speed for mode in modes(pair)]),
     }
-    found |= _numbers(static, "quasi-static") | _numbers(losses, "losses")
-    found |= _attributes(
-        static, "quasi-static", "mesh_efficiency", "power_loss", "loss_factor", "mean_coefficient"
-    )
-    return found | _attributes(losses, "losses", "input_power", "power_loss", "mesh_efficiency")
+    return found | {f"quasi-static {name}": np.array([value]) for name, value in static.items()}
 
 
 def _stability(pair: GearPair) -> dict[str, FloatArray]:
