@@ -7,7 +7,7 @@ model matters. The range of the inputs and the measurement say how far the model
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,10 +16,11 @@ import xarray as xr
 
 from lumped.errors import SpurcheckError
 from lumped.labelling import labelled_dataset
-from lumped.outcomes import Absent
+from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from validation.prediction.motion import Prediction, predicted
+from validation.prediction.motion import Motion, Prediction, measured, predicted
 
+Sizes = tuple[float, float, float]
 #: Quantities that a row tells: the first is the one of the bars.
 COLUMNS = ("dte_peak_to_peak", "tooth_load", "bearing_rms")
 
@@ -64,11 +65,11 @@ class Row:
     key: str
     name: str
     kind: str
-    sizes: tuple[float, float, float]
+    sizes: Sizes
     note: str
 
 
-_UNKNOWN = (np.nan, np.nan, np.nan)
+_UNKNOWN: Sizes = (np.nan, np.nan, np.nan)
 #: Rows that compare the prediction with a poorer model.
 _POORER = ("linear", "contact", "supports")
 
@@ -83,7 +84,7 @@ def error_budget(known: Known) -> xr.Dataset:
     and ``largest``, the key of the largest row that is an error of the prediction itself
     """
     prediction = known.prediction
-    rows = [make(known) for make in _ROWS]
+    rows = list(_rows(known))
     sizes = np.array([row.sizes for row in rows])
     share = 100.0 * sizes[:, 0] / prediction.peak_to_peak
     texts = ("transmission error, peak to peak", "largest tooth load", "bearing force, rms")
@@ -113,117 +114,74 @@ def error_budget(known: Known) -> xr.Dataset:
     )
 
 
-def _apart(one: Prediction, other: Prediction) -> tuple[float, float, float]:
+def _apart(one: Prediction, other: Prediction | Absent) -> Sizes:
+    """Differences of ``COLUMNS``, not known where there is no other motion."""
+    if isinstance(other, Absent):
+        return _UNKNOWN
     first, second = one.numbers, other.numbers
     return tuple(abs(first[name] - second[name]) for name in COLUMNS)  # type: ignore[return-value]
 
 
-def _numerics(known: Known) -> Row:
-    """Estimated error of the integration, of every quantity in the same share."""
-    name, motion = "numerical error", known.prediction
-    linear = known.linear
-    if isinstance(linear, Absent):
-        return Row("numerics", name, "numerics", _UNKNOWN, str(linear))
-    error = float(linear.attrs["error_estimate"])
-    sizes = (error * motion.peak_to_peak, error * motion.tooth_load, error * motion.bearing_rms)
-    return Row("numerics", name, "numerics", sizes, "estimated, by steps of half the length")
+def _varied(known: Known, changes: dict[str, object] | str) -> Prediction | Absent:
+    """The prediction of a variation of the pair; a text says why there is none."""
+    if isinstance(changes, str):
+        return Absent(Outcome.FAILED, changes)
+    try:
+        return predicted(known.pair.with_(changes))
+    except SpurcheckError as error:
+        return Absent(Outcome.FAILED, str(error))
 
 
-def _programs(known: Known) -> Row:
-    """Largest difference of the same equations in two programs."""
-    name, error = "same equations in two programs", known.same_equations
-    if error is None:
-        return Row("programs", name, "numerics", _UNKNOWN, "the second program did not run")
-    return Row("programs", name, "numerics", (error * known.prediction.peak_to_peak, np.nan, np.nan), "")
-
-
-def _linear(known: Known) -> Row:
-    """The linear motion, which stability and charts rest on, against the prediction."""
-    name, linear = "linear model, for charts", known.linear
-    if isinstance(linear, Absent):
-        return Row("linear", name, "form", _UNKNOWN, str(linear))
-    from validation.prediction.motion import Motion, measured
-
-    sizes = _apart(known.prediction, measured(known.pair, linear, Motion.LINEAR))
-    note = {Motion.LINEAR: "the prediction is this motion", Motion.SHAFTS: "on springs, not on the shafts"}
-    return Row(
-        "linear", name, "form", sizes, note.get(known.prediction.motion, "teeth pull in the linear motion")
+def _rows(known: Known) -> Iterator[Row]:
+    """The errors in their order."""
+    own, pair, linear, found = known.prediction, known.pair, known.linear, known.uncertainty
+    share, same = np.nan, known.same_equations
+    poorer: Prediction | Absent = (
+        linear if isinstance(linear, Absent) else measured(pair, linear, Motion.LINEAR)
     )
+    if not isinstance(linear, Absent):
+        share = float(linear.attrs["error_estimate"])  # of every quantity
+    sizes = share * own.peak_to_peak, share * own.tooth_load, share * own.bearing_rms
+    yield Row(
+        "numerics",
+        "numerical error",
+        "numerics",
+        sizes,
+        _note(linear, "estimated, by steps of half the length"),
+    )
+    size, note = (np.nan, "the second program did not run") if same is None else (same * own.peak_to_peak, "")
+    yield Row("programs", "same equations in two programs", "numerics", (size, np.nan, np.nan), note)
+    notes = {Motion.LINEAR: "the prediction is this motion", Motion.SHAFTS: "on springs, not on the shafts"}
+    note = _note(linear, notes.get(own.motion, "teeth pull in the linear motion"))
+    yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
+    exact = (
+        "the pair has it" if pair.mesh.stiffness.model == "finite_elements" else "left out of a quick report"
+    )
+    fine = known.finite_elements and pair.mesh.stiffness.model != "finite_elements"
+    contact = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
+    others: tuple[tuple[str, str, str, Prediction | Absent], ...] = (
+        ("contact", "form of the contact", "prescribed from A to D, or following the load",
+         _varied(known, {"mesh.contact": contact})),
+        ("second", "exact contact and finite motions", "by the multibody model", known.second),
+        ("supports", "springs in place of shafts", "without the modes of the shafts",
+         _varied(known, "no shafts are given" if pair.shafts is None else {"shafts": None})),
+        ("stiffness", "tooth stiffness by finite elements", "plane finite elements of the whole gears",
+         _varied(known, {"mesh.stiffness": {"model": "finite_elements"}} if fine else exact)),
+    )  # fmt: skip
+    for key, name, note, other in others:
+        yield Row(key, name, "form", _apart(own, other), _note(other, note))
+    half = _UNKNOWN
+    if isinstance(found, xr.Dataset):
+        ends = np.array([found[f"{name}_percentile"].to_numpy()[[0, -1]] for name in COLUMNS])
+        half = tuple(0.5 * np.ptp(ends, axis=1))
+    note = "not computed" if isinstance(found, Absent) else "half the range of the samples"
+    yield Row("inputs", "inputs, 5 to 95 %", "inputs", half, note)
+    record, size, note = known.measured_error, np.nan, "no measurement is given"
+    if record is not None:
+        size, note = abs(record.error), f"prediction less record; known to ±{2e6 * record.uncertainty:.2g} µm"
+    yield Row("measurement", "measurement", "measurement", (size, np.nan, np.nan), note)
 
 
-def _variation(
-    key: str, name: str, note: str, changes: Callable[[GearPair], dict[str, object] | str]
-) -> Callable[[Known], Row]:
-    """A row that predicts a variation of the pair; a text says why there is none."""
-
-    def make(known: Known) -> Row:
-        varied = changes(known.pair)
-        if isinstance(varied, str):
-            return Row(key, name, "form", _UNKNOWN, varied)
-        try:
-            other = predicted(known.pair.with_(varied))
-        except SpurcheckError as error:
-            return Row(key, name, "form", _UNKNOWN, str(error))
-        return Row(key, name, "form", _apart(known.prediction, other), note)
-
-    return make
-
-
-def _other_contact(pair: GearPair) -> dict[str, object] | str:
-    return {"mesh.contact": "prescribed" if pair.mesh.contact == "loaded" else "loaded"}
-
-
-def _springs(pair: GearPair) -> dict[str, object] | str:
-    return {"shafts": None} if pair.shafts is not None else "no shafts are given"
-
-
-def _elastic(known: Known) -> Row:
-    name = "tooth stiffness by finite elements"
-    if known.pair.mesh.stiffness.model == "finite_elements":
-        return Row("stiffness", name, "form", _UNKNOWN, "the pair has it")
-    if not known.finite_elements:
-        return Row("stiffness", name, "form", _UNKNOWN, "left out of a quick report")
-    return _variation("stiffness", name, "plane finite elements of the whole gears", _fe)(known)
-
-
-def _fe(pair: GearPair) -> dict[str, object] | str:
-    return {"mesh.stiffness": {"model": "finite_elements"}}
-
-
-def _second(known: Known) -> Row:
-    name, second = "exact contact and finite motions", known.second
-    if isinstance(second, Absent):
-        return Row("second", name, "form", _UNKNOWN, str(second))
-    return Row("second", name, "form", _apart(known.prediction, second), "by the multibody model")
-
-
-def _inputs(known: Known) -> Row:
-    """Half the range from 5 to 95 % of the samples."""
-    name, found = "inputs, 5 to 95 %", known.uncertainty
-    if isinstance(found, Absent):
-        return Row("inputs", name, "inputs", _UNKNOWN, "not computed")
-    half = [0.5 * float(np.ptp(found[f"{q}_percentile"].to_numpy()[[0, -1]])) for q in COLUMNS]
-    return Row("inputs", name, "inputs", (half[0], half[1], half[2]), "half the range of the samples")
-
-
-def _measurement(known: Known) -> Row:
-    name, found = "measurement", known.measured_error
-    if found is None:
-        return Row("measurement", name, "measurement", _UNKNOWN, "no measurement is given")
-    note = f"prediction less record; known to ±{2e6 * found.uncertainty:.2g} µm"
-    return Row("measurement", name, "measurement", (abs(found.error), np.nan, np.nan), note)
-
-
-_ROWS: tuple[Callable[[Known], Row], ...] = (
-    _numerics,
-    _programs,
-    _linear,
-    _variation(
-        "contact", "form of the contact", "prescribed from A to D, or following the load", _other_contact
-    ),
-    _second,
-    _variation("supports", "springs in place of shafts", "without the modes of the shafts", _springs),
-    _elastic,
-    _inputs,
-    _measurement,
-)
+def _note(motion: object, text: str) -> str:
+    """Why a motion is absent, else a text."""
+    return (motion.detail or str(motion)) if isinstance(motion, Absent) else text

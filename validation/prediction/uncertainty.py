@@ -96,8 +96,8 @@ def uncertainty(
     given = row(())
     if given is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
-    swings = [row([(inputs[j], share)]) for j, share in alone]
-    points = _points(_importance(len(inputs), alone, swings), samples, seed)
+    ends = _ends(inputs, [j for j, _ in alone], [row([(inputs[j], share)]) for j, share in alone], given.size)
+    points = _points(_importance(ends), samples, seed)
     rows = [row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]) for point in points]
     kept = np.array([found is not None for found in rows])
     if kept.sum() < _LEAST * samples:
@@ -105,7 +105,11 @@ def uncertainty(
             f"Only {kept.sum()} of {samples} samples have a prediction: narrow the ranges in [uncertainty]."
         )
     table = np.stack([found for found in rows if found is not None])
-    return _dataset(pair, inputs, points[kept], table, given, alone, swings, samples, seed)
+    found = _dataset(pair, inputs, points[kept], table, ends)
+    names = (name for name in found.data_vars if found[name].dims == ("sample",))
+    found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
+    found.attrs |= {"refused": samples - len(table), "seed": seed}
+    return found.assign_attrs(provenance(pair, samples=samples, seed=seed))
 
 
 def speed_band(pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, samples: int = 32) -> xr.Dataset:
@@ -176,15 +180,20 @@ def _points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
     return np.asarray(points[:, np.argsort(np.argsort(-importance, kind="stable"))])
 
 
-def _importance(
-    count: int, alone: Sequence[tuple[int, float]], swings: Sequence[FloatArray | None]
+def _ends(
+    inputs: Sequence[Input], of: Sequence[int], rows: Sequence[FloatArray | None], columns: int
 ) -> FloatArray:
-    """(count,) swing of each input over the largest one, of the result that it moves most."""
-    width = np.zeros((count, len(QUANTITIES)))
-    for j in range(count):
-        rows = [one for (i, _), one in zip(alone, swings, strict=True) if i == j and one is not None]
-        if rows:
-            width[j] = np.ptp(rows, axis=0)[: len(QUANTITIES)]
+    """(input, 2, column) results of each input alone at its ends, of a choice the extremes; NaN: refused."""
+    found = np.full((len(inputs), 2, columns), np.nan)
+    for j, one in enumerate(inputs):
+        if own := [row for number, row in zip(of, rows, strict=True) if number == j and row is not None]:
+            found[j] = (np.min(own, axis=0), np.max(own, axis=0)) if one.choices else (own[0], own[-1])
+    return found
+
+
+def _importance(ends: FloatArray) -> FloatArray:
+    """(input,) swing of each input over the largest one, of the result that it moves most."""
+    width = np.nan_to_num(np.abs(ends[:, 1] - ends[:, 0])[:, : len(QUANTITIES)])
     largest = width.max(axis=0)
     return np.asarray((width / np.where(largest > 0.0, largest, 1.0)).max(axis=1))
 
@@ -218,68 +227,44 @@ def _of_teeth(pair: GearPair) -> list[float]:
 
 
 def _dataset(
-    pair: GearPair,
-    inputs: Sequence[Input],
-    points: FloatArray,
-    table: FloatArray,
-    given: FloatArray,
-    alone: Sequence[tuple[int, float]],
-    swings: Sequence[FloatArray | None],
-    samples: int,
-    seed: int,
+    pair: GearPair, inputs: Sequence[Input], points: FloatArray, table: FloatArray, ends: FloatArray
 ) -> xr.Dataset:
-    own = {} if pair.healthy is pair else TEETH
-    names = [*QUANTITIES, *_ORDER_NAMES, *own]
-    units = [unit for unit, _ in QUANTITIES.values()] + ["N"] * ORDERS + [unit for unit, _ in own.values()]
-    texts = [text for _, text in QUANTITIES.values()]
-    texts += [f"force on the pinion bearings, mesh order {m}" for m in range(1, ORDERS + 1)]
-    texts += [text for _, text in own.values()]
+    """The samples ``table`` at ``points`` with their percentiles, and what each input alone does."""
+    bearing = "force on the pinion bearings, mesh order"
+    results = QUANTITIES | {name: ("N", f"{bearing} {m}") for m, name in enumerate(_ORDER_NAMES, 1)}
+    results |= {} if pair.healthy is pair else TEETH
     places = [percentile_interval(len(table), p) for p in PERCENTILES]
-    ordered = np.sort(table, axis=0)
-    ranks = rankdata(points, axis=0)
+    ordered, ranks = np.sort(table, axis=0), rankdata(points, axis=0)
     variables: dict[str, Variable] = {}
-    for column, (name, unit, text) in enumerate(zip(names, units, texts, strict=True)):
-        values = table[:, column]
-        swing = np.full((len(inputs), 2), np.nan)
-        for j in range(len(inputs)):
-            ends = [s[column] for (i, _), s in zip(alone, swings, strict=True) if i == j and s is not None]
-            if ends:
-                swing[j] = (min(ends), max(ends)) if inputs[j].choices else (ends[0], ends[-1])
+    for column, (name, (unit, text)) in enumerate(results.items()):
+        values, own = table[:, column], ordered[:, column]
+        between, rank = f"{text}, interval of the percentile", _rank_correlation(ranks, values)
         variables |= {
             name: ("sample", values, unit, text),
             f"{name}_percentile": ("percentile", np.percentile(values, PERCENTILES), unit, text),
-            f"{name}_interval": (
-                ("percentile", "end"),
-                np.array([[ordered[a, column], ordered[b, column]] for a, b in places]),
+            f"{name}_interval": (("percentile", "end"), own[np.array(places)], unit, between),
+            f"{name}_swing": (
+                ("input", "end"),
+                ends[..., column],
                 unit,
-                f"{text}, interval of the percentile",
+                f"{text}, one input alone at its ends",
             ),
-            f"{name}_swing": (("input", "end"), swing, unit, f"{text}, one input alone at its ends"),
-            f"{name}_rank_correlation": (
-                "input",
-                _rank_correlation(ranks, values),
-                "1",
-                f"{text}, rank correlation with the input",
-            ),
+            f"{name}_rank_correlation": ("input", rank, "1", f"{text}, rank correlation with the input"),
         }
     values = np.array([[_number(one, float(u)) for u in points[:, j]] for j, one in enumerate(inputs)])
     variables["value"] = (("input", "sample"), values, "1", "value of the input, in its own unit")
-    attributes = provenance(pair, samples=samples, seed=seed) | {
-        "refused": samples - len(table),
-        "contact_lost": int(table[:, -2].sum()),
-        "unstable": int(table[:, -1].sum()),
-        "seed": seed,
-        "written": [one.written for one in inputs],
-        "reason": [one.reason for one in inputs],
-    }
-    attributes |= {f"given_{name}": float(given[column]) for column, name in enumerate(names)}
     return labelled_dataset(
         variables,
         {
             "percentile": (list(PERCENTILES), "%", "share of the samples below"),
             "input": ([one.field for one in inputs], "1", "uncertain input"),
         },
-        attributes,
+        {
+            "contact_lost": int(table[:, -2].sum()),
+            "unstable": int(table[:, -1].sum()),
+            "written": [one.written for one in inputs],
+            "reason": [one.reason for one in inputs],
+        },
     )
 
 

@@ -25,6 +25,8 @@ NEAR = 0.05
 #: An input counts whose swing is at least this share of the result.
 _COUNTS = 0.05
 _MOST_ACTIONS = 3
+#: A result this close to an end of the range is printed as that end.
+_ROUNDING = 0.005
 #: First words of a hazard -> the hazard as a noun.
 _KINDS = {"jump": "a jump", "beats": "beats", "chaos": "chaos", "periodic": "another motion"}
 _ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
@@ -376,7 +378,7 @@ def _beyond_the_range(results: Results) -> str:
         return ""
     for key, label in _ROWS.items():
         given, ends = results.prediction.numbers[key], found[f"{key}_percentile"].to_numpy()[[0, -1]]
-        if ends[0] <= given <= ends[1]:
+        if ends[0] * (1.0 - _ROUNDING) <= given <= ends[1] * (1.0 + _ROUNDING):
             continue
         swing = np.nan_to_num(found[f"{key}_swing"].to_numpy(), nan=given)
         # The input that, at its ends, takes the result furthest back into the range.

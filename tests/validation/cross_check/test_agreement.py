@@ -7,6 +7,7 @@ import lumped
 import multibody
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
+from validation.cross_check.agreement import _scale
 
 BASE = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__contact="prescribed", mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05,
@@ -18,6 +19,14 @@ SMOOTH = BASE.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
 def difference(run, reference, name):
     """Largest difference over the peak to peak of the reference."""
     return float(np.abs(run[name] - reference[name]).max()) / float(np.ptp(reference[name].to_numpy()))
+
+
+def test_the_measure_of_the_load_is_at_most_the_static_load():
+    """Mean 110 N: teeth that bend by 0 to 4 um about a mean of 2 um swing by the whole load, and no more."""
+    for swing, expected in ((1.0, 55.0), (4.0, 110.0)):
+        dte = 2.0 + swing * np.array([-0.5, 0.5])
+        assert _scale("normal_load", dte, np.array([100.0, 120.0])) == pytest.approx(expected)
+    assert _scale("normal_load", np.array([-1.0, 4.0]), np.array([100.0, 120.0])) == 110.0
 
 
 def test_both_models_return_the_same_table():

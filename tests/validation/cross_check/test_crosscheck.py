@@ -142,9 +142,12 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
     causes = attribution(far)  # of y, which uses most of its limit, not of the transmission error
     causes["alone"].loc["sliding_velocity", "y_p"] = 0.5
     assert "friction follows the actual sliding" in cause_of_difference(far, causes)
-    pitch = pair.geometry.base_pitch / pair.geometry.base_radius_pinion
+    unlike = lumped.load_gear_pair("nasa_art_25_31")
+    pitch = unlike.geometry.base_pitch / unlike.geometry.base_radius_pinion
     turned = dict(far.multibody, exact=found.lumped.assign(theta_p=0.03 * pitch * (found.lumped["time"] > 0)))
-    told = cause_of_difference(dataclasses.replace(found, multibody=turned), causes).replace("\u00a0", " ")
+    told = cause_of_difference(dataclasses.replace(found, pair=unlike, multibody=turned), causes).replace(
+        "\u00a0", " "
+    )
     assert "turns the free shafts to and fro by 3 % of a base pitch" in told
     assert cause_of_difference(dataclasses.replace(far, orbit=far)).startswith("The lumped motion has")
 

@@ -1,5 +1,7 @@
 """Do the samples say what the uncertain inputs do? Closed forms where the result is known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import binom, qmc
@@ -9,6 +11,7 @@ import lumped
 from lumped.errors import ParameterError
 from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.uncertainty import (
+    _ends,
     _importance,
     _points,
     percentile_interval,
@@ -87,14 +90,11 @@ def test_a_pair_without_uncertain_inputs_is_refused():
 
 def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     """Shares 0.2, 1 and 0.5: of a refused end nothing is known, and each result is measured by itself."""
-    ends = [
-        np.array([0.0, 5.0, *[0.0] * 4]),
-        None,
-        np.array([0.1, 5.0, *[0.0] * 4]),
-        *np.eye(6)[[0, 2]] * 0.5,
-    ]
-    alone = [(0, 0.05), (1, 0.05), (0, 0.95), (1, 0.05), (1, 0.95)]
-    share = _importance(3, [*alone, (2, 0.5), (2, 0.6)], [*ends, np.zeros(6), np.eye(6)[0] * 0.25])
+    inputs = [SimpleNamespace(choices=choices) for choices in ((), (), "abc")]
+    rows = [[0.0, 5.0, *[0.0] * 4], None, [0.1, 5.0, *[0.0] * 4], *np.eye(6)[[0, 2]] * 0.5]
+    rows += [np.eye(6)[0] * 0.1, np.zeros(6), np.eye(6)[0] * 0.25]
+    ends = _ends(inputs, [0, 1, 0, 1, 1, 2, 2, 2], rows, 6)
+    share = _importance(ends)
     np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
     sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)
     np.testing.assert_array_equal(_points(share, 8, 3)[:, [1, 2, 0]], sobol)
