@@ -199,22 +199,6 @@ def test_the_momentary_load_is_an_effect_of_its_own():
         assert (abs(mu(on, 0.5 * w) / mu(on, w) - 1.0) > 0.1) == feels
 
 
-def test_actual_rolling_velocities_belong_to_the_sliding_velocity():
-    pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed", friction__law="xu_kahraman")
-    p = machine(pair).parameters
-    xi = p[kn.L_XP] + 2e-3
-    rolling = p[kn.OMEGA_P] * xi + p[kn.OMEGA_G] * (p[kn.L_XY] - xi)
-    slide = 2e-3 * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
-
-    def mu(flags, factor):
-        return signed_friction(p, flags, 1.0, xi, slide, factor * rolling, xi, p[kn.L_XY] - xi, 1.0)
-
-    on = effect_flags({"sliding_velocity"})
-    assert mu(on, 1.0) == pytest.approx(nominal_friction(p, xi), rel=1e-12)
-    assert mu(0, 2.0) == mu(0, 1.0)
-    assert mu(on, 2.0) < 0.7 * mu(on, 1.0)
-
-
 def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     """Both gears turn by a half faster than nominal: in the contact core the law of that speed acts."""
     pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed", friction__law="xu_kahraman")
