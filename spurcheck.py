@@ -33,138 +33,75 @@ from __future__ import annotations
 import re
 from functools import wraps
 from importlib import import_module, metadata
+from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    import floquet
-    import lumped
-    import multibody
-    import validation
-    from floquet import (
-        PeriodicSystem,
-        campbell,
-        from_second_order,
-        monodromy,
-        periodic_orbit,
-        response_branches,
-        stability_boundaries,
-        stability_chart,
-        stability_margins,
-    )
-    from lumped import (
-        GearPair,
-        LawRangeWarning,
-        NumericalError,
-        ParameterError,
-        SpurcheckError,
-        bodies,
-        geometry,
-        load_gear_pair,
-        mesh_stiffness,
-        natural_frequencies,
-        optimal_relief,
-        periodic_system,
-        preset_names,
-        run_up,
-        simulate,
-        speed_sweep,
-        static_transmission_error,
-        steady_state,
-    )
-    from multibody import attribution, power_balance
-    from validation import (
-        crosscheck,
-        dynamic_factor,
-        plot,
-        predict,
-        report,
-        uncertainty,
-        validity_flags,
-        write_interactive_page,
-    )
-    from validation.exchange import (
-        compare_matrices,
-        compare_ross,
-        gear_pair_from_rexs,
-        new_pair,
-        write_results,
-        write_rexs,
-    )
-    from validation.signals import order_spectrum, time_synchronous_average, waterfall
-    from validation.studies import load_study, read_results, run_sweep
+if TYPE_CHECKING:  # the one list of the public names; below it is read at run time
+    import floquet as floquet
+    import lumped as lumped
+    import multibody as multibody
+    import validation as validation
+    from floquet import PeriodicSystem as PeriodicSystem
+    from floquet import campbell as campbell
+    from floquet import from_second_order as from_second_order
+    from floquet import monodromy as monodromy
+    from floquet import periodic_orbit as periodic_orbit
+    from floquet import response_branches as response_branches
+    from floquet import stability_boundaries as stability_boundaries
+    from floquet import stability_chart as stability_chart
+    from floquet import stability_margins as stability_margins
+    from lumped import GearPair as GearPair
+    from lumped import LawRangeWarning as LawRangeWarning
+    from lumped import NumericalError as NumericalError
+    from lumped import ParameterError as ParameterError
+    from lumped import SpurcheckError as SpurcheckError
+    from lumped import bodies as bodies
+    from lumped import geometry as geometry
+    from lumped import load_gear_pair as load_gear_pair
+    from lumped import mesh_stiffness as mesh_stiffness
+    from lumped import natural_frequencies as natural_frequencies
+    from lumped import optimal_relief as optimal_relief
+    from lumped import periodic_system as periodic_system
+    from lumped import preset_names as preset_names
+    from lumped import run_up as run_up
+    from lumped import simulate as simulate
+    from lumped import speed_sweep as speed_sweep
+    from lumped import static_transmission_error as static_transmission_error
+    from lumped import steady_state as steady_state
+    from multibody import attribution as attribution
+    from multibody import power_balance as power_balance
+    from validation import crosscheck as crosscheck
+    from validation import dynamic_factor as dynamic_factor
+    from validation import plot as plot
+    from validation import predict as predict
+    from validation import report as report
+    from validation import uncertainty as uncertainty
+    from validation import validity_flags as validity_flags
+    from validation import write_interactive_page as write_interactive_page
+    from validation.exchange import compare_matrices as compare_matrices
+    from validation.exchange import compare_ross as compare_ross
+    from validation.exchange import gear_pair_from_rexs as gear_pair_from_rexs
+    from validation.exchange import new_pair as new_pair
+    from validation.exchange import write_results as write_results
+    from validation.exchange import write_rexs as write_rexs
+    from validation.signals import order_spectrum as order_spectrum
+    from validation.signals import time_synchronous_average as time_synchronous_average
+    from validation.signals import waterfall as waterfall
+    from validation.studies import load_study as load_study
+    from validation.studies import read_results as read_results
+    from validation.studies import run_sweep as run_sweep
 
     __version__: str
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
-#: Where a name is looked for, in this order; multibody, the slowest to import, comes last.
-_SOURCES = (
-    "lumped",
-    "floquet",
-    "validation",
-    "validation.exchange",
-    "validation.signals",
-    "validation.studies",
-    "multibody",
-)
-
-__all__ = [
-    "GearPair",
-    "LawRangeWarning",
-    "NumericalError",
-    "ParameterError",
-    "PeriodicSystem",
-    "SpurcheckError",
-    "__version__",
-    "attribution",
-    "bodies",
-    "campbell",
-    "compare_matrices",
-    "compare_ross",
-    "crosscheck",
-    "dynamic_factor",
-    "floquet",
-    "from_second_order",
-    "gear_pair_from_rexs",
-    "geometry",
-    "load_gear_pair",
-    "load_study",
-    "lumped",
-    "mesh_stiffness",
-    "monodromy",
-    "multibody",
-    "natural_frequencies",
-    "new_pair",
-    "optimal_relief",
-    "order_spectrum",
-    "periodic_orbit",
-    "periodic_system",
-    "plot",
-    "power_balance",
-    "predict",
-    "preset_names",
-    "read_results",
-    "report",
-    "response_branches",
-    "run_sweep",
-    "run_up",
-    "simulate",
-    "speed_sweep",
-    "stability_boundaries",
-    "stability_chart",
-    "stability_margins",
-    "static_transmission_error",
-    "steady_state",
-    "time_synchronous_average",
-    "uncertainty",
-    "validation",
-    "validity_flags",
-    "waterfall",
-    "write_interactive_page",
-    "write_results",
-    "write_rexs",
-]
-
+#: Public name -> the package that has it.
+_SOURCES = {
+    name: package
+    for package, name in re.findall(
+        r"^    from (\S+) import (\w+) as", Path(__file__).read_text("utf-8"), re.M
+    )
+}
 #: What to type instead of a name that no package has.
 _INSTEAD = {
     "predict(pair).efficiency": "efficiency losses power_loss",
@@ -172,8 +109,8 @@ _INSTEAD = {
     "order_spectrum(motion)": "fft spectrum",
     "preset_names()": "presets list_presets",
 }
-_NAMES = tuple(__all__)
-__all__.clear()  # help() would print all that it names, 1,500 lines
+_NAMES = (*_SOURCES, *_PACKAGES, "__version__")
+globals()["__all__"] = []  # help() would print all that it names, 1,500 lines; a checker would hide the names
 
 
 def _find(name: str) -> object:
@@ -181,12 +118,8 @@ def _find(name: str) -> object:
         return metadata.version("spurcheck")
     if name in _PACKAGES:
         return import_module(name)
-    for source in _SOURCES:
-        module = import_module(source)
-        if name in module.__all__:
-            value = getattr(module, name)
-            return _explained(name, value) if isinstance(value, FunctionType) else value
-    raise AssertionError(f"{name} is in no package")
+    value = getattr(import_module(_SOURCES[name]), name)
+    return _explained(name, value) if isinstance(value, FunctionType) else value
 
 
 def _explained(name: str, function: Any) -> Any:
