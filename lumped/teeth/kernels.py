@@ -196,16 +196,9 @@ def loads_at(
             here[LOAD, i] = k[i] * pressed if pressed > 0.0 else 0.0
             here[TANGENT, i] = k[i] if pressed > 0.0 else 0.0
     if not single:
+        force, softening, least = constants[0], constants[2], constants[3]
         shared_loads(
-            here[PRESSED],
-            k,
-            coupling,
-            constants[2],
-            constants[0],
-            constants[3],
-            here[LOAD],
-            here[TANGENT],
-            here[SELF],
+            here[PRESSED], k, coupling, softening, force, least, here[LOAD], here[TANGENT], here[SELF]
         )
 
 

@@ -64,6 +64,9 @@ class LinearForm:
         by_force = np.einsum("fm,ksmr->ksfr", forces, feedback)
         self.steps = (which, end, p, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
         self.width = end.shape[2]
+        #: Whether the cycles differ in their forcing alone, and in that by the errors of their teeth.
+        self.alike = self.fixed and len(self.laws.faults) == 1 and not pair.operating.torque_ripple
+        self.alike = self.alike and not self.own.eccentric[:, 0].any()
         count = self.own.period if most is None else min(most, self.own.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
 
@@ -105,24 +108,16 @@ def linear_motion(
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     steps = linear_steps(system) if steps is None else steps
+    m, dte, relative = len(system.coordinates), system.deflection, system.supports.relative
     coarse = LinearForm(pair, system, 1, -(-steps // 2), _BLOCK)
     form = LinearForm(pair, system, samples, steps)
     mesh: dict[int, FloatArray] = {}
-    maps = form.cycle_maps(mesh)
-    whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
-    if not np.isfinite(whole).all():
-        raise NumericalError("The motion grows beyond all numbers: take smaller deviations or more damping.")
-    start, weights = balanced_start(system, whole[:, :n], whole[:, n : n + 3])
-    # Rounding of the closing equations fades in a period, but that of the common rotation, which grows.
-    support, m, dte = system.supports, len(system.coordinates), system.deflection
-    moved, scale = (states_along(maps, start, weights)[-1] - start).reshape(2, m), support.common_weights
-    moved -= np.outer(moved @ scale, support.common) / (scale @ support.common)
-    start = start + moved.ravel()
-    cycles = states_along(maps, start, weights)
-    other = states_along(coarse.cycle_maps(), start, weights)
+    cycles, weights = _superposed(form) if form.alike else _closed(form, mesh)
+    other = states_along(coarse.cycle_maps(), cycles[0], weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
     states, powers = _inside(form, mesh, cycles, weights)
-    states = without_drift(system, np.arange(states.shape[0]) / samples * system.period, states, 0.0)
+    time = np.arange(states.shape[0]) / samples * system.period
+    states = without_drift(system, time, states, 0.0)
     outer = swinging(tables(form.laws, 1.0, samples), system)
     each = static_mesh(outer, 0, outer.period, form.fixed)[1][..., np.flatnonzero(outer.outputs)]
     _, rise, damper, constant = each.reshape(4, outer.ahead.size, -1)
@@ -131,22 +126,57 @@ def linear_motion(
     # The first law gives what slides.
     lost = powers["tooth_dampers"] + powers["supports"] - powers["rolling"]
     powers["sliding"] = torque * g.omega_pinion - brake * g.omega_gear - lost
-    largest = np.abs(cycles[:, :m] @ support.relative.T).max()
+    largest = np.abs(cycles[:, :m] @ relative.T).max()
+    closure = float(np.abs(relative @ (cycles[-1] - cycles[0])[:m]).max() / largest)
+    kind = kernels.FIXED if form.fixed else kernels.LINEAR
     return OwnMotion(
-        pair=pair,
-        system=system,
-        tables=outer,
-        form=kernels.FIXED if form.fixed else kernels.LINEAR,
-        time=np.arange(states.shape[0]) / samples * system.period,
-        states=states,
-        load=load,
-        pinion_torque=torque,
-        brake_torque=brake,
-        powers=powers,
-        closure=float(np.abs(support.relative @ (cycles[-1] - cycles[0])[:m]).max() / largest),
-        error=float(error),
-        spectral_radius=twin.spectral_radius,
+        *(pair, system, outer, kind, time, states, load, torque, brake, powers, closure, float(error)),
+        twin.spectral_radius,
     )
+
+
+def _closed(form: LinearForm, mesh: dict[int, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """States at the starts of the cycles, (cycles + 1, n), and weights of the forcings, by the own maps."""
+    system, support = form.system, form.system.supports
+    maps = form.cycle_maps(mesh)
+    whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
+    if not np.isfinite(whole).all():
+        raise NumericalError("The motion grows beyond all numbers: take smaller deviations or more damping.")
+    start, weights = balanced_start(system, whole[:, :n], whole[:, n : n + 3])
+    # Rounding of the closing equations fades in a period, but that of the common rotation, which grows.
+    moved, scale = (states_along(maps, start, weights)[-1] - start).reshape(2, n // 2), support.common_weights
+    moved -= np.outer(moved @ scale, support.common) / (scale @ support.common)
+    return states_along(maps, start + moved.ravel(), weights), weights
+
+
+def _superposed(form: LinearForm) -> tuple[FloatArray, FloatArray]:
+    """As ``_closed``, of cycles that are ``alike``: one solve for each order of the errors of either gear."""
+    own, lists = form.own, (form.own.pinion, form.own.gear)
+
+    def cycle_map(teeth: list[FloatArray]) -> FloatArray:
+        sums = static_mesh(own._replace(pinion=teeth[0], gear=teeth[1]), 0, 1, True)[2]
+        found: FloatArray = form.along(0, np.eye(form.width)[None], sums, False)[0][0]
+        return found
+
+    mean = [np.tile(errors.mean(axis=0), (len(errors), 1)) for errors in lists]
+    base, n = cycle_map(mean), 2 * len(form.system.coordinates)
+    start, weights = balanced_start(form.system, base[:, :n], base[:, n : n + 3])
+    spectrum = np.zeros((own.period, n), dtype=np.complex128)
+    spectrum[0] = own.period * start
+    for which, errors in enumerate(lists):
+        z, first, differing = len(errors), int(own.first[which]), np.flatnonzero(np.ptp(errors, axis=0))
+        turn = np.exp(2j * np.pi * np.arange(1, z) / z)[:, None]
+        size, forced = np.fft.fft(np.roll(errors, -first, axis=0), axis=0)[1:], np.zeros((z - 1, n), complex)
+        for column in differing:
+            for ahead in own.ahead.tolist():
+                unit = [one.copy() for one in mean]
+                unit[which][(first - ahead) % z, column] += 1.0
+                forced += size[:, [column]] * turn ** float(-ahead) * (cycle_map(unit) - base)[:, n]
+        if differing.size:
+            found = np.linalg.solve(turn[..., None] * np.eye(n) - base[:, :n], forced[..., None])[..., 0]
+            spectrum[own.period // z * np.arange(1, z)] += own.period // z * found
+    cycles: FloatArray = np.fft.ifft(spectrum, axis=0).real
+    return np.vstack([cycles, cycles[:1]]), weights
 
 
 def _inside(
@@ -160,10 +190,11 @@ def _inside(
 
     def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
         first, count = block
+        sums = mesh[first] if first in mesh else form.mesh(block)
         start = [np.concatenate([state, weights, padding]) for state in cycles[first : first + count]]
-        _, states, inside = form.along(first, np.array(start)[..., None], mesh[first], True)
+        _, states, inside = form.along(first, np.array(start)[..., None], sums, True)
         delta, closing = np.moveaxis(inside.reshape(*inside.shape[:2], 2, b.size), 2, 0)
-        n = np.moveaxis(mesh[first], -1, 0)
+        n = np.moveaxis(sums, -1, 0)
         load, taken = n[0] * delta + n[3] * closing + n[6], (n[11] * closing + n[12]) * closing + n[13]
         flat = np.vstack([states.reshape(-1, 2 * m), cycles[first + count]])[:, m:]
         turning = flat @ rates.T

@@ -156,17 +156,9 @@ def push_motion(
     for part in (4, 1):
         own = swinging(tables(laws, part / steps, samples, (0.0, 0.5, 1.0)), system)
         torques = driving * system.torque_pinion + brake * system.torque_gear
-        states, load, end, work = run(
-            pair,
-            own,
-            system,
-            form == kernels.PUSH,
-            -settling,
-            settling + own.period,
-            own.period,
-            state,
-            torques,
-        )
+        count = settling + own.period
+        push = form == kernels.PUSH
+        states, load, end, work = run(pair, own, system, push, -settling, count, own.period, state, torques)
         if not np.isfinite(end).all():
             raise NumericalError(
                 "The motion grows beyond all numbers: take smaller deviations or more damping."
@@ -202,18 +194,7 @@ def push_motion(
     named = {name: float(value) for name, value in powers.items()}
     error /= float(np.abs(coarse).max())
     return OwnMotion(
-        pair,
-        system,
-        own,
-        form,
-        time,
-        states,
-        load,
-        driving,
-        brake,
-        named,
-        closed,
-        error,
+        *(pair, system, own, form, time, states, load, driving, brake, named, closed, error),
         twin.spectral_radius,
     )
 
@@ -269,25 +250,13 @@ def run(
     sliding = np.zeros((3, m + 1))
     sliding[0, :m], sliding[1, :m], sliding[2, :m] = rates[0], rates[1], rates[4] - rates[5]
     sliding[:, m] = g.omega_pinion, g.omega_gear, g.L_XY
-    supports = _power_matrix(system)
-    return motion_cycles(
-        corners,
-        start,
-        cycles,
-        recorded,
-        np.ascontiguousarray(state),
-        np.ascontiguousarray(system.constant[m:]),
-        np.ascontiguousarray(system.deflection),
-        np.ascontiguousarray(system.per_load),
-        np.ascontiguousarray(moments(system)),
-        np.ascontiguousarray(system.per_apart),
-        np.ascontiguousarray(torques[m:]),
-        ripples(pair),
-        np.stack([system.torque_pinion[m:], system.torque_gear[m:]]),
-        supports,
-        sliding,
-        own,
+    arrays = (
+        *(state, system.constant[m:], system.deflection, system.per_load, moments(system), system.per_apart),
+        *(torques[m:], ripples(pair), np.stack([system.torque_pinion[m:], system.torque_gear[m:]])),
+        *(_power_matrix(system), sliding),
     )
+    given = [np.ascontiguousarray(one) for one in arrays]
+    return motion_cycles(corners, start, cycles, recorded, own, *given)
 
 
 def ripples(pair: GearPair) -> FloatArray:

@@ -28,6 +28,7 @@ def motion_cycles(
     start: int,
     cycles: int,
     recorded: int,
+    own: Tables,
     state: FloatArray,
     constant: FloatArray,
     deflection: FloatArray,
@@ -39,7 +40,6 @@ def motion_cycles(
     per_torque: FloatArray,
     bearing: FloatArray,
     sliding: FloatArray,
-    own: Tables,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Motion of teeth that push only over mesh cycles by the classical Runge-Kutta method of order 4.
 
