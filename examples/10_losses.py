@@ -19,6 +19,8 @@ def compute() -> xr.Dataset:
     """Efficiencies of all laws, and the loss of constant friction over mu as mu vanishes."""
     pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
     result = losses_of_laws(pair)
+    moving = [lumped.steady_state(pair.with_(law=law)) for law in result["law"].values]
+    result["mesh_efficiency_dynamic"] = ("law", [one.attrs["mesh_efficiency"] for one in moving])
     result = result.assign_coords(mu=[0.1, 0.01, 0.001, 1e-6])
     constant = [pair.with_(friction__law="coulomb", friction__coefficient=mu) for mu in result["mu"].values]
     loss = [1 - quasi_static_losses(one, sharing="uniform").mesh_efficiency for one in constant]

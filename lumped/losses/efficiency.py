@@ -23,8 +23,6 @@ from lumped.losses.loss_factor import (
     sliding_velocity,
     springs,
 )
-from lumped.model.powers import balance
-from lumped.model.steady import periodic_cycle
 from lumped.path_of_contact import contact_path, friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 
@@ -85,45 +83,36 @@ def quasi_static_losses(
     return QuasiStaticLosses(1.0 - loss / power_in, loss, power_in, factor, loss / (factor * power_in))
 
 
-def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
-    """Mesh efficiency of every law with friction at the operating point.
+def losses_of_laws(pair: AnyPair) -> xr.Dataset:
+    """Mesh efficiency of every law with friction at the operating point, without vibration.
 
     Parameters
     ----------
     pair : the gear pair
-    dynamic : whether to add the efficiency of the periodic motion
 
     Returns
     -------
-    xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
-    mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
+    xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient; attribute ``left_out``,
+    laws that the pair does not allow and why
     """
     pair = load_gear_pair(pair)
-    rows: dict[str, dict[str, float]] = {}
+    rows: dict[str, QuasiStaticLosses] = {}
     left_out: list[str] = []
     laws = laws_with_friction(pair.friction)
     for name in laws:
         try:
-            static = quasi_static_losses(pair, name)
-            kept = ("mesh_efficiency", "power_loss", "mean_coefficient")
-            rows[name] = {key: getattr(static, key) for key in kept}
-            if dynamic:
-                run = periodic_cycle(pair.with_(friction__law=name), 8)
-                rows[name]["mesh_efficiency_dynamic"] = balance(run)["mesh_efficiency"]
+            rows[name] = quasi_static_losses(pair, name)
         except ParameterError as error:
             left_out.append(f"{laws[name].title}: {error}")
-    units = {"power_loss": "W"}
-    texts = {
-        "mesh_efficiency": "mesh efficiency, quasi-static",
-        "mesh_efficiency_dynamic": "mesh efficiency of the periodic motion",
-        "power_loss": "mean sliding loss, quasi-static",
-        "mean_coefficient": "loss over loss factor and power",
+    columns = {
+        "mesh_efficiency": ("1", "mesh efficiency, quasi-static"),
+        "power_loss": ("W", "mean sliding loss, quasi-static"),
+        "mean_coefficient": ("1", "loss over loss factor and power"),
     }
-    columns = next(iter(rows.values()), {})
     result = labelled_dataset(
         {
-            key: ("law", np.array([row[key] for row in rows.values()]), units.get(key, "1"), texts[key])
-            for key in columns
+            key: ("law", np.array([getattr(row, key) for row in rows.values()]), unit, text)
+            for key, (unit, text) in columns.items()
         },
         {"law": (list(rows), "1", "friction law")},
         {"left_out": left_out},

@@ -1,4 +1,4 @@
-"""Compiled path functions, Gauss steps with a rank-one mesh, and chains of affine maps."""
+"""Compiled Gauss steps with a rank-one mesh, and chains of affine maps."""
 
 from __future__ import annotations
 
@@ -7,36 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from lumped.compiler import Compiler
-from lumped.typing import BoolArray, FloatArray, IntArray
+from lumped.typing import FloatArray, IntArray
 
 compiled = Compiler([Path(__file__)])
-
-
-@compiled
-def law_at(
-    breaks: FloatArray, coefficients: FloatArray, offsets: FloatArray, shift: FloatArray, contact: BoolArray
-) -> FloatArray:
-    """A path function of all pairs (pairs, k) where ``contact`` (pairs, k), zero elsewhere.
-
-    ``offsets`` are xi_i (pairs,) at the start of the cycle, ``shift`` the way since then (k,) [m].
-    """
-    values = np.zeros((offsets.size, shift.size))
-    last = breaks.size - 1
-    for pair in range(offsets.size):
-        piece = 0
-        for i in range(shift.size):
-            xi = offsets[pair] + shift[i]
-            if not contact[pair, i] or not breaks[0] <= xi <= breaks[last]:
-                continue
-            # Neighbours mostly lie on the same piece, which is tried first.
-            if not (breaks[piece] <= xi and (xi < breaks[piece + 1] or piece == last - 1)):
-                piece = min(np.searchsorted(breaks, xi, side="right"), last) - 1
-            local = xi - breaks[piece]
-            value = coefficients[0, piece]
-            for power in range(1, coefficients.shape[0]):
-                value = value * local + coefficients[power, piece]
-            values[pair, i] = value
-    return values
 
 
 @compiled

@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
-from lumped.model.kernels import law_at
 from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
@@ -157,15 +156,6 @@ class MeshCycle:
         place = self.offsets[:, None] + middle
         return np.asarray((place >= self.start) & (place <= self.end))
 
-    @property
-    def events(self) -> dict[str, float]:
-        """Times in [0, T_m) at which a pair is at A, B, P, C or D [s]."""
-        g = self.geometry
-        marks = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
-        return {
-            name: float(np.mod((xi - g.L_XA) / g.base_pitch, 1.0) * self.period) for name, xi in marks.items()
-        }
-
     def sample(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairState:
         """Return the coefficients of all pairs at times t [s], any number of cycles.
 
@@ -188,10 +178,9 @@ class MeshCycle:
         speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
-        contact = np.take(self._contact, index, axis=1)
+        contact, place = np.take(self._contact, index, axis=1), self.offsets[:, None] + shift
         slope, k, c, mu, error, *tilt = (
-            law_at(law.breaks, law.coefficients, self.offsets, shift, contact)
-            for law in (self.elements.error_slope, *self._laws)
+            np.where(contact, law(place), 0.0) for law in (self.elements.error_slope, *self._laws)
         )
         position = self.offsets[:, None] + speed * tau
         return PairState(position, contact, k, c, mu, error, slope * speed, tilt[0] if tilt else None)

@@ -55,8 +55,11 @@ def test_efficiency_of_constant_friction_in_closed_form(name, mu):
 
 
 def test_no_friction_no_loss():
-    result = quasi_static_losses(load_gear_pair("fzg_c").with_(mesh__contact="prescribed"), "none")
+    pair = load_gear_pair("fzg_c").with_(mesh__contact="prescribed")
+    result = quasi_static_losses(pair, "none")
     assert (result.mesh_efficiency, result.mean_coefficient) == (1.0, 0.0)
+    with pytest.raises(ParameterError, match="sharing = equal"):
+        loss_factor(pair, "equal")
 
 
 def test_slow_dynamic_solution_is_quasi_static():
@@ -159,8 +162,3 @@ def test_loaded_shares_are_those_of_the_static_transmission_error():
     assert loss_factor(pair, "elements") == pytest.approx(
         mean / (g.omega_pinion * g.base_radius_pinion), rel=1e-3
     )
-
-
-def test_unknown_sharing_is_refused():
-    with pytest.raises(ParameterError, match="sharing = equal"):
-        loss_factor(load_gear_pair("fzg_c").with_(mesh__contact="prescribed"), "equal")

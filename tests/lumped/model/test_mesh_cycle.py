@@ -26,28 +26,11 @@ def test_number_of_pairs_in_contact(cycle):
     assert (count * np.diff(cycle.edges)).sum() / cycle.period == pytest.approx(g.contact_ratio, rel=1e-12)
 
 
-def test_events_are_when_a_pair_passes_the_point(cycle):
-    g, events = cycle.geometry, cycle.events
-    speed = g.omega_pinion * g.base_radius_pinion
-    points = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
-    assert set(events) == set(points)
-    for name, xi in points.items():
-        assert 0.0 <= events[name] < cycle.period
-        at = cycle.offsets + speed * events[name]
-        # One of the pairs, or the one that has just left, is there.
-        cycles_off = (at - xi) / g.base_pitch
-        assert np.abs(cycles_off - np.round(cycles_off)).min() < 1e-12, name
-    assert events["A"] == 0.0
-    # B is one base pitch before D, C one after A: the same instants.
-    wrapped = (events["B"] - events["D"]) / cycle.period
-    assert abs(wrapped - round(wrapped)) < 1e-12
-    assert events["C"] / cycle.period == pytest.approx(round(events["C"] / cycle.period), abs=1e-12)
-
-
 def test_the_pitch_point_is_a_switch_also_without_friction(nasa):
     """Sliding reverses there whatever the law: results are one-sided at it."""
-    cycle = mesh_cycle(nasa.with_(friction__law="none"))
-    assert np.abs(cycle.switch_times - cycle.events["P"]).min() < 1e-12 * cycle.period
+    cycle, g = mesh_cycle(nasa.with_(friction__law="none")), nasa.geometry
+    at_pitch_point = (g.L_XP - g.L_XA) / g.base_pitch % 1.0
+    assert np.abs(cycle.switch_times / cycle.period - at_pitch_point).min() < 1e-12
 
 
 def test_ends_of_a_segment_are_its_one_sided_limits(cycle):

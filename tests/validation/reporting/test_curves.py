@@ -245,7 +245,7 @@ def test_the_bars_of_the_error_budget(written):
 
 def test_the_losses_by_law(written):
     pair, ax = pair_of(written), written.figures["losses_by_law"].axes[0]
-    laws = losses_of_laws(pair, dynamic=False)
+    laws = losses_of_laws(pair)
     expected = dict(zip(laws["law_title"].to_numpy(), 1.0 - laws["mesh_efficiency"].to_numpy(), strict=True))
     data = written.curves("losses_by_law")
     close(data["loss [%]"], 100.0 * np.array(list(expected.values())))

@@ -245,7 +245,7 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     )
     assert written.data("linear").attrs["spectral_radius"] < 1.0
     assert "the linear motion is stable" in said["stability"]
-    loss = 100.0 * (1.0 - losses_of_laws(pair_of(written), dynamic=False)["mesh_efficiency"].to_numpy())
+    loss = 100.0 * (1.0 - losses_of_laws(pair_of(written))["mesh_efficiency"].to_numpy())
     supply = own.power(written.parameters)
     own.assert_says(
         plain(said["losses"]), r"The mesh loses (.*) of (.*); the friction laws differ from (.*) to (.*) %\.",

@@ -25,7 +25,7 @@ def write(results: Results) -> Content:
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # laws are compared outside their ranges too
-        laws, profile, path = losses_of_laws(pair, dynamic=False), friction_profile(pair), contact_path(pair)
+        laws, profile, path = losses_of_laws(pair), friction_profile(pair), contact_path(pair)
     loss = 100.0 * (1.0 - laws["mesh_efficiency"].to_numpy())
     names = [str(name) for name in laws["law"].to_numpy()]
     data = labelled_dataset(
