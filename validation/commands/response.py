@@ -69,26 +69,12 @@ def response(
         return
     whole_number("--periods", periods, 1, 8)
     with progress_bar("branches") as tell:
-        found = floquet.response_branches(
-            pair,
-            None,
-            range(1, periods + 1),
-            seeds=20 if seeds is None else seeds,
-            back_side=back_side,
-            progress=tell,
-        )
+        many, cycles = 20 if seeds is None else seeds, range(1, periods + 1)
+        found = floquet.response_branches(pair, None, cycles, seeds=many, back_side=back_side, progress=tell)
     if as_json:
-        print_json(
-            {
-                "gear_pair": pair.name,
-                "speeds_rpm": list(found.speeds_rpm),
-                "jumps": found.jumps,
-                "attractors": found.attractors,
-                "gaps": found.gaps,
-                "basins": _basins(found),
-                "bifurcations": found.bifurcations,
-            }
-        )
+        lists = {name: getattr(found, name) for name in ("jumps", "attractors", "gaps", "bifurcations")}
+        about = {"gear_pair": pair.name, "speeds_rpm": list(found.speeds_rpm)}
+        print_json(about | lists | {"basins": _basins(found)})
     else:
         _print(pair, found)
     if not back_side and any(o.reaches_back_side for o in found.at(operating_rpm(pair))):
@@ -167,15 +153,9 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, a
     names = [str(one) for one in found.data_vars if str(one).startswith("jump_")]
     short = {one: one.removeprefix("jump_") for one in names}
     if as_json:
-        print_json(
-            {
-                "gear_pair": pair.name,
-                "axis": name,
-                "values": values.tolist(),
-                "jumps": found[names].rename(short).to_dataframe().to_dict("records"),
-                "removed_by": removed,
-            }
-        )
+        jumps = found[names].rename(short).to_dataframe().to_dict("records")
+        about = {"gear_pair": pair.name, "axis": name, "values": values.tolist()}
+        print_json(about | {"jumps": jumps, "removed_by": removed})
     else:
         _print_map(pair, found, name, removed)
     files.write(found)

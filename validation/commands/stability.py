@@ -68,15 +68,10 @@ def stability(
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.campbell import campbell
     from floquet.gear.multipliers import gear_pair_multipliers
-    from lumped.errors import refuse
 
     grid = opt.axes_values(axis, GEAR_AXES)
     opt.check_supports(pair, supports)
-    _check(view, grid, files, tongues, supports)
-    if (prove or tongues) and view != "chart":
-        raise refuse("--prove" if prove else "--tongues", view, "--view chart", "Leave it out.")
-    if prove and grid and set(grid) != {"speed_rpm", "damping_ratio"}:
-        raise refuse("--prove", ", ".join(grid), "the axes speed_rpm and damping_ratio", "Name both or none.")
+    _check(view, grid, files, tongues, prove, supports)
     found = gear_pair_multipliers(pair, supports=supports)
     margin = 1.0 - found.spectral_radius
     if as_json:
@@ -106,29 +101,37 @@ def stability(
 
 
 def _check(
-    view: str, axes: Mapping[str, FloatArray], files: opt.Files, tongues: bool, supports: opt.SupportsName
+    view: str, axes: Mapping[str, FloatArray], files: opt.Files, tongues: bool, prove: bool, supports: str
 ) -> None:
     """Refuse what cannot be shown, before any work."""
     from lumped.errors import refuse
     from validation.files.output import DATA_SUFFIXES
 
-    if view not in _AXES:
-        raise refuse("--view", view, ", ".join(_AXES), "For example --view campbell.")
-    others = len(set(axes) - {"speed_rpm"})
-    if not {"chart": True, "boundaries": others == 1, "campbell": not others}[view]:
-        action = "For example --axis damping_ratio=0.005:0.05:5." if view == "boundaries" else "Leave it out."
-        raise refuse("--axis", ", ".join(axes) or "none", f"{_AXES[view]} for --view {view}", action)
-    figures = [path for path in files.paths if path.suffix.lower() not in DATA_SUFFIXES]
-    if figures and view == "chart" and len(axes) > 2:
-        raise refuse("--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv.")
+    named, others, example = ", ".join(axes) or "none", len(set(axes) - {"speed_rpm"}), "Leave it out."
+    fits = {"chart": True, "boundaries": others == 1, "campbell": not others}.get(view, True)
+    figure = next((one for one in files.paths if one.suffix.lower() not in DATA_SUFFIXES), None)
+    shafts, both, on_shafts = supports == "shafts", {"speed_rpm", "damping_ratio"}, "with --supports shafts"
+    if view == "boundaries":
+        example = "For example --axis damping_ratio=0.005:0.05:5."
     for wrong, option, value, allowed, action in (
-        (view == "campbell", "--view", view, "chart, boundaries", "Or take --supports springs."),
-        (tongues, "--tongues", "given", "nothing", "Or trace them over one axis with --view boundaries."),
-        ("bearing_stiffness" in axes, "--axis", "bearing_stiffness", "an axis of the pair",
+        (view not in _AXES, "--view", view, ", ".join(_AXES), "For example --view campbell."),
+        (not fits, "--axis", named, f"{_AXES.get(view)} for --view {view}", example),
+        (figure and view == "chart" and len(axes) > 2, "--output", figure,
+         "a chart of one or two axes for a figure", "Write .nc or .csv."),
+        (shafts and view == "campbell", "--view", view, f"chart, boundaries {on_shafts}",
+         "Or take --supports springs."),
+        (shafts and tongues, "--tongues", "given", f"nothing {on_shafts}",
+         "Or trace them over one axis with --view boundaries."),
+        (shafts and "bearing_stiffness" in axes, "--axis", "bearing_stiffness",
+         f"an axis of the pair {on_shafts}",
          "Change the bearings of the shafts by --set shafts.pinion.bearings.1.loa_stiffness=..."),
+        (view != "chart" and prove, "--prove", view, "--view chart", "Leave it out."),
+        (view != "chart" and tongues, "--tongues", view, "--view chart", "Leave it out."),
+        (prove and axes and set(axes) != both, "--prove", named, "the axes speed_rpm and damping_ratio",
+         "Name both or none."),
     ):  # fmt: skip
-        if wrong and supports == "shafts":
-            raise refuse(option, value, f"{allowed} with --supports shafts", action)
+        if wrong:
+            raise refuse(option, value, allowed, action)
 
 
 def _chart(

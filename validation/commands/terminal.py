@@ -176,15 +176,9 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:
-        silent = _quiet.set(bool(kwargs.pop("quiet", False)))
-        try:
-            answered(kwargs)
-        finally:
-            _quiet.reset(silent)
-
-    def answered(kwargs: dict[str, Any]) -> None:
         from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 
+        silent = _quiet.set(bool(kwargs.pop("quiet", False)))
         told: set[str] = set()
 
         def show(message: Warning | str, *_: object, **__: object) -> None:
@@ -227,6 +221,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 f"a fault in spurcheck: {type(error).__name__} at {where}: {error}. Please report it.",
                 NUMERICAL,
             )
+        finally:
+            _quiet.reset(silent)
 
     run.__doc__ = text
     run.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]

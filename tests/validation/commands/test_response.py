@@ -4,13 +4,13 @@ import json
 
 import pytest
 import xarray as xr
-from typer.testing import CliRunner
 
 import floquet
 import lumped
-from validation.cli import app
 from validation.plots.contact_loss import response_figure
 from validation.plots.of_result import plot
+
+from .conftest import refused, run
 
 PAIR = ["nasa_28_28", "--range", "12000..14000", "--law", "none"]
 PAIR += ["--set", "mesh.relief=ignored", "--set", "mesh.contact=prescribed"]
@@ -35,7 +35,7 @@ def test_the_command_prints_the_jump_to_the_beats(branches, monkeypatch):
         return branches
 
     monkeypatch.setattr(floquet, "response_branches", known)
-    done = CliRunner().invoke(app, ["response", *PAIR, "--periods", "1", "--seeds", "12", "--json"])
+    done = run("response", *PAIR, "--periods", 1, "--seeds", 12, "--json")
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
     (fold,) = [b for b in found["bifurcations"] if b["kind"] == "fold"]
@@ -70,7 +70,7 @@ def test_damping_removes_the_jump_at_the_cusp(tmp_path):
     """The two folds of the resonance meet at a damping ratio of 0.105 (docs/theory/orbits.md)."""
     data = tmp_path / "map.nc"
     axis = ["--map", "damping_ratio=0.1:0.11:2", "--set", "mesh.damping_ratio=0.1"]
-    done = CliRunner().invoke(app, ["response", *MAPPED, *axis, "--speeds", "60", "--json", "-o", str(data)])
+    done = run("response", *MAPPED, *axis, "--speeds", 60, "--json", "-o", data)
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
     assert [(j["damping_ratio"], j["rising"]) for j in found["jumps"]] == [(0.1, False), (0.1, True)]
@@ -93,6 +93,4 @@ def test_an_axis_that_the_pair_does_not_have_is_refused():
         ("contact_ratio", "torque"),
         ("torque=1", "NAME"),
     ):
-        done = CliRunner().invoke(app, ["response", *MAPPED, "--map", axis])
-        assert done.exit_code == 2
-        assert text in done.output
+        assert text in refused("response", *MAPPED, "--map", axis)

@@ -87,7 +87,6 @@ def test_campbell_diagram(tmp_path):
 
 
 @pytest.mark.parametrize(("arguments", "expected"), [
-    (("--view", "moon"), "--view = moon"),
     (("--axis", "speed_rpm=0:1000:5"), "--axis speed_rpm = 0 rpm: allowed > 0"),
     (("--axis", "damping_ratio=0:2:5"), "--axis damping_ratio = 1.5: allowed >= 0 and <= 1"),
     (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),

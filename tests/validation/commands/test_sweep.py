@@ -1,10 +1,10 @@
 """Does ``spurcheck sweep`` do what its options say, and does its exit code?"""
 
 import pytest
-from typer.testing import CliRunner
 
-from validation.cli import app
 from validation.studies import read_results, runner
+
+from .conftest import run as invoke
 
 OK, FAILED, REFUSED, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -31,7 +31,7 @@ def command(tmp_path, monkeypatch):
         words = ["sweep", "study.toml"]
         for name, value in ({"workers": 0} | options).items():
             words += [f"--{name.replace('_', '-')}", *([] if value is True else [str(value)])]
-        result = CliRunner().invoke(app, words)
+        result = invoke(*words)
         return result.exit_code, result.output
 
     return run
@@ -63,13 +63,6 @@ def test_a_failed_case_is_1_and_listed(command):
     assert code == FAILED
     assert "case 0: " in text
     assert "refused" in text
-
-
-def test_a_refused_study_is_2_and_one_message(command, tmp_path):
-    code, text = command(["88.9 kg"])
-    assert code == REFUSED
-    assert "axes.0.values" in text
-    assert not (tmp_path / "study-sweep").exists()
 
 
 @pytest.mark.parametrize("options", [{"workers": 1025}, {"case_seconds": 1e-9}])

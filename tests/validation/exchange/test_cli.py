@@ -9,11 +9,10 @@ import pytest
 import scipy.io
 import scipy.signal
 import xarray as xr
-from typer.testing import CliRunner
 
 import lumped
 from lumped.model.averaged import averaged_state_space
-from validation.cli import app
+from tests.validation.commands.conftest import run
 from validation.exchange import gear_pair_from_rexs, parameter_text
 from validation.studies import load_study, run_sweep
 
@@ -23,12 +22,11 @@ def command(tmp_path, monkeypatch):
     """Run the command in a folder of its own; gives exit code and output without line breaks."""
     monkeypatch.chdir(tmp_path)
 
-    def run(*arguments):
-        ran = CliRunner().invoke(app, list(arguments))
-        assert ran.exception is None or isinstance(ran.exception, SystemExit)
+    def answered(*arguments):
+        ran = run(*arguments)
         return ran.exit_code, " ".join(ran.output.split())
 
-    return run
+    return answered
 
 
 def test_a_pair_comes_back_from_rexs(command, tmp_path):
@@ -128,12 +126,6 @@ def test_what_cannot_be_written_is_refused_and_nothing_is_left_behind(command, t
     )
 
 
-def run(*arguments):
-    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
-    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
-    return result
-
-
 def test_a_stage_becomes_a_parameter_file_with_units_and_marks(xml, save, tmp_path):
     source, target = save(xml(), "gearbox.rexs"), tmp_path / "mine.toml"
     result = run("init", "--from-rexs", source, "--stage", 1, "-o", target)
@@ -158,17 +150,6 @@ def test_the_default_name_is_that_of_the_file_and_dash_prints(xml, save, tmp_pat
     again = run("init", "--from-rexs", source)
     assert again.exit_code == 2
     assert "--force" in again.stderr
-
-
-@pytest.mark.parametrize(("options", "message"), [
-    (("--stage", "1"), "Give --from-rexs FILE too"),
-    (("--from-rexs", "missing.rexs"), "a file that exists"),
-])  # fmt: skip
-def test_a_wrong_call_is_refused_with_exit_code_2(options, message):
-    result = run("init", *options)
-    assert result.exit_code == 2
-    assert result.stdout == ""
-    assert message in result.stderr
 
 
 def test_the_number_of_the_stage_is_passed_on(xml, save):

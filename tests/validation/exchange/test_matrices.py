@@ -9,12 +9,11 @@ import pytest
 import scipy.io
 import scipy.sparse
 import xarray as xr
-from typer.testing import CliRunner
 
 from floquet import monodromy
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
-from validation.cli import app
+from tests.validation.commands.conftest import run
 from validation.exchange import matrices, read_second_order
 
 T = 0.4
@@ -23,12 +22,6 @@ G, WAVE, DRAG = np.array([[0.0, 0.2], [-0.2, 0.0]]), np.array([[40.0, 5.0], [0.0
 STEPS = np.stack([np.diag([30.0, 0.0]), np.diag([0.0, 60.0]), np.zeros((2, 2))])
 FIELDS = {"M": M, "K": K, "C": C, "G": G, "K_cos_1": WAVE, "C_sin_2": DRAG, "period": T}
 FIELDS |= {"K_times": [0.0, 0.1, 0.3, T], "K_values": STEPS}
-
-
-def run(*arguments):
-    result = CliRunner().invoke(app, ["floquet", *map(str, arguments)], env={"COLUMNS": "200"})
-    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
-    return result
 
 
 def test_both_formats_are_the_system_of_the_page(tmp_path):
@@ -116,13 +109,13 @@ def test_a_wrong_field_is_refused_by_its_name(tmp_path, change, field, word):
 
 def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
     np.savez(tmp_path / "rotor.npz", **FIELDS)
-    found = run(tmp_path / "rotor.npz", "--json")
+    found = run("floquet", tmp_path / "rotor.npz", "--json")
     data = json.loads(found.stdout)
     exact = monodromy(read_second_order(tmp_path / "rotor.npz").system())
     assert (data["verdict"], data["certificate"], found.exit_code) == ("stable", "proven", 0)
     assert data["multipliers"] == [[z.real, z.imag] for z in exact.multipliers]
     axes = ("--axis", "frequency=4:6:3", "--axis", "damping=0:1:2")
-    made = run(tmp_path / "rotor.npz", *axes, "-o", tmp_path / "c.nc", "-o", tmp_path / "c.png")
+    made = run("floquet", tmp_path / "rotor.npz", *axes, "-o", tmp_path / "c.nc", "-o", tmp_path / "c.png")
     assert "6 points" in made.stdout
     assert (tmp_path / "c.png").stat().st_size > 5000
     with xr.open_dataset(tmp_path / "c.nc", engine="h5netcdf") as chart:
@@ -142,6 +135,6 @@ def test_the_command_refuses_before_it_computes(tmp_path, monkeypatch, arguments
     monkeypatch.chdir(tmp_path)
     for name in ("text.npz", "text.mat", "text.csv"):
         (tmp_path / name).write_text("no matrices")
-    result = run(*arguments)
+    result = run("floquet", *arguments)
     assert (result.exit_code, result.stdout) == (2, "")
     assert word in result.stderr

@@ -184,10 +184,6 @@ def test_writing_refuses_what_it_cannot_write(tmp_path):
     for version in ("1.3", "2.0.0", "latest"):
         with pytest.raises(ParameterError, match=r"one of 1\.4"):
             write_rexs("fzg_c", tmp_path / "pair.rexs", version)
-    (tmp_path / "pair.rexs").write_text("of the user")
-    with pytest.raises(ParameterError, match="It exists"):
-        write_rexs("fzg_c", tmp_path / "pair.rexs")
-    assert (tmp_path / "pair.rexs").read_text() == "of the user"
 
 
 @pytest.mark.parametrize("form", [".rexs", ".rexsj"])

@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from typer.testing import CliRunner
 
 import lumped
 from floquet.gear.axes import vary
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import gear_pair_multipliers
-from validation.cli import app
+from tests.validation.commands.conftest import run
 from validation.interactive import page
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import Sampling, compute
@@ -183,19 +182,15 @@ def _defaults(**changes):
     return page.write_interactive_page.__kwdefaults__ | changes
 
 
-def _run(*arguments):
-    return CliRunner().invoke(app, ["interactive", *map(str, arguments)])
-
-
 def test_the_command_writes_page_and_data_and_does_not_overwrite(tiny, tmp_path):
     out = tmp_path / "page.html"
-    done = _run("nasa_28_28", "-o", out)
+    done = run("interactive", "nasa_28_28", "-o", out)
     assert done.exit_code == 0, done.output
     assert sorted(p.name for p in tmp_path.iterdir()) == ["page.html", "page.nc"]
-    again = _run("nasa_28_28", "-o", out)
+    again = run("interactive", "nasa_28_28", "-o", out)
     assert again.exit_code == 2
     assert "--force" in again.output
     out.unlink()
-    assert _run("nasa_28_28", "-o", out).exit_code == 2  # the data file would be lost
+    assert run("interactive", "nasa_28_28", "-o", out).exit_code == 2  # the data file would be lost
     assert not out.exists()
-    assert _run("nasa_28_28", "-o", out, "--force").exit_code == 0
+    assert run("interactive", "nasa_28_28", "-o", out, "--force").exit_code == 0

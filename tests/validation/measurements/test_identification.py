@@ -7,8 +7,8 @@ import pytest
 
 from lumped import geometry, load_gear_pair, simulate
 from lumped.errors import NumericalError, ParameterError
-from tests.validation.measurements.synthetic import synthetic_measurement, write_measurement
-from validation.measurements import evaluate, load_measurement, predict
+from tests.validation.measurements.synthetic import synthetic_measurement
+from validation.measurements import evaluate, predict
 from validation.measurements.comparison import align, mesh_cycles, overlay
 from validation.measurements.identification import identify_friction
 from validation.plots.of_result import plot
@@ -196,19 +196,6 @@ def test_interval_covers_the_truth(pair, law, noise):
     assert abs(estimates.mean() - 1.0) < min(3.5 * spread / np.sqrt(40), 5e-3)
     # 40 estimates know their own spread to 11 %; 35 % is three of those.
     assert errors.mean() == pytest.approx(spread, rel=0.35)
-
-
-def test_a_written_record_is_read_back(truth, tmp_path):
-    original = record(truth, start=0.4, noise_normal=0.02, noise_friction=0.02)
-    again = load_measurement(write_measurement(original, tmp_path))
-    for name, values in original.channels.items():
-        # nine digits are written
-        np.testing.assert_allclose(again.channels[name], values, rtol=1e-8, atol=1e-6)
-    assert again.noise == pytest.approx(original.noise, rel=1e-12)
-    phases = [align(m, truth) for m in (original, again)]
-    results = [identify_friction(m, truth, a) for m, a in zip((original, again), phases, strict=True)]
-    assert results[0].estimate == pytest.approx(results[1].estimate, rel=1e-6)
-    assert "95 % interval" in results[0].text
 
 
 def test_a_record_at_another_speed_and_torque_identifies_the_friction_that_made_it(truth, pair):

@@ -32,17 +32,10 @@ def test_grid_is_the_product_with_the_last_axis_fastest(make_study):
     assert cases.values([119, 7]) == [expected[119], expected[7]]
 
 
-def test_latin_hypercube_hits_every_stratum_of_every_axis_once(make_study):
-    n = 50
-    shares = sampled(make_study, method="latin_hypercube", samples=n).shares(np.arange(n))
-    for column in shares.T:
-        assert sorted(np.floor(column * n)) == list(range(n))
-
-
-def test_sobol_points_are_balanced(make_study):
-    # 2^m points of a scrambled Sobol sequence: every axis has one point in each of the 2^m equal intervals.
-    n = 64
-    shares = sampled(make_study, method="sobol", samples=n).shares(np.arange(n))
+@pytest.mark.parametrize(("method", "n"), [("latin_hypercube", 50), ("sobol", 64)])
+def test_samples_hit_every_stratum_of_every_axis_once(make_study, method, n):
+    # Of 2^m points of a scrambled Sobol sequence every axis has one in each of the 2^m equal intervals.
+    shares = sampled(make_study, method=method, samples=n).shares(np.arange(n))
     for column in shares.T:
         assert sorted(np.floor(column * n)) == list(range(n))
 
