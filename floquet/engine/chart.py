@@ -58,12 +58,7 @@ class ChartAxis:
 
 
 def checked_axes(axes: Axes) -> dict[str, FloatArray]:
-    """Return the axes as 1-D float arrays.
-
-    Raises
-    ------
-    ParameterError : no axis, or an axis that is empty, not finite, not 1-D or has repeated values
-    """
+    """Return the axes as 1-D float arrays; refuse what is empty, not finite, not 1-D or repeats values."""
     if not isinstance(axes, Mapping) or not axes:
         raise refuse("axes", shown(axes), "at least one name -> values", "Give the parameters to vary.")
     result = {}
@@ -142,16 +137,9 @@ def refine_planes(
 ) -> None:
     """Evaluate a chart near its edges of instability and interpolate the rest, see `refine`.
 
-    Parameters
-    ----------
-    grid : name -> values, in any order
-    plane : names of the two axes to refine over; the other axes are gone through value by value
-    points : takes the results
-    evaluate : of some points
-    cycles : cycles in a unit of time at the values of the first axis of the plane; None: equal ones
-    lowest_alone : whether regions are widest where the second axis of the plane is lowest: then that row
-        alone seeds the search, else three rows do
-    progress : told the finished fraction
+    ``plane`` names the two axes to refine over, the others are gone through value by value; ``cycles`` are
+    those in a unit of time at the values of its first axis. Where regions are widest at the lowest value of
+    its second axis (``lowest_alone``) that row alone seeds the search, else three rows do.
     """
     names = list(grid)
     order = [names.index(name) for name in plane] + [i for i, name in enumerate(names) if name not in plane]
@@ -275,15 +263,11 @@ def _place(point: Mapping[str, float]) -> str:
 
 
 def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dataset:
-    """Label results as a chart.
+    """Label results as a chart: radius, error, verdict, proven, known, and where asked for multipliers.
 
-    Returns
-    -------
-    Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable), proven and known over
-    the axes, and where all were kept, multipliers, multiplier_errors over the axes and ``multiplier``. Where
-    ``known`` is False a node is interpolated: its error is the largest misfit that is known near it, its
-    verdict that of all evaluated nodes around it. ``proven`` says where the errors are bounds by a theorem,
-    the attribute ``certificate`` whether all are: "proven", "estimate" or "mixed".
+    Where ``known`` is False a node is interpolated: its error is the largest misfit known near it, its
+    verdict that of the evaluated nodes around it. The attribute ``certificate`` is "proven", "estimate" or
+    "mixed".
     """
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)

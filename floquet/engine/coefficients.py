@@ -38,16 +38,9 @@ class Coefficient(ABC):
 
     @abstractmethod
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-        """Polynomials on intervals that no break lies inside.
+        """Polynomials on intervals start + length s [s], 0 <= s <= 1, (k,), that no break lies inside.
 
-        Parameters
-        ----------
-        start, length : (k,) the intervals start + length s, 0 <= s <= 1 [s]
-        degree : of the polynomials
-
-        Returns
-        -------
-        (k, degree + 1) coefficients of the powers of s, and (k,) bounds on their errors over 0 <= s <= 1
+        Returns (k, degree + 1) coefficients of the powers of s, and (k,) bounds on their errors.
         """
 
     def repeats(self, period: float) -> bool:

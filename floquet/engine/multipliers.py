@@ -119,11 +119,10 @@ def _cluster_bound(
 def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, FloatArray]:
     """Eigenvalues (n,) of M, largest modulus first, each with a bound (n,) on its error.
 
-    The bound is a theorem, rounding included: what LAPACK returns is checked by its residuals. M is best in
-    balanced coordinates, ``delta`` bounds the Frobenius norm of its error. A simple multiplier's bound grows
-    like delta, that of an m-fold defective one like delta^(1/m). Multipliers that delta does not allow to be
-    told apart share one bound: each has an exact one within it, and each exact one of theirs is that near to
-    one of them. Source: docs/theory/proven_bounds.md, "Multipliers".
+    A theorem, rounding included: what LAPACK returns is checked by its residuals. ``delta`` bounds the
+    Frobenius norm of the error of M. Multipliers that delta does not allow to be told apart share one bound:
+    each has an exact one within it, and each exact one of theirs is that near to one of them. Source:
+    docs/theory/proven_bounds.md, "Multipliers".
     """
     n = M.shape[0]
     T, Z = schur(M, output="complex")

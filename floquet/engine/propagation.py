@@ -91,13 +91,10 @@ def propagate(
     rtol: float,
     max_substeps: int = 200_000,
 ) -> Propagation:
-    """Transition matrices of one period, each step accurate to rtol h/T of its own norm.
+    """Transition matrices of one period, each step accurate to rtol h/T of its norm in balanced coordinates.
 
-    The norm is taken in the coordinates x_i / d_i of ``PeriodicSystem.balancing``. Every step is taken once
-    whole and once as two halves. Their difference, which is an estimate of the error of the whole step and so
-    an overestimate (by 2^p - 1 where the method shows its order) of that of the halves, is the local error;
-    the halves are what is kept. Refused steps are cut according to the order of the method, so the grid is
-    fine only where it has to be.
+    Every step is taken once whole and once as two halves, which are returned; their difference is the local
+    error. Refused steps are cut according to the order of the method.
     """
     d = system.balancing()
     start, end = _initial_grid(system, method, d)
@@ -216,9 +213,8 @@ def _cut(start: FloatArray, end: FloatArray, ratio: FloatArray, order: int) -> t
 def error_of_product(propagation: Propagation) -> tuple[FloatArray, float, float]:
     """Monodromy matrix in balanced coordinates, a bound on its error, and the part of it due to rounding.
 
-    With S_j the product of the steps after step j and Q_j that of the steps before it, the first-order error
-    is sum S_j E_j Q_j, bounded by sum |S_j| |E_j| |Q_j|. Decay and growth along the period are thus accounted
-    for, which the plain sum of local errors would not do.
+    With S_j the product of the steps after step j and Q_j that before it, sum |S_j| |E_j| |Q_j| bounds the
+    first order.
     """
     steps = propagation.steps
     m, n, _ = steps.shape

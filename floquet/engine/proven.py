@@ -107,8 +107,7 @@ def _steps(
 def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, float]:
     """Product of steps (m, n, n) whose 2-norm errors are at most ``errors``, and a bound on its error.
 
-    With Q_j the computed product before step j and S_j the exact one after it, the error is sum S_j E_j Q_j.
-    S_j is known from computed products of 2^k steps each, a binary counter from the last step backwards.
+    Source: docs/theory/proven_bounds.md, "The product".
     """
     m, n, _ = steps.shape
     rounding = 2.0 * n * _U

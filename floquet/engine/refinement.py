@@ -78,15 +78,9 @@ def refine(
 ) -> Refined:
     """Evaluate a chart where its verdict or its growth rate changes, and interpolate the rest.
 
-    Parameters
-    ----------
-    shape : numbers of nodes N, M along both axes, at least 2 each; axes increase
-    cycles : (N,) or (N, M) cycles in a unit of time, by which the logarithm of the radius is smooth
-    ask : evaluates nodes by their flat index i M + j
-    tolerance : largest error of the radius (above 1 relative to it) at an interpolated node, as far as nodes
-        of its leaf tell
-    rows : rows of the second axis that are evaluated first, at every node
-    progress : told the finished share of the area
+    ``shape`` is N, M, nodes along both axes, which increase; ``cycles`` (N,) or (N, M), by which the
+    logarithm of the radius is smooth; ``ask`` evaluates nodes by their flat index; ``tolerance`` is the
+    largest error of the radius at an interpolated node; ``rows`` of the second axis are evaluated first.
     """
     state = _State(shape, np.broadcast_to(np.reshape(cycles, (shape[0], -1)), shape), ask)
     n, m = shape

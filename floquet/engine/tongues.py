@@ -73,10 +73,7 @@ def combinations(omega: FloatArray) -> Iterator[tuple[int, int, int, float]]:
 def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> FloatArray:
     """How much each mode of the mean system takes part in a motion, forwards and backwards; (2, m), sum one.
 
-    In the modal states (omega eta, eta') mode i moves as a_i exp(i omega_i t) + b_i exp(-i omega_i t) with
-    a_i = (omega eta - i eta')/2 and b_i = (omega eta + i eta')/2. Shares are of the action |.|^2/omega, not
-    of the energy: a sum resonance feeds both its modes with equal action (relations of Manley and Rowe),
-    however far apart their frequencies are.
+    Shares of the action |.|^2/omega: a sum resonance feeds both modes with equal action (Manley and Rowe).
     """
     x = np.asarray(state, dtype=complex)
     m = omega.size
@@ -124,10 +121,9 @@ class TongueTip:
 def tongue_tip(
     radius: RadiusAt, window: tuple[float, float], bracket: tuple[float, float], *, xtol: float = 1e-9
 ) -> TongueTip:
-    """Find the damping that closes a tongue: the root of max over the window of radius - 1, to ``xtol``.
+    """Find the damping that closes a tongue, alone in its window: the root of the largest radius - 1.
 
-    ``window`` holds this tongue and no other one; ``bracket`` are a damping at which it is open, and one at
-    which it is closed, or else a NumericalError is raised.
+    NumericalError: ``bracket`` are no damping at which it is open, and one at which it is closed.
     """
     places: dict[float, float] = {}
 

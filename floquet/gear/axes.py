@@ -277,10 +277,9 @@ def depends_on_speed(pair: GearPair) -> bool:
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
     """Group speeds (k,), all different, over which friction needs but one fit.
 
-    Where speed only scales a law (III by a power, I and IV by their mean coefficient) all speeds share one
-    fit. Law II, a logarithm, rises and falls as a whole as long as its bounds do not move, and law V is each
-    of these where one regime has the whole path. So such a law is also evaluated along the path at every
-    speed, and its switches are compared; the factors are those of the formulas.
+    Speed scales law III, and I and IV by their mean coefficient. Law II, a logarithm, rises and falls as a
+    whole as long as its bounds do not move, and law V is each of these where one regime has the whole path:
+    such a law is also evaluated along the path at every speed, and its switches are compared.
     """
     pair, rest = variation.pair, np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):

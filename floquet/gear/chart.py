@@ -360,15 +360,7 @@ class ChartSlice:
         return verdict
 
     def solve(self, places: IntArray, at: Mapping[str, IntArray], points: ChartPoints, rtol: float) -> None:
-        """Put the multipliers of points into ``points``.
-
-        Parameters
-        ----------
-        places : (k,) in the chart
-        at : name of an inner axis -> index (k,) of its value
-        points : of the chart
-        rtol : relative to each monodromy matrix
-        """
+        """Put multipliers of places (k,) into ``points``; ``at``: inner axis -> index (k,) of its value."""
         none = np.zeros(places.size, dtype=np.intp)
         speed = at.get("speed_rpm", none)
         damping = self.damping[at.get("damping_ratio", none)]

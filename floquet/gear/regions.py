@@ -97,10 +97,8 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
 def with_regions(variation: GearVariation, chart: xr.Dataset) -> xr.Dataset:
     """Add the unstable regions of a chart over ``region``, and where the edges next to the pair are.
 
-    Those are ``region_label``, ``region_radius``, ``region_nodes``, ``region_width``, ``region_<axis>`` of
-    the node of the largest radius; the attributes ``thinnest_width`` and, for every axis,
-    ``nearest_edge_<axis>``: the value nearest to the pair's own at which its stability changes, all else as
-    near as the nodes come. NaN: there is none.
+    The attribute ``nearest_edge_<axis>`` is the value nearest to the pair's own at which its stability
+    changes, all else as near as the nodes come; NaN: there is none.
     """
     regions, names = label_regions(variation, chart), list(map(str, chart["spectral_radius"].dims))
     along = "speed_rpm" if "speed_rpm" in names else names[0]

@@ -54,8 +54,7 @@ class Bifurcation:
 def with_bifurcations(along: Continuation, path: Path, result: list[Bifurcation]) -> list[Orbit]:
     """The orbits of a path with those of its bifurcations in their places, so that folds are among them.
 
-    Between two bifurcations of one step stands a motion as well: theirs, with a multiplier of modulus one but
-    for rounding, do not say whether the motions between them are stable.
+    Between two bifurcations of one step stands a motion as well: theirs do not say whether it is stable.
     """
     places = [
         *((float(j), orbit) for j, orbit in enumerate(path.orbits)),

@@ -190,9 +190,8 @@ def find_response(
 ) -> Response:
     """Return the branches of motions of some periods over a range of speeds.
 
-    Branches of one cycle are looked for from the motion while all contacts hold, at 12 speeds an octave;
-    those of twice the cycles leave period doublings; isolated ones start from runs that settled, at ``seeds``
-    speeds an octave, from starts apart and on running up and down from what these came to.
+    First those from the motion while all contacts hold, at 12 speeds an octave; then those behind period
+    doublings; then isolated ones from runs that settled, at ``seeds`` speeds an octave.
     """
     search = _Search(member, set(periods))
     search.explore(seeds, progress)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from floquet.orbits.kernel import propagate
-from lumped.errors import NumericalError, refuse
+from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
 #: Order of the Taylor series: the error of the state at 18 is that of rounding (docs/theory/orbits.md).
@@ -127,18 +127,12 @@ class ContactSystem:
 
     def __post_init__(self) -> None:
         phases = np.ascontiguousarray(self.phases, dtype=float)
-        if phases[0] != 0.0 or phases[-1] != 1.0 or np.any(np.diff(phases) <= 0.0):
-            raise refuse("phases", phases, "increasing from 0 to 1", "Give phases, not times.")
         K, C, F = (np.ascontiguousarray(x, dtype=float) for x in (self.stiffness, self.damping, self.force))
-        n, m = K.shape
+        n = K.shape[0]
         H = np.zeros(n) if self.parameter_force is None else self.parameter_force
         H = np.ascontiguousarray(H, dtype=float)  # another layout would be another compilation
         for name, value in (("stiffness", K), ("damping", C), ("force", F), ("phases", phases)):
             object.__setattr__(self, name, value)
-        if C.shape != (n, m) or F.shape != (n,) or H.shape != (n,) or n not in (m, m + 1):
-            raise refuse(
-                "stiffness", K.shape, "(m, m) or (m + 1, m), as damping", "Give one row a coordinate."
-            )
         P = phases.size - 1
         parts: dict[str, list[FloatArray]] = {name: [] for name in ("k", "c", "e", "b", "alpha", "beta", "a")}
         for contact in self.contacts:
@@ -156,15 +150,8 @@ class ContactSystem:
         width = max(x.shape[-1] for name in parts if name != "a" for x in parts[name])
         packed = [_stacked(parts[name], width) for name in ("k", "c", "e", "b", "alpha", "beta")]
         packed.append(_stacked(parts["a"], max(x.shape[-1] for x in parts["a"])))
-        present = np.ascontiguousarray(
-            np.stack(
-                [
-                    np.ones(P, bool) if x.present is None else np.asarray(x.present, bool)
-                    for x in self.contacts
-                ],
-                axis=1,
-            )
-        )
+        there = [True if x.present is None else np.asarray(x.present, bool) for x in self.contacts]
+        present = np.ascontiguousarray(np.stack([np.broadcast_to(x, P) for x in there], axis=1))
         u = np.ascontiguousarray([np.asarray(x.direction, dtype=float) for x in self.contacts])
         output = np.ascontiguousarray(self.output, dtype=float)
         object.__setattr__(self, "_packed", (phases, present, *packed, u, K, C, F, H, output))
@@ -197,22 +184,10 @@ class ContactSystem:
         derivatives: bool = False, samples: FloatArray | None = None, order: int = ORDER,
         logged: int = 0,
     ) -> Run:  # fmt: skip
-        """Motion over whole cycles from phase 0.
+        """Motion over whole cycles from phase 0, from ``start`` (2m,), z [m] and v = T dz/dt [m].
 
-        Parameters
-        ----------
-        start : (2m,) z [m] and v = T dz/dt [m]
-        period : T [s]
-        cycles : how many
-        parameter : p
-        derivatives : whether the derivatives of the end travel along
-        samples : increasing phases in [0, 1) at which each cycle is recorded
-        order : of the Taylor series
-        logged : most events to record
-
-        Raises
-        ------
-        NumericalError : the motion is not finite, or a contact opens and closes without end
+        Each cycle is recorded at ``samples``, increasing phases in [0, 1), at most ``logged`` events as well.
+        NumericalError: the motion is not finite, or a contact opens and closes without end.
         """
         n, m = self.stiffness.shape
         samples = np.empty(0) if samples is None else np.ascontiguousarray(samples, dtype=float)
@@ -253,11 +228,7 @@ class ContactSystem:
 def _pieces(value: ArrayLike, count: int) -> FloatArray:
     """A number or polynomials (P, D + 1) -> (P, D + 1)."""
     array = np.asarray(value, dtype=float)
-    if array.ndim == 0:
-        return np.full((count, 1), float(array))
-    if array.ndim != 2 or array.shape[0] != count:
-        raise refuse("coefficient", array.shape, f"a number or ({count}, D + 1)", "Give a row a piece.")
-    return array
+    return np.full((count, 1), float(array)) if array.ndim == 0 else array
 
 
 def _derivative(rows: FloatArray) -> FloatArray:

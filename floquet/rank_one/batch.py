@@ -142,11 +142,9 @@ def fast_multipliers(
 def spectral_radii(
     system: RankOneSystem, periods: npt.ArrayLike, damping_factors: npt.ArrayLike, *, tolerance: float
 ) -> FloatArray:
-    """Largest moduli (N,) of the multipliers, as of `fast_multipliers` but without bounds on them.
+    """Largest moduli (N,) of the multipliers; from 0.9 on, where searches decide, as of `fast_multipliers`.
 
-    Multipliers of a motion that nearly dies out within a period are often too close together for the kernel,
-    and to bound those takes a hundred times as long. From 0.9 on they are those of `fast_multipliers` to the
-    last digit: there searches decide.
+    To bound those of a motion that nearly dies out within a period would take a hundred times as long.
     """
     flow = fast_monodromies(system, periods, damping_factors, tolerance=tolerance)
 

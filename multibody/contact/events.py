@@ -208,10 +208,8 @@ def time_to_event(
 ) -> tuple[float, float]:
     """Time to the next event [s] and its kind; infinite when there is none.
 
-    q, v, a : (6,) coordinates, velocities, accelerations
-    events : (n, 2) from ``event_table``
-    near : time over which a Taylor polynomial foretells the vibration [s]; further ahead only the nominal
-        speed is asked
+    Over the time ``near`` [s] a Taylor polynomial of q, v, a (6,) foretells the vibration; further ahead only
+    the nominal speed is asked.
     """
     pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
     coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and p[kn.COUPLED] > 0.0

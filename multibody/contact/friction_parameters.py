@@ -99,11 +99,7 @@ def viscosity(lubricant: Lubricant) -> float:
 
 
 def friction_switches(p: FloatArray) -> list[tuple[float, float]]:
-    """Where the coefficient of the nominal motion jumps or has a kink: (kind of ``events``, place [m]).
-
-    The sign at the pitch point and the bounds of law II are met at a sliding velocity; law V changes over at
-    a position, because the film hardly depends on sliding.
-    """
+    """Where the nominal motion's coefficient jumps or has a kink, law V at a position: (kind, place [m])."""
     found: list[tuple[float, float]] = []
     if _branch(p, p[kn.L_XP] + 0.5 * _CLOSEST) not in (fr.LAWS["none"], fr.LAWS["smoothed_coulomb"]):
         found.append((SLIDING, float(p[kn.L_XP])))

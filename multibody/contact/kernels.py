@@ -48,11 +48,7 @@ from multibody.contact.kinematics import (
 def friction_size(
     p: FloatArray, slide: float, rolling: float, rho_p: float, rho_g: float, distance: float, load: float
 ) -> float:
-    """Size of the friction coefficient at one contact, see ``friction.magnitude``.
-
-    A law without a formula there is read from the lumped model's table, where the nominal motion slides as
-    fast.
-    """
+    """Size of the friction coefficient by ``friction.magnitude``, without a formula by the lumped table."""
     f = p[kn.FRICTION :]
     if f[fr.LAW] == fr.TABLE:
         end = int(p[kn.OWN]) if p[kn.OWN] > 0.0 else p.size
@@ -87,11 +83,8 @@ def signed_friction(
 ) -> float:
     """Friction coefficient with the sign of the sliding velocity, by the law at this contact.
 
-    Without the effect of the actual sliding velocity the contact slides and rolls as in the nominal motion at
-    xi, without that of the momentary load it carries w_n.
-
-    slide, rolling : actual sliding velocity and sum of the rolling velocities [m/s]
-    normal : load of the contact [N]
+    Without the effects of the actual sliding velocity and the momentary load it slides and rolls as in the
+    nominal motion at xi and carries w_n. ``rolling`` is the sum of both rolling velocities [m/s].
     """
     f = p[kn.FRICTION :]
     load = max(normal, 0.0) / f[fr.FACE_WIDTH] if flags & kn.FRICTION_LOAD else f[fr.NOMINAL_LOAD]
@@ -111,15 +104,11 @@ def signed_friction(
 def contact_forces(
     t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
-    """Wrench of all tooth contacts and one record per contact.
+    """Wrench of all tooth contacts and one record per contact at time t [s].
 
-    t : time [s]
-    state : (3, 6) deviations from nominal position and rotation, and their rates [m, rad, s]; and the wrench,
-        which is written: (Fx, Fy, M) of pinion and gear [N, N m]. One array, for each costs Python
-        time when it is handed over
-    p : (N_PARAMETERS,) parameters in the order named above
-    flags : effect switches, a sum of bits
-    table : the stiffness, see ``elements.stiffness_and_slope``
+    state : (3, 6) deviations from nominal position and rotation [m, rad], their rates, and the wrench,
+        which is written: (Fx, Fy, M) of pinion and gear [N, N m]; one array, for each costs Python time
+    p, flags, table : parameters and effect switches of ``layout``, stiffness
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
     Returns number of contacts, or -1 when a force is not finite
     """
@@ -268,11 +257,9 @@ def contact_forces(
 def linear_forces(
     t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
-    """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``contact_forces``.
+    """Forces on (x_p, y_p, phi_p, x_g, y_g, phi_g) in the lumped model; arguments as ``contact_forces``.
 
-    The recorded sliding velocity does not act on the friction. With phi_p = -theta_p and phi_g = theta_g the
-    overlap is the dynamic transmission error delta = r_bp theta_p - r_bg theta_g + x_p - x_g. Of the flags
-    ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. There are no back sides.
+    Of the flags ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. No back sides.
     """
     q, v, wrench = state[0], state[1], state[2]
     wrench[:] = 0.0

@@ -51,14 +51,9 @@ def line_of_action(
 ) -> tuple[float, float, float, float]:
     """Unit vector e (from X to Y), growth L - L_0 [m] and angle psi [rad] of the actual line of action.
 
-    The gear's centre stands at d = (L_0 + u_x, R + u_y) from the pinion's. The nominal d gives the length L_0
-    and, on the drive flank, the x axis; changes are made of u alone, as those of micrometres would else drown
-    in the rounding of L_0.
-
-    along, off : u_x, u_y [m]
-    nominal : L_0 [m]
-    base_sum : sum R of the base radii [m]; the centre distance must be larger
-    Returns (ex, ey, grown, psi), NaN when the base circles overlap
+    The gear's centre stands at d = (L_0 + u_x, R + u_y) from the pinion's, R = ``base_sum``, L_0 =
+    ``nominal``; ``along`` and ``off`` are u [m], of which alone changes are made: else they drown in the
+    rounding of L_0. Returns (ex, ey, grown, psi), NaN when the base circles overlap
     """
     dx, dy = nominal + along, base_sum + off
     longer = along * (along + 2.0 * nominal) + off * (off + 2.0 * base_sum)  # L^2 - L_0^2
@@ -95,16 +90,11 @@ def mesh_phase(
     overlap: float,
     flank: float,
 ) -> tuple[float, float]:
-    """Where the teeth stand on the line of action.
-
-    Every pinion flank is paired with the nearest gear flank, so whole turns and whole pitches drop out. What
-    the base circles have rolled off each other leaves the overlap as it is; so do the constants of both
-    flanks and L_0 but for one number. They stay out of it, as the overlap, micrometres, would else be a
-    difference of metres.
+    """Where the teeth stand on the line of action; pinion flanks are paired with the nearest gear flanks.
 
     psi, grown : angle [rad] and growth [m] of the line of action
     phi_p, phi_g : rotation angles beyond the rolling [rad]
-    rolled : arc by which both base circles have turned in the drive sense, pinion clockwise [m]
+    rolled : arc by which both base circles have turned in the drive sense, which leaves the overlap [m]
     chi_p : angle of the pinion's flank [rad]
     overlap : at psi = phi_p = phi_g = 0, L = L_0: -s (r_bp chi_p + r_bg (chi_g - pi)) - L_0 [m]
     Returns (rho, delta) : distance of the first pinion flank from X in [0, pitch), overlap of the flanks [m]
@@ -126,11 +116,7 @@ def overlap_rate(line: Line, vx: float, vy: float, omega_p: float, omega_g: floa
 def sliding_velocity(
     line: Line, vx: float, vy: float, omega_p: float, omega_g: float, arm_p: float, arm_g: float
 ) -> float:
-    """Velocity of the pinion's material relative to the gear's along -n at the contact point [m/s].
-
-    It is negative in approach, positive in recess on the drive flank. ``arm_p`` and ``arm_g`` are the
-    distances of the contact point from X and Y [m].
-    """
+    """Velocity of the pinion's material relative to the gear's along -n, the arms from X and Y [m/s]."""
     nx, ny = -line.flank * line.ey, line.flank * line.ex
     return -(nx * vx + ny * vy) - line.flank * (omega_p * arm_p + omega_g * arm_g)
 

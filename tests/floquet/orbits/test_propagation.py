@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from floquet.orbits.kernel import CLOSED, GAP
 from floquet.orbits.polynomials import crossing
 from floquet.orbits.system import Contact, ContactSystem
-from lumped import NumericalError, ParameterError
+from lumped import NumericalError
 
 GRAVITY, STIFFNESS = 9.0, 400.0
 
@@ -124,12 +124,8 @@ def test_means_and_samples_are_those_of_the_motion(bouncer):
     assert swing.least_load == pytest.approx(0.6 * GRAVITY, rel=1e-9)
 
 
-def test_endless_growth_and_wrong_shapes_are_refused(bouncer):
+def test_endless_growth_is_refused():
     with pytest.raises(NumericalError, match="beyond all numbers"):
         ContactSystem([[-1e6]], [[0.0]], [0.0], (Contact([1.0], [-1.0], 1.0),), [0.0, 1.0], [1.0]).run(
             np.array([1.0, 0.0]), 1.0, 100
         )
-    with pytest.raises(ParameterError, match="phases"):
-        ContactSystem([[1.0]], [[0.0]], [0.0], (Contact([1.0], [-1.0], 1.0),), [0.0, 0.7], [1.0])
-    with pytest.raises(ParameterError, match="stiffness"):
-        ContactSystem([[1.0]], [[0.0, 1.0]], [0.0], (Contact([1.0], [-1.0], 1.0),), [0.0, 1.0], [1.0])
