@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from floquet.engine.multipliers import Certificate, radii_with_bounds
+from floquet.gear.multipliers import gear_pair_multipliers
 from lumped.arguments import one_of, whole_number
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -32,7 +34,10 @@ class RevolutionMultipliers:
     multipliers : over the whole period, largest first; 0 where they are below the smallest number
     rates : |multiplier|^(1/cycles), growth of each in one mesh cycle
     rate : the largest one; above 1 the motion is unstable
-    error : estimate for ``rate``, four times its change with half the steps; no proven bound
+    error : bound on the error of ``rate``, see ``certificate``
+    certificate : "proven" where all mesh cycles have one map, with prescribed contact, no faults and no
+        eccentricity: the error is a bound by a theorem; "estimate" else: four times the change of the rate
+        with half the steps
     cycles : mesh cycles of the period
     healthy_rate : that of the twin with like teeth, by the same method
     """
@@ -43,6 +48,7 @@ class RevolutionMultipliers:
     error: float
     cycles: int
     healthy_rate: float
+    certificate: Certificate
 
     @property
     def stable(self) -> bool:
@@ -57,8 +63,8 @@ def revolution_multipliers(
 
     Perturbations see the tangent of the contact about the own static state of every meeting pair. The maps of
     the mesh cycles are multiplied one after the other and scaled, so that a hunting period of thousands of
-    cycles neither overflows nor underflows. The error is an estimate and no bound: a pair of teeth comes into
-    contact where its own gap closes, inside a step, and there the tangent of the contact jumps.
+    cycles neither overflows nor underflows. With own contacts the error is an estimate: a pair of teeth comes
+    into contact where its own gap closes, inside a step, and there the tangent of the contact jumps.
 
     Parameters
     ----------
@@ -77,6 +83,14 @@ def revolution_multipliers(
     system = LTVSystem.of(pair.healthy, "mesh" if supports == "springs" else "elastic", supports=supports)
     steps = 4 * linear_steps(system) if steps is None else whole_number("steps", steps, 32, 65536)
     cycles = period_of(pair)
+    if LinearForm(pair, system, 1, steps, 1).alike:
+        one = gear_pair_multipliers(pair.healthy, supports=supports)
+        kept = np.isin(one.multipliers, one.feedback)
+        values, sizes = one.multipliers[kept], np.abs(one.multipliers[kept])
+        radius, error = map(float, radii_with_bounds(values, one.multiplier_errors[kept]))
+        with np.errstate(under="ignore"):
+            whole = values**cycles
+        return RevolutionMultipliers(whole, sizes, radius, error, cycles, radius, one.certificate)
     multipliers, rates = _of_period(pair, system, cycles, steps)
     coarse = _of_period(pair, system, cycles, steps // 2)[1]
     return RevolutionMultipliers(
@@ -86,6 +100,7 @@ def revolution_multipliers(
         error=4.0 * abs(float(rates[0] - coarse[0])),
         cycles=cycles,
         healthy_rate=float(_of_period(pair.healthy, system, 1, steps)[1][0]),
+        certificate="estimate",
     )
 
 

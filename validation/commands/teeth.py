@@ -43,6 +43,7 @@ def teeth(pair: opt.Pair, files: opt.DataFiles) -> None:
     shown.add_row("transmission error, peak to peak", *ends)
     loads = [number(found.load(one) / found.static_force, 3) for one in (found.motion, found.twin)]
     shown.add_row("largest load on one tooth / mean mesh force", *loads)
+    shown.add_row("growth of a perturbation in a mesh cycle", *(number(rate, 4) for rate in found.rates))
     for gear in GEARS:
         data = found.indicators(gear)["value"]
         for name in ("RMS_residual", "FM4"):

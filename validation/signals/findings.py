@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
+import floquet
 import lumped
 from lumped.errors import refuse
 from lumped.fields.units import to_stated
@@ -72,6 +73,12 @@ class TeethFindings:
         teeth = (self.motion[f"{gear}_tooth"].to_numpy().ravel() - 1 for gear in GEARS)
         np.fmax.at(found, tuple(teeth), self.motion["normal_load"].to_numpy().ravel())
         return np.where(found > 0.0, found, np.nan)
+
+    @cached_property
+    def rates(self) -> tuple[float, float]:
+        """Growth of a perturbation in one mesh cycle, |multiplier|^(1/cycles), of the pair and its twin."""
+        found = floquet.revolution_multipliers(self.pair)
+        return found.rate, found.healthy_rate
 
     def spectrum(self, gear: Gear, variable: str = "dte") -> xr.Dataset:
         """Amplitudes over the orders of a shaft, of the pair and of its twin."""

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import floquet
 import lumped
 from lumped.teeth.tolerances import flank_tolerances
 from tests.validation.commands.conftest import refused, run
@@ -82,7 +83,9 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     blocks = {block.key: block for block in content.blocks if hasattr(block, "key")}
     numbers = [(row[1].value, row[2]) for row in blocks["teeth_numbers"].rows]
     expected = [motion.attrs["dte_peak_to_peak"], found.load(motion) / force, 1.0]
+    expected.insert(2, floquet.revolution_multipliers(PAIR).rate)
     assert [value for value, _ in numbers] == pytest.approx(expected)
+    assert f"{found.rates[1]:.3g}" in numbers[2][1]
     assert f"{found.load(twin) / force:.3g}" in numbers[1][1]
     rows = {(row[0], row[1]): row[2:] for row in blocks["teeth_indicators"].rows}
     wanted = found.indicators("gear")["value"].sel(indicator="RMS_residual").to_numpy()

@@ -40,25 +40,19 @@ def _tables(found: TeethFindings) -> list[Block]:
         "eccentricity": "eccentricity",
         "tolerance_class": "class of ISO 1328-1 that holds",
     }
-    force, motion, twin = found.static_force, found.motion, found.twin
+    force, motion, twin, peak = found.static_force, found.motion, found.twin, "dte_peak_to_peak"
     numbers = quantities(
         "teeth_numbers",
         "Teeth as given, with the value of like teeth in the note.",
         *(
             (words, value, unit, f"like teeth: {healthy:.3g}{'' if unit == '1' else ' um'}")
             for words, value, unit, healthy in (
-                (
-                    "transmission error, peak to peak",
-                    motion.attrs["dte_peak_to_peak"],
-                    "m",
-                    1e6 * twin.attrs["dte_peak_to_peak"],
-                ),
+                ("transmission error, peak to peak", motion.attrs[peak], "m", 1e6 * twin.attrs[peak]),
                 (
                     "largest load on one tooth / mean",
-                    found.load(motion) / force,
-                    "1",
-                    found.load(twin) / force,
+                    *(found.load(motion) / force, "1", found.load(twin) / force),
                 ),
+                ("growth of a perturbation in a mesh cycle", found.rates[0], "1", found.rates[1]),
             )
         ),
         ("meeting teeth at which contact is lost", float(len(found.contact_lost)), "1"),
