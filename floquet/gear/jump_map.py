@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -148,10 +148,10 @@ def jump_map(
     stack = find_stack(
         members, periods=wanted, seeds=seeds, progress=lambda done, text="", /: report(0.8 * done)
     )
-    rows, jumps = list[_Row](), list[tuple[float, _Jump]]()
+    rows, jumps = list[_Row](), list[tuple[float, ...]]()
     for j, (one, response, value) in enumerate(zip(members, stack, values, strict=True)):
         rows.append(_Row(one, response, speeds, cycle))
-        jumps += [(float(value), jump) for jump in _jumps(one, response, cycle)]
+        jumps += [(float(value), *jump) for jump in _jumps(one, response, cycle)]
         report(0.8 + 0.2 * (j + 1) / values.size)
     dataset = _dataset(name, values, speeds, rows, jumps)
     dataset.attrs.update(
@@ -288,16 +288,8 @@ def _observed(one: Member, start: FloatArray, period: float, parameter: float, s
     return None if max(run.most - run.mean, run.mean - run.least) > one.limits.amplitude else run
 
 
-class _Jump(NamedTuple):
-    speed_rpm: float
-    rising: bool
-    dte_rms: float
-    dte_rms_after: float
-    n: int
-
-
-def _jumps(one: Member, response: Response, cycle: float) -> list[_Jump]:
-    """Where the root mean square changes at once on running up or down."""
+def _jumps(one: Member, response: Response, cycle: float) -> list[tuple[float, ...]]:
+    """Where the root mean square changes at once on running up or down: rows of `_OF_JUMPS`."""
     result = []
     for branch in response.branches:
         for b, behind in lost_stability(branch):
@@ -306,21 +298,20 @@ def _jumps(one: Member, response: Response, cycle: float) -> list[_Jump]:
             after = np.nan if run is None else run.rms
             if run is None or abs(after - before) >= JUMP * before:
                 rising = behind < b.orbit.period
-                result.append(_Jump(cycle / b.orbit.period, rising, before, after, branch.n))
+                result.append((cycle / b.orbit.period, rising, before, after, branch.n))
     return sorted(result)
 
 
 def _dataset(
-    name: str, values: FloatArray, speeds: FloatArray, rows: list[_Row], jumps: list[tuple[float, _Jump]]
+    name: str, values: FloatArray, speeds: FloatArray, rows: list[_Row], jumps: list[tuple[float, ...]]
 ) -> xr.Dataset:
     axis, both = JUMP_AXES[name], (name, "speed_rpm")
     table: dict[str, Variable] = {
         label: (both, np.array([getattr(row, field) for row in rows]), unit, text)
         for label, field, unit, text in _OVER_SPEED
     }
-    table[f"jump_{name}"] = "jump", [value for value, _ in jumps], axis.units, axis.long_name
-    for field, unit, text in _OF_JUMPS:
-        table[f"jump_{field}"] = "jump", [getattr(jump, field) for _, jump in jumps], unit, text
+    for k, (field, unit, text) in enumerate(((name, axis.units, axis.long_name), *_OF_JUMPS)):
+        table[f"jump_{field}"] = "jump", [jump[k] for jump in jumps], unit, text
     return labelled_dataset(
         table,
         {

@@ -46,14 +46,9 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
         margins = stability_margins(base.with_(changes), (1.8 * rpm, 2.2 * rpm))
         (tongue,) = margins.tongues
         assert tongue.label == "2w1/1"
-        errors.append(
-            [
-                tongue.critical_damping / critical - 1.0,
-                tongue.tip_speed / (top(critical).x * rpm) - 1.0,
-                margins.speed_margin / (low - margins.rpm) - 1.0,
-            ]
-        )
-    coarse, fine = np.array(errors)
+        found = tongue.critical_damping, tongue.tip_speed, margins.speed_margin
+        errors.append(np.array(found) / [critical, top(critical).x * rpm, low - margins.rpm] - 1.0)
+    coarse, fine = errors
     assert (np.abs(fine) < 2.5e-3).all()
     # What is left is the give of the bearings, k/K: twice as stiff, twice as close, and gone in the limit.
     # The damping also feels that of the bearings, which goes with a higher power and the other sign.
