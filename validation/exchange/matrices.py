@@ -111,9 +111,8 @@ def read_second_order(path: str | Path) -> SecondOrderModel:
 
     Raises
     ------
-    ParameterError
-        No such file, no file of that kind, an unknown or missing name, matrices of different shapes, times
-        that do not rise from 0 to the period.
+    ParameterError : no such file, no file of that kind, an unknown or missing name, matrices of different
+        shapes, times that do not rise from 0 to the period
     """
     source = file_path("path", path)
     fields = _fields(source)

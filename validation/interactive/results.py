@@ -180,34 +180,27 @@ _LABELS = {
 
 
 def _bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
-    """Charts with the stiffness of all bearings multiplied by one factor; 1 is the pair itself.
-
-    ``grid``: speed_rpm and damping_ratio; ``count``: values of the factor; those that the schema refuses are
-    left out.
-    """
-    factors = with_point(np.geomspace(*_FACTORS, count), 1.0)
-    variants = {float(f): made for f in factors if (made := _stiffer(pair, float(f))) is not None}
-    charts = [stability_chart(variant, grid, rtol=_RTOL) for variant in variants.values()]
-    values = np.array(list(variants))
+    """Charts with the stiffness of all bearings multiplied by one factor; 1 is the pair itself."""
+    values = with_point(np.geomspace(*_FACTORS, count), 1.0)
+    ends = [(g, f"{line}_stiffness") for g in ("pinion", "gear") for line in ("loa", "oloa")]
+    own = {f"bearings.{g}.{key}": getattr(getattr(pair.bearings, g), key) for g, key in ends}
+    variants = [pair.with_({path: factor * k for path, k in own.items()}) for factor in values.tolist()]
+    charts = [stability_chart(variant, grid, rtol=_RTOL) for variant in variants]
     attrs = {"units": "1", "long_name": "bearing stiffness factor"}
     axis = xr.DataArray(values, dims="bearing_factor", name="bearing_factor", attrs=attrs)
-    tongues = [tuple(label_regions(v, c)) for v, c in zip(variants.values(), charts, strict=True)]
+    tongues = [tuple(label_regions(v, c)) for v, c in zip(variants, charts, strict=True)]
     chart = xr.concat([chart[_VARIABLES] for chart in charts], axis)
     return Slices("bearing_factor", int(np.argmin(np.abs(values - 1.0))), _ordered(chart), tuple(tongues))
 
 
 def _friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
-    """Charts with the friction law scaled to a mean coefficient that is the same at every speed.
-
-    ``grid``: speed_rpm and damping_ratio; ``count``: values of the coefficient, from 0.
-    """
+    """Charts with the friction law scaled to a mean coefficient that is the same at every speed."""
     name = "friction_coefficient"
     own = GEAR_AXES[name].own(pair)
     values = with_point(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
     chart = stability_chart(pair, {**grid, name: values}, rtol=_RTOL)
     tongues = [tuple(label_regions(pair, chart.isel({name: [i]}))) for i in range(count)]
-    attrs = {"units": "1", "long_name": GEAR_AXES[name].long_name}
-    chart[name].attrs.update(attrs)
+    chart[name].attrs.update(units="1", long_name=GEAR_AXES[name].long_name)
     return Slices(name, int(np.argmin(np.abs(values - own))), _ordered(chart[_VARIABLES]), tuple(tongues))
 
 
@@ -218,19 +211,6 @@ SLICES: dict[str, Callable[[GearPair, Grid, int], Slices]] = {
 }
 
 _VARIABLES = ["spectral_radius", "error", "verdict"]
-
-
-def _stiffer(pair: GearPair, factor: float) -> GearPair | None:
-    bearings = pair.bearings
-    own = {
-        f"bearings.{g}.{d}_stiffness": getattr(getattr(bearings, g), f"{d}_stiffness")
-        for g in ("pinion", "gear")
-        for d in ("loa", "oloa")
-    }
-    try:
-        return pair.with_({path: factor * value for path, value in own.items()})
-    except ParameterError:
-        return None
 
 
 def _ordered(chart: xr.Dataset) -> xr.Dataset:

@@ -55,7 +55,6 @@ class Identification:
     low, high : ends of the 95 % confidence interval [-]
     mean_mu : mean of |mu| over the path of contact that the estimate means [-]
     samples, blocks : number of samples, and of the engagements between which noise is independent
-    residual_rms : root mean square of F - beta g N [N]
     normal : where N was taken from, "measured" or "predicted"
     """
 
@@ -68,7 +67,6 @@ class Identification:
     mean_mu: float
     samples: int
     blocks: int
-    residual_rms: float
     normal: str
 
     @property
@@ -162,7 +160,6 @@ def identify_friction(
         mean_mu=abs(beta) * mean,
         samples=s.friction.size,
         blocks=blocks,
-        residual_rms=float(np.sqrt(np.mean((s.friction - beta * s.regressor) ** 2))),
         normal="measured" if measurement.named("normal_load") else "predicted",
     )
 

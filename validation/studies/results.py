@@ -55,23 +55,16 @@ def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     for name, row in zip(study.outputs, table.values.T, strict=True):
         unit, text = ANALYSES[study.analysis].outputs[name]
         result[name] = xr.DataArray(row.reshape(shape), dims=dims, attrs={"units": unit, "long_name": text})
-    result["status"] = xr.DataArray(
-        table.status.reshape(shape),
-        dims=dims,
-        attrs={
-            "long_name": "what became of the case",
-            "flag_values": np.array(list(Status), dtype=np.int8),
-            "flag_meanings": " ".join(flag.name.lower() for flag in Status),
-        },
-    )
+    flags = {
+        "flag_values": np.array(list(Status), dtype=np.int8),
+        "flag_meanings": " ".join(flag.name.lower() for flag in Status),
+    }
+    result["status"] = (dims, table.status.reshape(shape), {"long_name": "what became of the case"} | flags)
     failed = sorted(table.messages)
-    text_type = np.array([table.messages[case] for case in failed], dtype=object)
-    result["failed_case"] = xr.DataArray(
-        np.array(failed, dtype=np.int64), dims="failure", attrs={"long_name": "number of the failed case"}
-    )
-    result["failure_message"] = xr.DataArray(
-        text_type, dims="failure", attrs={"long_name": "why the case failed"}
-    )
+    texts = np.array([table.messages[case] for case in failed], dtype=object)
+    numbers = np.array(failed, dtype=np.int64)
+    result["failed_case"] = ("failure", numbers, {"long_name": "number of the failed case"})
+    result["failure_message"] = ("failure", texts, {"long_name": "why the case failed"})
     return _with_sensitivity(result, cases, table)
 
 
