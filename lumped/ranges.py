@@ -84,10 +84,7 @@ class RangeViolation:
 
 
 def range_violations(
-    law: str,
-    ranges: Iterable[ValidityRange],
-    values: Mapping[str, ArrayLike],
-    friction: ArrayLike = math.nan,
+    law: str, ranges: Iterable[ValidityRange], values: Mapping[str, ArrayLike], friction: ArrayLike = math.nan
 ) -> tuple[RangeViolation, ...]:
     """Compare the arguments of a law, of any shape in the units of its ranges, with its validity ranges.
 

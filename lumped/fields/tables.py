@@ -19,11 +19,7 @@ from lumped.fields.units import to_si
 from lumped.typing import FloatArray
 
 #: Column -> (axis of the table, unit of its numbers).
-AXES = {
-    "position": ("position_mm", "mm"),
-    "roll_angle": ("roll_angle_deg", "deg"),
-    "phase": ("phase", "1"),
-}
+AXES = {"position": ("position_mm", "mm"), "roll_angle": ("roll_angle_deg", "deg"), "phase": ("phase", "1")}
 #: A table may miss the ends of the path of contact by this fraction of the path.
 _END_GAP = 0.02
 _HEADER = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")

@@ -126,10 +126,7 @@ def _factor(roughness: ArrayLike) -> FloatArray:
 def _level(xi: FloatArray, path: ContactPath) -> FloatArray:
     """The law before its bounds."""
     number = friction_number(
-        path.unit_load * 1e-3,
-        path.viscosity * 1e3,
-        path.sliding_velocity(xi),
-        path.entraining_velocity(xi),
+        path.unit_load * 1e-3, path.viscosity * 1e3, path.sliding_velocity(xi), path.entraining_velocity(xi)
     )
     return np.asarray(_factor(path.roughness * 1e6) * np.log10(number), dtype=np.float64)
 

@@ -89,11 +89,7 @@ def _parts(
     xi: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> list[tuple[FrictionLaw, BoolArray]]:
     number = regime(path.film_parameter(xi), settings.thresholds)
-    return [
-        (SMOOTHED_COULOMB, number == 0),
-        (BENEDICT_KELLEY, number == 1),
-        (XU_KAHRAMAN, number >= 2),
-    ]
+    return [(SMOOTHED_COULOMB, number == 0), (BENEDICT_KELLEY, number == 1), (XU_KAHRAMAN, number >= 2)]
 
 
 def _excess(path: ContactPath, threshold: float, xi: FloatArray) -> FloatArray:

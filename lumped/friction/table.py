@@ -116,13 +116,7 @@ def _law_of(table: FrictionTable) -> FrictionLaw:
         switches=lambda path, settings: [path.L_XP],
         joints=lambda path: table.positions(path).tolist(),
         ranges=tuple(
-            ValidityRange(
-                quantity,
-                unit,
-                value * (1.0 - _NEAR),
-                value * (1.0 + _NEAR),
-                _MADE_AT,
-            )
+            ValidityRange(quantity, unit, value * (1.0 - _NEAR), value * (1.0 + _NEAR), _MADE_AT)
             for quantity, unit, value in made_at
             if value is not None
         ),

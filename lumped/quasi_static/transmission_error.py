@@ -91,11 +91,7 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
 
 
 def static_transmission_error(
-    pair: AnyPair,
-    torques: ArrayLike | None = None,
-    *,
-    phases: int = 256,
-    extended: bool = True,
+    pair: AnyPair, torques: ArrayLike | None = None, *, phases: int = 256, extended: bool = True
 ) -> xr.Dataset:
     """Quasi-static meshing of a gear pair: a Harris map and the load of every tooth pair.
 
@@ -136,12 +132,7 @@ def static_transmission_error(
     return labelled_dataset(
         {
             "transmission_error": (axes[:2], te, "m", "static transmission error, driven gear late"),
-            "peak_to_peak": (
-                axes[:1],
-                np.ptp(te, axis=1),
-                "m",
-                "peak to peak static transmission error",
-            ),
+            "peak_to_peak": (axes[:1], np.ptp(te, axis=1), "m", "peak to peak static transmission error"),
             "normal_load": (axes, result.load, "N", "normal load of a tooth pair"),
             "load_share": (axes, share, "1", "share of a tooth pair in the load"),
             "contact_ratio": (

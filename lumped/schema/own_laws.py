@@ -97,8 +97,7 @@ def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
         # Denser towards P, where most laws change fastest.
         share = np.linspace(0.0, 1.0, _SIDE + 1) ** 3
         xi = np.append(
-            path.L_XP - share[::-1] * (path.L_XP - path.L_XA),
-            path.L_XP + share[1:] * (path.L_XD - path.L_XP),
+            path.L_XP - share[::-1] * (path.L_XP - path.L_XA), path.L_XP + share[1:] * (path.L_XD - path.L_XP)
         )
         contact = {key: xi if key == "xi" else getattr(path, key)(xi) for key in reads}
         values = _sampled(law, contact, field)

@@ -77,11 +77,7 @@ def material_factor(modulus_1: float, modulus_2: float) -> float:
 
 
 def single_stiffness(
-    theoretical: float,
-    *,
-    basic_rack: float = 1.0,
-    material: float = 1.0,
-    helix: float = 0.0,
+    theoretical: float, *, basic_rack: float = 1.0, material: float = 1.0, helix: float = 0.0
 ) -> float:
     """Single stiffness c' of solid discs, the largest of one tooth pair [N/(mm um)], eq. (82) with C_R = 1.
 

@@ -50,8 +50,7 @@ SPELLINGS = [
 
 
 @pytest.mark.parametrize(
-    ("text", "unit", "si"),
-    [(text, unit, si) for unit, si, texts in SPELLINGS for text in texts.split("|")],
+    ("text", "unit", "si"), [(text, unit, si) for unit, si, texts in SPELLINGS for text in texts.split("|")]
 )
 def test_a_quantity_as_people_write_it(text, unit, si):
     assert to_si(text, unit) == pytest.approx(si, rel=2 * ULP)

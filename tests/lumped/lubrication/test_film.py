@@ -6,10 +6,7 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from lumped.lubrication.film import (
-    film_parameter,
-    regime,
-)
+from lumped.lubrication.film import film_parameter, regime
 from lumped.lubrication.viscosity import (
     ISO_VG_MIDPOINT,
     grade_viscosity,

@@ -31,13 +31,9 @@ def test_every_model_spans_the_path_of_contact_and_is_positive_inside(model):
     assert k(g.L_XA - 1e-6) == k(g.L_XD + 1e-6) == 0.0
 
 
-def test_rectangular_takes_its_parameter():
-    pair = with_model(model="rectangular", pair_stiffness=1.5e8)
-    k = pair_stiffness(pair)
+def test_rectangular_takes_its_parameter_or_isos():
+    k = pair_stiffness(with_model(model="rectangular", pair_stiffness=1.5e8))
     assert np.all(k(np.linspace(*k.interval, 9)) == 1.5e8)
-
-
-def test_rectangular_defaults_to_iso():
     pair = with_model(model="rectangular")
     # c' of 28/28 by hand times 6.35 mm: 12.5816 N/(mm um) * 6.35 mm = 79.89 N/um.
     by_hand = 0.8 * 0.975 / (0.04723 + 0.41342 / 28) * 6.35 * 1e6
