@@ -19,7 +19,7 @@ from lumped.arguments import one_of, real_array
 from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
 from lumped.friction import mean_coefficient
-from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw
+from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
@@ -322,11 +322,15 @@ class _Law:
 
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
         """Mu at the positions, and the positions of its switches, at a speed."""
+        there, settings = self._where_friction_acts(rpm)
+        return self.law.signed(self.positions, there, settings), np.sort(self.law.switches(there, settings))
+
+    def _where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
+        """The contact at a speed from the first to the last position of loaded teeth, and settings there."""
         there, settings = self.at(rpm), self.settings
         if settings.coefficient is None:  # mu_avg is that of the path from A to D
             settings = settings.model_copy(update={"coefficient": average_coefficient(there, settings)})
-        there = replace(there, L_XA=self.ends[0], L_XD=self.ends[1])
-        return self.law.signed(self.positions, there, settings), np.sort(self.law.switches(there, settings))
+        return replace(there, L_XA=self.ends[0], L_XD=self.ends[1]), settings
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
@@ -372,8 +376,8 @@ class _Law:
         return np.stack([a, a + b / self.mean(reference)], axis=1) if apart else a[:, None]
 
     def mean(self, reference: float) -> float:
-        """Mean of |mu| over the path."""
-        return mean_coefficient(fit_law(self.at(reference), self.settings, self.law.name))
+        """Mean of |mu| where friction acts, as in ``GearVariation.friction_scale``."""
+        return mean_coefficient(fit_law(*self._where_friction_acts(reference), self.law.name))
 
 
 def _positions(path: ContactPath) -> FloatArray:

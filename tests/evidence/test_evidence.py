@@ -31,7 +31,8 @@ def test_loaded_contact_has_checks_of_its_own():
 
 def test_what_is_no_number_fails():
     assert not Check("s", "e", math.nan, 1.0).passes
-    assert not Check("s", "e", 1.0, 0.3, theory=2.0).passes
+    for value, passes in ((1.0, False), (2.2, True), (math.nan, False)):
+        assert Check("s", "e", value, 0.3, theory=2.0).passes == passes
 
 
 def test_the_stored_figures_have_every_kind_and_pass():

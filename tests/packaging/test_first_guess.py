@@ -39,12 +39,6 @@ def test_a_new_pair_is_what_the_drawing_says(pair: spurcheck.GearPair) -> None:
     assert (shifted.pinion.profile_shift, shifted.friction.law) == (0.4, "coulomb")
 
 
-def test_short_names_are_the_fields_of_the_options(pair: spurcheck.GearPair) -> None:
-    varied = pair.with_(speed=2000, torque="40 N m", law="coulomb")
-    fields = {"operating.pinion_speed": 2000, "operating.pinion_torque": 40, "friction.law": "coulomb"}
-    assert varied.to_mapping() | {"sources": 0} == pair.with_(fields).to_mapping() | {"sources": 0}
-
-
 def test_numbers_of_a_pair_by_their_names(pair: spurcheck.GearPair) -> None:
     found = spurcheck.predict(pair)
     assert found.dynamic_factor == spurcheck.dynamic_factor(pair)
@@ -63,13 +57,6 @@ def test_the_multibody_model_has_the_law_of_the_user(pair: spurcheck.GearPair) -
     laws = (formula, pair.with_(law=lambda xi: 0.05))
     a, b = (spurcheck.multibody.simulate(one, cycles=2)["y_p"].to_numpy() for one in laws)
     assert np.abs(a - b).max() < 1e-6 * np.ptp(a)
-
-
-def test_laws_and_stiffness_are_what_one_writes_first(pair: spurcheck.GearPair) -> None:
-    mesh = spurcheck.mesh_stiffness(pair.with_(stiffness=3e8, mesh__contact="prescribed"))
-    assert mesh["mesh_stiffness"].to_numpy() == pytest.approx(3e8, rel=1e-9)
-    own = spurcheck.new_pair("19/41", **DRAWING, law=lambda xi: 0.05)
-    assert own.friction.table == pair.with_(law=lambda xi: 0.05).friction.table
 
 
 _LINES = Path(__file__).with_name("guesses.txt").read_text(encoding="utf-8").splitlines()

@@ -11,22 +11,15 @@ def oscillator(t: float) -> list[list[float]]:
     return [[0.0, 1.0], [-1.0, 0.0]]
 
 
-@pytest.mark.parametrize("period", [0.0, -1.0, np.nan, np.inf])
-def test_period_must_be_positive(period: float) -> None:
-    with pytest.raises(ParameterError, match="period"):
-        PeriodicSystem(oscillator, period)
-
-
-@pytest.mark.parametrize("breaks", [(-0.1,), (1.5,), (np.nan,)])
-def test_breakpoints_must_lie_in_the_period(breaks: tuple[float, ...]) -> None:
-    with pytest.raises(ParameterError, match="breakpoints"):
-        PeriodicSystem(oscillator, 1.0, breaks)
-
-
-@pytest.mark.parametrize("A", [lambda t: [[1.0, 2.0]], lambda t: 1.0, lambda t: np.zeros((0, 0))])
-def test_coefficients_must_be_square(A) -> None:
-    with pytest.raises(ParameterError, match="shape"):
-        PeriodicSystem(A, 1.0)
+@pytest.mark.parametrize(("arguments", "word"), [
+    *(((oscillator, period), "period") for period in (0.0, -1.0, np.nan, np.inf)),
+    *(((oscillator, 1.0, breaks), "breakpoints") for breaks in ((-0.1,), (1.5,), (np.nan,))),
+    *(((lambda t, A=A: A, 1.0), "shape") for A in ([[1.0, 2.0]], 1.0, np.zeros((0, 0)))),
+    ((np.eye(2), 1.0), "callable"),
+])  # fmt: skip
+def test_what_is_no_system_is_refused(arguments, word) -> None:
+    with pytest.raises(ParameterError, match=word):
+        PeriodicSystem(*arguments)
 
 
 @pytest.mark.parametrize("entry", [1j, "1", None])
@@ -38,48 +31,20 @@ def test_coefficients_must_be_real_numbers(entry: object, vectorized: bool) -> N
         PeriodicSystem(lambda t: [matrix] * len(t) if vectorized else matrix, 1.0, vectorized=vectorized)
 
 
-def test_a_matrix_is_not_a_callable() -> None:
-    with pytest.raises(ParameterError, match="callable"):
-        PeriodicSystem(np.eye(2), 1.0)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("rtol", [0.0, -1e-3, 1e-17, 1.0, np.nan])
-def test_tolerance_range(rtol: float) -> None:
-    with pytest.raises(ParameterError, match="rtol"):
-        monodromy(PeriodicSystem(oscillator, 1.0), rtol=rtol)
-
-
-def test_unknown_method_lists_the_known_ones() -> None:
-    with pytest.raises(ParameterError, match="gauss"):
-        monodromy(PeriodicSystem(oscillator, 1.0), method="newmark")
-
-
-def test_non_finite_coefficients_name_the_time() -> None:
-    system = PeriodicSystem(lambda t: [[0.0, 1.0], [np.nan if t > 0.9 else -1.0, 0.0]], 1.0)
-    with pytest.raises(NumericalError, match=r"not finite at t = 0\.9"):
-        monodromy(system)
-
-
-def test_undeclared_singularity_is_reported() -> None:
-    with pytest.raises(NumericalError, match="breakpoints"):
-        monodromy(PeriodicSystem(lambda t: [[1.0 / abs(t - 1.0 / 3.0)]], 1.0))
-
-
-def test_low_order_method_at_a_tight_tolerance_is_refused() -> None:
-    system = PeriodicSystem(lambda t: [[0.0, 1.0], [-1.0 - 0.5 * np.cos(t), 0.0]], 2 * np.pi)
-    with pytest.raises(NumericalError, match="higher order"):
-        monodromy(system, method="rk4", max_substeps=500)
-
-
-def test_tolerance_below_rounding_is_refused() -> None:
-    system = PeriodicSystem(lambda t: [[0.0, 300.0], [-300.0, -1.0]], 1.0)
-    with pytest.raises(NumericalError, match="rtol >= "):
-        monodromy(system, rtol=1e-14)
-
-
-def test_growth_beyond_floating_point_is_reported() -> None:
-    with pytest.raises(NumericalError, match="unstable"):
-        monodromy(PeriodicSystem(lambda t: [[800.0]], 1.0))
+@pytest.mark.parametrize(("A", "options", "error", "word"), [
+    *((oscillator, {"rtol": rtol}, ParameterError, "rtol") for rtol in (0.0, -1e-3, 1e-17, 1.0, np.nan)),
+    (oscillator, {"method": "newmark"}, ParameterError, "gauss"),
+    (lambda t: [[0.0, 1.0], [np.nan if t > 0.9 else -1.0, 0.0]], {}, NumericalError,
+     r"not finite at t = 0\.9"),
+    (lambda t: [[1.0 / abs(t - 1.0 / 3.0)]], {}, NumericalError, "breakpoints"),
+    (lambda t: [[0.0, 6.3], [-6.3 - 3.1 * np.cos(6.3 * t), 0.0]], {"method": "rk4", "max_substeps": 500},
+     NumericalError, "higher order"),
+    (lambda t: [[0.0, 300.0], [-300.0, -1.0]], {"rtol": 1e-14}, NumericalError, "rtol >= "),
+    (lambda t: [[800.0]], {}, NumericalError, "unstable"),
+])  # fmt: skip
+def test_what_cannot_be_computed_is_refused_with_what_to_do(A, options, error, word) -> None:
+    with pytest.raises(error, match=word):
+        monodromy(PeriodicSystem(A, 1.0), **options)
 
 
 def test_extinct_motion_is_stable_and_finite() -> None:

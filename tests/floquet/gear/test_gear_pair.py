@@ -129,14 +129,6 @@ def test_every_axis_acts(pair) -> None:
         assert abs(np.diff(radius)).item() > 1e-7  # far above rtol
 
 
-@pytest.mark.parametrize(
-    "axes", [{"speed": [1000.0]}, {"speed_rpm": [0.0]}, {"damping_ratio": [-0.1]}, {"torque": [0.0]}]
-)
-def test_bad_axes_are_refused(pair, axes: dict[str, list[float]]) -> None:
-    with pytest.raises(ParameterError, match="axes"):
-        stability_chart(pair, axes)
-
-
 def with_table(points: int, factor: float) -> GearPair:
     """A constant table with one sample that stands out."""
     pair = load_gear_pair("nasa_28_28").with_(

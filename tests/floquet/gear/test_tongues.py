@@ -3,24 +3,17 @@
 import numpy as np
 import pytest
 
-from floquet import PeriodicSystem, monodromy, stability_margins
+from floquet import monodromy, stability_margins
 from floquet.engine.tongues import Tongue, label_tongue, mode_shares
 from lumped import load_gear_pair
+from tests.evidence.floquet.reference_systems import HsuSystem
 
 
-def coupled(omega: np.ndarray, coupling: np.ndarray, excitation: float, damping: float = 0.0):
-    """eta'' + 2 c eta' + omega^2 eta + cos(Omega t) E eta = 0 as a monodromy matrix in (omega eta, eta')."""
-    m = omega.size
-
-    def A(t: np.ndarray) -> np.ndarray:
-        out = np.zeros((t.size, 2 * m, 2 * m))
-        out[:, :m, m:] = np.eye(m)
-        out[:, m:, :m] = -np.diag(omega**2) - np.cos(excitation * t)[:, None, None] * coupling
-        out[:, m:, m:] = -2 * damping * np.eye(m)
-        return out
-
-    scale = np.concatenate([omega, np.ones(m)])
-    M = monodromy(PeriodicSystem(A, 2 * np.pi / excitation, vectorized=True), 1e-11).matrix
+def coupled(omega: np.ndarray, coupling: np.ndarray, excitation: float):
+    """Monodromy matrix of Hsu's system of strength 1 without damping, in (omega eta, eta')."""
+    system = HsuSystem(omega, coupling, np.zeros_like(omega)).at(excitation, 1.0)
+    scale = np.concatenate([omega, np.ones_like(omega)])
+    M = monodromy(system, 1e-11).matrix
     return M * scale[:, None] / scale[None, :]
 
 

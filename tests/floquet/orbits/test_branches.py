@@ -9,11 +9,18 @@ from floquet.orbits.branch import Continuation, Family, Limits
 from floquet.orbits.long_run import long_run, lyapunov_exponent
 from floquet.orbits.orbit import find_orbit
 from floquet.orbits.response import Member, find_response
+from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 
 LIMITS = Limits(
     slowest=0.1, fastest=1.0, length=1.0, parameter=1.0, amplitude=50.0, frequency=1.0 / (2.0 * np.pi)
 )
+
+
+def meissner(e=0.4, damping=0.1):
+    """A Meissner oscillator that may bounce: k jumps between 1 + e and 1 - e in the middle of the period."""
+    contact = Contact([1.0], [-1.0], [[1.0 + e], [1.0 - e]], damping)
+    return ContactSystem([[0.0]], [[0.0]], [1.0], (contact,), phases=[0.0, 0.5, 1.0], output=[1.0])
 
 
 def meissner_map(T, e=0.4, damping=0.1):
@@ -22,7 +29,7 @@ def meissner_map(T, e=0.4, damping=0.1):
     return half[1] @ half[0]
 
 
-def test_where_contact_holds_the_multipliers_are_meissners(meissner):
+def test_where_contact_holds_the_multipliers_are_meissners():
     T = 4.0
     orbit = find_orbit(meissner(), np.array([1.0, 0.0]), T)
     assert not orbit.parts
@@ -35,7 +42,7 @@ def start(T):
     return np.array([1.0, 0.0]), 0.0
 
 
-def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue(meissner):
+def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
     """While contact holds, a period doubling is where the trace of the closed map is -1 - det."""
     system = meissner(e=0.6, damping=0.1)
     found = find_response(Member(Family(lambda T: system, True), LIMITS, start), periods=(1, 2), seeds=1)
@@ -61,7 +68,7 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue(meissner
     assert any(o.stable and o.parts and o.n == 2 for o in found.at(T))
 
 
-def test_a_fold_ends_the_jump_of_the_bouncing_resonance(meissner):
+def test_a_fold_ends_the_jump_of_the_bouncing_resonance():
     """At speeds beyond a fold no motion of its branch is left, and at the fold a multiplier is 1."""
     system = meissner(e=0.3, damping=0.3)
     found = find_response(Member(Family(lambda T: system, True), LIMITS, start), periods=(1,), seeds=0)
@@ -76,7 +83,7 @@ def test_a_fold_ends_the_jump_of_the_bouncing_resonance(meissner):
         find_orbit(system, np.array([-1e6, -1e6]), 5.0, 3)
 
 
-def test_a_long_run_tells_chaos_from_a_periodic_motion(meissner):
+def test_a_long_run_tells_chaos_from_a_periodic_motion():
     """The exponent of a periodic motion is the log of its largest multiplier, whatever the contact does."""
     system = meissner(e=0.4, damping=0.1)
     orbit = find_orbit(system, np.array([1.0, 0.0]), 4.0)

@@ -10,6 +10,22 @@ from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 
 GRAVITY, STIFFNESS = 9.0, 400.0
+#: A mass that gravity presses on an undamped spring without clearance: z'' = g - k z where z > 0.
+BOUNCER = ContactSystem(
+    [[0.0]], [[0.0]], [GRAVITY], (Contact([1.0], [-1.0], STIFFNESS),), phases=[0.0, 1.0], output=[1.0]
+)
+K = np.array([[3.0, 1.0, -0.5], [2.5, -1.0, 0.3]])
+FORCE = np.array([[[-1.0, 0.1], [0.8, 0.05], [0.3, 0.0]]] * 2)
+#: Two masses, two contacts with clearances and polynomial coefficients, and a row that gathers.
+GEARLIKE = ContactSystem(
+    [[0.6, -0.1], [-0.1, 0.9], [0.2, 0.0]], [[0.03, 0.0], [0.0, 0.04], [0.0, 0.01]], [0.3, -0.1, 0.2],
+    (
+        Contact([1.0, -1.0], FORCE, K, 0.2, [[0.0, 0.1]] * 2),
+        Contact([1.0, -1.0], [-0.9, 0.7, -0.2], 0.5 * K, 0.1, [[0.05, 0.0], [0.05, -0.2]],
+                present=[False, True]),
+    ),
+    phases=[0.0, 0.45, 1.0], output=[1.0, -1.0], parameter_force=[0.1, 0.0, -1.0],
+)  # fmt: skip
 
 
 def bounce_time(v0):
@@ -24,11 +40,11 @@ def test_an_event_is_not_found_again_at_the_start_of_the_next_step():
     assert crossing(np.array([1e-20, 1.0, -10.0, 0.0]), 1.0, 1.0) == pytest.approx(0.1, rel=1e-15)
 
 
-def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact(bouncer):
+def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact():
     """Parabola and sine arc in turn, both in closed form; energy is kept."""
     flight, contact = bounce_time(2.0)
     T = flight + contact
-    run = bouncer().run(np.array([0.0, -2.0 * T]), T, 3, logged=10, derivatives=True)
+    run = BOUNCER.run(np.array([0.0, -2.0 * T]), T, 3, logged=10, derivatives=True)
     assert run.end == pytest.approx([0.0, -2.0 * T], rel=1e-12, abs=1e-12)
     assert run.events[:5, 2].tolist() == [CLOSED, GAP, CLOSED, GAP, CLOSED]
     # After half of the flight the mass is v0^2/2g above the spring.
@@ -36,7 +52,7 @@ def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact(bouncer):
     # The end over the start speed: the return time moves by dT/dv0, during which the mass falls on.
     step = 1e-6
     shift = (sum(bounce_time(2.0 + step)) - sum(bounce_time(2.0 - step))) / (2.0 * step)
-    one = bouncer().run(np.array([0.0, -2.0 * T]), T, 1, derivatives=True)
+    one = BOUNCER.run(np.array([0.0, -2.0 * T]), T, 1, derivatives=True)
     # The mass is still on its way for that long, at speed v0 and falling at g.
     assert one.derivative[0, 1] * T == pytest.approx(-2.0 * shift, rel=1e-8)
     assert one.derivative[1, 1] == pytest.approx(1.0 + GRAVITY * shift, rel=1e-8)
@@ -60,14 +76,13 @@ def test_a_contact_that_opens_under_its_dampers_load_jumps_back():
 def by_solve_ivp(s, x, T, cycles, p):
     """The same motion by DOP853, cut at phases of jumps and, by its dense output, at events."""
     u = np.array([1.0, -1.0])
-    k = np.array([[3.0, 1.0, -0.5], [2.5, -1.0, 0.3]])
 
     def field(t, y, piece):
         local = t - [0.0, 0.45][piece]
         z, v = y[:2], y[2:4]
         acceleration = T**2 * (s.force + p * np.array(s.parameter_force) - s.stiffness @ z)
         acceleration = acceleration - T * s.damping @ v
-        stiffness = k[piece] @ local ** np.arange(3)
+        stiffness = K[piece] @ local ** np.arange(3)
         contacts = [(0.1 * local, 0.1, stiffness, 0.2, np.array([-1 + 0.1 * local, 0.8 + 0.05 * local, 0.3]))]
         if piece == 1:
             contacts += [(0.05 - 0.2 * local, -0.2, 0.5 * stiffness, 0.1, np.array([-0.9, 0.7, -0.2]))]
@@ -87,27 +102,27 @@ def by_solve_ivp(s, x, T, cycles, p):
     return y
 
 
-def test_another_integrator_comes_to_the_same_state(gearlike):
+def test_another_integrator_comes_to_the_same_state():
     """DOP853 with short steps across the events, where it loses digits."""
     gearlike_start = np.array([0.4, -0.2, 1.0, -2.5])
-    run = gearlike.run(gearlike_start, 5.0, 1, 0.3)
-    other = by_solve_ivp(gearlike, gearlike_start, 5.0, 1, 0.3)
+    run = GEARLIKE.run(gearlike_start, 5.0, 1, 0.3)
+    other = by_solve_ivp(GEARLIKE, gearlike_start, 5.0, 1, 0.3)
     assert np.concatenate([run.end, run.accumulated]) == pytest.approx(other, abs=2e-7)
 
 
-def test_the_error_falls_with_the_order(gearlike):
+def test_the_error_falls_with_the_order():
     x = np.array([0.4, -0.2, 1.0, -2.5])
-    exact = gearlike.run(x, 5.0, 2, 0.3, order=24).end
-    errors = [np.abs(gearlike.run(x, 5.0, 2, 0.3, order=order).end - exact).max() for order in (6, 12, 18)]
+    exact = GEARLIKE.run(x, 5.0, 2, 0.3, order=24).end
+    errors = [np.abs(GEARLIKE.run(x, 5.0, 2, 0.3, order=order).end - exact).max() for order in (6, 12, 18)]
     assert max(errors) < 1e-10  # the last terms control the step, whatever the order
     assert errors[2] < 2e-12
 
 
-def test_means_and_samples_are_those_of_the_motion(bouncer):
+def test_means_and_samples_are_those_of_the_motion():
     """Mean and mean square over a bounce against the closed motion."""
     flight, contact = bounce_time(2.0)
     T = flight + contact
-    run = bouncer().run(np.array([0.0, -2.0 * T]), T, 1, samples=np.linspace(0.0, 1.0, 2000, endpoint=False))
+    run = BOUNCER.run(np.array([0.0, -2.0 * T]), T, 1, samples=np.linspace(0.0, 1.0, 2000, endpoint=False))
     t = run.phases * T
     omega, rest = np.sqrt(STIFFNESS), GRAVITY / STIFFNESS
     inside = t - flight
@@ -120,7 +135,7 @@ def test_means_and_samples_are_those_of_the_motion(bouncer):
     pressed += 2.0 / STIFFNESS * (1.0 - np.cos(omega * contact))
     assert run.mean * T == pytest.approx(flown + pressed, rel=1e-12)
     assert run.largest_load == pytest.approx(GRAVITY + np.hypot(GRAVITY, 2.0 * STIFFNESS / omega), rel=1e-12)
-    swing = bouncer().run(np.array([1.4 * rest, 0.0]), 2.0 * np.pi / omega, 1)  # in contact throughout
+    swing = BOUNCER.run(np.array([1.4 * rest, 0.0]), 2.0 * np.pi / omega, 1)  # in contact throughout
     assert swing.least_load == pytest.approx(0.6 * GRAVITY, rel=1e-9)
 
 

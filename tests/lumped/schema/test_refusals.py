@@ -112,13 +112,6 @@ class TestEveryQuantity:
         assert named[0].action == f"Did you mean '{leaf}'?"
 
 
-@pytest.mark.parametrize("speed", [0, -0.0, -1000, "0 rpm", "-3 rad/s"])
-def test_zero_and_negative_speed(edited, speed):
-    problem(
-        edited("operating.pinion_speed", speed), "operating.pinion_speed", allowed="> 0 rpm", action="drive"
-    )
-
-
 @pytest.mark.parametrize("value", [0, -5.0, "balancd", True, math.nan, "3 m", [1]])
 def test_brake_torque_is_balanced_or_positive(edited, value):
     one = problem(edited("operating.brake_torque", value), "operating.brake_torque")
@@ -158,26 +151,21 @@ class TestOtherFields:
         assert "peak" not in one.allowed
         assert "Did you mean 'peak'" not in one.action
 
-    @pytest.mark.parametrize("value", [
-        [1.0, 4.0], [1.0, 4.0, 10.0, 11.0], 3.0, "many", [], {"a": 1},
-        [4, 1, 10], [1, 1, 10], [0, 4, 10], [-1, 4, 10], [True, 4, 10], ["1", 4, 10], [1.0, 4.0, math.inf],
-        [math.nan, 4.0, 10.0],
+    @pytest.mark.parametrize(("path", "values", "texts"), [
+        ("operating.pinion_speed", [0, -0.0, -1000, "0 rpm", "-3 rad/s"],
+         {"allowed": "> 0 rpm", "action": "drive"}),
+        ("friction.thresholds", [[1.0, 4.0], [1.0, 4.0, 10.0, 11.0], 3.0, "many", [], {"a": 1}, [4, 1, 10],
+         [1, 1, 10], [0, 4, 10], [-1, 4, 10], [True, 4, 10], ["1", 4, 10], [1.0, 4.0, math.inf],
+         [math.nan, 4.0, 10.0]], {"allowed": "three increasing"}),
+        ("name", [3, "", None, "x" * 81, ["a"]], {}),
+        *((section, [3, None, "text", [1, 2]], {"allowed": "table"})
+          for section in ("pinion", "bearings.gear", "mesh", "mesh.stiffness", "friction")),
+        *((path, [...], {"value": "missing", "action": "Add it"})
+          for path in ("pinion.face_width", "mesh.damping_ratio", "operating", "friction.law")),
     ])  # fmt: skip
-    def test_thresholds_are_three_increasing_numbers(self, edited, value):
-        problem(edited("friction.thresholds", value), "friction.thresholds", allowed="three increasing")
-
-    @pytest.mark.parametrize("value", [3, "", None, "x" * 81, ["a"]])
-    def test_name(self, edited, value):
-        problem(edited("name", value), "name")
-
-    @pytest.mark.parametrize("path", ["pinion", "bearings.gear", "mesh", "mesh.stiffness", "friction"])
-    @pytest.mark.parametrize("value", [3, None, "text", [1, 2]])
-    def test_a_section_is_a_table(self, edited, path, value):
-        problem(edited(path, value), path, allowed="table")
-
-    @pytest.mark.parametrize("path", ["pinion.face_width", "mesh.damping_ratio", "operating", "friction.law"])
-    def test_a_missing_field(self, edited, path):
-        problem(edited(path, ...), path, value="missing", action="Add it")
+    def test_values_of_another_kind_or_none(self, edited, path, values, texts):
+        for value in values:
+            problem(edited(path, value), path, **texts)
 
     def test_every_problem_is_listed(self, edited):
         data = edited("pinion.face_width", -1)
