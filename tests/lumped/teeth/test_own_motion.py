@@ -72,12 +72,9 @@ class TestFixedContacts:
 
     FORM = "prescribed linear"
 
-    def test_a_common_error_is_a_shift_of_delta(self, dte):
-        more = dte(self.FORM, tuple(ERRORS + 3.0))
+    def test_a_common_error_is_a_shift_of_delta_and_parts_of_both_gears_add_up(self, dte):
+        more, mirrored = dte(self.FORM, tuple(ERRORS + 3.0)), tuple(ERRORS[::-1])
         assert more - dte(self.FORM, LIST) == pytest.approx(3.0 * COS, abs=1e-9)
-
-    def test_parts_of_both_gears_add_up(self, dte):
-        mirrored = tuple(ERRORS[::-1])
         parts = dte(self.FORM, LIST) + dte(self.FORM, None, mirrored) - dte(self.FORM, NONE)
         assert dte(self.FORM, LIST, mirrored) == pytest.approx(parts, abs=1e-9)
 
