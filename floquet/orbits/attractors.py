@@ -99,12 +99,13 @@ class Survey:
     """Motions to which runs settle at speeds (k,) that increase, those of neighbours followed both ways.
 
     ``starts`` are the rate, state and parameter of each run; each rate is one of ``rates``. ``grown`` are the
-    starts from which runs grow.
+    starts from which runs grow; ``told`` gets the finished fraction.
     """
 
     def __init__(
         self, family: Family, limits: Limits, rates: FloatArray,
         starts: list[tuple[float, FloatArray, float]],
+        told: Callable[[float], object] = lambda done: None,
     ) -> None:  # fmt: skip
         self.family, self.limits, self.rates = family, limits, rates
         self.levels: list[list[Motion]] = [[] for _ in rates]
@@ -117,6 +118,7 @@ class Survey:
                     self.grown.append(motion)
                 else:
                     self._enter(j, result, i, motion.parameter).starts += 1
+            told((j + 1) / rates.size)
         while sum(self._carry(j, way) for way in (1, -1) for j in range(rates.size)[::way]):
             pass
 

@@ -267,14 +267,13 @@ class _Search:
             places = np.mod(0.5 + (first + np.arange(_RUNS))[:, None] * _FILL, 1.0)
             starts += self.member.apart(rate, places)
         self.runs += len(starts)
-        survey = Survey(self.family, self.limits, rates, starts)
+        survey = Survey(self.family, self.limits, rates, starts, lambda done: report(0.5 + 0.2 * done))
         self.settled += [(1.0 / start.rate, grown(start.parameter)) for start in survey.grown]
-        report(0.6)
         for j, level in enumerate(survey.levels):
             for motion in level:
                 motion.identify(self.identify(motion))
                 self.settled.append((1.0 / motion.rate, motion.run))
-            report(0.6 + 0.3 * (j + 1) / rates.size)
+            report(0.7 + 0.2 * (j + 1) / rates.size)
         self.attractors = survey.attractors(self.unlisted, self.identify)
 
     def unlisted(self, run: LongRun) -> bool:
