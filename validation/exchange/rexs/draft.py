@@ -49,8 +49,7 @@ class Draft:
         except (ValueError, OverflowError):
             value = math.nan
         if not (value == 0.0 or _SMALLEST < abs(value) < _LARGEST) or "_" in str(request.value):
-            text = shown(str(request.value))
-            self.problems.append(FieldProblem(where, text, "a finite number of a gear", "Correct the file."))
+            self.problem(where, shown(str(request.value)), "a finite number of a gear")
             return None
         return Reading(si_from_rexs(value, request.unit, ATTRIBUTES[attribute], where), where)
 
@@ -95,6 +94,10 @@ class Draft:
         self.values[path] = value
         self.sources[path] = where
 
+    def problem(self, where: str, value: str, allowed: str, action: str = "Correct the file.") -> None:
+        """Add a problem, of which the import is refused later."""
+        self.problems.append(FieldProblem(where, value, allowed, action))
+
     def note(self, text: str) -> None:
         """Add a note, once."""
         if text not in self.notes:
@@ -108,6 +111,6 @@ class Draft:
             # Programs print twelve digits or more; a difference beyond 1e-9 is meant.
             if not math.isclose(other.si, first.si, rel_tol=1e-9, abs_tol=1e-12):
                 allowed = f"{first.si:.9g} as in {first.where}"
-                self.problems.append(FieldProblem(other.where, f"{other.si:.9g} (SI)", allowed, why))
+                self.problem(other.where, f"{other.si:.9g} (SI)", allowed, why)
                 return None
         return present[0] if present else None

@@ -109,10 +109,8 @@ def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
     g, gear, drives = pair.geometry, getattr(pair, which), which == "pinion"
     brake = pair.operating.brake_torque
     torque = pair.operating.pinion_torque if drives else brake if isinstance(brake, float) else None
-    speed, place = (
-        g.omega_pinion if drives else -g.omega_gear,
-        _place(unit, 0.0 if drives else g.centre_distance),
-    )
+    speed = g.omega_pinion if drives else -g.omega_gear
+    place = _place(unit, 0.0 if drives else g.centre_distance)
     shaft = build.add("shaft", f"{which} shaft", **place, rotational_speed=speed, defines_speed=drives)
     build.relate("assembly", assembly=unit, part=shaft)
     number = build.add(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from lumped.errors import FieldProblem
 from lumped.fields.units import to_file
 from lumped.gear_geometry.geometry import Geometry
 from validation.exchange.rexs.draft import Draft, Reading
@@ -61,14 +60,12 @@ def gear_data_of(draft: Draft, stage: Component, gear: Component) -> list[Compon
 def _read_blank(draft: Draft, which: str, gear: Component) -> None:
     teeth = draft.number(gear, "number_of_teeth")
     if teeth is not None and teeth.si != int(teeth.si):
-        problem = FieldProblem(teeth.where, f"{teeth.si:g}", "a whole number", "Correct the file.")
-        draft.problems.append(problem)
+        draft.problem(teeth.where, f"{teeth.si:g}", "a whole number")
     elif teeth is not None:
         draft.put(f"{which}.teeth", int(teeth.si), teeth.where)
     for needed in ("number_of_teeth", "face_width", "normal_module"):
         if draft.text(gear, needed) is None:
-            problem = FieldProblem(draft.where(gear, needed), "not given", "a value", _MISSING)
-            draft.problems.append(problem)
+            draft.problem(draft.where(gear, needed), "not given", "a value", _MISSING)
     if draft.text(gear, "helix_angle_reference_diameter") is None:
         draft.note(f"{gear.label} has no helix angle: taken as a spur gear (assumed)")
     draft.take_all(which, gear, _BLANK)

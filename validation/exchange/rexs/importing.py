@@ -127,12 +127,10 @@ def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
         raise refuse("stage", "not given", f"one of {listed}", "Choose a stage by its number.")
     if not usable:
         wanted = "a cylindrical stage of two external spur gears"
-        problems = []
-        for stage in stages:
-            kind, _, why = stage.reason.partition("; ")
-            problems.append(
-                FieldProblem(f"stage {stage.number}", kind, wanted, f"{why[0].upper()}{why[1:]}.")
-            )
+        parts = [(f"stage {stage.number}", stage.reason.partition("; ")) for stage in stages]
+        problems = [
+            FieldProblem(a, kind, wanted, f"{why[0].upper()}{why[1:]}.") for a, (kind, _, why) in parts
+        ]
         raise ParameterError(problems, model.file)
     notes = [] if len(stages) == 1 else [f"stage {usable[0].number} is the only spur stage of: {listed}"]
     return usable[0], notes
