@@ -49,12 +49,8 @@ class ChartAxis:
         if bad.size:
             sign = ">" if self.open_low else ">="
             allowed = f"{sign} {self.low:g}" + ("" if np.isinf(self.high) else f" and <= {self.high:g}")
-            raise refuse(
-                f"axes[{name!r}]",
-                f"{bad[0]:g} {self.units}".removesuffix(" 1"),
-                allowed,
-                "Correct the axis values.",
-            )
+            value = f"{bad[0]:g} {self.units}".removesuffix(" 1")
+            raise refuse(f"axes[{name!r}]", value, allowed, "Correct the axis values.")
 
 
 def checked_axes(axes: Axes) -> dict[str, FloatArray]:
@@ -165,10 +161,8 @@ def refine_planes(
 
         result = refined(index.shape[:2], smooth, ask, rows=rows, progress=tell)
         rest = ~result.known.ravel()
-        points.radius[here[rest]], points.error[here[rest]] = (
-            result.radius.ravel()[rest],
-            result.misfit.ravel()[rest],
-        )
+        points.radius[here[rest]] = result.radius.ravel()[rest]
+        points.error[here[rest]] = result.misfit.ravel()[rest]
         points.verdict[here[rest]] = result.verdict.ravel()[rest]
         tell(1.0)
 

@@ -116,12 +116,8 @@ class PeriodicSystem:
         t = np.asarray(times, dtype=float)
         values, shape = self._call(t), (self.dimension, self.dimension)
         if values.shape != (t.size, *shape):
-            raise refuse(
-                "A",
-                f"shape {values.shape[1:]} at t = {t[0] if t.size else 0.0:g} s",
-                f"{shape} at every time",
-                "Return the same shape for every time.",
-            )
+            value = f"shape {values.shape[1:]} at t = {t[0] if t.size else 0.0:g} s"
+            raise refuse("A", value, f"{shape} at every time", "Return the same shape for every time.")
         if not np.isfinite(values).all():
             bad = t[~np.isfinite(values).reshape(t.size, -1).all(axis=1)][0]
             raise NumericalError(

@@ -210,16 +210,8 @@ def unstable_intervals(
         peak = first + int(np.argmax(values[first : last + 1]))
         lower = nodes[0] if first == 0 else ends[np.searchsorted(change, first - 1)]
         upper = nodes[-1] if last == nodes.size - 1 else ends[np.searchsorted(change, last)]
-        result.append(
-            UnstableInterval(
-                lower=float(lower),
-                upper=float(upper),
-                peak=float(nodes[peak]),
-                peak_radius=float(values[peak]),
-                open_below=bool(first == 0),
-                open_above=bool(last == nodes.size - 1),
-            )
-        )
+        top, open_ends = (float(nodes[peak]), float(values[peak])), (first == 0, last == nodes.size - 1)
+        result.append(UnstableInterval(float(lower), float(upper), *top, *map(bool, open_ends)))
     return result
 
 

@@ -165,19 +165,12 @@ def gear_attractor(
 def basins(response: Response, member: Member, rate: float, starts: int, seed: int) -> tuple[Basin, ...]:
     """Motions at 1/T = rate to which seeded start states lead, the most frequent first."""
     places = np.random.default_rng(seed).uniform(size=(starts, 2))
-    return tuple(
-        Basin(
-            run.kind,
-            run.orbit.n if run.orbit else 0,
-            run.rms,
-            peak_to_peak(run),
-            run.largest_load,
-            count,
-            count / starts,
-            binomial_interval(count, starts),
-        )
-        for run, count in response.basins(member, rate, places)
-    )
+    result = []
+    for run, count in response.basins(member, rate, places):
+        cycles, sizes = run.orbit.n if run.orbit else 0, (run.rms, peak_to_peak(run), run.largest_load)
+        shares = count, count / starts, binomial_interval(count, starts)
+        result.append(Basin(run.kind, cycles, *sizes, *shares))
+    return tuple(result)
 
 
 def binomial_interval(count: int, of: int) -> tuple[float, float]:

@@ -67,12 +67,11 @@ class GearVariation:
             return 1.0
         mean = mean_coefficient(MeshCycle.of(self.pair).elements.friction)
         if mean == 0.0:
-            raise refuse(
-                "friction_coefficient",
-                self.friction_mean,
+            allowed, action = (
                 "a law that is not zero along the whole path",
                 'Choose friction.law = "coulomb".',
             )
+            raise refuse("friction_coefficient", self.friction_mean, allowed, action)
         return self.friction_mean / mean
 
     def cycle(self) -> MeshCycle:

@@ -149,14 +149,10 @@ def _verdicts_of_cells(grid: Mapping[str, FloatArray], cells: IntArray) -> xr.Da
     axes = [np.sort(grid[name]) for name in _CELLS]
     area, names = np.outer(*map(np.diff, axes)), tuple(f"{name}_cell" for name in _CELLS)
     text = "verdict everywhere in the cell: 1 stable, -1 unstable, 0 not proven"
-    middles = {
-        f"{name}_cell": (
-            0.5 * (v[1:] + v[:-1]),
-            GEAR_AXES[name].units,
-            f"{GEAR_AXES[name].long_name}, middle",
-        )
-        for name, v in zip(_CELLS, axes, strict=True)
-    }
+    middles = {}
+    for name, v in zip(names, axes, strict=True):
+        axis = GEAR_AXES[name.removesuffix("_cell")]
+        middles[name] = 0.5 * (v[1:] + v[:-1]), axis.units, f"{axis.long_name}, middle"
     share = float(area[cells != 0].sum() / area.sum())
     verdicts = {"cell_verdict": (names, cells.astype(np.int8), "1", text)}
     return labelled_dataset(verdicts, middles, {"proven_share": share})
@@ -374,10 +370,6 @@ class ChartSlice:
             factors = friction[part, None] * family.factors[row[speed[part]]]
             result = fast_multipliers(block, T, damping[part], factors[:, :levels], tolerance=2e-4 * rtol)
             values, errors = separate.multipliers(T)
-            points.put(
-                places[part],
-                np.concatenate([result.multipliers, values], axis=1),
-                np.concatenate([result.errors, errors], axis=1),
-                True,
-                result.multipliers.shape[1],
-            )
+            values = np.concatenate([result.multipliers, values], axis=1)
+            errors = np.concatenate([result.errors, errors], axis=1)
+            points.put(places[part], values, errors, True, result.multipliers.shape[1])

@@ -70,12 +70,9 @@ def _relieved(pair: GearPair) -> list[str]:
     """Gears with tip relief that acts, or the refusal of a pair that has none."""
     result = [name for name in ("pinion", "gear") if getattr(pair, name).tip_relief is not None]
     if pair.mesh.relief == "ignored" or not result:
-        raise refuse(
-            "axes['tip_relief']",
-            "a pair whose relief is ignored" if result else "a pair without tip relief",
-            "a pair with tip relief that acts",
-            'Give pinion.tip_relief or gear.tip_relief, and mesh.relief = "static".',
-        )
+        value = "a pair whose relief is ignored" if result else "a pair without tip relief"
+        action = 'Give pinion.tip_relief or gear.tip_relief, and mesh.relief = "static".'
+        raise refuse("axes['tip_relief']", value, "a pair with tip relief that acts", action)
     return result
 
 

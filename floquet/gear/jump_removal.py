@@ -111,12 +111,8 @@ def _range(axis: str, own: float, within: tuple[float, float] | None) -> tuple[f
 
 def _folds(response: Response) -> list[tuple[int, Orbit]]:
     """Cycles and motion of the folds at which a stable motion ends."""
-    return [
-        (branch.n, b.orbit)
-        for branch in response.branches
-        for b, _ in lost_stability(branch)
-        if b.kind == "fold"
-    ]
+    ends = [(branch.n, b) for branch in response.branches for b, _ in lost_stability(branch)]
+    return [(n, b.orbit) for n, b in ends if b.kind == "fold"]
 
 
 class _Removal:

@@ -115,12 +115,8 @@ class RankOneSystem:
             )
         squares, Phi = eigh(K, np.diag(g))
         if squares.min() <= 0.0:
-            raise refuse(
-                "stiffness",
-                shown(self.stiffness),
-                "a mean system that is statically stable",
-                "Use the general engine.",
-            )
+            allowed = "a mean system that is statically stable"
+            raise refuse("stiffness", shown(self.stiffness), allowed, "Use the general engine.")
         inverse = Phi.T * g
         w, wd = (
             np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, stacked(self.parts, key)))

@@ -140,7 +140,4 @@ def _disc(pair: GearPair, gear: Gear) -> tuple[float, float]:
     outer, inner = pair.basic_rack.module * gear.teeth, gear.bore  # diameters
     mass = 0.25 * math.pi * (outer**2 - inner**2) * gear.face_width * gear.density
     inertia = math.pi / 32.0 * (outer**4 - inner**4) * gear.face_width * gear.density
-    return (
-        mass if gear.mass is None else gear.mass,
-        inertia if gear.inertia is None else gear.inertia,
-    )
+    return (mass if gear.mass is None else gear.mass), (inertia if gear.inertia is None else gear.inertia)

@@ -45,10 +45,8 @@ def fill_friction(pair: GearPair, p: FloatArray) -> None:
     f[fr.FACE_WIDTH] = width
     f[fr.MODULUS] = 2.0 / (_yielding(pair.pinion) + _yielding(pair.gear))
     f[fr.VISCOSITY] = viscosity(pair.lubricant)
-    f[fr.PRESSURE_K], f[fr.PRESSURE_S] = (
-        pair.lubricant.pressure_viscosity_k,
-        pair.lubricant.pressure_viscosity_s,
-    )
+    f[fr.PRESSURE_K] = pair.lubricant.pressure_viscosity_k
+    f[fr.PRESSURE_S] = pair.lubricant.pressure_viscosity_s
     f[fr.ROUGHNESS] = sum(roughness) / 2.0
     f[fr.COMPOSITE_ROUGHNESS] = math.sqrt(sum(r * r for r in roughness)) if composite is None else composite
     f[fr.FILM_LENGTH] = law.film_length

@@ -255,7 +255,7 @@ def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
         row[kn.CRACK] = 6.0 * strip / (gear.youngs_modulus * flank.face_width * half**2)
         row[kn.ROOT], row[kn.HALF_TOOTH] = centre, 0.5 * base_tooth_angle(pair, gear, radius)
     elif isinstance(fault, Spall):
-        row[[kn.SPALL_START, kn.SPALL_END]] = (
+        row[kn.SPALL_START], row[kn.SPALL_END] = (
             fault.start_roll_angle * radius,
             fault.end_roll_angle * radius,
         )

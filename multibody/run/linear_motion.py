@@ -79,13 +79,7 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     state = found[:-1] * scale
     weights[unknown] = found[-1] * machine.torque_pinion
     torque = machine.torque_pinion + weights[1]
-    return LinearMotion(
-        state=state,
-        torque_pinion=float(torque),
-        torque_gear=float(weights[2]),
-        transition=transition,
-        by_torque=forced[:, 2],
-    )
+    return LinearMotion(state, float(torque), float(weights[2]), transition, forced[:, 2])
 
 
 def state_scale(machine: Machine, deflection: float) -> FloatArray:
