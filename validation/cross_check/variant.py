@@ -80,12 +80,15 @@ def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
         "gear.profile_shift": pair.gear.profile_shift - 0.03,
         "centre_distance": None,
     }
-    tips = {f"{gear}.{name}": None for gear in ("pinion", "gear") for name in ("addendum", "tip_diameter")}
-    given = {
-        key: None for key in tips if getattr(getattr(pair, key.split(".")[0]), key.split(".")[1]) is not None
-    }
-    bare = {f"{gear}.{name}": None for gear in ("pinion", "gear") for name in ("tip_relief", "root_relief")}
-    relieved = {k: None for k in bare if getattr(getattr(pair, k.split(".")[0]), k.split(".")[1]) is not None}
+    given, relieved = (
+        {
+            f"{g}.{n}": None
+            for g in ("pinion", "gear")
+            for n in names
+            if getattr(getattr(pair, g), n) is not None
+        }
+        for names in (("addendum", "tip_diameter"), ("tip_relief", "root_relief"))
+    )
     yield plain | teeth | given
     if relieved:
         yield plain | teeth | given | relieved

@@ -151,37 +151,17 @@ def six_numbers(results: Results) -> tuple[Number, ...]:
     """The rows of the table: result, range of the samples, second program."""
     prediction, second = results.prediction, results.second
     rows = [_row(results, key, note=_orders(results) if key == "bearing_rms" else "") for key in _ROWS]
-    if prediction.contact_lost:
+    if prediction.contact_lost:  # six rows: the bearing force gives way
         of_second = math.nan if isinstance(second, Absent) else second.least_force
-        rows[4:4] = [
-            Number(
-                "least_force",
-                "Smallest mesh force / static",
-                prediction.least_force,
-                "1",
-                second=of_second,
-                note="0 is contact loss",
-            )
-        ]
-        rows = rows[:3] + rows[4:]  # six rows: the bearing force gives way
-    hazard = results.nearest_hazard
+        words = "Smallest mesh force / static", prediction.least_force, "1"
+        rows[3] = Number("least_force", *words, second=of_second, note="0 is contact loss")
+    hazard, own = results.nearest_hazard, results.operating_rpm
     low, high = (_rpm(speed) for speed in results.speeds)
+    far, note = math.nan, f"none from {low} to {high}"
+    if hazard is not None:
+        far, note = hazard[0] - own, f"{hazard[1]} at {_rpm(hazard[0])}"
     label = "Distance to the nearest unstable speed, jump or chaos"
-    if hazard is None:
-        rows.append(
-            Number("hazard", label, math.nan, "rpm", note=f"none from {low} to {high}{results.on_springs}")
-        )
-    else:
-        rows.append(
-            Number(
-                "hazard",
-                label,
-                hazard[0] - results.operating_rpm,
-                "rpm",
-                note=f"{hazard[1]} at {_rpm(hazard[0])}{results.on_springs}",
-            )
-        )
-    return tuple(rows)
+    return (*rows, Number("hazard", label, far, "rpm", note=note + results.on_springs))
 
 
 #: Key of a number of the prediction -> its words on page 1.

@@ -23,12 +23,6 @@ def test_progress_goes_on_while_the_variant_is_checked(check, told):
     assert len({fraction for fraction in told if fraction > 0.75}) >= 6
 
 
-def test_every_quantity_is_judged_at_both_fidelities(check):
-    assert [(a.fidelity, a.quantity) for a in check.agreements] == [
-        (fidelity, quantity) for fidelity in ("linear", "exact") for quantity in QUANTITIES
-    ]
-
-
 def test_the_exact_model_is_compared_in_a_periodic_motion_of_its_own(check):
     assert check.periodic
     lumped_torque, own = (d.attrs["brake_torque"] for d in (check.lumped, check.multibody["exact"]))

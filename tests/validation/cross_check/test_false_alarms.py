@@ -71,6 +71,8 @@ PAIRS = {
     "loaded, a ramp: the damper's load pushes along the path only where there is relief": (
         "nasa_art_25_31", gears(46, 36, 0.26478, 0.18977), bearings(7.576, 0.7392, 2.381, 3.059), RAMP,
         LOADED, running(3439.4, 56.96, "xu_kahraman", 35.25), {"mesh.damping_ratio": 0.098}),
+    "every law is compared with the same equations: law IV": (
+        "high_contact_ratio_29_47", stiffness("parabolic"), {"friction.law": "smoothed_coulomb"}),
     "friction holds the teeth": (
         "fzg_c", bearings(0.632, 0.627, 5.0, 9.14), stiffness("energy"),
         running(3618.6, 159.6, "benedict_kelley", 24.12)),

@@ -126,15 +126,9 @@ def test_an_operating_point_outside_the_chart_is_left_out(pair) -> None:
     assert "operating point" not in outside
 
 
-def test_a_stable_chart_shows_how_fast_disturbances_decay_and_thin_regions_are_marked(pair) -> None:
-    """28 mesh cycles a revolution: at 6000 rpm 2800 a second, each times ln(radius)."""
+def test_thin_regions_are_marked(pair) -> None:
     axes = {"speed_rpm": np.linspace(6000.0, 6500.0, 6), "damping_ratio": np.linspace(0.03, 0.05, 5)}
     chart = stability_chart(pair, axes)
-    figure = stability_figure(chart)
-    (image,) = figure.axes[0].images
-    expected = 2800.0 * np.log(chart.spectral_radius.isel(speed_rpm=0).to_numpy())
-    assert np.allclose(image.get_array()[:, 0], expected)
-    assert "[1/s]" in figure.axes[1].get_ylabel()
     thin = {"width": [101.0, 500.0], "speed_rpm": [6100.0, 6300.0], "damping_ratio": [0.04, 0.04]}
     regions = {f"region_{name}": ("region", np.array(values)) for name, values in thin.items()}
     marked = stability_figure(chart.drop_dims("region").assign(regions))

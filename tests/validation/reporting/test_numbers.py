@@ -10,7 +10,6 @@ import math
 import re
 import tomllib
 from importlib import resources
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -23,9 +22,7 @@ from lumped.model.averaged import modes
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from lumped.path_of_contact import pair_stiffness
 from tests.validation.reporting import recomputed as own
-from tests.validation.reporting.written import known
-from validation.reporting.blocks import plain
-from validation.reporting.chapters import contact_loss
+from validation.prediction.motion import predicted
 from validation.reporting.chapters.evidence import source_hash
 from validation.validity.flags import validity_flags
 
@@ -248,37 +245,6 @@ def test_the_table_of_jumps(written):
         assert motions.attrs["speed_low_rpm"] <= one["speed"]["value"] <= motions.attrs["speed_high_rpm"]
 
 
-def test_the_motions_at_the_operating_speed_and_the_share_of_the_starts(written):
-    if nearest_hazard(written) is None:
-        return
-    results = known("lost")
-    here = 2 * tuple(results.branches.at(results.operating_rpm))
-    names = "kind n dte_peak_to_peak largest_load share share_interval starts"
-    values = (
-        ("beats", 0, 2e-6, 900.0, 0.2, (0.1, 0.4), 3),
-        ("periodic", 2, 1e-6, 700.0, 0.8, (0.6, 0.9), 12),
-    )
-    basins = [SimpleNamespace(**dict(zip(names.split(), one, strict=True))) for one in values]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(type(results.branches), "at", lambda *_: here)
-        patch.setattr(type(results.branches), "basins", lambda _: basins)
-        blocks = contact_loss.write(results).blocks
-    rows = {
-        block.key: [tuple(map(plain, row)) for row in block.rows]
-        for block in blocks
-        if hasattr(block, "rows")
-    }
-    shown = [(o.n, o.stable, o.dte_range[1] - o.dte_range[0], o.largest_load) for o in here]
-    assert [
-        tuple(v["value"] if isinstance(v, dict) else v for v in row) for row in rows["motions_here"]
-    ] == shown
-    for row, (kind, n, size, load, share, ends, _) in zip(rows["basins"], values, strict=True):
-        assert row[:2] == (kind, n)
-        assert [(one["value"], one["unit"]) for one in row[2:]] == [
-            (size, "m"), (load, "N"), *((v, "1") for v in (share, *ends))
-        ]  # fmt: skip
-
-
 def test_the_table_of_stability(written):
     linear, chart, hazard = written.data("linear"), written.data("stability"), nearest_hazard(written)
     radius = linear.attrs["spectral_radius"]
@@ -334,6 +300,12 @@ def test_the_error_budget(written):
     rows = dict(zip(budget["row"].to_numpy(), budget["dte"].to_numpy(), strict=True))
     assert rows["second"] == pytest.approx(abs(span - numbers["dte_peak_to_peak"]["second"]), rel=1e-9)
     assert rows["inputs"] == pytest.approx(0.5 * np.ptp(samples), rel=1e-9)
+    other = {
+        "mesh.contact": {"loaded": "prescribed", "prescribed": "loaded"}[
+            written.parameters["mesh"]["contact"]
+        ]
+    }
+    assert rows["contact"] == close(abs(span - predicted(pair_of(written).with_(other)).peak_to_peak))
     assert rows["linear"] == pytest.approx(abs(span - linear["dte_peak_to_peak"]), rel=1e-3)
     assert rows["numerics"] == pytest.approx(linear["error_estimate"] * span, rel=1e-9)
     assert [one["error"] for one in table] == [_ERRORS[key] for key in rows]

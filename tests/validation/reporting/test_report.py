@@ -11,8 +11,10 @@ import pytest
 import xarray as xr
 
 import lumped
-from tests.validation.reporting.written import PAIRS, SMALL
+from tests.validation.reporting.written import PAIRS, SMALL, known
 from validation.reporting import build
+from validation.reporting.blocks import plain
+from validation.reporting.chapters import contact_loss
 from validation.reporting.page_one import Verdict, advice_on_inputs
 from validation.reporting.results import Results, broken_relations
 
@@ -43,6 +45,37 @@ def test_tables_are_in_the_workbook(written):
     table = written.document["chapters"]["response"]["orders"]
     assert rows[1][2] == pytest.approx(table[0]["dte"]["value"])
     assert rows[0][2] == "dte [m]"
+
+
+def test_the_motions_at_the_operating_speed_and_the_share_of_the_starts(written):
+    if written.document["gear_pair"] != "lost":
+        return
+    results = known("lost")
+    here = 2 * tuple(results.branches.at(results.operating_rpm))
+    names = "kind n dte_peak_to_peak largest_load share share_interval starts"
+    values = (
+        ("beats", 0, 2e-6, 900.0, 0.2, (0.1, 0.4), 3),
+        ("periodic", 2, 1e-6, 700.0, 0.8, (0.6, 0.9), 12),
+    )
+    basins = [SimpleNamespace(**dict(zip(names.split(), one, strict=True))) for one in values]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(results.branches), "at", lambda *_: here)
+        patch.setattr(type(results.branches), "basins", lambda _: basins)
+        blocks = contact_loss.write(results).blocks
+    rows = {
+        block.key: [tuple(map(plain, row)) for row in block.rows]
+        for block in blocks
+        if hasattr(block, "rows")
+    }
+    shown = [(o.n, o.stable, o.dte_range[1] - o.dte_range[0], o.largest_load) for o in here]
+    assert [
+        tuple(v["value"] if isinstance(v, dict) else v for v in row) for row in rows["motions_here"]
+    ] == shown
+    for row, (kind, n, size, load, share, ends, _) in zip(rows["basins"], values, strict=True):
+        assert row[:2] == (kind, n)
+        assert [(one["value"], one["unit"]) for one in row[2:]] == [
+            (size, "m"), (load, "N"), *((v, "1") for v in (share, *ends))
+        ]  # fmt: skip
 
 
 def test_the_same_pair_gives_the_same_json(written, tmp_path, monkeypatch):
