@@ -143,25 +143,18 @@ def broken(draw, texts):
     return text
 
 
-@given(text=broken([preset_text(name) for name in preset_names()]))
+@given(text=broken([preset_text(name) for name in preset_names()]), study=broken([STUDY]))
 @settings(max_examples=2 * settings().max_examples)
-def test_broken_parameter_files(within, tmp_path_factory, text):
-    file = tmp_path_factory.mktemp("toml") / "pair.toml"
-    file.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+def test_broken_parameter_and_study_files(within, tmp_path_factory, text, study):
+    folder = tmp_path_factory.mktemp("toml")
+    for name, broken_text in (("pair.toml", text), ("study.toml", study)):
+        (folder / name).write_text(broken_text, encoding="utf-8", errors="surrogatepass", newline="")
     with within(SECONDS):
-        check_pair(accepted_or_refused(load_gear_pair, file))
-
-
-@given(text=broken([STUDY]))
-@settings(max_examples=2 * settings().max_examples)
-def test_broken_study_files(within, tmp_path_factory, text):
-    file = tmp_path_factory.mktemp("toml") / "study.toml"
-    file.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
-    with within(SECONDS):
-        study = accepted_or_refused(load_study, file)
-    if study is not None:
-        assert isinstance(study, Study)
-        assert load_study(study.to_toml()) == study
+        check_pair(accepted_or_refused(load_gear_pair, folder / "pair.toml"))
+        found = accepted_or_refused(load_study, folder / "study.toml")
+    if found is not None:
+        assert isinstance(found, Study)
+        assert load_study(found.to_toml()) == found
 
 
 #: Dotted keys take the square of their parts to read: these would take hours. Comparing each problem with

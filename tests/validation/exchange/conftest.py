@@ -154,19 +154,3 @@ def save_json(save):
 @pytest.fixture(params=lumped.preset_names())
 def preset(request):
     return lumped.load_gear_pair(request.param)
-
-
-@pytest.fixture
-def leaves():
-    """Function: dotted path -> value of a nested mapping, description and sources apart."""
-
-    def walk(data, prefix=""):
-        found = {}
-        for key, value in data.items():
-            if key in ("description", "sources"):
-                continue
-            path = f"{prefix}{key}"
-            found |= walk(value, f"{path}.") if isinstance(value, dict) else {path: value}
-        return found
-
-    return walk
