@@ -59,7 +59,7 @@ CALLS = {
     floquet.predicted_lines: ({"pair": PAIR}, "orders"),
     floquet.stability_margins: ({"pair": PAIR}, "speed_rpm"),
     floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
-    floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
+    floquet.gear_block: ({"source": PAIR}, "rtol"),
     crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities limit"),
     predict: ({"pair": PAIR}, "recurrence"),
 }  # fmt: skip
