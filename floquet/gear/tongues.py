@@ -73,7 +73,7 @@ def stability_boundaries(
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
 
-        Along speed the search starts from a grid that meets every tongue of a damped pair, whatever its
+    Along speed the search starts from a grid that meets every tongue of a damped pair, whatever its
     order (`search_grid`), and from a graded cluster at every predicted line (omega_i +- omega_j)/k, for pairs
     with hardly any damping; ends are found by bisection.
 
