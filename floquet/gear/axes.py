@@ -24,7 +24,7 @@ from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import Supports
-from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
+from lumped.path_of_contact.friction import contact_path, fit_law, reads_average, violations_of
 from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
@@ -327,9 +327,10 @@ class _Law:
     def _where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
         """The contact at a speed from the first to the last position of loaded teeth, and settings there."""
         there, settings = self.at(rpm), self.settings
-        if settings.coefficient is None:  # mu_avg is that of the path from A to D
+        longer = replace(there, L_XA=self.ends[0], L_XD=self.ends[1])
+        if reads_average(self.law, longer, settings):  # mu_avg stays the mean from A to D
             settings = settings.model_copy(update={"coefficient": average_coefficient(there, settings)})
-        return replace(there, L_XA=self.ends[0], L_XD=self.ends[1]), settings
+        return longer, settings
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""

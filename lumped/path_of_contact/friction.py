@@ -83,7 +83,7 @@ def _contact(
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
         longer = replace(path, L_XA=interval[0], L_XD=interval[1])
-        if _reads_average(record, longer, settings):  # mu_avg stays the mean from A to D
+        if reads_average(record, longer, settings):  # mu_avg stays the mean from A to D
             settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
         path = longer
     return path, settings, record
@@ -96,7 +96,7 @@ def friction_misfit(pair: GearPair, interval: tuple[float, float] | None = None)
     """
     path, settings, law = _contact(pair, None, interval)
     _, found = _bounded(path, settings, law)
-    if pair.friction.coefficient is None and _reads_average(law, path, settings):
+    if pair.friction.coefficient is None and reads_average(law, path, settings):
         nominal = contact_path(pair)
         mean, bounds = _bounded(nominal, pair.friction, BENEDICT_KELLEY)
         found = found + 1.25 * float(bounds @ np.diff(mean.breaks)) / (nominal.L_XD - nominal.L_XA)
@@ -124,7 +124,7 @@ def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeV
     return violations_of(contact_path(pair), pair.friction, law_of(pair.friction, law).name)
 
 
-def _reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> bool:
+def reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> bool:
     """Whether mu_avg acts somewhere on a path, of a law made of others in one that is in force there."""
     if law.parts is None:
         return law.coefficient
