@@ -22,7 +22,7 @@ def own(size, **more):
 
 @pytest.fixture(scope="module")
 def difference():
-    """Function: largest difference of the DTE over its peak to peak; a window though the period is short."""
+    """Function: largest difference of the DTE and its peak to peak; a window though the period is short."""
     changes = {"mesh.contact": "loaded", "mesh.relief": "ignored", "operating.pinion_speed": 1450}
     pair = lumped.load_gear_pair("nasa_28_28").with_(changes)
 
@@ -32,7 +32,7 @@ def difference():
             _, lump, exact = own_teeth.both_motions(pair.with_(changes), 16)
         assert lump.sizes["time"] == exact.sizes["time"] == 6 * 16 + 1
         a, b = exact.dte.values, lump.dte.values
-        return np.abs(a - b).max() / np.ptp(b)
+        return np.abs(a - b).max(), np.ptp(b)
 
     return of
 
@@ -51,13 +51,15 @@ FAULTS = [
 def test_both_models_move_alike(difference, more):
     # Finite rotations make 0.3 % of the swing; another tooth 10, a free train that does not swing 4, no fault
     # on tooth 10, 11 or 12 at least 3.
-    assert difference(own(1.0, **more)) < 0.01
+    apart, swing = difference(own(1.0, **more))
+    assert apart < 0.01 * swing
 
 
 def test_models_part_less_than_in_proportion_to_torque_and_errors(difference):
-    # What finite motions change is of second order, but for loads at touching and corners.
-    full, quarter = (difference(own(size, **{"friction.coefficient": 0.0})) for size in (1.0, 0.25))
-    assert quarter < 0.8 * full
+    # What finite motions change is of second order, but for loads at touching and corners: 0.69. With errors
+    # 5 % too large in one model it is 1.24, without them 0.87.
+    full, quarter = (difference(own(size, **{"friction.coefficient": 0.0}))[0] for size in (1.0, 0.25))
+    assert 4.0 * quarter < 0.8 * full
 
 
 def test_the_window_is_round_the_tooth_that_carries_most():
