@@ -12,7 +12,6 @@ from .engine.second_order import from_second_order as from_second_order
 from .engine.system import PeriodicSystem as PeriodicSystem
 from .engine.tongues import Tongue as Tongue
 from .gear.axes import GEAR_AXES as GEAR_AXES
-from .gear.block import gear_block as gear_block
 from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
@@ -21,16 +20,17 @@ from .gear.jump_removal import JumpRemoval as JumpRemoval
 from .gear.jump_removal import jumps_removed_by as jumps_removed_by
 from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
+from .gear.multipliers import RevolutionMultipliers as RevolutionMultipliers
+from .gear.multipliers import gear_block as gear_block
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system
+from .gear.multipliers import revolution_multipliers as revolution_multipliers
 from .gear.orbit import GearOrbit as GearOrbit
 from .gear.orbit import long_run as long_run
 from .gear.orbit import periodic_orbit as periodic_orbit
 from .gear.regions import label_regions as label_regions
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
-from .gear.revolution import RevolutionMultipliers as RevolutionMultipliers
-from .gear.revolution import revolution_multipliers as revolution_multipliers
 from .gear.tongues import predicted_lines as predicted_lines
 from .gear.tongues import stability_boundaries as stability_boundaries
 from .rank_one.batch import FastMonodromy as FastMonodromy

@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 
 from floquet.engine.tongues import mode_shares, tongue_coordinates
 from floquet.gear.axes import vary
-from floquet.gear.block import gear_block
+from floquet.gear.multipliers import gear_block
 from floquet.gear.tongues import predicted_lines
 from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers, whole_number

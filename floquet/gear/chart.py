@@ -25,8 +25,7 @@ from floquet.gear.axes import (
     operating_rpm,
     vary,
 )
-from floquet.gear.block import feedback_system, fitted_block
-from floquet.gear.multipliers import OffLineOfAction
+from floquet.gear.multipliers import OffLineOfAction, feedback_system, fitted_block
 from floquet.gear.regions import with_regions
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.boxes import proven_cells

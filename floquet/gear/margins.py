@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from floquet.engine.tongues import TongueTip, UnstableInterval, seeded_nodes, tongue_tip, unstable_intervals
 from floquet.gear.axes import checked_range, operating_rpm, vary
-from floquet.gear.block import gear_block
+from floquet.gear.multipliers import gear_block
 from floquet.gear.regions import label_variation
 from floquet.gear.tongues import predicted_lines
 from floquet.rank_one.batch import spectral_radii

@@ -14,7 +14,7 @@ from scipy import ndimage
 
 from floquet.engine.tongues import Tongue, label_tongue
 from floquet.gear.axes import GEAR_AXES, GearVariation, vary
-from floquet.gear.block import gear_block
+from floquet.gear.multipliers import gear_block
 from floquet.rank_one.batch import fast_monodromies
 from lumped.errors import LawRangeWarning
 from lumped.labelling import Variable, labelled_dataset

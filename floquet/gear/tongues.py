@@ -20,8 +20,8 @@ from floquet.engine.tongues import (
     unstable_intervals,
 )
 from floquet.gear.axes import GEAR_AXES, GearVariation, checked_range, gear_grid, vary
-from floquet.gear.block import gear_block
 from floquet.gear.chart import solved
+from floquet.gear.multipliers import gear_block
 from floquet.gear.regions import label_variation
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, whole_number

@@ -103,7 +103,7 @@ def test_general_folders_of_floquet_know_no_gears(folder: str) -> None:
 
 
 def test_the_tests_above_see_imports() -> None:
-    assert "lumped.model.periodic_system" in imported(ROOT / "floquet" / "gear" / "block.py")
+    assert "lumped.model.periodic_system" in imported(ROOT / "floquet" / "gear" / "multipliers.py")
     assert len(FILES) > 200
 
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from floquet.gear.axes import GearVariation
-from floquet.gear.block import feedback_system, fitted_block
+from floquet.gear.multipliers import feedback_system, fitted_block
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.system import RankOneSystem
 from lumped import GearPair, load_gear_pair, preset_names

@@ -5,7 +5,7 @@ import pytest
 
 from floquet import gear_block, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
-from floquet.gear.block import feedback_system, fitted_block
+from floquet.gear.multipliers import feedback_system, fitted_block
 from lumped import load_gear_pair, preset_names
 from lumped.friction import LAWS, base
 from lumped.path_of_contact.friction import contact_path, friction_path_function

@@ -7,8 +7,7 @@ import pytest
 
 from floquet import gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
 from floquet.gear.axes import GEAR_AXES, GearVariation, vary
-from floquet.gear.block import feedback_system
-from floquet.gear.multipliers import OffLineOfAction
+from floquet.gear.multipliers import OffLineOfAction, feedback_system
 from lumped import GearPair, geometry, load_gear_pair, periodic_system
 from lumped.errors import ParameterError
 from lumped.model.averaged import averaged_matrix

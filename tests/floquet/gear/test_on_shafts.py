@@ -7,7 +7,7 @@ import floquet
 import lumped
 from floquet import gear_block, gear_pair_multipliers, scan, stability_boundaries, stability_chart
 from floquet.gear.axes import GearVariation, vary
-from floquet.gear.block import MODES, feedback_system
+from floquet.gear.multipliers import MODES, feedback_system
 from lumped.errors import ParameterError
 from lumped.schema.pair import GearPair
 

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from floquet import RankOneSystem, fast_multipliers
 from floquet.gear.axes import GearVariation
-from floquet.gear.block import feedback_system, fitted_block
+from floquet.gear.multipliers import feedback_system, fitted_block
 from floquet.rank_one import boxes
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.boxes import FlowPolynomial, bounded_entries, decided, proven_cells, slow_period
