@@ -23,9 +23,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import lumped
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.kernels import linear_forces
-from multibody.contact.layout import MAX_PAIRS
+from multibody.contact.kinematics import MAX_PAIRS
 from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record

@@ -14,7 +14,7 @@ import numpy as np
 
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.elements import GRADUAL, compliances, coupling_at, relief_at
 from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import (
@@ -50,7 +50,7 @@ _BENDS, _PLACES = 1e-10, 2
 def event_table(
     stiffness: PathFunction,
     bends: Sequence[float],
-    friction: Sequence[tuple[float, float]],
+    friction: Sequence[tuple[bool, float]],
     pitch: float,
     *,
     corners: bool = False,
@@ -58,7 +58,7 @@ def event_table(
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
     bends : where a relief starts [m]
-    friction : (kind, place) of the jumps and kinks of the friction law
+    friction : jumps and kinks of the friction law, as ``friction_switches`` gives them
     corners : whether tip corners touch beyond the path of contact
     """
     step = _STEP * pitch
@@ -67,7 +67,8 @@ def event_table(
         for place in stiffness.switches.tolist()
     }
     largest = [place for place in sorted(sizes, key=lambda at: -sizes[at]) if sizes[place] > _NEGLIGIBLE]
-    rows = [*friction, *((SWITCH, place) for place in {*bends, *largest[:_MOST_SWITCHES]})]
+    rows = [(SLIDING if moves else SWITCH, place) for moves, place in friction]
+    rows += [(SWITCH, place) for place in {*bends, *largest[:_MOST_SWITCHES]}]
     low, high = stiffness.interval
     inside = np.array([low + step, high - step])
     if stiffness(inside).any():  # the damping, as sqrt(k), bends also where k starts from 0

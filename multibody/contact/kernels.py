@@ -11,8 +11,7 @@ import math
 import numpy as np
 
 from lumped.typing import FloatArray, IntArray
-from multibody.contact import friction as fr
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.elements import (
     GRADUAL,
     coupling_at,
@@ -22,9 +21,9 @@ from multibody.contact.elements import (
     relief_at,
     shared_loads,
     stiffness_and_slope,
-    stiffness_at,
     stored_energy,
 )
+from multibody.contact.friction import nominal_friction, signed_friction
 from multibody.contact.kinematics import (
     COAST,
     DRIVE,
@@ -45,62 +44,6 @@ from multibody.contact.kinematics import (
 
 
 @compiled
-def friction_size(
-    p: FloatArray, slide: float, rolling: float, rho_p: float, rho_g: float, distance: float, load: float
-) -> float:
-    """Size of the friction coefficient by ``friction.magnitude``, without a formula by the lumped table."""
-    f = p[kn.FRICTION :]
-    if f[fr.LAW] == fr.TABLE:
-        end = int(p[kn.OWN]) if p[kn.OWN] > 0.0 else p.size
-        table = p[kn.N_PARAMETERS : end].reshape((-1, int(f[fr.COLUMNS])))
-        return abs(stiffness_at(table, p[kn.L_XP] + distance))
-    return float(fr.magnitude(f, slide, rolling, rho_p, rho_g, distance, load))
-
-
-@compiled
-def nominal_friction(p: FloatArray, xi: float) -> float:
-    """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
-    f = p[kn.FRICTION :]
-    distance = xi - p[kn.L_XP]
-    sliding = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * abs(distance)
-    rho_g = p[kn.L_XY] - xi
-    rolling = p[kn.OMEGA_P] * xi + p[kn.OMEGA_G] * rho_g
-    mu = friction_size(p, sliding, rolling, xi, rho_g, distance, f[fr.NOMINAL_LOAD])
-    return math.copysign(mu, distance) if distance != 0.0 else 0.0
-
-
-@compiled
-def signed_friction(
-    p: FloatArray,
-    flags: int,
-    flank: float,
-    xi: float,
-    slide: float,
-    rolling: float,
-    rho_p: float,
-    rho_g: float,
-    normal: float,
-) -> float:
-    """Friction coefficient with the sign of the sliding velocity, by the law at this contact.
-
-    Without the effects of the actual sliding velocity and the momentary load it slides and rolls as in the
-    nominal motion at xi and carries w_n. ``rolling`` is the sum of both rolling velocities [m/s].
-    """
-    f = p[kn.FRICTION :]
-    load = max(normal, 0.0) / f[fr.FACE_WIDTH] if flags & kn.FRICTION_LOAD else f[fr.NOMINAL_LOAD]
-    speeds = p[kn.OMEGA_P] + p[kn.OMEGA_G]
-    if not flags & kn.SLIDING:
-        slide, rho_p, rho_g = flank * speeds * (xi - p[kn.L_XP]), xi, p[kn.L_XY] - xi
-        rolling = p[kn.OMEGA_P] * rho_p + p[kn.OMEGA_G] * rho_g
-    if slide == 0.0:
-        return 0.0
-    mu = friction_size(p, abs(slide), rolling, rho_p, rho_g, slide / speeds, load)
-    if flags & kn.SLIDING and p[kn.V_REG] > 0.0:
-        return mu * math.tanh(slide / p[kn.V_REG])
-    return math.copysign(mu, slide)
-
-
-@compiled
 def contact_forces(
     t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
@@ -108,7 +51,7 @@ def contact_forces(
 
     state : (3, 6) deviations from nominal position and rotation [m, rad], their rates, and the wrench,
         which is written: (Fx, Fy, M) of pinion and gear [N, N m]; one array, for each costs Python time
-    p, flags, table : parameters and effect switches of ``layout``, stiffness
+    p, flags, table : parameters and effect switches of ``kinematics``, stiffness
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
     Returns number of contacts, or -1 when a force is not finite
     """

@@ -1,5 +1,6 @@
 """Contact kinematics of two involute gears as rigid bodies in the plane, exact for finite motions.
 
+Before it stands where the numbers of the model are: effect switches, parameters, records of the contacts.
 Nothing here knows a stiffness, a load or a nominal motion: only centre positions, rotation angles (counter-
 clockwise, rad), velocities, base radii and tip radii. The line of action runs from the pinion's tangent point
 X to the gear's, Y; along it are e, the flank distances rho_p and rho_g from X and Y, and the overlap delta.
@@ -16,11 +17,82 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import Compiler
+from lumped.path_function import FIT_DEGREE
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
 
 _PACKAGE = Path(__file__).parents[1]
 compiled = Compiler(path for path in _PACKAGE.rglob("*.py") if b"@compiled" in path.read_bytes())
+
+#: Most tooth pairs in contact at once: contact ratio below 4.
+MAX_PAIRS = 4
+#: Parameters of the friction laws, named in ``multibody.contact.friction``.
+N_FRICTION = 18
+
+# Bits of the effect switches, and of the linear mesh, which has none of the effects.
+ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
+FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128, 256, 512, 1024, 2048, 4096
+
+# Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
+(
+    RADIUS_P, RADIUS_G, PITCH, TIP_P, TIP_G,  # base radii, base pitch, tangent lengths of the tip circles
+    CHI_P, APART, CHI_P_BACK, APART_BACK,  # chi_p and overlap of mesh_phase: drive and coast side
+    CENTRE_PX, CENTRE_PY, CENTRE_GX, CENTRE_GY,  # nominal centres
+    L_XA, L_XP, L_XD, L_XY,  # nominal path of contact
+    OMEGA_P, OMEGA_G,  # nominal speeds
+    V_REG,  # velocity over which friction changes sign; 0 = at once
+    T_LOW, T_HIGH,  # the nominal phase is clamped to this open time interval (a smooth segment)
+    DAMPING,  # c/sqrt(k) of a tooth pair, 2 zeta sqrt(m_e) [sqrt(kg)]
+    SOFTENING, NOMINAL_FORCE,  # D of Hertz's contact [m/N], and the load at which the table's k holds [N]
+    K_ROWS, C_ROWS, E_ROWS, GAP_ROWS,  # of k, c, e, gap in the table of the linear, loaded mesh, or 0
+    OWN,  # where the block of ``machine.own_block`` starts, or 0
+    RELIEFS,  # number of reliefs that act
+    FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
+) = range(32)  # fmt: skip
+#: Columns of one relief, and the most reliefs: tip and root of both flanks.
+RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
+#: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
+FRICTION = FIRST_RELIEF + RELIEF_COLUMNS * MOST_RELIEFS
+#: How far pairs 1, 2, ... base pitches apart move each other: the number of such functions, then each as
+#: a row of ``elements.stiffness_and_slope`` over the position of the pair behind [m/N].
+COUPLED = FRICTION + N_FRICTION
+FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
+#: The rows of ``friction_size``'s table, if there is one, stand behind all others.
+N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
+
+# Places in the block of teeth that differ: of pinion and gear eccentricity [m], its angle at t = 0 [rad],
+# number of teeth, tooth at A at t = 0; then the number of faults, the errors of the pinion's teeth and of
+# the gear's [m], their rise along the own base tangents from the pitch point [-], and a row for each fault.
+ECCENTRICITY, ANGLE, TEETH, FIRST, OWN_COLUMNS = range(5)
+OWN_FAULTS = 2 * OWN_COLUMNS
+OWN_ERRORS = OWN_FAULTS + 1
+# Columns of a fault: gear (1) or pinion (0), tooth from 0; of a crack the compliance over the square of the
+# arm of the load [1/(N m)], place of the root section on the centre line of the tooth [m], half its angle on
+# the base circle [rad]; of a spall both ends [m], compliance between them [m/N], depth [m]; where the flank
+# ends [m]. Lengths are on the own base tangent.
+(
+    FAULT_GEAR, FAULT_TOOTH, CRACK, ROOT, HALF_TOOTH, SPALL_START, SPALL_END, SPALL, PIT, FLANK_END,
+    FAULT_COLUMNS,
+) = range(11)  # fmt: skip
+
+# Columns of a contact record.
+# OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own
+# rate.
+# ELASTIC is the load without the damper, ENERGY what the two teeth store, PATH their force along the path of
+# contact (``path_force``), and PATH_RATE the velocity of the contact along it.
+(
+    XI, LOAD, FRICTION_FORCE, MU, K, SLIDE, OVERLAP, OVERLAP_RATE, C, FLANK, CLOSING,
+    ELASTIC, ENERGY, PATH, PATH_RATE,
+) = range(15)  # fmt: skip
+N_RECORD = 15
+
+# Rows of what is known of the pairs before their loads are.
+(
+    POSITION, PRESSED, PRESSING, RELIEF_SLOPE, BY_P, BY_G, BY_L, STIFFNESS, SLOPE, NORMAL, BEYOND, ARMS,
+) = range(12)  # fmt: skip
+# The flank distances take two rows; behind them stand how pairs move each other, and its slopes.
+COUPLINGS = ARMS + 2
+SLOPES = COUPLINGS + MAX_PAIRS
+N_STATE = SLOPES + MAX_PAIRS
 
 #: How far beyond the tips contact is looked for, over the base pitch.
 _REACH = 0.4
@@ -217,7 +289,7 @@ def pairs_in_contact(
     """
     count = 0
     rho_p = rho
-    while rho_p <= tip_p and count < kn.MAX_PAIRS:
+    while rho_p <= tip_p and count < MAX_PAIRS:
         rho_g = length + delta - rho_p
         if 0.0 <= rho_g <= tip_g:
             arms[count, 0] = rho_p
@@ -256,35 +328,33 @@ def mesh_position(
 
     Returns the line, the overlap, and of one tooth pair rho_p for ``engaged`` and its position xi [m]
     """
-    rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
-    tau = min(max(t, p[kn.T_LOW]), p[kn.T_HIGH])
-    rolled = p[kn.OMEGA_P] * tau * rp
-    moving = (flags & kn.MOVING_LINE) != 0
+    rp, rg = p[RADIUS_P], p[RADIUS_G]
+    tau = min(max(t, p[T_LOW]), p[T_HIGH])
+    rolled = p[OMEGA_P] * tau * rp
+    moving = (flags & MOVING_LINE) != 0
     along, off = (q[3] - q[0], q[4] - q[1]) if moving else (0.0, 0.0)
-    chi, apart = (p[kn.CHI_P], p[kn.APART]) if flank > 0.0 else (p[kn.CHI_P_BACK], p[kn.APART_BACK])
-    ex, ey, grown, psi = line_of_action(along, off, p[kn.L_XY], rp + rg, flank)
-    first, delta = mesh_phase(psi, grown, q[2], q[5], rolled, rp, rg, p[kn.PITCH], chi, apart, flank)
+    chi, apart = (p[CHI_P], p[APART]) if flank > 0.0 else (p[CHI_P_BACK], p[APART_BACK])
+    ex, ey, grown, psi = line_of_action(along, off, p[L_XY], rp + rg, flank)
+    first, delta = mesh_phase(psi, grown, q[2], q[5], rolled, rp, rg, p[PITCH], chi, apart, flank)
     beyond = delta  # excess of rho_p + rho_g over the length, which places the contact point
     if not moving:
         delta += ex * (q[0] - q[3]) + ey * (q[1] - q[4])
-    if not flags & kn.ROTATION_PHASE:
-        first, beyond = mesh_phase(psi, grown, 0.0, 0.0, rolled, rp, rg, p[kn.PITCH], chi, apart, flank)
+    if not flags & ROTATION_PHASE:
+        first, beyond = mesh_phase(psi, grown, 0.0, 0.0, rolled, rp, rg, p[PITCH], chi, apart, flank)
     xi = first - 0.5 * (grown + beyond)
-    rho = xi + 0.5 * (grown + delta) if flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT) else xi
-    return Line(ex, ey, p[kn.L_XY] + grown, flank, rp, rg), delta, rho, xi
+    rho = xi + 0.5 * (grown + delta) if flags & (ENTRY_SHIFT | TIP_CONTACT) else xi
+    return Line(ex, ey, p[L_XY] + grown, flank, rp, rg), delta, rho, xi
 
 
 @compiled
 def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, arms: FloatArray) -> int:
     """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift."""
-    if flags & kn.TIP_CONTACT:  # candidates; those beyond the tips touch where they press
-        reach = _REACH * p[kn.PITCH]
-        return pairs_in_contact(
-            rho, delta, length, p[kn.PITCH], p[kn.TIP_P] + reach, p[kn.TIP_G] + reach, arms
-        )
-    if flags & kn.ENTRY_SHIFT:
-        return pairs_in_contact(rho, delta, length, p[kn.PITCH], p[kn.TIP_P], p[kn.TIP_G], arms)
-    return pairs_in_contact(rho, 0.0, p[kn.L_XY], p[kn.PITCH], p[kn.L_XD], p[kn.L_XY] - p[kn.L_XA], arms)
+    if flags & TIP_CONTACT:  # candidates; those beyond the tips touch where they press
+        reach = _REACH * p[PITCH]
+        return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P] + reach, p[TIP_G] + reach, arms)
+    if flags & ENTRY_SHIFT:
+        return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P], p[TIP_G], arms)
+    return pairs_in_contact(rho, 0.0, p[L_XY], p[PITCH], p[L_XD], p[L_XY] - p[L_XA], arms)
 
 
 @compiled
@@ -294,11 +364,11 @@ def off_axis(own: FloatArray, t: float, state: FloatArray, omega_p: float, omega
     for j in range(6):
         found[0, j], found[1, j] = state[0, j], state[1, j]
     for which in range(2):
-        row, sense = kn.OWN_COLUMNS * which, 1.0 - 2.0 * which  # the pinion turns clockwise
+        row, sense = OWN_COLUMNS * which, 1.0 - 2.0 * which  # the pinion turns clockwise
         x, y = 3 * which, 3 * which + 1
         turned = (omega_g if which else omega_p) * t - sense * state[0, x + 2]
         rate = (omega_g if which else omega_p) - sense * state[1, x + 2]
-        size, angle = own[row + kn.ECCENTRICITY], turned + own[row + kn.ANGLE]
+        size, angle = own[row + ECCENTRICITY], turned + own[row + ANGLE]
         along, off = -sense * size * math.cos(angle), size * math.sin(angle)
         found[2, x], found[2, y] = along, off
         found[0, x] += along
@@ -342,34 +412,34 @@ def own_pair(
     centre is r_b - u cos(rho/r_b - half tooth) off the line of action: the tangent's foot on the base circle
     is that angle off the tooth's centre line.
     """
-    number_p = math.floor((turned_p - arms[0]) / p[kn.PITCH] + 0.5)
-    number_g = math.floor((arms[1] - turned_g) / p[kn.PITCH] + 0.5)
-    z_p, z_g = int(own[kn.TEETH]), int(own[kn.OWN_COLUMNS + kn.TEETH])
-    pinion = (int(own[kn.FIRST]) + number_p) % z_p
-    gear = (int(own[kn.OWN_COLUMNS + kn.FIRST]) + number_g) % z_g
-    errors, rises = own[kn.OWN_ERRORS :], own[kn.OWN_ERRORS + z_p + z_g :]
-    rise, held = rises[pinion] - rises[z_p + gear], min(max(xi, p[kn.L_XA]), p[kn.L_XD])
-    error = errors[pinion] + errors[z_p + gear] + rise * (held - p[kn.L_XP])
+    number_p = math.floor((turned_p - arms[0]) / p[PITCH] + 0.5)
+    number_g = math.floor((arms[1] - turned_g) / p[PITCH] + 0.5)
+    z_p, z_g = int(own[TEETH]), int(own[OWN_COLUMNS + TEETH])
+    pinion = (int(own[FIRST]) + number_p) % z_p
+    gear = (int(own[OWN_COLUMNS + FIRST]) + number_g) % z_g
+    errors, rises = own[OWN_ERRORS:], own[OWN_ERRORS + z_p + z_g :]
+    rise, held = rises[pinion] - rises[z_p + gear], min(max(xi, p[L_XA]), p[L_XD])
+    error = errors[pinion] + errors[z_p + gear] + rise * (held - p[L_XP])
     rise = rise if held == xi else 0.0
-    softer, slope, tip_p, tip_g = 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G]
-    for i in range(int(own[kn.OWN_FAULTS])):
-        row = kn.OWN_ERRORS + 2 * (z_p + z_g) + kn.FAULT_COLUMNS * i
-        of_gear = own[row + kn.FAULT_GEAR] == 1.0
-        if own[row + kn.FAULT_TOOTH] != (gear if of_gear else pinion):
+    softer, slope, tip_p, tip_g = 0.0, 0.0, p[TIP_P], p[TIP_G]
+    for i in range(int(own[OWN_FAULTS])):
+        row = OWN_ERRORS + 2 * (z_p + z_g) + FAULT_COLUMNS * i
+        of_gear = own[row + FAULT_GEAR] == 1.0
+        if own[row + FAULT_TOOTH] != (gear if of_gear else pinion):
             continue
-        end, radius = own[row + kn.FLANK_END], p[kn.RADIUS_G] if of_gear else p[kn.RADIUS_P]
-        sense, place = (-1.0, p[kn.L_XY] - xi) if of_gear else (1.0, xi)
+        end, radius = own[row + FLANK_END], p[RADIUS_G] if of_gear else p[RADIUS_P]
+        sense, place = (-1.0, p[L_XY] - xi) if of_gear else (1.0, xi)
         if of_gear:
             tip_g = min(tip_g, end)
         else:
             tip_p = min(tip_p, end)
         if place > end:
             sense, place = 0.0, end
-        turn = place / radius - own[row + kn.HALF_TOOTH]
-        arm = radius - own[row + kn.ROOT] * math.cos(turn)
-        softer += own[row + kn.CRACK] * arm * arm
-        slope += sense * 2.0 * own[row + kn.CRACK] * arm * own[row + kn.ROOT] * math.sin(turn) / radius
-        if own[row + kn.SPALL_START] <= place < own[row + kn.SPALL_END]:
-            softer += own[row + kn.SPALL]
-            error += own[row + kn.PIT]
+        turn = place / radius - own[row + HALF_TOOTH]
+        arm = radius - own[row + ROOT] * math.cos(turn)
+        softer += own[row + CRACK] * arm * arm
+        slope += sense * 2.0 * own[row + CRACK] * arm * own[row + ROOT] * math.sin(turn) / radius
+        if own[row + SPALL_START] <= place < own[row + SPALL_END]:
+            softer += own[row + SPALL]
+            error += own[row + PIT]
     return OwnPair(error, rise, softer, slope, tip_p, tip_g)

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces
 from multibody.contact.kinematics import compiled
 

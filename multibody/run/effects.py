@@ -15,7 +15,7 @@ import numpy as np
 
 from lumped.arguments import some_of
 from lumped.errors import refuse
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 
 
 class Effect(NamedTuple):

@@ -22,7 +22,7 @@ from lumped.errors import NumericalError
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.machine import Machine, Supports
 from multibody.run.integration import Segment, keep_inside
 from multibody.run.linear_motion import bordered, state_scale

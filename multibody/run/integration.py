@@ -18,7 +18,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.events import SLIDING, time_to_event
 from multibody.run.bridge import FEW, TABLEAU, bridge
 from multibody.run.model import ExudynModel, accelerations, stored

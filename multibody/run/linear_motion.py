@@ -19,7 +19,7 @@ from scipy.integrate import DOP853, simpson
 
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces_over
 from multibody.contact.machine import Machine
 from multibody.shafts.train import Train

@@ -17,9 +17,9 @@ import exudyn.itemInterface as items
 import numpy as np
 
 from lumped.typing import FloatArray, IntArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces, tooth_forces_over
-from multibody.contact.layout import MAX_PAIRS
+from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.shafts.train import Train
 

@@ -19,9 +19,9 @@ from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth.motion import push_motion
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
-from multibody.contact.kernels import nominal_friction
-from multibody.contact.layout import MAX_PAIRS
+from multibody.contact import kinematics as kn
+from multibody.contact.friction import nominal_friction
+from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, Supports, loaded_phase, machine
 from multibody.run.effects import EFFECTS, active_effects, effect_flags
 from multibody.run.integration import Segment, integrate

@@ -21,7 +21,7 @@ from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.machine import Supports
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state, from_lumped_state, to_lumped_state

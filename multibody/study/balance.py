@@ -21,7 +21,7 @@ from lumped.model.solution import Initial
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare

@@ -18,8 +18,8 @@ from lumped.stiffness.energy import beam_compliance, contact_half_width, local_c
 from lumped.stiffness.foundation import foundation_compliance
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
-from multibody.contact import layout as kn
-from multibody.contact.kernels import signed_friction
+from multibody.contact import kinematics as kn
+from multibody.contact.friction import signed_friction
 from tests.evidence.check import Check
 
 #: Module -> formulas that are published, each of which shows one number.

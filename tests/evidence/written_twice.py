@@ -26,12 +26,11 @@ from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.quasi_static.tooth_error import relief_error
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
-from multibody.contact.drawing import circles, masses
+from multibody.contact import kinematics as kn
 from multibody.contact.elements import coupling_at, gradual, relief_at, shared_loads, stiffness_at
-from multibody.contact.kernels import nominal_friction
+from multibody.contact.friction import nominal_friction
 from multibody.contact.kinematics import DRIVE, Line, add_gradient, corners_at
-from multibody.contact.machine import Machine, machine
+from multibody.contact.machine import Machine, circles, machine, masses
 from multibody.run.effects import effect_flags
 from tests.evidence.check import Check, rows
 

@@ -23,7 +23,7 @@ from lumped.model.results import corner_force, response
 from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.quasi_static.contacts import contact_of
 from lumped.typing import FloatArray
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.machine import Machine
 from validation.cross_check.agreement import Fidelity
 from validation.cross_check.verdict import Judgement

@@ -25,10 +25,9 @@ from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import friction as fr
-from multibody.contact import layout as kn
-from multibody.contact.drawing import base_tooth_angle, circles, masses
+from multibody.contact import kinematics as kn
 from multibody.contact.elements import stiffness_at
-from multibody.contact.machine import Machine, machine
+from multibody.contact.machine import Machine, base_tooth_angle, circles, machine, masses
 from multibody.run.integration import Segment, integrate
 from multibody.run.model import ExudynModel, accelerations, build, contact_state
 from multibody.run.setup import Setup, prepare

@@ -10,8 +10,7 @@ from lumped.quasi_static.kernels import load_of
 from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
 from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import corner_gap as lumped_corner_gap
-from multibody.contact import kinematics as kin
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.elements import GRADUAL, elastic_load, shared_loads, stored_energy
 from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
@@ -44,7 +43,7 @@ PAIRS = {
 #: Smooth where contact begins and ends.
 RAMP = {"model": "parabolic", "ramp_length": 3.0}
 #: Every law on the driving flanks, one on the back sides.
-FLANKS = [*((name, kin.DRIVE) for name in PAIRS), ("parabolic, unequal", kin.COAST)]
+FLANKS = [*((name, kn.DRIVE) for name in PAIRS), ("parabolic, unequal", kn.COAST)]
 BACKLASH = PAIRS["Hertz"].mesh.backlash
 
 
@@ -55,10 +54,10 @@ def contact(numbers, t, q, v=None, flags=ALL):
     return state[2], contacts[:count]
 
 
-def states(numbers, number, flank=kin.DRIVE):
+def states(numbers, number, flank=kn.DRIVE):
     """Times and states with the flanks pressed by 5 to 30 um and the centres off by some um."""
     rng, p = np.random.default_rng(4), numbers.parameters
-    turned = 0.0 if flank == kin.DRIVE else BACKLASH
+    turned = 0.0 if flank == kn.DRIVE else BACKLASH
     for _ in range(number):
         q = rng.uniform(-3e-6, 3e-6, 6)
         q[[2, 5]] = -flank * (turned + rng.uniform(5e-6, 3e-5)) / p[kn.RADIUS_P], 0.0
@@ -109,12 +108,12 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
     pair = PAIRS["parabolic, unequal"]
     p, g = machine(pair).parameters, lumped.geometry(pair)
     arguments = p[kn.TIP_G], p[kn.L_XY], p[kn.RADIUS_G], p[kn.RADIUS_P]
-    gap, slope, by_length = kin.corner_gap(beyond, *arguments)
+    gap, slope, by_length = kn.corner_gap(beyond, *arguments)
     assert gap == pytest.approx(float(lumped_corner_gap(g, np.array(g.L_XA - beyond))), rel=1e-9, abs=2e-17)
-    assert kin.corner_reach(gap, *arguments) == pytest.approx(beyond, rel=1e-9)
+    assert kn.corner_reach(gap, *arguments) == pytest.approx(beyond, rel=1e-9)
     h, tip, length, *radii = 1e-7, *arguments
-    ends = [kin.corner_gap(beyond + s, *arguments)[0] for s in (h, -h)]
-    longer = [kin.corner_gap(beyond, tip, length + s, *radii)[0] for s in (h, -h)]
+    ends = [kn.corner_gap(beyond + s, *arguments)[0] for s in (h, -h)]
+    longer = [kn.corner_gap(beyond, tip, length + s, *radii)[0] for s in (h, -h)]
     assert slope == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
     assert by_length == pytest.approx((longer[0] - longer[1]) / (2 * h), rel=1e-4, abs=1e-10)
     # The corner is cut from the mate's involute: the leading term of the gap is half its curvature there.
@@ -131,10 +130,10 @@ def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(
     own = 0 if which == "pinion" else 1
     rho = np.full(2, length - tips[own] - beyond)
     rho[own] = tips[own] + beyond
-    line, wrench = kin.Line(1.0, 0.0, length, kin.DRIVE, *radii), np.zeros(6)
-    found = kin.corners_at(line, *rho, *tips)
-    kin.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
-    kin.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
+    line, wrench = kn.Line(1.0, 0.0, length, kn.DRIVE, *radii), np.zeros(6)
+    found = kn.corners_at(line, *rho, *tips)
+    kn.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
+    kn.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
     turn = beyond / radii[own]  # of the corner, from where it leaves the line of action
     along = radii[own] * np.sin(turn) + tips[own] * np.cos(turn)
     off = radii[own] * (1.0 - np.cos(turn)) + tips[own] * np.sin(turn)

@@ -10,8 +10,9 @@ from lumped.friction.registry import law_of
 from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
 from multibody.contact import friction as fr
-from multibody.contact import layout as kn
-from multibody.contact.kernels import contact_forces, nominal_friction, signed_friction
+from multibody.contact import kinematics as kn
+from multibody.contact.friction import nominal_friction, signed_friction
+from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 from multibody.run.model import accelerations, from_lumped_state

@@ -5,7 +5,7 @@ import pytest
 
 import lumped
 from lumped import PathFunction
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.events import (
     FIRST_TOUCH,
     LAST_TOUCH,
@@ -15,7 +15,7 @@ from multibody.contact.events import (
     time_to_event,
 )
 from multibody.contact.kernels import contact_forces
-from multibody.contact.layout import MAX_PAIRS
+from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 

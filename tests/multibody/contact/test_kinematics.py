@@ -7,7 +7,6 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from multibody.contact import kinematics as kin
-from multibody.contact.layout import MAX_PAIRS
 
 FLANKS = [kin.DRIVE, kin.COAST]
 
@@ -50,7 +49,7 @@ def overlap(teeth, pose, flank):
 def contact(teeth, pose, flank):
     """(line, arms of every pair, overlap) in one pose."""
     line, rho, delta = phase(teeth, pose, flank)
-    arms = np.zeros((MAX_PAIRS, 2))
+    arms = np.zeros((kin.MAX_PAIRS, 2))
     count = kin.pairs_in_contact(rho, delta, line[2], teeth.pitch, teeth.tip_p, teeth.tip_g, arms)
     return line, arms[:count] - 0.5 * delta, delta
 

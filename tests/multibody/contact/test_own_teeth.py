@@ -6,7 +6,7 @@ import pytest
 import lumped
 import multibody
 from lumped.teeth.contact import Laws
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.kinematics import own_pair
 from multibody.contact.machine import machine
 

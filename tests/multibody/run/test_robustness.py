@@ -15,7 +15,7 @@ import lumped
 import multibody
 import multibody.run.integration
 from lumped.model.averaged import modes
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.machine import machine
 from multibody.run.model import CallBudget, _force_function, build
 from multibody.run.setup import prepare

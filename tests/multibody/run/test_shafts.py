@@ -10,9 +10,9 @@ import lumped
 import multibody
 from lumped.errors import ParameterError
 from lumped.stiffness.foundation import body_twist
-from multibody.contact import layout as kn
+from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.layout import MAX_PAIRS
+from multibody.contact.kinematics import MAX_PAIRS
 from multibody.run.linear_motion import state_scale
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
