@@ -16,7 +16,7 @@ from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
 from floquet import gear_pair_multipliers, stability_chart
-from floquet.gear.margins import stability_margins
+from floquet.gear.tongues import stability_margins
 from lumped import GearPair, Geometry
 from lumped.path_of_contact import friction_profile
 from lumped.typing import FloatArray

@@ -13,23 +13,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from floquet.gear.attractors import (
+from floquet.gear.axes import checked_range, depends_on_speed, operating_rpm, speed_range
+from floquet.gear.motions import (
     JUMP,
+    MOST_CYCLES,
     AttractorPoint,
     Basin,
     GearAttractor,
+    GearOrbit,
     basins,
     end_rate,
+    form_with,
     gear_attractor,
     label,
-    peak_to_peak,
-)
-from floquet.gear.axes import checked_range, depends_on_speed, operating_rpm, speed_range
-from floquet.gear.orbit import (
-    MOST_CYCLES,
-    GearOrbit,
-    form_with,
     largest_motion,
+    peak_to_peak,
     start_of,
     static_deflection,
 )

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from floquet import JumpRemoval, ResponseBranches
-    from floquet.gear.attractors import Basin
+    from floquet.gear.motions import Basin
     from lumped import GearPair
 
 _LINEAR_SPEEDS = 400
@@ -165,7 +165,7 @@ def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
     """Name and values of the second axis."""
     import numpy as np
 
-    from floquet.gear.jump_map import JUMP_AXES, checked_axis
+    from floquet.gear.jumps import JUMP_AXES, checked_axis
 
     name = text.partition("=")[0].strip()
     if "=" in text:

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from floquet.gear.margins import StabilityMargins, TongueMargin
-    from floquet.gear.regions import LabelledRegion
+    from floquet.gear.chart import LabelledRegion
+    from floquet.gear.tongues import StabilityMargins, TongueMargin
     from lumped import GearPair
     from lumped.typing import FloatArray
 
@@ -66,8 +66,8 @@ def stability(
         proven unstable, or unproven and then marked. Takes a few seconds.
     """
     from floquet.gear.axes import GEAR_AXES, chart_axes
-    from floquet.gear.campbell import campbell
     from floquet.gear.multipliers import gear_pair_multipliers
+    from floquet.gear.tongues import campbell
 
     grid = opt.axes_values(axis, GEAR_AXES)
     opt.check_supports(pair, supports)
@@ -179,7 +179,7 @@ def _chart(
 
 def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     """Trace the tongues over a range of speeds, and print them."""
-    from floquet.gear.margins import stability_margins
+    from floquet.gear.tongues import stability_margins
 
     with progress_bar("tongues"):
         found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
@@ -209,7 +209,7 @@ def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
 
 def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
     """Name the unstable regions of a chart, and print them."""
-    from floquet.gear.regions import label_regions
+    from floquet.gear.chart import label_regions
 
     regions, names = label_regions(pair, chart), list(map(str, chart["spectral_radius"].dims))
     headings = ("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points")

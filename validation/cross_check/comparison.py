@@ -12,7 +12,7 @@ import xarray as xr
 
 import lumped
 import multibody
-from floquet.gear.orbit import GearOrbit
+from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
 from lumped.errors import SpurcheckError, refuse

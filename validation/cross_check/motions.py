@@ -12,7 +12,7 @@ import xarray as xr
 
 import lumped
 import multibody
-from floquet.gear.orbit import GearOrbit
+from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.model.results import LOAD_NOISE

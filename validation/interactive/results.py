@@ -11,9 +11,8 @@ import xarray as xr
 
 import lumped
 from floquet.gear.axes import GEAR_AXES, chart_axes, speed_range, with_point
-from floquet.gear.chart import stability_chart
+from floquet.gear.chart import LabelledRegion, label_regions, stability_chart
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
-from floquet.gear.regions import LabelledRegion, label_regions
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
 from lumped.friction.table import TABLE

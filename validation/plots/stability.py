@@ -18,8 +18,8 @@ from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
 from scipy.optimize import isotonic_regression
 
-from floquet.gear.margins import TongueMargin
-from floquet.gear.regions import LabelledRegion
+from floquet.gear.chart import LabelledRegion
+from floquet.gear.tongues import TongueMargin
 from lumped.typing import FloatArray
 from validation.plots.maps import COLOURS
 from validation.plots.style import (
@@ -65,7 +65,7 @@ def stability_figure(
     chart : dataset of ``floquet.stability_chart``
     at : name of an axis -> value at the operating point, which is marked
     regions : over the speed and a second axis, unstable regions to name, of
-        ``floquet.gear.regions.label_regions``; over mesh damping also traced tongues, of
+        ``floquet.gear.chart.label_regions``; over mesh damping also traced tongues, of
         ``stability_margins``, whose edges are then drawn
     lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
     """
@@ -255,7 +255,7 @@ def boundaries_figure(found: xr.Dataset) -> Figure:
 def campbell_figure(diagram: xr.Dataset, operating_rpm: float | None = None) -> Figure:
     """Frequencies of the Floquet solutions and their growth over pinion speed.
 
-    ``diagram``: dataset of ``floquet.gear.campbell.campbell``.
+    ``diagram``: dataset of ``floquet.gear.tongues.campbell``.
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]

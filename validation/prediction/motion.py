@@ -20,7 +20,7 @@ import xarray as xr
 
 import floquet
 import lumped
-from floquet.gear.orbit import GearOrbit
+from floquet.gear.motions import GearOrbit
 from floquet.gear.unilateral import contact_cycle
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES

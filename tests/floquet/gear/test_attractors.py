@@ -8,8 +8,7 @@ from scipy.stats import binomtest
 
 import floquet
 import lumped
-from floquet.gear.attractors import binomial_interval
-from floquet.gear.orbit import start_of
+from floquet.gear.motions import binomial_interval, start_of
 from floquet.gear.response import lost_stability
 from floquet.gear.unilateral import unilateral_system
 from floquet.orbits.long_run import long_run

@@ -5,8 +5,8 @@ import pytest
 
 from floquet import gear_pair_multipliers, predicted_lines
 from floquet.gear.axes import chart_axes, operating_rpm, speed_range, vary, with_point
-from floquet.gear.campbell import campbell
 from floquet.gear.chart import stability_chart
+from floquet.gear.tongues import campbell
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
 from lumped.model.averaged import modes

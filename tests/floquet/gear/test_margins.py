@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from floquet.gear.margins import stability_margins
 from floquet.gear.multipliers import gear_pair_multipliers
+from floquet.gear.tongues import stability_margins
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.schema.bodies import bodies
 from tests.evidence.floquet.coulomb_zones import CoulombGearPair

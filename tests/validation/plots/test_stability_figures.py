@@ -12,8 +12,8 @@ from matplotlib.contour import QuadContourSet
 import spurcheck
 from floquet import predicted_lines, stability_chart
 from floquet.engine.multipliers import verdicts
-from floquet.gear.campbell import campbell
-from floquet.gear.regions import label_regions
+from floquet.gear.chart import label_regions
+from floquet.gear.tongues import campbell
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 from validation.plots.stability import campbell_figure, label_above, pretty, stability_figure
