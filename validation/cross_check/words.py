@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import xarray as xr
 
 import multibody
 from lumped import NumericalError
 from multibody.run.effects import CAUSES
+from validation.cross_check.agreement import agreement
 from validation.cross_check.comparison import CrossCheck
-from validation.cross_check.verdict import Judgement
+from validation.cross_check.motions import repeated
+from validation.cross_check.verdict import Judgement, limit_of
 from validation.files.formatting import number, quantity
 
 #: Short names of the quantities that the models are compared by.
@@ -30,14 +31,17 @@ MEASURES = (
     "it, and the mean off the line of action by the deflection under the friction force, where these are "
     "larger."
 )
-#: Swing of the rotation, over the base pitch, that moves the contact in time; and what a machine has.
-_TURNS = 0.01
-_INERTIA = (
-    "motor and brake hold a real machine steadier: add their inertia to pinion.inertia and gear.inertia."
-)
-_UNILATERAL = (
+#: Effect of the exact model -> what it is, and what to do. What both leave is where the teeth touch.
+_SWITCHED = {
+    "rotation_phase": (
+        "the free shafts turn to and fro by {turn} of a base pitch, and the contact moves with them",
+        " Motor and brake hold a real machine steadier: add their inertia to those of pinion and gear.",
+    ),
+    "sliding_velocity": (CAUSES["sliding_velocity"], ""),
+}
+_CONTACT = (
     "The lumped motion has the places of contact of the mean load; in the exact contact they follow the "
-    "momentary load, the rotations and the centres."
+    "momentary load and the centres."
 )
 
 
@@ -88,39 +92,38 @@ def whole_difference(check: CrossCheck) -> str:
     return f"{whole}; {name}, {swings[1]} beside {swings[0]}, by {share(worst.difference)}, limit {limit}."
 
 
-def attribution(check: CrossCheck) -> xr.Dataset | None:
-    """Effects of the exact model one by one; None where contact is lost, teeth differ, or nothing repeats."""
-    if check.orbit is not None or check.pair.healthy is not check.pair:
-        return None
-    try:
-        return multibody.attribution(check.pair)
-    except NumericalError:
-        return None
-
-
-def cause_of_difference(check: CrossCheck, found: xr.Dataset | None = None) -> str:
-    """What explains most of the difference in what uses most of its limit; empty where that is not known.
-
-    That is an effect of the exact model, or where contact is lost what both motions have not in common.
-    ``found`` is the ``attribution``, where it is known already.
-    """
-    if check.orbit is not None:
-        return _UNILATERAL
-    found = attribution(check) if found is None else found
-    if found is None:
+def cause_of_difference(check: CrossCheck) -> str:
+    """The effect that explains most of the difference in what uses most of its limit; else empty."""
+    if check.pair.healthy is not check.pair:
         return ""
-    name = {"x_p": "x_p", "x_g": "x_p", "y_p": "y_p", "y_g": "y_p"}.get(check.worst("exact").quantity, "dte")
-    parts = found["cause"].values.tolist().index("all")  # what stands below is no part of it
-    alone = found["alone"].sel(quantity=name)[:parts]
-    if alone.isnull().all():  # it does not move without effects
-        alone = found["alone"].sel(quantity="dte")[:parts]
-    cause = str(alone.idxmax("cause").item())
-    words = f"Most of it comes from one effect: {CAUSES[cause]}, alone {share(float(alone.max()))}."
+    worst = check.worst("exact")
+    left = {effect: _without(check, worst.quantity, effect) for effect in _SWITCHED}
+    effect = min(left, key=lambda name: left[name])
+    if left[effect] > 0.5 * worst.difference:
+        return f"No effect alone explains half of it. {_CONTACT}"
     g = check.pair.geometry
     turn = float(np.ptp(check.multibody["exact"]["theta_p"].to_numpy())) * g.base_radius_pinion / g.base_pitch
-    if cause == "contact" and turn > _TURNS:
-        words += f" Friction turns the free shafts to and fro by {percent(turn)} of a base pitch; {_INERTIA}"
-    return words
+    words, more = _SWITCHED[effect]
+    rest = f"Without it the {NAMES[worst.quantity]} differs by {share(left[effect])}.{more}"
+    return f"Most of it comes from one effect: {words.format(turn=percent(turn))}. {rest}"
+
+
+def _without(check: CrossCheck, quantity: str, effect: str) -> float:
+    """The difference with one effect of the exact model switched off; infinite where no motion is found."""
+    pair, orbit, reference = check.pair, check.orbit, check.lumped
+    cycles = round(float(reference["time"][-1]) / pair.geometry.mesh_period)
+    samples = (reference.sizes["time"] - 1) // cycles
+    try:
+        motion = multibody.steady_state(
+            pair,
+            samples_per_cycle=samples,
+            initial=None if orbit is None else orbit.states[0],
+            effects={effect: False} | ({} if orbit is None else {"clearance": True}),
+        )
+    except NumericalError:
+        return np.inf
+    last, limit = reference.isel(time=slice(-samples - 1, None)), limit_of(quantity, "exact")
+    return agreement(pair, quantity, "exact", repeated(motion, 1), last, limit).difference
 
 
 def share(ratio: float) -> str:

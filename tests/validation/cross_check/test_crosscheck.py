@@ -7,14 +7,15 @@ import pytest
 
 import lumped
 import multibody
-from lumped import ParameterError
+from lumped import ParameterError, bodies
 from lumped.model import periodic_system
 from validation.cross_check import comparison
 from validation.cross_check.agreement import QUANTITIES, off_switch_samples
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import Verdict, limit_of
-from validation.cross_check.words import attribution, cause_of_difference, failed_checks, whole_difference
+from validation.cross_check.words import NAMES, cause_of_difference, failed_checks, whole_difference
+from validation.exchange import new_pair
 
 
 def test_progress_goes_on_while_the_variant_is_checked(check, told):
@@ -130,20 +131,46 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
     told = f"{whole_difference(found)} {cause_of_difference(found)}".replace("\u00a0", " ")
     assert "peak to peak beside" in told
     assert "limit 2 %" in told
-    assert "Most of it comes from one effect: teeth touch where the actual flanks meet" in told
     far = dataclasses.replace(found, agreements=_with(found.agreements, "exact", "y_p", difference=9.2))
     assert "m, by 9.2 times, limit 20" in whole_difference(far).replace("\u00a0", " ")
-    causes = attribution(far)  # of y, which uses most of its limit, not of the transmission error
-    causes["alone"].loc["sliding_velocity", "y_p"] = 0.5
-    assert "friction follows the actual sliding" in cause_of_difference(far, causes)
-    unlike = lumped.load_gear_pair("nasa_art_25_31")
-    pitch = unlike.geometry.base_pitch / unlike.geometry.base_radius_pinion
-    turned = dict(far.multibody, exact=found.lumped.assign(theta_p=0.03 * pitch * (found.lumped["time"] > 0)))
-    told = cause_of_difference(dataclasses.replace(found, pair=unlike, multibody=turned), causes).replace(
-        "\u00a0", " "
-    )
-    assert "turns the free shafts to and fro by 3 % of a base pitch" in told
-    assert cause_of_difference(dataclasses.replace(far, orbit=far)).startswith("The lumped motion has")
+    assert told.endswith("momentary load and the centres.")
+    unlike = found.pair.with_({"pinion.deviations": {"index": [1.0] + [0.0] * 27}})
+    assert cause_of_difference(dataclasses.replace(found, pair=unlike)) == ""
+
+
+@pytest.mark.parametrize(
+    ("given", "quantity", "words", "left"),
+    [
+        # Slow and light: ten times the inertia of both gears makes a ninth of the difference.
+        (
+            ("32/83", 1, 11.6, 146, 8.11),
+            "dte",
+            "the free shafts turn to and fro by 0.92 %",
+            0.01,
+        ),
+        # 37 % of the swing of the friction force, which neither inertia nor contact explains.
+        (("38/54", 1.25, 14.5, 970, 54.2), "friction_force", "friction follows the actual sliding", 0.02),
+        # With contact loss: 21 % of it.
+        (("31/43", 1.25, 9.12, 5230, 46), "friction_force", "friction follows the actual sliding", 0.02),
+    ],
+)
+def test_the_effect_that_is_named_takes_the_difference_with_it(given, quantity, words, left):
+    found = crosscheck(new_pair(*given), cycles=6, samples_per_cycle=128, variant=False)
+    worst = found.worst("exact")
+    assert (found.verdict, worst.quantity) == (Verdict.DIFFERS, quantity)
+    told = cause_of_difference(found).replace("\u00a0", " ")
+    assert words in told
+    name, _, rest = told.partition("Without it the ")[2].partition(" differs by ")
+    assert name == NAMES[quantity]
+    assert float(rest.partition(" %")[0]) < 100.0 * left < 25.0 * worst.difference
+    if quantity == "dte":
+        inertia = {
+            f"{g}.inertia": 10.0 * getattr(bodies(found.pair), f"inertia_{g}") for g in ("pinion", "gear")
+        }
+        heavy = crosscheck(
+            found.pair.with_(inertia), cycles=6, samples_per_cycle=128, fidelities=("exact",), variant=False
+        )
+        assert heavy.of("exact")[0].difference < 0.2 * worst.difference
 
 
 def test_a_failure_is_told_with_value_and_limit(check):
