@@ -80,6 +80,7 @@ def steady_state(
     if as_printed:
         raise refuse("as_printed", list(as_printed), "() where teeth differ", "Use pair.healthy.")
     one_of("touch", touch, ("push_only", "linear"))
-    count = default_samples(period_of(pair)) if samples_per_cycle is None else samples_per_cycle
+    cycles = period_of(pair)
+    count = default_samples(cycles) if samples_per_cycle is None else samples_per_cycle
     motion = (linear_motion if touch == "linear" else push_motion)(pair, count, supports)
     return labelled_motion(motion, provenance(pair, samples_per_cycle=count, touch=touch))
