@@ -125,17 +125,21 @@ def _label(name: str) -> tuple[str, str]:
     return unit, name.replace("_", " ").replace("dte", "transmission error")
 
 
-def systems_over_speed(pairs: Iterable[GearPair], supports: Supports = "springs") -> Iterator[LTVSystem]:
-    """Systems of pairs that differ in speed alone: of the element laws only friction changes with it."""
+def systems_over_speed(
+    pairs: Iterable[GearPair], supports: Supports = "springs", *, warn: bool = True
+) -> Iterator[LTVSystem]:
+    """Systems of pairs that differ in speed alone: of the element laws only friction changes with it.
+
+    ``warn``: whether of friction laws outside their range at any speed, not at the first one alone.
+    """
     elements: MeshElements | None = None
     for at in pairs:
         g = at.geometry
         if elements is None:
             elements = MeshCycle.of(at).elements
         else:
-            elements = replace(
-                elements, friction=friction_path_function(at, interval=elements.stiffness.interval)
-            )
+            friction = friction_path_function(at, interval=elements.stiffness.interval, warn=warn)
+            elements = replace(elements, friction=friction)
         yield LTVSystem.of(at, "full", cycle=MeshCycle(g, elements), supports=supports)
 
 

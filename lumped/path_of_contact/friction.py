@@ -45,7 +45,11 @@ def contact_path(pair: GearPair) -> ContactPath:
 
 
 def friction_path_function(
-    pair: GearPair, law: str | None = None, interval: tuple[float, float] | None = None
+    pair: GearPair,
+    law: str | None = None,
+    interval: tuple[float, float] | None = None,
+    *,
+    warn: bool = True,
 ) -> PathFunction:
     """Signed friction coefficient mu_i(xi) of one tooth pair at nominal speed and load.
 
@@ -54,6 +58,7 @@ def friction_path_function(
     pair : the gear pair
     law : name of a friction law; default ``pair.friction.law``
     interval : first and last position [m]; default A and D
+    warn : whether to warn, which takes half as long as the fit
 
     Returns
     -------
@@ -71,7 +76,8 @@ def friction_path_function(
     """
     path, settings, record = _contact(pair, law, interval)
     function = fit_law(path, settings, record.name)
-    warn_violations(violations_of(path, pair.friction, record.name))
+    if warn:
+        warn_violations(violations_of(path, pair.friction, record.name))
     return function
 
 

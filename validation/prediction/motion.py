@@ -121,9 +121,7 @@ class Prediction:
 
     def orders_of(self, name: str) -> FloatArray:
         """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
-        values = self.cycle[name].to_numpy()
-        found = 2.0 * np.abs(np.fft.rfft(values)) / values.size
-        return np.asarray(found[self.mesh_cycles :: self.mesh_cycles][:ORDERS], dtype=np.float64)
+        return mesh_orders(self.cycle[name].to_numpy(), self.mesh_cycles)
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -136,6 +134,12 @@ class Prediction:
             "bearing_rms": self.bearing_rms,
             "efficiency": self.efficiency,
         }
+
+
+def mesh_orders(values: FloatArray, mesh_cycles: int = 1) -> FloatArray:
+    """(``ORDERS``,) amplitudes at the mesh orders 1, 2, ... of values at even times over so many cycles."""
+    found = 2.0 * np.abs(np.fft.rfft(values)) / values.size
+    return np.asarray(found[mesh_cycles::mesh_cycles][:ORDERS], dtype=np.float64)
 
 
 #: Result -> its unit and plain name.

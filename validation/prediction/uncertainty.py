@@ -144,7 +144,7 @@ def _peaks(pair: GearPair, speeds_rpm: FloatArray) -> FloatArray:
     """Peak to peak of the linear transmission error at speeds, NaN where no motion is found [m]."""
     pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds_rpm]
     found = np.full(len(pairs), np.nan)
-    for j, system in enumerate(systems_over_speed(pairs)):
+    for j, system in enumerate(systems_over_speed(pairs, warn=False)):
         times = sample_times(system.period, _TIMES)
         try:
             motion = periodic_solution(system, times, estimate_error=False, step_angle=_STEP_ANGLE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,7 +19,8 @@ from floquet.gear.response import ResponseBranches
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
-from lumped.model.sweep import resolved_sweep
+from lumped.model.steady import periodic_solution, sample_times
+from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
@@ -30,7 +32,7 @@ from validation.measurements.model_error import ModelError, model_error
 from validation.measurements.record import Measurement
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
-from validation.prediction.motion import Motion, Prediction, measured, predicted
+from validation.prediction.motion import ORDERS, Motion, Prediction, measured, mesh_orders, predicted
 from validation.prediction.uncertainty import speed_band, uncertainty
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
@@ -247,19 +249,18 @@ class Results:
         """Amplitudes of the pinion's bearing force by mesh order over speed, linear motion."""
         self.stage("orders over speed")
         speeds = np.linspace(*self.speeds, self.effort.orders_speeds)
-        rows = []
-        for rpm in speeds:
-            try:
-                there = self.pair.with_({"operating.pinion_speed": float(rpm)})
-                cycle = lumped.steady_state(there, samples_per_cycle=128)
-                rows.append(measured(there, cycle, Motion.LINEAR).bearing_orders)
-            except NumericalError:
-                rows.append(np.full(10, np.nan))
+        pairs = [self.pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
+        rows = np.full((speeds.size, ORDERS), np.nan)
+        for row, system in zip(rows, systems_over_speed(pairs, warn=False), strict=True):
+            times = sample_times(system.period, 128)
+            with suppress(NumericalError):
+                run = periodic_solution(system, times, estimate_error=False).values
+                row[:] = np.hypot(*(mesh_orders(run[f"bearing_force_{line}_p"]) for line in "xy"))
         return labelled_dataset(
-            {"amplitude": (("speed_rpm", "order"), np.stack(rows), "N", "force on the pinion bearings")},
+            {"amplitude": (("speed_rpm", "order"), rows, "N", "force on the pinion bearings")},
             {
                 "speed_rpm": (speeds, "rpm", "pinion speed"),
-                "order": (np.arange(1, 11), "1", "mesh order"),
+                "order": (np.arange(1, ORDERS + 1), "1", "mesh order"),
             },
         )
 
