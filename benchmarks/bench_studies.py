@@ -15,6 +15,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from lumped.cache import cores
 from validation.studies import load_study, run_sweep
 from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.store import STORE
@@ -73,9 +74,9 @@ def scaling(count):
     study = study_of(
         count, "lumped", ("dte_peak_to_peak", "mesh_efficiency", "error_estimate"), 300.0, 1200.0
     )
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     seconds, results = {}, set()
-    for workers in range(1, cores + 1):
+    many = cores()
+    for workers in range(1, many + 1):
         with tempfile.TemporaryDirectory() as folder:
             summary = run_sweep(study, Path(folder, "out"), workers=workers)
             seconds[workers] = summary.seconds
@@ -84,7 +85,7 @@ def scaling(count):
         speed_up = seconds[1] / took
         print(f"lumped, {workers} worker(s)     {took:10.2f} s, speed-up {speed_up:.2f} ({count} cases)")
     print(f"results                 {'the same bytes' if len(results) == 1 else 'DIFFERENT'}")
-    print(f"load average            {os.getloadavg()[0]:10.2f} on {cores} cores")
+    print(f"load average            {os.getloadavg()[0]:10.2f} on {many} cores")
 
 
 def main():

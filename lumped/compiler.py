@@ -27,7 +27,7 @@ from numba.core.caching import FunctionCache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-from lumped.cache import cache_folder, read_whole, write_whole
+from lumped.cache import cache_folder, cores, read_whole, write_whole
 
 F = TypeVar("F", bound=Callable[..., Any])
 Part = TypeVar("Part")
@@ -75,7 +75,7 @@ def kernel_folder() -> Path:
 
 def in_threads(run: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:
     """Results of ``run`` on parts, a thread a core, for kernels that release the interpreter lock."""
-    count = min(os.cpu_count() or 1, len(parts))
+    count = min(cores(), len(parts))
     if count <= 1:
         return [run(part) for part in parts]
     with ThreadPoolExecutor(count) as pool:

@@ -17,17 +17,22 @@ from typer.core import TyperGroup
 from validation.commands.crosscheck import crosscheck
 from validation.commands.files import export, init, presets
 from validation.commands.floquet import floquet
-from validation.commands.interactive import interactive
 from validation.commands.report import report
 from validation.commands.response import response
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
-from validation.commands.teeth import teeth
 from validation.commands.terminal import NUMERICAL, Once, unprinted
-from validation.commands.uncertainty import uncertainty
+from validation.commands.variation import interactive, teeth, uncertainty
 from validation.stop_signals import interrupt_once
 
+#: What to type instead of an option that no command has.
+_OPTIONS = {
+    **dict.fromkeys(("--rpm", "-n"), "--speed 1450 (rpm), or --speed '24 Hz'"),
+    "--power": "--torque, the power over the speed: 9550 N m rpm/kW",
+    "--pair": "the gear pair without an option, as in spurcheck report my_pair.toml",
+    "-help": "--help",
+}
 #: What to type instead of a word that is no command.
 _INSTEAD = {
     "help": "spurcheck --help",
@@ -42,7 +47,14 @@ _INSTEAD = {
 
 
 class Commands(TyperGroup):
-    """The commands; what is none of them gets the one that was meant."""
+    """The commands; what is none of them or of their options gets the one that was meant."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse a line, its command and options included."""
+        for word in args:
+            if (name := word.partition("=")[0]) in _OPTIONS:
+                ctx.fail(f"No such option: {name}. Type: {_OPTIONS[name]}")
+        return super().parse_args(ctx, args)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return the command of a line."""

@@ -185,7 +185,8 @@ def gear_grid(axes: Axes, supports: Supports = "springs") -> dict[str, FloatArra
     for name, values in grid.items():
         GEAR_AXES[one_of("axes", name, GEAR_AXES)].check(name, values)
     if supports == "shafts" and "bearing_stiffness" in grid:
-        raise refuse("axes", "bearing_stiffness", "not with shafts", "Their bearings are fields of [shafts].")
+        action = "Set shafts.pinion.bearings.1.loa_stiffness and so on."
+        raise refuse("axes", "bearing_stiffness", "not with shafts", action)
     return grid
 
 

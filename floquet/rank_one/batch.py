@@ -6,7 +6,6 @@ Sources: docs/theory/floquet.md, "Computing M".
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
@@ -21,6 +20,7 @@ from floquet.rank_one.kernels.gains import Limits, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
+from lumped.cache import cores
 from lumped.compiler import in_threads
 from lumped.errors import NumericalError, refuse, shown
 from lumped.typing import BoolArray, ComplexArray, FloatArray
@@ -191,5 +191,5 @@ def _factors(
 
 def _in_slices(run: Callable[[slice], _T], size: int) -> list[_T]:
     """Results of ``run`` on slices of range(size)."""
-    chunk = max(1, min(512, -(-size // (os.cpu_count() or 1))))
+    chunk = max(1, min(512, -(-size // cores())))
     return in_threads(run, [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)])

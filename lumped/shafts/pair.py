@@ -99,8 +99,8 @@ def supported_shafts(pair: GearPair) -> tuple[SupportedShaft, SupportedShaft]:
     """Modes of the pinion's and of the gear's shaft."""
     shafts = pair.shafts
     if shafts is None:
-        action = "Describe the shafts in the parameter file, or take supports='springs'."
-        raise refuse("supports", "'shafts'", "a gear pair with a section [shafts]", action)
+        action = "Describe its shafts in the parameter file, or take the springs of 'bearings'."
+        raise refuse("supports", "shafts", "springs for a pair without [shafts]", action)
     highest = highest_frequency(pair)
     pinion, gear = discs(pair)
     return (

@@ -1,4 +1,4 @@
-"""The subcommands of ``spurcheck``, one module each.
+"""The subcommands of ``spurcheck``.
 
 Nothing here imports the numerics at module level: ``spurcheck --help`` must answer at once.
 """

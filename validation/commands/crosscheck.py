@@ -9,14 +9,17 @@ import typer
 
 from validation.commands import options as opt
 from validation.commands.kernels import compiling
-from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, show, stdout
+from validation.files.formatting import number
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from matplotlib.figure import Figure
-    from rich.table import Table
     from rich.text import Text
 
     from validation.cross_check.comparison import CrossCheck
+    from validation.cross_check.verdict import Judgement
 
 #: Exit code where the multibody model has another motion: a finding about the lumped model.
 DIFFERS = 4
@@ -71,25 +74,42 @@ def crosscheck(
 
 
 def _print(check: CrossCheck) -> None:
+    from validation.cross_check.conservation import worst_of_each
     from validation.cross_check.verdict import Verdict
-    from validation.cross_check.words import MEASURES, cause_of_difference, failed_checks, whole_difference
+    from validation.cross_check.words import MEASURES, NAMES, cause_of_difference, failed_checks
+    from validation.cross_check.words import whole_difference as whole
 
-    console = stdout()
-    for shown in _tables(check):
-        console.print(shown)
-    console.print(MEASURES, soft_wrap=True)
+    console, name, verdict = stdout(), check.pair.name, check.verdict
+    for fidelity, title in (("linear", "same equations"), ("exact", "exact contact")):
+        compared = check.of(fidelity)  # type: ignore[arg-type]
+        rows = ((NAMES[a.quantity], *_limited(a.difference, a.limit, a.within, 3)) for a in compared)
+        show(f"{name}: {title}", "quantity | >difference | >limit | verdict", rows)
+    _judged(f"{name}: conservation", worst_of_each(check.conservation))
+    if (variant := check.variant) is not None:
+        teeth = f"{variant.pair.pinion.teeth}/{variant.pair.gear.teeth} teeth, four unlike bearings"
+        worst = max(variant.conservation, key=lambda one: one.value / one.limit)
+        _judged(f"{name}: asymmetric variant, {teeth}", (variant.worst("linear").judgement, worst))
+    console.print(MEASURES)
     if check.pulling:
-        console.print(check.pulling, soft_wrap=True)
-    cause = cause_of_difference(check) if check.verdict is Verdict.DIFFERS else ""
-    told = {
-        Verdict.FAILS: f"{failed_checks(check)}.",
-        Verdict.DIFFERS: f"{whole_difference(check)} {cause}".rstrip(),
-        Verdict.AGREES: whole_difference(check),
-    }.get(check.verdict, "")
-    verdict = check.verdict
-    console.print(f"[bold]{verdict}[/bold]: {verdict.text}.", markup=True, soft_wrap=True)
-    if told:
-        console.print(told, soft_wrap=True)
+        console.print(check.pulling)
+    console.print(f"[bold]{verdict}[/bold]: {verdict.text}.", markup=True)
+    if verdict is Verdict.FAILS:
+        console.print(f"{failed_checks(check)}.")
+    elif verdict is not Verdict.NOT_CHECKED:
+        cause = cause_of_difference(check) if verdict is Verdict.DIFFERS else ""
+        console.print(f"{whole(check)} {cause}".rstrip())
+
+
+def _judged(title: str, checks: Iterable[Judgement]) -> None:
+    rows = ((one.check, *_limited(one.value, one.limit, one.within, 2)) for one in checks)
+    show(title, "check | >value | >limit | verdict", rows)
+
+
+def _limited(value: float, limit: float, within: bool, digits: int) -> tuple[str, str, Text]:
+    from rich.text import Text
+
+    word = Text("within", "green") if within else Text("outside", "red")
+    return number(value, digits), number(limit, digits), word
 
 
 def _figure(check: CrossCheck) -> Figure:
@@ -99,34 +119,3 @@ def _figure(check: CrossCheck) -> Figure:
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
     return cross_check_figure(check.pair.geometry, check.lumped, models, keep)
-
-
-def _tables(check: CrossCheck) -> list[Table]:
-    from validation.cross_check.conservation import worst_of_each
-    from validation.cross_check.words import NAMES
-    from validation.files.formatting import number
-
-    name, found = check.pair.name, []
-    for fidelity, title in (("linear", "same equations"), ("exact", "exact contact")):
-        shown = table(f"{name}: {title}", "quantity", ">difference", ">limit", "verdict")
-        for a in check.of(fidelity):  # type: ignore[arg-type]
-            shown.add_row(NAMES[a.quantity], number(a.difference, 3), number(a.limit, 3), _word(a.within))
-        found.append(shown)
-    judged = [(f"{name}: conservation", worst_of_each(check.conservation))]
-    if check.variant is not None:
-        g = check.variant.pair
-        title = f"{name}: asymmetric variant, {g.pinion.teeth}/{g.gear.teeth} teeth, four unlike bearings"
-        worst = max(check.variant.conservation, key=lambda one: one.value / one.limit)
-        judged.append((title, (check.variant.worst("linear").judgement, worst)))
-    for title, checks in judged:
-        shown = table(title, "check", ">value", ">limit", "verdict")
-        for one in checks:
-            shown.add_row(one.check, number(one.value, 2), number(one.limit, 2), _word(one.within))
-        found.append(shown)
-    return found
-
-
-def _word(within: bool) -> Text:
-    from rich.text import Text
-
-    return Text("within", "green") if within else Text("outside", "red")

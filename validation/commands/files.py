@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, note, stderr, stdout, table
+from validation.commands.terminal import guarded, note, show, stderr
 
 
 @guarded
@@ -28,13 +28,12 @@ def presets(
     if name is not None:
         typer.echo(preset_text(name), nl=False)
         return
-    shown = table("", "preset", ">teeth", ">contact ratio", "what it is")
-    shown.columns[0].no_wrap = True
-    for known in preset_names():
-        pair = load_gear_pair(known)
-        teeth = f"{pair.pinion.teeth}/{pair.gear.teeth}"
-        shown.add_row(known, teeth, f"{pair.geometry.contact_ratio:.3f}", pair.description)
-    stdout().print(shown)
+    pairs = {name: load_gear_pair(name) for name in preset_names()}
+    rows = (
+        (name, f"{p.pinion.teeth}/{p.gear.teeth}", f"{p.geometry.contact_ratio:.3f}", p.description)
+        for name, p in pairs.items()
+    )
+    show("", "preset | >teeth | >contact ratio | what it is", rows)
 
 
 @guarded
@@ -80,8 +79,11 @@ def init(
     face_width : With --teeth: face width of both gears, mm.
     oil : With --teeth: ISO viscosity grade, vg220.
     """
-    from lumped.errors import refuse
+    from lumped.errors import ParameterError, refuse
+    from lumped.schema.changes import fields_of
     from lumped.schema.files import preset_names, preset_text
+    from validation.exchange import gear_pair_from_rexs, parameter_text
+    from validation.exchange.new_pair_file import new_pair_text
     from validation.files.output import check_file, write_text
 
     own = {
@@ -98,60 +100,40 @@ def init(
         action = made if Path(preset).exists() else f"To write this file: spurcheck init -o {preset}."
         raise refuse("preset", preset, "one of " + ", ".join(preset_names()), action)
     text, name = preset_text(preset), preset
-    if teeth is not None or any(value is not None for _, value in own.values()):
-        stem = output.stem if output is not None and str(output) != "-" else None
-        text, name = _text_of_own(teeth, own, preset, from_rexs, stem)
-    if from_rexs is not None or stage is not None:
-        text, name = _text_from_rexs(from_rexs, stage)
+    given = {option: (path, value) for option, (path, value) in own.items() if value is not None}
+    if teeth is None:
+        for option, (_, value) in given.items():
+            action = "Give --teeth PINION/GEAR too, or edit the file."
+            raise refuse(option, value, "with --teeth", action)
+    elif preset != opt.DEFAULT_PAIR or from_rexs is not None:
+        raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
+    else:
+        for option in ("--module", "--face-width", "--speed", "--torque"):
+            if option not in given:
+                raise refuse(option, "missing", "a value beside --teeth", "Give it.")
+        name = f"pair_{re.sub('[^0-9]+', '_', teeth)}"
+        if output is not None and str(output) != "-":
+            name = output.stem
+        values = {path: opt.value_of(value) for path, value in given.values()}
+        options = {field: option for option, (path, _) in given.items() for field in fields_of(path)}
+        options |= dict.fromkeys(("pinion.teeth", "gear.teeth", "teeth"), "--teeth") | {"oil": "--oil"}
+        try:
+            text = new_pair_text(name, {"teeth": teeth} | values)
+        except ParameterError as error:
+            raise opt.by_option(error, options, "") from None
+    if from_rexs is not None:
+        mapping, notes = gear_pair_from_rexs(from_rexs, stage)
+        for remark in notes:
+            note(remark)
+        text, name = parameter_text(mapping, notes), from_rexs.name.split(".")[0] or "rexs"
+    elif stage is not None:
+        raise refuse("--stage", stage, "a stage of the file of --from-rexs", "Give --from-rexs FILE too.")
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text, new=not force)
     stderr().print(f"wrote {path}; next: spurcheck report {path} -o report")
-
-
-def _text_of_own(
-    teeth: str | None,
-    own: dict[str, tuple[str, str | None]],
-    preset: str,
-    from_rexs: Path | None,
-    stem: str | None,
-) -> tuple[str, str]:
-    """Parameter file of a pair that the options describe, and a name for it."""
-    from lumped.errors import ParameterError, refuse
-    from lumped.schema.changes import fields_of
-    from validation.exchange.new_pair_file import new_pair_text
-
-    if teeth is None:
-        first = next(option for option, (_, value) in own.items() if value is not None)
-        raise refuse(first, own[first][1], "with --teeth", "Give --teeth PINION/GEAR too, or edit the file.")
-    if preset != opt.DEFAULT_PAIR or from_rexs is not None:
-        raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
-    for option in ("--module", "--face-width", "--speed", "--torque"):
-        if own[option][1] is None:
-            raise refuse(option, "missing", "a value beside --teeth", "Give it.")
-    name = stem or f"pair_{re.sub('[^0-9]+', '_', teeth)}"
-    given = {path: opt.value_of(text) for path, text in own.values() if text is not None}
-    options = {field: option for option, (path, _) in own.items() for field in fields_of(path)}
-    options |= dict.fromkeys(("pinion.teeth", "gear.teeth", "teeth"), "--teeth") | {"oil": "--oil"}
-    try:
-        return new_pair_text(name, {"teeth": teeth} | given), name
-    except ParameterError as error:
-        raise opt.by_option(error, options, "") from None
-
-
-def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
-    """Parameter file of a stage of a REXS file, and a name for it; notes of the import go to stderr."""
-    from lumped.errors import refuse
-    from validation.exchange import gear_pair_from_rexs, parameter_text
-
-    if path is None:
-        raise refuse("--stage", stage, "a stage of the file of --from-rexs", "Give --from-rexs FILE too.")
-    mapping, notes = gear_pair_from_rexs(path, stage)
-    for text in notes:
-        note(text)
-    return parameter_text(mapping, notes), path.name.split(".")[0] or "rexs"
 
 
 @guarded

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
+from cmath import phase
+from math import degrees
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stdout, table
-
-if TYPE_CHECKING:
-    from floquet import Monodromy
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, show, stdout
+from validation.files.formatting import number
 
 _SHOWN = 12
 
@@ -63,7 +62,15 @@ def floquet(
             | {"multiplier_errors": found.multiplier_errors.tolist()}
         )
     else:
-        _print(source, found)
+        pairs = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
+        rows = [(f"{abs(z):.12g}", f"{degrees(phase(z)):.4f}", number(error, 2)) for z, error in pairs]
+        show(f"{source.name}: multipliers", ">modulus | >phase [deg] | >bound on the error", rows[:_SHOWN])
+        if len(rows) > _SHOWN:
+            stdout().print(f"and {len(rows) - _SHOWN} smaller ones")
+        stdout().print(
+            f"{found.verdict}: largest multiplier {found.spectral_radius:.12g} +- {found.error:.1e}, "
+            f"which is {'a proven bound' if found.certificate == 'proven' else 'an estimate'}"
+        )
     if grid:
         labels = {name: (FILE_AXES[name].units, FILE_AXES[name].long_name) for name in grid}
         with progress_bar("chart") as tell:
@@ -77,21 +84,3 @@ def floquet(
         files.write(chart)
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
-
-
-def _print(source: Path, found: Monodromy) -> None:
-    from cmath import phase
-    from math import degrees
-
-    from validation.files.formatting import number
-
-    found_all = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
-    rows = [(f"{abs(z):.12g}", f"{degrees(phase(z)):.4f}", number(error, 2)) for z, error in found_all]
-    headings = (">modulus", ">phase [deg]", ">bound on the error")
-    stdout().print(table(f"{source.name}: multipliers", *headings, rows=rows[:_SHOWN]))
-    if found.multipliers.size > _SHOWN:
-        stdout().print(f"and {found.multipliers.size - _SHOWN} smaller ones")
-    stdout().print(
-        f"{found.verdict}: largest multiplier {found.spectral_radius:.12g} +- {found.error:.1e}, "
-        f"which is {'a proven bound' if found.certificate == 'proven' else 'an estimate'}"
-    )

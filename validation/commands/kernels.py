@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 import time
@@ -29,10 +28,12 @@ def compiling(bar: Progress) -> Iterator[Progress]:
     """
     from numba.core import event
 
+    from lumped.cache import cores
+
     event.Listener.register(_Listener)
     listener = _Listener(bar)
     event.register("numba:compile", listener)
-    helper = None if _processors() < 2 or _all_stored() else _start()
+    helper = _start() if cores() > 1 and not _all_stored() else None
     try:
         yield listener.tell
     finally:
@@ -40,10 +41,6 @@ def compiling(bar: Progress) -> Iterator[Progress]:
         if helper is not None:
             helper.kill()
             helper.wait()
-
-
-def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _all_stored() -> bool:

@@ -224,15 +224,6 @@ def set_fields(settings: list[str] | None) -> dict[str, str]:
     return found
 
 
-def check_supports(pair: GearPair, supports: SupportsName) -> None:
-    """Refuse shafts that the pair does not have, before any work."""
-    from lumped.errors import refuse
-
-    if supports == "shafts" and pair.shafts is None:
-        action = "Describe its shafts in the parameter file, or leave the option out."
-        raise refuse("--supports", supports, "springs for a pair without [shafts]", action)
-
-
 def by_option(error: ParameterError, options: Mapping[str, str], source: str) -> ParameterError:
     """Return a refusal that names the options where fields come from them, each problem of an option once."""
     from lumped.errors import ParameterError

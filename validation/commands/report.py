@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 _MOST = 30
 #: Exit code where a finding about the machine is one that ``--require`` forbids.
 _FOUND = 4
-_REQUIRE = ("holds", "stable", "contact")
 
 
 @guarded
@@ -58,14 +57,15 @@ def report(
     supports : springs: leave shafts out. Default: shafts where they are given.
     """
     from lumped.arguments import some_of
+    from lumped.shafts.pair import supported_shafts
     from validation.files.folder import check_target
     from validation.reporting import report as write
 
-    required = some_of("--require", require or (), _REQUIRE)
+    required = some_of("--require", require or (), ("holds", "stable", "contact"))
     check_target(output, force=force)
     name, gear_pair = pair
-    if supports is not None:
-        opt.check_supports(gear_pair, supports)
+    if supports == "shafts":
+        supported_shafts(gear_pair)  # refuses a pair that has none
     if supports == "springs" and gear_pair.shafts is not None:
         gear_pair = gear_pair.with_(shafts=None)
     with progress_bar("report") as bar, compiling(bar) as tell:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
+from validation.commands.terminal import guarded, note, print_json, progress_bar, show, stdout
+from validation.files.formatting import number, quantity
 
 if TYPE_CHECKING:
     import numpy as np
-    import xarray as xr
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from floquet import JumpRemoval, ResponseBranches
+    from floquet import ResponseBranches
     from floquet.gear.motions import Basin
     from lumped import GearPair
 
@@ -90,8 +90,6 @@ def response(
 
 
 def _print(pair: GearPair, found: ResponseBranches) -> None:
-    from validation.files.formatting import number, quantity
-
     def motion(rms: float, load: float, kind: str, n: int) -> str:
         if kind == "grows":
             return "grows beyond twice the backlash"
@@ -107,24 +105,24 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         )
         for jump in found.jumps
     ]
-    shown = table(f"{pair.name}: jumps", "pinion speed", "running", "from", "to", rows=rows)
-    stdout().print(shown if rows else "no jumps: one stable motion leads to the next")
+    if rows:
+        show(f"{pair.name}: jumps", "pinion speed | running | from | to", rows)
+    lines = [] if rows else ["no jumps: one stable motion leads to the next"]
     if found.contact_kept:
         runs = found.response.runs
-        looked = (
-            f"{runs} runs from far starts found no other" if runs else "no others were looked for (--seeds)"
-        )
-        stdout().print(f"contact is never lost in these motions; {looked}")
+        looked = f"{runs} runs from far starts found no other" if runs else "no others were looked for"
+        lines.append(f"contact is never lost in these motions; {looked}{'' if runs else ' (--seeds)'}")
     for low, high in found.gaps:
-        stdout().print(f"{number(low, 5)} to {number(high, 5)} rpm: no stable motion of few cycles was found")
-    for one in found.attractors:
-        stdout().print(one.text)
+        lines.append(f"{number(low, 5)} to {number(high, 5)} rpm: no stable motion of few cycles was found")
+    lines += [one.text for one in found.attractors]
     for basin in _basins(found):
         least, most = (number(100.0 * share, 3) for share in basin.share_interval)
-        stdout().print(
+        lines.append(
             f"at the operating speed {number(100.0 * basin.share, 3)} % ({least} to {most} %) of the start "
             f"states lead to {motion(basin.dte_rms, basin.largest_load, basin.kind, basin.n)}"
         )
+    for line in lines:
+        stdout().print(line)
 
 
 def _basins(found: ResponseBranches) -> tuple[Basin, ...]:
@@ -150,15 +148,28 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, a
     with progress_bar("what removes jumps") as tell:
         branches = floquet.response_branches(pair, periods=(1, 2), seeds=0, progress=tell)
         removed = floquet.jumps_removed_by(branches, name)
-    names = [str(one) for one in found.data_vars if str(one).startswith("jump_")]
-    short = {one: one.removeprefix("jump_") for one in names}
-    if as_json:
-        jumps = found[names].rename(short).to_dataframe().to_dict("records")
-        about = {"gear_pair": pair.name, "axis": name, "values": values.tolist()}
-        print_json(about | {"jumps": jumps, "removed_by": removed})
-    else:
-        _print_map(pair, found, name, removed)
+    jumps = found.drop_dims([name, "speed_rpm"]).to_dataframe()
+    jumps = jumps.rename(columns=lambda column: column.removeprefix("jump_"))
     files.write(found)
+    if as_json:
+        about = {"gear_pair": pair.name, "axis": name, "values": values.tolist()}
+        print_json(about | {"jumps": jumps.to_dict("records"), "removed_by": removed})
+        return
+    unit = found[name].attrs["units"].removeprefix("1")
+    several = (found["motions"] > 1).mean("speed_rpm").to_series()
+    rows = []
+    for value, share in several.items():
+        here = jumps[jumps[name] == value].groupby(jumps["rising"].astype(bool))["speed_rpm"]
+        ways = {way: ", ".join(number(rpm, 5) for rpm in speeds) for way, speeds in here}
+        rows.append((value, ways.get(True, ""), ways.get(False, ""), f"{100.0 * share:.0f} %"))
+    title = f"{pair.name}: jumps over {found[name].attrs['long_name']}; share of speeds with several motions"
+    show(title, f">{name}{unit and f' [{unit}]'} | up at [rpm] | down at [rpm] | >share", rows)
+    if not removed:
+        stdout().print("the pair itself has no folds: nothing is to be removed")
+    for one in removed:
+        left = f"{one.direction} {name}, up to {number(one.limit, 3)} {unit}".rstrip() + ": jumps are left"
+        gone = f"no jumps are left from {name} = {number(one.value, 4)} {unit}".rstrip()
+        stdout().print(f"{gone} on ({one.direction} values)" if one.found else left)
 
 
 def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
@@ -180,28 +191,3 @@ def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
         "tip_relief": (0.0, max(20.0, 2.0 * own)),
     }
     return name, np.linspace(*ends[name], _VALUES)
-
-
-def _print_map(pair: GearPair, found: xr.Dataset, name: str, removed: tuple[JumpRemoval, ...]) -> None:
-    from validation.files.formatting import number
-
-    unit = found[name].attrs["units"]
-    unit = "" if unit == "1" else f" {unit}"
-    ways, speeds = found["jump_rising"].to_numpy().astype(bool), found["jump_speed_rpm"].to_numpy()
-    rows = []
-    for value in found[name].to_numpy():
-        here = found["jump_" + name].to_numpy() == value
-        up, down = (", ".join(number(float(s), 5) for s in speeds[here & (ways == w)]) for w in (True, False))
-        several = float((found["motions"].sel({name: value}) > 1).mean())
-        rows.append((number(float(value), 3), up, down, f"{100.0 * several:.0f} %"))
-    title = f"{pair.name}: jumps over {found[name].attrs['long_name']}; share of speeds with several motions"
-    heading = f">{name}{unit and f' [{unit.strip()}]'}"
-    stdout().print(table(title, heading, "up at [rpm]", "down at [rpm]", ">share", rows=rows))
-    if not removed:
-        stdout().print("the pair itself has no folds: nothing is to be removed")
-    for one in removed:
-        if one.found:
-            text = f"no jumps are left from {name} = {number(one.value, 4)}{unit} on ({one.direction} values)"
-        else:
-            text = f"{one.direction} {name}, up to {number(one.limit, 3)}{unit}: jumps are left"
-        stdout().print(text)

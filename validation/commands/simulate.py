@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
+from validation.commands.terminal import guarded, note, print_json, progress_bar, show
+from validation.files.formatting import number, quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,8 +54,10 @@ def simulate(
     """
     import lumped
     from lumped.errors import refuse
+    from lumped.model.results import cycle_peak_to_peak, load_range
+    from lumped.quasi_static.contacts import contact_of
+    from validation.validity.flags import contact_loss
 
-    opt.check_supports(pair, supports)
     rising, exact = run_up is not None, model == "multibody"
     for option, wrong, allowed in (
         ("--steady", steady and exact, "without --model multibody"),
@@ -86,54 +89,43 @@ def simulate(
 
             common |= {"fidelity": fidelity, "initial": initial}
             result = multibody.simulate(pair, cycles, progress=tell, **common)
-    from lumped.model.results import cycle_peak_to_peak, load_range
-    from lumped.quasi_static.contacts import contact_of
-    from validation.files.formatting import number, quantity
-    from validation.validity.flags import contact_loss
-
-    g = pair.geometry
+    g, form = pair.geometry, contact_of(pair)
     # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
     last = result.isel(time=slice(-samples - (not steady), None))
-    form = contact_of(pair)
     largest, smallest = load_range(pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
-    static = pair.operating.pinion_torque / g.base_radius_pinion
+    dte = cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None)
+    factor = largest / (pair.operating.pinion_torque / g.base_radius_pinion)
+    efficiency = f"mesh efficiency{'' if form.conservative else ', sliding alone'}"
     numbers = {
-        "dte_peak_to_peak": cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None),
-        "dte_mean": float(last["dte"][:samples].mean()),
-        "normal_load_max": largest,
-        "normal_load_min": smallest,
-        "load_factor": largest / static,
-        "mesh_efficiency": float(result.attrs["mesh_efficiency"]),
-        "brake_torque": float(result.attrs["brake_torque"]),
+        "dte_peak_to_peak": ("transmission error, peak to peak", dte, "m", 3),
+        "dte_mean": ("transmission error, mean", float(last["dte"][:samples].mean()), "m", 4),
+        "normal_load_max": ("largest load of a tooth pair", largest, "N", 3),
+        "normal_load_min": (f"smallest load of {form.pressed}", smallest, "N", 3),
+        "load_factor": ("largest load over static load", factor, "1", 3),
+        "mesh_efficiency": (efficiency, float(result.attrs["mesh_efficiency"]), "%", 4),
+        "brake_torque": ("brake torque that holds the speed", float(result.attrs["brake_torque"]), "N m", 6),
     }
     # Where energy is not conserved the brake torque balances sliding alone.
     if not form.conservative and "power_energy_residual" in result.attrs:
-        numbers["power_energy_residual"] = float(result.attrs["power_energy_residual"])
-    alone = "" if form.conservative else ", sliding alone"
+        residual = float(result.attrs["power_energy_residual"])
+        words = "losses that the torques do not balance"
+        numbers["power_energy_residual"] = (words, residual, "W", 4)
     if as_json:
-        print_json({"gear_pair": pair.name, "model": model, "supports": supports} | numbers)
+        values = {key: value for key, (_, value, *_) in numbers.items()}
+        print_json({"gear_pair": pair.name, "model": model, "supports": supports} | values)
     else:
-        rows = {
-            "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3, measured=True),
-            "transmission error, mean": quantity(numbers["dte_mean"], "m"),
-            "largest load of a tooth pair": quantity(largest, "N", 3, measured=True),
-            f"smallest load of {form.pressed}": quantity(smallest, "N", 3, measured=True),
-            "largest load over static load": number(numbers["load_factor"], 3, measured=True),
-            f"mesh efficiency{alone}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
-            "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
-        }
-        if "power_energy_residual" in numbers:
-            rows["losses that the torques do not balance"] = quantity(numbers["power_energy_residual"], "W")
-        title = f"{pair.name} on {supports}, last mesh cycle"
-        stdout().print(table(title, "quantity", ">value", rows=rows.items()))
+        rows = (
+            (words, quantity(100.0 * value if unit == "%" else value, unit, digits, measured=True))
+            for words, value, unit, digits in numbers.values()
+        )
+        show(f"{pair.name} on {supports}, last mesh cycle", "quantity | >value", rows)
     separation = contact_loss(pair, g, last)
     if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
         note(
             f"contact loss: {separation.detail}. Here the teeth pull instead, so the motion is not to be "
             "relied on. Use --model multibody, or more torque or damping."
         )
-    radius = float(result.attrs.get("spectral_radius", 0.0))
-    if radius > 1.0:
+    if (radius := float(result.attrs.get("spectral_radius", 0.0))) > 1.0:
         note(
             f"this periodic motion is unstable: a disturbance grows {number(radius)} times in a mesh cycle. "
             "See 'spurcheck stability', or raise the damping."
@@ -143,7 +135,6 @@ def simulate(
 
 def _show_run_up(name: str, result: xr.Dataset, *, as_json: bool) -> None:
     """Print where each mesh order is largest."""
-    from validation.files.formatting import number, quantity
     from validation.signals import waterfall
 
     amplitude = waterfall(result)["amplitude"]
@@ -153,6 +144,6 @@ def _show_run_up(name: str, result: xr.Dataset, *, as_json: bool) -> None:
     if as_json:
         print_json({"gear_pair": name, "variable": "dte", "largest": dict(zip(orders, at, strict=True))})
     else:
-        rows = [(f"{n}", quantity(a, "m", 3), number(rpm, 4)) for n, (a, rpm) in zip(orders, at, strict=True)]
+        rows = ((n, (a, "m"), rpm) for n, (a, rpm) in zip(orders, at, strict=True))
         title = f"{name}, run-up: transmission error"
-        stdout().print(table(title, ">mesh order", ">largest amplitude", ">at speed [rpm]", rows=rows))
+        show(title, ">mesh order | >largest amplitude | >at speed [rpm]", rows)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, show, stdout
+from validation.files.formatting import number
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -16,24 +17,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from floquet.gear.chart import LabelledRegion
-    from floquet.gear.tongues import StabilityMargins, TongueMargin
+    from floquet.gear.tongues import TongueMargin
     from lumped import GearPair
     from lumped.typing import FloatArray
 
 #: Speeds and damping ratios of a chart.
 _CHART = (801, 201)
-_AXES = {
-    "chart": "any axes",
-    "boundaries": "one axis other than speed_rpm, with or without speed_rpm,",
-    "campbell": "no axis but speed_rpm",
-}
+_BOTH = {"speed_rpm", "damping_ratio"}
+View = Literal["chart", "boundaries", "campbell"]
 
 
 @guarded
 def stability(
     pair: opt.AlikePair,
     files: opt.ResultFiles,
-    view: str = "chart",
+    view: View = "chart",
     axis: list[str] | None = None,
     tongues: bool = False,
     prove: bool = False,
@@ -70,7 +68,6 @@ def stability(
     from floquet.gear.tongues import campbell
 
     grid = opt.axes_values(axis, GEAR_AXES)
-    opt.check_supports(pair, supports)
     _check(view, grid, files, tongues, prove, supports)
     found = gear_pair_multipliers(pair, supports=supports)
     margin = 1.0 - found.spectral_radius
@@ -79,16 +76,13 @@ def stability(
         point |= {"certificate": found.certificate, "margin": margin}
         print_json({"gear_pair": pair.name, "supports": supports} | point)
     else:
-        from validation.files.formatting import number
-
         rows = {
             "verdict": found.verdict,
             "largest multiplier": f"{found.spectral_radius:.8f}",
             "bound on its error": f"{number(found.error, 2)} ({found.certificate})",
-            "margin, 1 - largest multiplier": number(margin),
+            "margin, 1 - largest multiplier": margin,
         }
-        title = f"{pair.name} on {supports}: operating point"
-        stdout().print(table(title, "quantity", ">value", rows=rows.items()))
+        show(f"{pair.name} on {supports}: operating point", "quantity | >value", rows.items())
     if files.paths or axis or tongues or prove or view != "chart":
         if view == "chart":
             files.write(*_chart(pair, grid, tongues, supports, prove))
@@ -101,37 +95,40 @@ def stability(
 
 
 def _check(
-    view: str, axes: Mapping[str, FloatArray], files: opt.Files, tongues: bool, prove: bool, supports: str
+    view: View,
+    axes: Mapping[str, FloatArray],
+    files: opt.Files,
+    tongues: bool,
+    prove: bool,
+    supports: opt.SupportsName,
 ) -> None:
     """Refuse what cannot be shown, before any work."""
+    from floquet.gear.axes import gear_grid
     from lumped.errors import refuse
     from validation.files.output import DATA_SUFFIXES
 
-    named, others, example = ", ".join(axes) or "none", len(set(axes) - {"speed_rpm"}), "Leave it out."
-    fits = {"chart": True, "boundaries": others == 1, "campbell": not others}.get(view, True)
+    named, others = ", ".join(axes) or "none", len(set(axes) - {"speed_rpm"})
     figure = next((one for one in files.paths if one.suffix.lower() not in DATA_SUFFIXES), None)
-    shafts, both, on_shafts = supports == "shafts", {"speed_rpm", "damping_ratio"}, "with --supports shafts"
-    if view == "boundaries":
-        example = "For example --axis damping_ratio=0.005:0.05:5."
+    shafts, layer = supports == "shafts", "--prove" if prove else "--tongues"
     for wrong, option, value, allowed, action in (
-        (view not in _AXES, "--view", view, ", ".join(_AXES), "For example --view campbell."),
-        (not fits, "--axis", named, f"{_AXES.get(view)} for --view {view}", example),
+        (view == "boundaries" and others != 1, "--axis", named, "one axis other than speed_rpm, with or "
+         "without speed_rpm, for --view boundaries", "For example --axis damping_ratio=0.005:0.05:5."),
+        (view == "campbell" and others, "--axis", named, "no axis but speed_rpm for --view campbell",
+         "Leave it out."),
+        (view != "chart" and (prove or tongues), layer, view, "--view chart", "Leave it out."),
         (figure and view == "chart" and len(axes) > 2, "--output", figure,
          "a chart of one or two axes for a figure", "Write .nc or .csv."),
-        (shafts and view == "campbell", "--view", view, f"chart, boundaries {on_shafts}",
+        (shafts and view == "campbell", "--view", view, "chart, boundaries with --supports shafts",
          "Or take --supports springs."),
-        (shafts and tongues, "--tongues", "given", f"nothing {on_shafts}",
+        (shafts and tongues, "--tongues", "given", "nothing with --supports shafts",
          "Or trace them over one axis with --view boundaries."),
-        (shafts and "bearing_stiffness" in axes, "--axis", "bearing_stiffness",
-         f"an axis of the pair {on_shafts}",
-         "Change the bearings of the shafts by --set shafts.pinion.bearings.1.loa_stiffness=..."),
-        (view != "chart" and prove, "--prove", view, "--view chart", "Leave it out."),
-        (view != "chart" and tongues, "--tongues", view, "--view chart", "Leave it out."),
-        (prove and axes and set(axes) != both, "--prove", named, "the axes speed_rpm and damping_ratio",
+        (prove and axes and set(axes) != _BOTH, "--prove", named, "the axes speed_rpm and damping_ratio",
          "Name both or none."),
     ):  # fmt: skip
         if wrong:
             raise refuse(option, value, allowed, action)
+    if axes:
+        gear_grid(axes, supports)
 
 
 def _chart(
@@ -156,16 +153,7 @@ def _chart(
         + f"most {float(chart['error'].where(chart['known']).max()):.1e}"
         + prove * f"\n{chart.attrs.get('proven_share', 0.0):.2%} of the area is proven, between points too"
     )  # fmt: skip
-    data = chart
-    regions: Sequence[TongueMargin | LabelledRegion] = ()
-    if tongues and set(grid) == {"speed_rpm", "damping_ratio"}:
-        traced = _traced(pair, grid["speed_rpm"])
-        edges = traced.dataset.rename(
-            damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper"
-        )
-        data, regions = chart.merge(edges, combine_attrs="override"), traced.tongues
-    elif tongues:
-        regions = _labelled(pair, chart)
+    data, regions = _tongues(pair, chart) if tongues else (chart, ())
 
     def draw() -> Figure:
         from validation.plots.stability import stability_figure
@@ -177,48 +165,48 @@ def _chart(
     return data, draw
 
 
-def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
-    """Trace the tongues over a range of speeds, and print them."""
+def _tongues(pair: GearPair, chart: xr.Dataset) -> tuple[xr.Dataset, Sequence[TongueMargin | LabelledRegion]]:
+    """Name the unstable regions of a chart and print them; over speed and damping trace them, too."""
+    from floquet.gear.chart import label_regions
     from floquet.gear.tongues import stability_margins
 
+    names = list(map(str, chart["spectral_radius"].dims))
+    if set(names) != _BOTH:
+        regions = label_regions(pair, chart)
+        columns = " | ".join(("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points"))
+        points = ([f"{one.point[name]:.6g}" for name in names] for one in regions)
+        rows = (
+            (str(one.label), *at, f"{one.radius:.6f}", str(one.nodes))
+            for one, at in zip(regions, points, strict=True)
+        )
+        show("unstable regions, by mode shape (w: natural frequencies)", columns, rows)
+        return chart, regions
     with progress_bar("tongues"):
-        found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
-    low, high = found.speed_range
+        found = stability_margins(pair, (float(chart["speed_rpm"].min()), float(chart["speed_rpm"].max())))
+    edges = found.dataset.rename(damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper")
     if (above := found.above) is not None:
         stdout().print(
             f"next tongue above the range, without mesh damping: {above.label}, {above.lower:.0f} to "
             f"{above.upper:.0f} rpm, closed by a mesh damping ratio of {above.critical_damping:.6f}"
         )
-    if not found.tongues:
+    if found.tongues:
+        show(
+            "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
+            "tongue | >from | >to | >multiplier | >critical damping | >closes at",
+            (
+                (t.label, f"{t.lower:.1f}", f"{t.upper:.1f}", f"{t.radius:.6f}", f"{t.critical_damping:.6f}",
+                 f"{t.tip_speed:.1f}")
+                for t in sorted(found.tongues, key=lambda t: -t.critical_damping)
+            ),
+        )  # fmt: skip
+        stdout().print(
+            f"Friction is constant at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio "
+            f"of {found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}."
+        )
+    else:
+        low, high = found.speed_range
         stdout().print(f"no tongue from {low:g} to {high:g} rpm, even without mesh damping")
-        return found
-    rows = [
-        (t.label, f"{t.lower:.1f}", f"{t.upper:.1f}", f"{t.radius:.6f}", f"{t.critical_damping:.6f}",
-         f"{t.tip_speed:.1f}")
-        for t in sorted(found.tongues, key=lambda t: -t.critical_damping)
-    ]  # fmt: skip
-    title = "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)"
-    headings = ("tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at")
-    stdout().print(table(title, *headings, rows=rows))
-    stdout().print(
-        f"Friction is constant at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio of "
-        f"{found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}."
-    )
-    return found
-
-
-def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
-    """Name the unstable regions of a chart, and print them."""
-    from floquet.gear.chart import label_regions
-
-    regions, names = label_regions(pair, chart), list(map(str, chart["spectral_radius"].dims))
-    headings = ("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points")
-    shown = table("unstable regions, by mode shape (w: natural frequencies)", *headings)
-    for region in regions:
-        place = [f"{region.point[name]:.6g}" for name in names]
-        shown.add_row(str(region.label), *place, f"{region.radius:.6f}", str(region.nodes))
-    stdout().print(shown)
-    return regions
+    return chart.merge(edges, combine_attrs="override"), found.tongues
 
 
 def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.SupportsName) -> xr.Dataset:
@@ -230,17 +218,14 @@ def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.Su
     ends, (name,) = (float(speeds.min()), float(speeds.max())), grid
     with progress_bar("boundaries") as tell:
         found = stability_boundaries(pair, ends, {name: grid[name]}, supports=supports, progress=tell)
-    rows = [
-        (
-            str(part["label"].item()),
-            str(int(part["present"].sum())),
-            f"{float(part['lower'].min()):.1f}",
-            f"{float(part['upper'].max()):.1f}",
-            f"{float(part['peak_radius'].max()):.6f}",
-        )
-        for part in (found.isel(tongue=row) for row in range(found.sizes["tongue"]))
-    ]
-    headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
-    none = f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value"
-    stdout().print(table(f"tongues over {GEAR_AXES[name].long_name}", *headings, rows=rows) if rows else none)
+    if not found.sizes["tongue"]:
+        stdout().print(f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value")
+        return found
+    rows = (
+        (str(one["label"].item()), str(int(one["present"].sum())), f"{float(one['lower'].min()):.1f}",
+         f"{float(one['upper'].max()):.1f}", f"{float(one['peak_radius'].max()):.6f}")
+        for one in (found.isel(tongue=row) for row in range(found.sizes["tongue"]))
+    )  # fmt: skip
+    columns = "tongue | >values | >from, rpm | >to, rpm | >largest multiplier"
+    show(f"tongues over {GEAR_AXES[name].long_name}", columns, rows)
     return found

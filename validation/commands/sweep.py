@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,13 +16,13 @@ from validation.commands.terminal import (
     guarded,
     note,
     progress_bar,
+    show,
     stderr,
     stdout,
-    table,
 )
 
 if TYPE_CHECKING:
-    from validation.studies import Study, Summary
+    from validation.studies import Study
 
 #: Time from which a study is hardly meant [h].
 _LONG = 48.0
@@ -62,13 +61,13 @@ def sweep(
     case_seconds : Longest time of a case in seconds on this machine; a longer one is ended and recorded.
     dry_run : Check the study, count its cases, estimate the time.
     """
+    from lumped.cache import cores
     from validation.studies import load_study, run_sweep
 
     # The folder's name never comes from inside the file.
     folder = output if output is not None else Path(f"{study.stem}-sweep")
     wanted = load_study(study)
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    processes = cores if workers is None else workers
+    processes = cores() if workers is None else workers
     what = f"{wanted.count} cases, {wanted.analysis}, on {processes} worker(s)"
     stderr().print(f"{wanted.name}: {what} -> {folder}")
     if dry_run:
@@ -94,7 +93,16 @@ def sweep(
         except KeyboardInterrupt:
             text = f"Stopped. What was computed is in {folder}; run the same command with --resume."
             fail(text, INTERRUPTED)
-    _print(summary)
+    show("", "status | >cases", ((s.name.lower().replace("_", " "), str(n)) for s, n in summary.statuses))
+    console = stdout()
+    for case, text in summary.failures:
+        console.print(f"case {case}: {text.partition(chr(10))[0]}", style="red")
+    if (more := summary.failed - len(summary.failures)) > 0:
+        console.print(f"... and {more} more: see status in the results")
+    console.print(
+        f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "
+        f"-> {summary.results}"
+    )
     raise typer.Exit(FAILED if summary.failed else 0)
 
 
@@ -112,18 +120,3 @@ def _estimate(study: Study, processes: int) -> None:
     stderr().print(f"about {seconds:.2g} s a case, {hours:.2g} hours in all on {max(processes, 1)} worker(s)")
     if hours > _LONG:
         note(f"{study.count} cases are {hours / 24.0:.3g} days: give fewer values of an axis, or samples.")
-
-
-def _print(summary: Summary) -> None:
-    console = stdout()
-    rows = [(status.name.lower().replace("_", " "), str(number)) for status, number in summary.statuses]
-    console.print(table("", "status", ">cases", rows=rows))
-    for case, text in summary.failures:
-        console.print(f"case {case}: {text.partition(chr(10))[0]}", style="red")
-    if summary.failed > len(summary.failures):
-        more = summary.failed - len(summary.failures)
-        console.print(f"... and {more} more: see status in the results")
-    console.print(
-        f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "
-        f"-> {summary.results}"
-    )

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import functools
 import inspect
-import json
-import math
 import os
 import re
 import sys
@@ -16,9 +14,9 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import asdict, is_dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, NoReturn
 
 import typer
 from rich.console import Console
@@ -26,6 +24,8 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 from typer.core import TyperCommand
+
+from validation.files.formatting import number, quantity
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
@@ -71,9 +71,7 @@ _PARSER = (
 _ENTRY = re.compile(r"^(\w+)(?: (\S+))? : (.*(?:\n +.*)*)", re.MULTILINE)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 #: Option that every command has, see ``guarded``.
-Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Print errors only: no tables, notes or progress.")
-]
+_QUIET = typer.Option("--quiet", "-q", help="Print errors only: no tables, notes or progress.")
 
 
 def stdout() -> Console:
@@ -87,43 +85,29 @@ def stderr() -> Console:
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """Print numbers for another program, as the only thing on stdout."""
-    typer.echo(json.dumps(_plain(data), indent=1, allow_nan=False))
+    """Print numbers and records for another program, as the only thing on stdout; not finite: null."""
+    from pydantic_core import to_json
 
-
-def _plain(value: Any) -> Any:
-    """Records and containers as JSON has them; a number that is not finite is null."""
-    if is_dataclass(value) and not isinstance(value, type):
-        value = asdict(value)
-    if isinstance(value, Mapping):
-        return {key: _plain(one) for key, one in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(one) for one in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    typer.echo(to_json(data, indent=1, inf_nan_mode="null"))
 
 
 class Once(TyperCommand):
     """Command that refuses an option which is given twice where only the last value would count."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse, and say what is wrong in plain words."""
+        """Parse after a look at the order of the parameters, and say what is wrong in plain words."""
         try:
-            return self._parsed(ctx, args)
+            _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+            for parameter, count in Counter(order).items():
+                if count > 1 and not (getattr(parameter, "is_flag", True) or parameter.multiple):
+                    name = max(parameter.opts, key=len)
+                    ctx.fail(f"{name} is given {count} times and takes one value: leave the others out.")
+            return super().parse_args(ctx, args)
         except Exception as error:
             usage: Any = error  # an error of usage has its text as an attribute
             for pattern, words in _PARSER if hasattr(error, "message") else ():
                 usage.message = re.sub(pattern, words, usage.message)
             raise
-
-    def _parsed(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse as usual, after a look at the order of the parameters."""
-        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
-        for parameter, count in Counter(order).items():
-            option = not getattr(parameter, "is_flag", True) and not getattr(parameter, "multiple", False)
-            if option and count > 1:
-                name = max(parameter.opts, key=len)
-                ctx.fail(f"{name} is given {count} times and takes one value: leave the others out.")
-        return super().parse_args(ctx, args)
 
 
 class Group(NamedTuple):
@@ -149,30 +133,32 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
     annotated: Any = Annotated
     groups: dict[str, Group] = {}
     #: Argument of a function that is called -> the option that it comes from.
-    options = {"samples_per_cycle": "--samples", "output": "--output"}
-    shown: list[inspect.Parameter] = []
-
-    def add(name: str, kind: Any, default: Any = None) -> None:
-        shown.append(
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
-        )
-
+    options = {
+        "samples_per_cycle": "--samples",
+        "output": "--output",
+        "supports": "--supports",
+        "axes": "--axis",
+    }
+    taken: list[tuple[str, Any, Any]] = []
     for one in inspect.signature(command, eval_str=True).parameters.values():
-        marks = [mark for mark in getattr(one.annotation, "__metadata__", ()) if isinstance(mark, Group)]
-        for mark in marks:
-            groups[one.name] = mark
-            for name, kind in mark.options.items():
-                add(name, kind)
+        kind = one.annotation
         if one.name in helps:
             metavar, words = helps[one.name]
             info = typer.Argument(metavar=metavar, help=words)
             if one.default is not one.empty:
                 options[one.name] = f"--{one.name.strip('_').replace('_', '-')}"
                 info = typer.Option(options[one.name], metavar=metavar, help=words)
-            add(one.name, annotated[one.annotation, info], one.default)
-        elif not marks:
-            add(one.name, one.annotation, one.default)
-    add("quiet", Quiet, False)
+            kind = annotated[kind, info]
+        group = next((m for m in getattr(kind, "__metadata__", ()) if isinstance(m, Group)), None)
+        if group is not None:
+            groups[one.name] = group
+            taken += [(name, kind, None) for name, kind in group.options.items()]
+            continue
+        taken.append((one.name, kind, one.default))
+    taken.append(("quiet", annotated[bool, _QUIET], False))
+    shown = [
+        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=d, annotation=k) for n, k, d in taken
+    ]
 
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:
@@ -232,25 +218,23 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
 
 def fail(text: str, code: int) -> NoReturn:
     """End the command with one message and an exit code."""
-    PlainConsole(stderr=True).print(
-        f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True
-    )
+    PlainConsole(stderr=True).print(f"[bold red]error:[/bold red] {escape(text)}", markup=True)
     raise typer.Exit(code)
 
 
 def unprinted(error: OSError) -> str:
     """Return the message for standard streams that take no more, and let the rest of them go nowhere."""
-    for stream, number in ((sys.stdout, 1), (sys.stderr, 2)):
+    for stream, descriptor in ((sys.stdout, 1), (sys.stderr, 2)):
         try:
             stream.flush()
         except OSError:  # what is left in its buffer would fail again, and decide the exit code
-            os.dup2(os.open(os.devnull, os.O_WRONLY), number)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), descriptor)
     return f"the result cannot be printed: {error.strerror or type(error).__name__}"
 
 
 def note(text: str) -> None:
     """Print a remark on stderr, apart from the result."""
-    stderr().print(f"[yellow]note:[/yellow] {escape(text)}", markup=True, soft_wrap=True)
+    stderr().print(f"[yellow]note:[/yellow] {escape(text)}", markup=True)
 
 
 @contextmanager
@@ -269,14 +253,23 @@ def progress_bar(text: str) -> Iterator[Progress]:
         yield tell
 
 
-def table(title: str, *columns: str, rows: Iterable[Sequence[str]] = ()) -> Table:
-    """Table for the terminal; columns whose heading starts with '>' are right-aligned."""
+def show(title: str, columns: str, rows: Iterable[Sequence[Any]]) -> None:
+    """Print a table on stdout; headings stand between bars, and one that starts with '>' aligns right.
+
+    Cells: text, a number, or a number with its unit: (value, "m").
+    """
     made = Table(title=title or None, title_justify="left", title_style="bold")
-    for column in columns:
+    for column in columns.split(" | "):
         right = column.startswith(">")
-        made.add_column(
-            column.removeprefix(">"), justify="right" if right else "left", no_wrap=right, overflow="fold"
-        )
+        side: Literal["right", "left"] = "right" if right else "left"
+        made.add_column(column.removeprefix(">"), justify=side, no_wrap=right, overflow="fold")
     for row in rows:
-        made.add_row(*row)
-    return made
+        made.add_row(*map(_cell, row))
+    stdout().print(made)
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, tuple):
+        size, unit = value
+        return quantity(size, unit, 3)
+    return value if isinstance(value, str | Text) else number(value)

@@ -38,7 +38,7 @@ def test_a_second_process_compiles_while_the_command_runs(
     started: list[subprocess.Popen[bytes]],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(kernels, "_processors", lambda: processors)
+    monkeypatch.setattr("lumped.cache.cores", lambda: processors)
     monkeypatch.setattr(kernels, "_all_stored", lambda: stored)
     with kernels.compiling(lambda fraction, stage="", /: None):
         assert len(started) == count

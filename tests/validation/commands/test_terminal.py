@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import lumped
 from lumped.schema.files import preset_text
 from validation.cli import app
-from validation.commands.terminal import PlainConsole, fail, note, table
+from validation.commands.terminal import PlainConsole, fail, note, show
 
 #: Text -> how it is shown: markup as it is written, characters that command a terminal as code writes them.
 TEXTS = {
@@ -29,13 +29,13 @@ TEXTS = {
 
 
 @pytest.mark.parametrize("text", TEXTS)
-def test_text_is_shown_as_it_is_written(text):
+def test_text_is_shown_as_it_is_written(text, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
     console = PlainConsole(file=io.StringIO(), width=200)
     console.print(text)
-    shown = table(text, text)
-    shown.add_row(text)
-    console.print(shown)
-    assert console.file.getvalue().count(TEXTS[text]) == 4
+    assert console.file.getvalue().count(TEXTS[text]) == 1
+    show(text, text, [(text,)])
+    assert capsys.readouterr().out.count(TEXTS[text]) == 3
 
 
 @pytest.mark.parametrize("text", TEXTS)
