@@ -23,7 +23,7 @@ from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.teeth.kernels import Tables
-from lumped.teeth.pairs import first_teeth, own_teeth, period_of
+from lumped.teeth.pairs import first_teeth, own_teeth, period_of, ripples
 from lumped.typing import FloatArray, IntArray
 
 #: Nodes at the ends of a step lie this fraction of a cycle inside it, and phases closer than this are one.
@@ -156,6 +156,8 @@ class Laws:
             z = one.error.size
             start = one.phase + 2.0 * np.pi * first[which] / z
             rows.append([one.eccentricity, start, z, g.L_XY, 1.0 / np.tan(g.operating_pressure_angle), 0.0])
+        for shaft, angle, start, size, _ in ripples(self.pair):
+            rows.append([size, start - 0.5 * np.pi, 2.0 * np.pi / angle, shaft, 0.0, 0.0])
         return np.array(rows)
 
 

@@ -52,7 +52,8 @@ class Tables(NamedTuple):
     pinion, gear : (z1, 3), (z2, 3) error, profile slope, tip relief of the teeth [m]
     constants : force F, lengthening, softening D, least load N_1, load of the full damper; see ``ContactLaw``
     eccentric : (2, 6) amplitude, phase at t = 0, teeth, L, cot(alpha_w) of pinion and gear, and way of the
-        common rotation on the base circles per amplitude
+        common rotation on the base circles per amplitude. A row more for each ripple of a torque, which has
+        this way alone: instead of the teeth the cycles of its period, instead of L its shaft
     first : teeth at A at t = 0, from 0
     period : mesh cycles until all repeats
     duration : of a mesh cycle [s]
@@ -104,7 +105,7 @@ def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> Non
     """Into ``found``: e, de/dcycles, dL, turn of the line (A, D), de/dtheta of both gears, shift of xi."""
     for i in range(8):
         found[i] = 0.0
-    for which in range(2):
+    for which in range(eccentric.shape[0]):
         size = eccentric[which, 0]
         if size == 0.0:
             continue
@@ -112,6 +113,9 @@ def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> Non
         # Whole turns are taken off first: a million cycles lose no digit.
         angle = turns * (cycles % eccentric[which, 2]) + eccentric[which, 1]
         cosine, sine = size * math.cos(angle), size * math.sin(angle)
+        found[7] += eccentric[which, 5] * sine
+        if which > 1:
+            continue
         sense = 1.0 - 2.0 * which
         found[0] += cosine
         found[1] -= turns * sine
@@ -120,7 +124,6 @@ def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> Non
         found[3] += line  # times the base radius of the gear, and of the pinion
         found[4] += line
         found[5 + which] = -sine
-        found[7] += eccentric[which, 5] * sine
 
 
 @inlined

@@ -19,8 +19,9 @@ from lumped.model.steady import balanced_start, periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import OwnMotion, moments, ripples, static_mesh, swinging, without_drift
+from lumped.teeth.motion import OwnMotion, moments, static_mesh, swinging, without_drift
 from lumped.teeth.motion_kernels import linear_cycles
+from lumped.teeth.pairs import ripples
 from lumped.typing import FloatArray
 
 #: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of that vibration, less
@@ -65,8 +66,7 @@ class LinearForm:
         self.steps = (which, end, p, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
         self.width = end.shape[2]
         #: Whether the cycles differ in their forcing alone, and in that by the errors of their teeth.
-        self.alike = self.fixed and len(self.laws.faults) == 1 and not pair.operating.torque_ripple
-        self.alike = self.alike and not self.own.eccentric[:, 0].any()
+        self.alike = self.fixed and len(self.laws.faults) == 1 and not self.own.eccentric[:, 0].any()
         count = self.own.period if most is None else min(most, self.own.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem, Supports
@@ -25,7 +25,7 @@ from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.kernels import Tables
 from lumped.teeth.motion_kernels import motion_cycles
-from lumped.teeth.pairs import first_teeth, numbers
+from lumped.teeth.pairs import numbers, ripples
 from lumped.typing import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -44,6 +44,8 @@ _MOST_SAMPLES, _LEAST_SAMPLES, _ALL_SAMPLES = 512, 32, 65536
 _STEPS, _LEAST_STEPS = 40, 128
 #: What a start is to have faded to before it is recorded, and most cycles for that.
 _FADED, _MOST_SETTLING = 1e-11, 20_000
+#: Largest swing of the common rotation over the base pitch: the contact follows it to first order.
+_MOST_SWING = 0.25
 #: Largest mismatch after the period, over the largest displacement, that is called periodic.
 _CLOSED = 1e-4
 
@@ -205,16 +207,29 @@ def moments(system: LTVSystem) -> FloatArray:
 
 
 def swinging(own: Tables, system: LTVSystem) -> Tables:
-    """Tables whose contact follows the common rotation as the moments of eccentric gears swing it.
+    """Tables whose contact follows the common rotation as eccentric gears and ripples of torques swing it.
 
-    ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2.
+    ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2, A cos by -cos.
     """
     g, support = system.pair.geometry, system.supports
     theta = system.gears[:2] @ support.common / float(support.common_weights @ support.common)
     way = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
-    omega = np.array([g.omega_pinion, g.omega_gear])
     eccentric = own.eccentric.copy()
-    eccentric[:, 5] = way * own.constants[0] * (moments(system) @ support.common_weights) / omega**2
+    omega = 2.0 * math.pi / (eccentric[:, 2] * own.duration)
+    turning = own.constants[0] * (moments(system) @ support.common_weights)
+    torques = np.stack([system.torque_pinion, system.torque_gear])[:, support.common_weights.size :]
+    by_torque = (torques @ support.common_weights)[eccentric[2:, 3].astype(np.int64)]
+    eccentric[:, 5] = way * np.append(turning, by_torque) / omega**2
+    swing, most = float(np.abs(eccentric[:, 5] * eccentric[:, 0]).sum()), _MOST_SWING * g.base_pitch
+    if swing > most:
+        raise refuse(
+            "operating.pinion_speed",
+            f"{g.omega_pinion * 30.0 / math.pi:.4g} rpm",
+            "one at which eccentric gears and torque ripples swing the train by at most a quarter of a base "
+            f"pitch, {most * 1e3:.3g} mm",
+            f"Here it is {swing * 1e3:.3g} mm. Add the inertia of motor and load to pinion.inertia and "
+            "gear.inertia.",
+        )
     return own._replace(eccentric=eccentric)
 
 
@@ -257,18 +272,6 @@ def run(
     )
     given = [np.ascontiguousarray(one) for one in arrays]
     return motion_cycles(corners, start, cycles, recorded, own, *given)
-
-
-def ripples(pair: GearPair) -> FloatArray:
-    """Rows of shaft, angle a mesh cycle, phase at t = 0, amplitude and cycles a turn of each harmonic."""
-    rows = []
-    for one in pair.operating.torque_ripple:
-        which = ("pinion", "gear").index(one.shaft)
-        teeth = (pair.pinion.teeth, pair.gear.teeth)[which]
-        angle = 2.0 * math.pi * one.order / teeth
-        start = one.phase + angle * first_teeth(pair)[which]
-        rows.append([which, angle, start, one.amplitude, teeth])
-    return np.reshape(np.array(rows, dtype=float), (-1, 5))
 
 
 def _power_matrix(system: LTVSystem) -> FloatArray:

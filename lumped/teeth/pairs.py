@@ -93,6 +93,18 @@ def first_teeth(pair: GearPair) -> tuple[int, int]:
     return pinion - 1, gear - 1
 
 
+def ripples(pair: GearPair) -> FloatArray:
+    """Rows of shaft, angle a mesh cycle, phase at t = 0, amplitude and cycles a turn of each harmonic."""
+    rows = []
+    for one in pair.operating.torque_ripple:
+        which = ("pinion", "gear").index(one.shaft)
+        teeth = (pair.pinion.teeth, pair.gear.teeth)[which]
+        angle = 2.0 * math.pi * one.order / teeth
+        start = one.phase + angle * first_teeth(pair)[which]
+        rows.append([which, angle, start, one.amplitude, teeth])
+    return np.reshape(np.array(rows, dtype=float), (-1, 5))
+
+
 def period_of(pair: GearPair) -> int:
     """Mesh cycles until every force repeats."""
     ripples = {one.shaft for one in pair.operating.torque_ripple}

@@ -256,8 +256,11 @@ def gradual(share: float) -> float:
 
 
 @compiled
-def relief_at(p: FloatArray, xi: float) -> tuple[float, float]:
-    """Material missing from both flanks at xi [m], each relief growing over its own roll angle; its slope."""
+def relief_at(p: FloatArray, xi: float, own_p: float, own_g: float) -> tuple[float, float]:
+    """Material missing from both flanks at xi [m], each relief growing over its own roll angle; its slope.
+
+    ``own_p``, ``own_g``: tip relief of the teeth of pinion and gear beyond that of the design [m].
+    """
     error = slope = 0.0
     for i in range(int(p[kn.RELIEFS])):
         row = kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * i
@@ -267,9 +270,11 @@ def relief_at(p: FloatArray, xi: float) -> tuple[float, float]:
         width = p[row + 2] - p[row + 1]
         share = (roll - p[row + 1]) / width
         if share > 0.0:
-            power = p[row + 4]
-            error += p[row + 3] * share**power
-            slope += p[row + 3] * power * share ** (power - 1.0) * sense / width
+            power, amount = p[row + 4], p[row + 3]
+            if width > 0.0:  # a tip relief: a root relief grows as the roll angle falls
+                amount += own_p if pinion else own_g
+            error += amount * share**power
+            slope += amount * power * share ** (power - 1.0) * sense / width
     return error, slope
 
 

@@ -170,11 +170,11 @@ def distance(
     # The loads of other pairs depend little on where exactly the pair will be.
     for _ in range(_PLACES if first or last else 0):
         if first:
-            gap = delta - relief_at(p, p[kn.L_XA])[0]
+            gap = delta - relief_at(p, p[kn.L_XA], 0.0, 0.0)[0]
             gap -= moved_by_others(p[kn.L_XA] - beyond, contacts, count, p)
             beyond = corner_reach(gap, p[kn.TIP_G], length, p[kn.RADIUS_G], p[kn.RADIUS_P])
         else:
-            gap = delta - relief_at(p, p[kn.L_XD])[0]
+            gap = delta - relief_at(p, p[kn.L_XD], 0.0, 0.0)[0]
             gap -= moved_by_others(p[kn.L_XD] + beyond, contacts, count, p)
             if kind == LET_GO:
                 beyond = let_go(gap, place, line, v, p, flags)

@@ -39,6 +39,7 @@ from multibody.contact.kinematics import (
     off_axis,
     overlap_rate,
     own_pair,
+    ripple_torques,
     sliding_velocity,
 )
 
@@ -61,6 +62,7 @@ def contact_forces(
     teeth = p[int(p[kn.OWN]) :]
     if p[kn.OWN] > 0.0:
         centres = off_axis(teeth, t, state, p[kn.OMEGA_P], p[kn.OMEGA_G])
+        ripples = ripple_torques(teeth, t, state[0], p[kn.OMEGA_P], p[kn.OMEGA_G])
         q, v = centres[0], centres[1]
     turned_p = p[kn.L_XA] + rp * (p[kn.OMEGA_P] * t - q[2])
     turned_g = p[kn.L_XY] - p[kn.L_XA] - rg * (p[kn.OMEGA_G] * t + q[5])
@@ -75,7 +77,7 @@ def contact_forces(
     count = int(np.int64(0))
     for side in range(2 if flags & kn.BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
-        own_teeth = OwnPair(0.0, 0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G])
+        own_teeth = OwnPair(0.0, 0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G], 0.0, 0.0)
         line, delta, rho, _ = mesh_position(t, q, p, flags, flank)
         ex, ey, length = line.ex, line.ey, line.length
         if not math.isfinite(delta):
@@ -97,13 +99,15 @@ def contact_forces(
             if p[kn.OWN] > 0.0 and side == 0:
                 own_teeth = own_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
             late, tip_p, tip_g = own_teeth.error, own_teeth.tip_p, own_teeth.tip_g
-            error, error_slope = relief_at(p, xi)
+            more_p, more_g = own_teeth.relief_p, own_teeth.relief_g
+            error, error_slope = relief_at(p, xi, more_p, more_g)
             error_slope += own_teeth.rise
             pressed, pressing = delta - error - late, rate - error_slope * xi_rate
             corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
             if flags & kn.TIP_CONTACT:
                 if xi < p[kn.L_XA] or xi > p[kn.L_XD]:
-                    error, error_slope = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))[0], 0.0
+                    error_slope, held = 0.0, min(max(xi, p[kn.L_XA]), p[kn.L_XD])
+                    error = relief_at(p, held, more_p, more_g)[0]
                 corners = corners_at(line, rho_p, rho_g, tip_p, tip_g)
                 beyond = rho_p > tip_p or rho_g > tip_g
                 pressed = delta - error - late - corners.gap
@@ -190,6 +194,8 @@ def contact_forces(
             count += 1
     if p[kn.OWN] > 0.0:
         move_moments(centres[2], wrench)
+        wrench[2] -= ripples[0]
+        wrench[5] -= ripples[1]
     total = 0.0
     for i in range(6):
         total += wrench[i]
@@ -228,7 +234,7 @@ def linear_forces(
             tilt = law_at(table, k + c + e + gap, table.shape[0] - 1, xi)[0]
         else:
             tilt = 0.0
-            error, slope = relief_at(p, xi)
+            error, slope = relief_at(p, xi, 0.0, 0.0)
             stiffness, stiffness_slope = stiffness_and_slope(table, xi)
             damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
         pressed, pressing = delta - error, rate - slope * speed

@@ -60,11 +60,15 @@ FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
 N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
 
 # Places in the block of teeth that differ: of pinion and gear eccentricity [m], its angle at t = 0 [rad],
-# number of teeth, tooth at A at t = 0; then the number of faults, the errors of the pinion's teeth and of
-# the gear's [m], their rise along the own base tangents from the pitch point [-], and a row for each fault.
+# number of teeth, tooth at A at t = 0; then the numbers of faults and of ripples, the errors of the pinion's
+# teeth and of the gear's [m], their rise along the own base tangents from the pitch point [-], their tip
+# relief beyond the design's [m], a row for each ripple of a torque, and one for each fault.
 ECCENTRICITY, ANGLE, TEETH, FIRST, OWN_COLUMNS = range(5)
 OWN_FAULTS = 2 * OWN_COLUMNS
-OWN_ERRORS = OWN_FAULTS + 1
+OWN_RIPPLES = OWN_FAULTS + 1
+OWN_ERRORS = OWN_RIPPLES + 1
+# Columns of a ripple: gear (1) or pinion (0), periods a turn, amplitude [N m], phase at t = 0 [rad].
+RIPPLE_GEAR, RIPPLE_ORDER, RIPPLE, RIPPLE_PHASE, RIPPLE_COLUMNS = range(5)
 # Columns of a fault: gear (1) or pinion (0), tooth from 0; of a crack the compliance over the square of the
 # arm of the load [1/(N m)], place of the root section on the centre line of the tooth [m], half its angle on
 # the base circle [rad]; of a spall both ends [m], compliance between them [m/N], depth [m]; where the flank
@@ -385,12 +389,29 @@ def move_moments(ways: FloatArray, wrench: FloatArray) -> None:
         wrench[x + 2] += ways[x] * wrench[x + 1] - ways[x + 1] * wrench[x]
 
 
+@compiled
+def ripple_torques(
+    own: FloatArray, t: float, q: FloatArray, omega_p: float, omega_g: float
+) -> tuple[float, float]:
+    """What the ripples add to the driving and to the braking torque, at the actual angles of the gears."""
+    torques = np.zeros(2)
+    row = OWN_ERRORS + 3 * (int(own[TEETH]) + int(own[OWN_COLUMNS + TEETH]))
+    for _ in range(int(own[OWN_RIPPLES])):
+        which = int(own[row + RIPPLE_GEAR])
+        angle = omega_g * t + q[5] if which else omega_p * t - q[2]  # the pinion turns clockwise
+        turned = own[row + RIPPLE_ORDER] * angle + own[row + RIPPLE_PHASE]
+        torques[which] += own[row + RIPPLE] * math.cos(turned)
+        row += RIPPLE_COLUMNS
+    return torques[0], torques[1]
+
+
 class OwnPair(NamedTuple):
     """What its two teeth make of a pair.
 
     error, rise : material missing on both flanks [m], and its slope along the path of contact
     softer, slope : compliance that faults add [m/N], and its slope along the path of contact
     tip_p, tip_g : where the flanks end, distances from X and Y [m]
+    relief_p, relief_g : tip relief beyond that of the design [m]
     """
 
     error: float
@@ -399,6 +420,8 @@ class OwnPair(NamedTuple):
     slope: float
     tip_p: float
     tip_g: float
+    relief_p: float
+    relief_g: float
 
 
 @compiled
@@ -417,13 +440,15 @@ def own_pair(
     z_p, z_g = int(own[TEETH]), int(own[OWN_COLUMNS + TEETH])
     pinion = (int(own[FIRST]) + number_p) % z_p
     gear = (int(own[OWN_COLUMNS + FIRST]) + number_g) % z_g
-    errors, rises = own[OWN_ERRORS:], own[OWN_ERRORS + z_p + z_g :]
+    errors, rises = own[OWN_ERRORS :], own[OWN_ERRORS + z_p + z_g :]
+    reliefs = rises[z_p + z_g :]
     rise, held = rises[pinion] - rises[z_p + gear], min(max(xi, p[L_XA]), p[L_XD])
     error = errors[pinion] + errors[z_p + gear] + rise * (held - p[L_XP])
     rise = rise if held == xi else 0.0
     softer, slope, tip_p, tip_g = 0.0, 0.0, p[TIP_P], p[TIP_G]
     for i in range(int(own[OWN_FAULTS])):
-        row = OWN_ERRORS + 2 * (z_p + z_g) + FAULT_COLUMNS * i
+        row = OWN_ERRORS + 3 * (z_p + z_g) + RIPPLE_COLUMNS * int(own[OWN_RIPPLES])
+        row += FAULT_COLUMNS * i
         of_gear = own[row + FAULT_GEAR] == 1.0
         if own[row + FAULT_TOOTH] != (gear if of_gear else pinion):
             continue
@@ -442,4 +467,4 @@ def own_pair(
         if own[row + SPALL_START] <= place < own[row + SPALL_END]:
             softer += own[row + SPALL]
             error += own[row + PIT]
-    return OwnPair(error, rise, softer, slope, tip_p, tip_g)
+    return OwnPair(error, rise, softer, slope, tip_p, tip_g, reliefs[pinion], reliefs[z_p + gear])

@@ -222,19 +222,16 @@ def own_block(pair: GearPair) -> FloatArray:
     """Teeth that differ, as numbers behind the parameters (see ``kinematics``); empty for like teeth."""
     if pair.healthy is pair:
         return np.zeros(0)
-    unread = ["operating.torque_ripple"] if pair.operating.torque_ripple else []
     teeth, firsts = own_teeth(pair), first_teeth(pair)
-    for name, one in zip(("pinion", "gear"), teeth, strict=True):
-        unread += [f"{name}.deviations.tip_relief"] if one.relief.any() else []
-    if unread:
-        allowed = (
-            "index, profile slopes, eccentricity and faults, all that the multibody model has of own teeth"
-        )
-        raise refuse(unread[0], "given", allowed, "Leave it out, or use lumped.steady_state.")
+    turned = [2.0 * math.pi * first / one.error.size for one, first in zip(teeth, firsts, strict=True)]
     rows = [
-        (one.eccentricity, one.phase + 2.0 * math.pi * first / one.error.size, one.error.size, first)
-        for one, first in zip(teeth, firsts, strict=True)
+        (one.eccentricity, one.phase + angle, one.error.size, first)
+        for one, angle, first in zip(teeth, turned, firsts, strict=True)
     ]
+    ripples = []
+    for one in pair.operating.torque_ripple:
+        which = int(one.shaft == "gear")
+        ripples += [which, one.order, one.amplitude, one.phase + one.order * turned[which]]
     faults = [
         _fault(pair, which, fault)
         for which, gear in enumerate((pair.pinion, pair.gear))
@@ -242,7 +239,9 @@ def own_block(pair: GearPair) -> FloatArray:
     ]
     flanks = (pair.flank(0), pair.flank(1))
     rises = [-one.slope / (flank.tip - flank.start) for one, flank in zip(teeth, flanks, strict=True)]
-    return np.concatenate([np.ravel(rows), [len(faults)], *(one.error for one in teeth), *rises, *faults])
+    counts = [len(faults), len(pair.operating.torque_ripple)]
+    lists = [one.error for one in teeth] + rises + [one.relief for one in teeth]
+    return np.concatenate([np.ravel(rows), counts, *lists, ripples, *faults])
 
 
 def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
@@ -405,7 +404,7 @@ def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, f
     """Reliefs that act: gear (0 pinion, 1 gear), roll angles of start and end [rad], amount [m], power.
 
     A tip relief ends at the tip, a root relief where the mate's tip touches last. Without
-    ``mesh.relief = "static"`` none acts.
+    ``mesh.relief = "static"`` none acts but what single teeth have beyond it, with the amount 0 here.
     """
     rows = []
     for which, gear, base, tip, mate in (
@@ -413,9 +412,12 @@ def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, f
         (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.reach_pinion),
     ):
         for relief, end in ((gear.tip_relief, tip), (gear.root_relief, drawn.tangent - mate)):
-            if pair.mesh.relief == "static" and relief is not None and relief.amount != 0.0:
-                power = 1.0 if relief.shape == "linear" else 2.0
-                rows.append((which, relief.start_roll_angle, end / base, relief.amount, power))
+            own = gear.deviations is not None and gear.deviations.tip_relief is not None
+            acts = pair.mesh.relief == "static"
+            if relief is None or not (own or (acts and relief.amount != 0.0)):
+                continue
+            power, amount = 1.0 if relief.shape == "linear" else 2.0, relief.amount if acts else 0.0
+            rows.append((which, relief.start_roll_angle, end / base, amount, power))
     return rows
 
 

@@ -120,7 +120,7 @@ def _relief(pair: GearPair) -> Iterator[Check]:
     if not reliefs:
         return
     xi, p = _inside(pair), machine(pair.with_({"mesh.relief": "static"})).parameters
-    own = np.array([relief_at(p, x)[0] for x in xi])
+    own = np.array([relief_at(p, x, 0.0, 0.0)[0] for x in xi])
     scale = float(sum(r.amount for r in reliefs))
     yield rows(
         "relief of both flanks", _OWN, 1e-9, np.stack([relief_error(pair, xi), own], axis=1) / scale + 1.0
@@ -177,7 +177,7 @@ class _Mesh:
         for i, xi in enumerate(places):
             arms = xi + half, p[kn.L_XY] - xi + half
             corners = corners_at(line, *arms, p[kn.TIP_P], p[kn.TIP_G])
-            relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))
+            relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]), 0.0, 0.0)
             found[i], wrench = delta - relief - corners.gap, np.zeros(6)
             add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)
             tilt[i] = -wrench[1]
