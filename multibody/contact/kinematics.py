@@ -440,7 +440,7 @@ def own_pair(
     z_p, z_g = int(own[TEETH]), int(own[OWN_COLUMNS + TEETH])
     pinion = (int(own[FIRST]) + number_p) % z_p
     gear = (int(own[OWN_COLUMNS + FIRST]) + number_g) % z_g
-    errors, rises = own[OWN_ERRORS :], own[OWN_ERRORS + z_p + z_g :]
+    errors, rises = own[OWN_ERRORS:], own[OWN_ERRORS + z_p + z_g :]
     reliefs = rises[z_p + z_g :]
     rise, held = rises[pinion] - rises[z_p + gear], min(max(xi, p[L_XA]), p[L_XD])
     error = errors[pinion] + errors[z_p + gear] + rise * (held - p[L_XP])

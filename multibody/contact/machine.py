@@ -133,6 +133,9 @@ def machine(
     lose contact, the stiffness holds wherever teeth touch; else relief takes it off where the lumped model
     sees no contact. ``cycle`` is the lumped mesh cycle, where it is known.
     """
+    if supports == "shafts" and pair.operating.torque_ripple:
+        allowed = "'springs' where a torque ripples: here it acts on the gear"
+        raise refuse("supports", supports, allowed, "Leave operating.torque_ripple out.")
     drawn, (mass, inertia) = circles(pair), masses(pair)
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
     tooth_p = base_tooth_angle(pair, pair.pinion, drawn.base_pinion)

@@ -31,6 +31,8 @@ MEASURES = (
     "it, and the mean off the line of action by the deflection under the friction force, where these are "
     "larger."
 )
+#: Swing of the rotation, over the base pitch, from which on it is named where teeth differ.
+_TURNS = 0.01
 #: Effect of the exact model -> what it is, and what to do. What both leave is where the teeth touch.
 _SWITCHED = {
     "rotation_phase": (
@@ -93,16 +95,23 @@ def whole_difference(check: CrossCheck) -> str:
 
 
 def cause_of_difference(check: CrossCheck) -> str:
-    """The effect that explains most of the difference in what uses most of its limit; else empty."""
+    """The effect that explains most of the difference in what uses most of its limit.
+
+    Where teeth differ, a swing of the free shafts that is large beside the base pitch; else empty.
+    """
+    g = check.pair.geometry
+    turn = float(np.ptp(check.multibody["exact"]["theta_p"].to_numpy())) * g.base_radius_pinion / g.base_pitch
     if check.pair.healthy is not check.pair:
-        return ""
+        more = _SWITCHED["rotation_phase"][1]
+        swings = (
+            f"Eccentric gears and torque ripples swing the free shafts by {percent(turn)} of a base pitch"
+        )
+        return f"{swings}, which the lumped contact follows to first order.{more}" if turn > _TURNS else ""
     worst = check.worst("exact")
     left = {effect: _without(check, worst.quantity, effect) for effect in _SWITCHED}
     effect = min(left, key=lambda name: left[name])
     if left[effect] > 0.5 * worst.difference:
         return f"No effect alone explains half of it. {_CONTACT}"
-    g = check.pair.geometry
-    turn = float(np.ptp(check.multibody["exact"]["theta_p"].to_numpy())) * g.base_radius_pinion / g.base_pitch
     words, more = _SWITCHED[effect]
     rest = f"Without it the {NAMES[worst.quantity]} differs by {share(left[effect])}.{more}"
     return f"Most of it comes from one effect: {words.format(turn=percent(turn))}. {rest}"

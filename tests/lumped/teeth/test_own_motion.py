@@ -278,7 +278,7 @@ def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded, form):
     pair = loaded.with_({"operating.torque_ripple": ripple, "mesh.contact": contact, **still})
     with pytest.raises(lumped.ParameterError, match="Add the inertia of motor"):  # swings by centimetres
         lumped.steady_state(pair.with_(operating__pinion_speed=200), touch=touch)
-    run = lumped.steady_state(pair, samples_per_cycle=16, touch=touch)
+    run = lumped.steady_state(pair, samples_per_cycle=512, touch=touch)
     load = run.normal_load.sum("pair").values
     first = 2.0 * np.fft.rfft(load)[5] / load.size * pair.geometry.base_radius_pinion
     near = 5e-3 if contact == "loaded" else 0.1  # in fixed windows the load rings after each change
