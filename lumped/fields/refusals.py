@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from types import UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -16,6 +18,7 @@ from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, s
 from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
 
+Model = TypeVar("Model", bound=BaseModel)
 #: What pydantic puts into a place for the parts of a union of plain types.
 _UNION_PARTS = {"int", "float", "str"}
 #: Keys of other gear programs -> what to do, for they are no misspelt keys of this one.
@@ -34,6 +37,19 @@ _ELSEWHERE = {
 }
 _ACTIONS = {key: action for keys, action in _ELSEWHERE.items() for key in keys}
 _NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
+
+
+def made_of(root: type[Model], data: Mapping[str, Any], source: str, folder: Path = Path()) -> Model:
+    """Make a model of plain data in file units, or refuse the data; ``source`` says where they come from.
+
+    Data files that the data name are read relative to ``folder``.
+    """
+    try:
+        return root.model_validate(data, context={"folder": folder})
+    except ParameterError as error:
+        raise ParameterError(list(error.problems), source) from None
+    except ValidationError as error:
+        raise ParameterError(translated(error, root), source) from None
 
 
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:

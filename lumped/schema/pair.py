@@ -14,12 +14,12 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 from pydantic.fields import FieldInfo
 
 from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
-from lumped.fields.refusals import field_of, translated
+from lumped.fields.refusals import field_of, made_of
 from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity, QuantityRange, to_stated
 from lumped.friction.base import ContactPath
@@ -372,10 +372,7 @@ def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> Ge
     if data.get("format", FORMAT) != FORMAT:
         action = "Use a later release of spurcheck, or correct the number."
         raise refuse("format", data["format"], f"{FORMAT}, the format of this release", action)
-    try:
-        return GearPair.model_validate(fields, context={"folder": folder})
-    except ValidationError as error:
-        raise ParameterError(translated(error, GearPair), source) from None
+    return made_of(GearPair, fields, source, folder)
 
 
 def field_at(path: str) -> FieldInfo:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lumped import GearPair
+from lumped.labelling import source_hash
 from tests.evidence.check import Check
 from tests.evidence.elasticity import elasticity
 from tests.evidence.floquet.closed_forms import (
@@ -26,7 +27,6 @@ from tests.evidence.published import published
 from tests.evidence.reference_model.checks import reference_model
 from tests.evidence.stability_routes import stability_routes
 from tests.evidence.written_twice import written_twice
-from validation.reporting.chapters.evidence import source_hash
 
 ROOT = Path(__file__).parents[2]
 TARGET = ROOT / "validation" / "evidence.json"

@@ -7,13 +7,13 @@ import math
 import pytest
 
 import lumped
+from lumped import labelling
 from tests.evidence.__main__ import main
 from tests.evidence.check import Check, failing
 from tests.evidence.kinds import KINDS, OF_PAIRS, TARGET
 from tests.evidence.pairs import gear_pairs
 from tests.evidence.published_stiffness import RIMS, framed, framed_pairs, held_rim
 from tests.evidence.refinement import Level, Refinement, refinements
-from validation.reporting.chapters import evidence
 
 
 @pytest.mark.parametrize("number", range(3), ids=["default", "asymmetric", "loaded"])
@@ -54,20 +54,20 @@ def test_the_command_prints_a_kind_and_refuses_what_is_none(capsys):
 
 def test_a_changed_source_is_noticed(tmp_path, monkeypatch):
     roots = {}
-    for package in evidence._OWN:
+    for package in labelling._OWN:
         roots[package] = tmp_path / package
         roots[package].mkdir()
         (roots[package] / "a.py").write_text("x = 1")
-    monkeypatch.setattr(evidence.resources, "files", lambda name: roots[name])
-    first = evidence.source_hash.__wrapped__()
+    monkeypatch.setattr(labelling.resources, "files", lambda name: roots[name])
+    first = labelling.source_hash.__wrapped__()
     assert len(first) == 64
-    assert evidence.source_hash.__wrapped__() == first
-    for package in evidence._OWN:
+    assert labelling.source_hash.__wrapped__() == first
+    for package in labelling._OWN:
         (roots[package] / "a.py").write_text("x = 2")
-        assert evidence.source_hash.__wrapped__() != first
+        assert labelling.source_hash.__wrapped__() != first
         (roots[package] / "a.py").write_text("x = 1")
     (roots["lumped"] / "a.py").rename(roots["lumped"] / "b.py")
-    assert evidence.source_hash.__wrapped__() != first
+    assert labelling.source_hash.__wrapped__() != first
 
 
 def test_finite_elements_of_another_program_on_a_held_rim():

@@ -257,7 +257,7 @@ delimiter = ";"
 decimal = ","
 pinion_speed = 800
 pinion_torque = "79.1 N*m"
-abscissa = { kind = "roll_angle", column = "roll", unit = "deg" }
+abscissa = { kind = "time", column = "t", unit = "ms" }
 [[channel]]
 name = "normal"
 column = "N A"

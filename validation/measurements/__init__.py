@@ -1,7 +1,7 @@
 """Measured records beside predictions, and the friction identified from them."""
 
+from validation.measurements.comparison import Prediction, predict
 from validation.measurements.identification import Evaluation, Identification, evaluate
-from validation.measurements.prediction import Prediction, predict
 from validation.measurements.record import Measurement, MeasurementSpec, load_measurement
 
 __all__ = [

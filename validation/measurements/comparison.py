@@ -1,36 +1,105 @@
-"""A record beside its prediction: aligned by mesh phase, sample by sample, and as metrics.
+"""A record beside its prediction: read by mesh phase, aligned by it, sample by sample, and as metrics.
 
-Source: docs/theory/equations.md, "Frame", for what the phase is.
+Sources: docs/theory/equations.md, "Frame", for what the phase is, "Periodic motion and the brake torque".
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
-from lumped.arguments import real_number
+from lumped import Geometry, steady_state
+from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
-from validation.measurements.prediction import Prediction
-from validation.measurements.record import QUANTITIES, Channel, Measurement
+from lumped.typing import BoolArray, FloatArray
+from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
 
+_SAMPLES = 1024  # of a prediction per mesh cycle
 _COARSE = 32  # trial shifts per mesh cycle
 _COARSE_SAMPLES = 2000
 _ZOOM = 4
 _FINEST = 1e-6  # mesh cycles
 _FARTHEST = 1e9  # mesh cycles, where double precision still resolves the finest shift
 
-#: Metric -> unit, plain name.
-METRICS = {
-    "bias": ("SI, by channel", "mean of measured - predicted"),
-    "rms": ("SI, by channel", "root mean square of measured - predicted"),
-    "relative_rms": ("1", "rms over the prediction's peak to peak"),
-    "correlation": ("1", "Pearson correlation of measured and predicted"),
-}
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Periodic motion of a gear pair, read by mesh cycles u since pair A was at point A.
+
+    Attributes
+    ----------
+    pair : the gear pair at the record's operating point
+    cycle : one mesh cycle of results, ``lumped.steady_state``
+    recurrence : mesh cycles after which the same labelled pair is in contact again
+    """
+
+    pair: GearPair
+    cycle: xr.Dataset
+    recurrence: int
+
+    @property
+    def geometry(self) -> Geometry:
+        """Of the pair."""
+        return self.pair.geometry
+
+    def age(self, cycles: ArrayLike, label: str) -> FloatArray:
+        """Mesh cycles since the labelled pair was last at A; in contact while below the contact ratio."""
+        u = np.asarray(cycles, dtype=float) - PAIR_LABELS.index(label)
+        return np.asarray(np.mod(u, self.recurrence), dtype=np.float64)
+
+    def contact(self, cycles: ArrayLike, label: str) -> BoolArray:
+        """Whether the labelled pair is in contact."""
+        return np.asarray(self.age(cycles, label) < self.geometry.contact_ratio, dtype=np.bool_)
+
+    def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
+        """A predicted quantity [SI] at mesh cycles u; of one labelled pair where it has pairs."""
+        places, values = self._curves[quantity]
+        if label is None:
+            u = np.mod(np.asarray(cycles, dtype=float), 1.0)
+            return np.asarray(np.interp(u, places, values, period=1.0), dtype=np.float64)
+        age = self.age(cycles, label)
+        inside = age < self.geometry.contact_ratio
+        return np.asarray(np.where(inside, np.interp(age, places, values), 0.0), dtype=np.float64)
+
+    @cached_property
+    def _curves(self) -> dict[str, tuple[FloatArray, FloatArray]]:
+        """Quantity -> mesh cycles and values: over one cycle, or of one tooth pair from A to D.
+
+        Whole cycles after A a tooth pair is that many slots ahead. Past the last sample before D its value
+        holds.
+        """
+        grid = self.cycle["time"].to_numpy() / self.geometry.mesh_period
+        slots = np.arange(self.geometry.pairs)
+        life = (slots[:, None] + grid).ravel()
+        inside = life < self.geometry.contact_ratio
+        found = {}
+        for name, (_, paired) in QUANTITIES.items():
+            values = self.cycle[name].to_numpy()
+            found[name] = (life[inside], values[slots[::-1]].ravel()[inside]) if paired else (grid, values)
+        return found
+
+
+def predict(pair: AnyPair, *, recurrence: int | None = None) -> Prediction:
+    """Predict the periodic motion of a pair; between samples it is interpolated linearly.
+
+    Parameters
+    ----------
+    pair : a validated gear pair, at the operating point of the record: ``Measurement.at``
+    recurrence : see ``Prediction``; default the pinion's number of teeth
+    """
+    pair = load_gear_pair(pair)
+    again = pair.pinion.teeth
+    if recurrence is not None:  # no fewer than the pairs in contact at once
+        advice = "Count the mesh cycles until the same labelled pair is in contact again."
+        again = whole_number("recurrence", recurrence, pair.geometry.pairs, 1_000_000, advice)
+    return Prediction(pair, steady_state(pair, samples_per_cycle=_SAMPLES), again)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,22 +119,10 @@ class Alignment:
     standard_error: float
     share_explained: float = 1.0
 
-    @property
-    def sample_spacing(self) -> float:
-        """Median distance of the samples [mesh cycles]."""
-        return float(np.median(np.diff(self.cycles)))
-
 
 def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
-    """Mesh cycles of the samples before alignment, (k,) [-].
-    From roll angles eps of pair A's contact on the pinion, xi = r_bp eps and u = (xi - L_XA)/lambda; from
-    times, u = t/T_m at the record's speed.
-    """
+    """Mesh cycles of the samples before alignment, (k,) [-]: u = t/T_m at the record's speed."""
     g = pair.with_({"operating.pinion_speed": measurement.spec.pinion_speed}).geometry
-    if measurement.spec.abscissa.kind == "roll_angle":
-        return np.asarray(
-            (g.base_radius_pinion * measurement.abscissa - g.L_XA) / g.base_pitch, dtype=np.float64
-        )
     return np.asarray(measurement.abscissa / g.mesh_period, dtype=np.float64)
 
 
@@ -141,8 +198,8 @@ def overlay(
 ) -> xr.Dataset:
     """Measured and predicted values over one engagement (pair channels) or one mesh cycle, in phase bins.
 
-    Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0. ``METRICS`` of all
-    samples are over ``channel``; the relative one is NaN where the prediction is constant.
+    Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0. Metrics of
+    all samples are over ``channel``; the relative one is NaN where the prediction is constant.
     """
     rows, metrics = [], []
     one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
@@ -158,9 +215,10 @@ def overlay(
         rows.append((measured, predicted, scatter, (np.arange(bins) + 0.5) * reach / bins, count))
         # A constant prediction, such as no friction, has no scale.
         span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair))) or np.nan
-        rms, vary = float(np.sqrt(np.mean((y - p) ** 2))), bool(np.ptp(y) and np.ptp(p))
-        metrics.append((float(np.mean(y - p)), rms, rms / span, np.corrcoef(y, p)[0, 1] if vary else 0.0))
+        one, vary = float(np.sqrt(np.mean((y - p) ** 2))), bool(np.ptp(y) and np.ptp(p))
+        metrics.append((float(np.mean(y - p)), one, one / span, np.corrcoef(y, p)[0, 1] if vary else 0.0))
     measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
+    bias, rms, relative, correlation = map(list, zip(*metrics, strict=True))
     dims, own = ("channel", "bin"), "SI, by channel"
     units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
     return labelled_dataset(
@@ -171,10 +229,10 @@ def overlay(
             "phase": (dims, phase, "1", "middle of the bin, mesh cycles since A"),
             "count": (dims, count, "1", "samples in the bin"),
             "units": ("channel", units, "1", "SI unit of the channel"),
-        }
-        | {
-            name: ("channel", list(column), unit, words)
-            for (name, (unit, words)), column in zip(METRICS.items(), zip(*metrics, strict=True), strict=True)
+            "bias": ("channel", bias, own, "mean of measured - predicted"),
+            "rms": ("channel", rms, own, "root mean square of measured - predicted"),
+            "relative_rms": ("channel", relative, "1", "rms over the prediction's peak to peak"),
+            "correlation": ("channel", correlation, "1", "Pearson correlation of measured and predicted"),
         },
         {"channel": ([c.name for c in measurement.spec.channel], "1", "channel")},
         {"record": measurement.spec.name, "source": measurement.spec.source},

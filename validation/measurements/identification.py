@@ -32,8 +32,7 @@ from lumped.friction.registry import file_name, laws_with_friction
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
-from validation.measurements.comparison import Alignment, align, overlay
-from validation.measurements.prediction import Prediction, predict
+from validation.measurements.comparison import Alignment, Prediction, align, overlay, predict
 from validation.measurements.record import PAIR_LABELS, Measurement
 
 #: Level of the confidence interval.
@@ -50,7 +49,6 @@ class Identification:
     Attributes
     ----------
     parameter : "mu" (constant coefficient) or "scale on <law>"
-    law : name of the friction law that is scaled; None for a constant
     estimate, standard_error : [-]
     low, high : ends of the 95 % confidence interval [-]
     mean_mu : mean of |mu| over the path of contact that the estimate means [-]
@@ -59,7 +57,6 @@ class Identification:
     """
 
     parameter: str
-    law: str | None
     estimate: float
     standard_error: float
     low: float
@@ -110,7 +107,7 @@ def evaluate(
     measurement : the record
     pair : the gear pair; speed and torque are the record's, the friction law is the pair's
     identify : "mu" for a constant coefficient, or the name of a friction law for a scale on it
-    shift : a known mesh phase [mesh cycles], 0 for exact roll angles; default: found from the record
+    shift : a known mesh phase [mesh cycles]; default: found from the record
 
     Raises
     ------
@@ -123,16 +120,12 @@ def evaluate(
     wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)
     prediction = predict(measurement.at(pair), recurrence=measurement.spec.recurrence)
     phase = align(measurement, prediction, shift=shift)
-    return Evaluation(
-        measurement=measurement,
-        prediction=prediction,
-        alignment=phase,
-        points=overlay(measurement, prediction, phase),
-        found=tuple(
-            identify_friction(measurement, prediction, phase, law=None if name == CONSTANT else name)
-            for name in wanted
-        ),
+    found = (
+        identify_friction(measurement, prediction, phase, law=None if name == CONSTANT else name)
+        for name in wanted
     )
+    points = overlay(measurement, prediction, phase)
+    return Evaluation(measurement, prediction, phase, points, tuple(found))
 
 
 def identify_friction(
@@ -152,7 +145,6 @@ def identify_friction(
     mean = 1.0 if law is None else mean_coefficient(friction_path_function(prediction.pair, law=law))
     return Identification(
         parameter=CONSTANT if law is None else f"scale on {law}",
-        law=law,
         estimate=beta,
         standard_error=error,
         low=beta - reach,
@@ -190,7 +182,7 @@ def _collected(
     loads = {label: name for name, label in measurement.named("normal_load")}
     law_shape = None if law is None else friction_path_function(prediction.pair, law=law)
     g, u = prediction.geometry, alignment.cycles
-    guard = (3.0 * alignment.standard_error + alignment.sample_spacing) * g.base_pitch
+    guard = (3.0 * alignment.standard_error + float(np.median(np.diff(u)))) * g.base_pitch
     noises = {name: value for name, value in measurement.noise.items() if value is not None}
     # All or none: weights compare the channels with each other.
     known = all(name in noises for name in [*(name for name, _ in frictions), *loads.values()])
@@ -200,7 +192,7 @@ def _collected(
         if loads and label not in loads:
             advice = "Leave out all normal loads to use predicted ones."
             raise refuse("channel", name, f"a normal_load of pair {label} too", advice)
-        xi = prediction.position(u, label)
+        xi = g.L_XA + prediction.age(u, label) * g.base_pitch
         inside = prediction.contact(u, label) & (np.abs(xi - g.L_XP) > guard)
         load = measurement.channels[loads[label]] if loads else prediction.value("normal_load", u, label)
         of_friction = noises[name] if known else 1.0

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from lumped.arguments import file_path
 from lumped.errors import ParameterError, refuse, shown
-from lumped.fields.refusals import translated
+from lumped.fields.refusals import made_of
 from lumped.fields.section import OneOf, Section, Text
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.fields.units import Quantity, to_si
@@ -39,12 +39,10 @@ _LARGEST = 1e100
 
 
 class Abscissa(Section):
-    """Where the samples lie: a column of times or roll angles, or a constant sampling rate."""
+    """Where the samples lie: a column of times, or a constant sampling rate."""
 
-    kind: Literal["time", "roll_angle", "sampled"] = Field(
-        description="time, pinion roll angle at the contact of pair A, or equidistant samples in time"
-    )
-    column: str | None = Field(None, description="column of the times or roll angles")
+    kind: Literal["time", "sampled"] = Field(description="a column of times, or equidistant samples in time")
+    column: str | None = Field(None, description="column of the times")
     unit: str | None = Field(None, description="its unit")
     sampling_rate: Annotated[float | None, Quantity("Hz", above=0, optional=True)] = Field(
         None, description="samples per second, for kind 'sampled'"
@@ -56,9 +54,8 @@ class Abscissa(Section):
         wanted = {"sampling_rate"} if self.kind == "sampled" else {"column", "unit"}
         if given != wanted:
             allowed = f"{' and '.join(sorted(wanted))} for kind '{self.kind}'"
-            raise refuse(
-                sorted(given ^ wanted)[0], ", ".join(sorted(given)), allowed, "Correct the abscissa."
-            )
+            first = sorted(given ^ wanted)[0]
+            raise refuse(first, ", ".join(sorted(given)), allowed, "Correct the abscissa.")
         return self
 
 
@@ -126,7 +123,7 @@ class Measurement:
     Attributes
     ----------
     spec : the description it was read with
-    abscissa : (k,) times [s], or pinion roll angles of pair A [rad], increasing
+    abscissa : (k,) times [s], increasing
     channels : channel name -> (k,) values in the SI unit of its quantity
     noise : channel name -> standard deviation of its noise in that unit, or None where it is not known
     """
@@ -167,12 +164,7 @@ def load_measurement(source: str | Path | Mapping[str, Any]) -> Measurement:
             raise refuse("measurement", path, "the description of a record, a .toml file", action)
         folder, name = path.parent, str(path)
         data = parse_toml(read_text(path, _MAX_FILE_BYTES, kind="TOML file"), name)
-    try:
-        spec = MeasurementSpec.model_validate(data)
-    except ParameterError as error:
-        raise ParameterError(list(error.problems), name) from None
-    except ValidationError as error:
-        raise ParameterError(translated(error, MeasurementSpec), name) from None
+    spec = made_of(MeasurementSpec, data, name)
     if not spec.data:
         raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
     path = folder / spec.data
@@ -200,7 +192,10 @@ def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
     if spec.abscissa.sampling_rate is not None:
         abscissa = np.arange(table.shape[0]) / spec.abscissa.sampling_rate
     else:
-        abscissa = _abscissa(spec.abscissa, table[:, -1])
+        abscissa = table[:, -1] * _si_factor(str(spec.abscissa.unit), "s", "abscissa.unit")
+        if (back := np.flatnonzero(np.diff(abscissa) <= 0.0)).size:
+            place = f"row {back[0] + 2} is not beyond the row before"
+            raise refuse("abscissa.column", place, "increasing values", "Sort or cut the record.")
     channels: dict[str, FloatArray] = {}
     noise: dict[str, float | None] = {}
     for j, channel in enumerate(spec.channel):
@@ -259,16 +254,6 @@ def _numbers(spec: MeasurementSpec, cells: pd.DataFrame) -> FloatArray:
             "Remove or repair the row; gaps are not filled.",
         )
     return np.asarray(table, dtype=np.float64)
-
-
-def _abscissa(abscissa: Abscissa, cells: FloatArray) -> FloatArray:
-    si_unit = "s" if abscissa.kind == "time" else "rad"
-    values = cells * _si_factor(str(abscissa.unit), si_unit, "abscissa.unit")
-    back = np.flatnonzero(np.diff(values) <= 0.0)
-    if back.size:
-        place = f"row {back[0] + 2} is not beyond the row before"
-        raise refuse("abscissa.column", place, "increasing values", "Sort or cut the record.")
-    return np.asarray(values, dtype=np.float64)
 
 
 def _si_factor(unit: str, si_unit: str, field: str) -> float:

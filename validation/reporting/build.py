@@ -17,6 +17,7 @@ import xarray as xr
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
+from lumped.labelling import source_hash
 from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
@@ -27,7 +28,6 @@ from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
-from validation.reporting.chapters.evidence import source_hash
 from validation.reporting.first_figures import first_figures
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports

@@ -6,7 +6,6 @@ from the store, with the same bytes each time.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import platform
 import sqlite3
@@ -22,9 +21,9 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-import lumped
 from lumped.cache import processor
 from lumped.errors import StorageError, refuse
+from lumped.labelling import source_hash
 from lumped.typing import FloatArray
 from validation.studies.cases import CaseList
 
@@ -36,7 +35,6 @@ _BEGIN = (
     "CREATE TABLE run (versions TEXT, code TEXT, processor TEXT)",
     "CREATE TABLE result (number INTEGER PRIMARY KEY, status INTEGER, outputs BLOB, message TEXT)",
 )
-_PACKAGES = ("lumped", "multibody", "floquet", "validation")
 _LIBRARIES = ("spurcheck", "numpy", "scipy", "numba", "llvmlite", "exudyn")
 #: Settings of numba that change what it makes of the same source.
 _COMPILER = ("NUMBA_DISABLE_JIT", "NUMBA_OPT", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")
@@ -78,11 +76,7 @@ def provenance() -> Provenance:
     parts = [f"python {platform.python_version()}"]
     parts += [f"{name} {metadata.version(name)}" for name in _LIBRARIES]
     parts += [platform.machine()] + [f"{name}={os.environ[name]}" for name in _COMPILER if name in os.environ]
-    digest = hashlib.sha256()
-    root = Path(lumped.__file__).parent.parent
-    for path in sorted(file for name in _PACKAGES for file in (root / name).rglob("*.py")):
-        digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
-    return Provenance(", ".join(parts), digest.hexdigest(), processor())
+    return Provenance(", ".join(parts), source_hash(), processor())
 
 
 @dataclass(frozen=True)

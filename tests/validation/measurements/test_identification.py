@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from lumped import geometry, load_gear_pair, simulate
+from lumped import load_gear_pair, simulate
 from lumped.errors import NumericalError, ParameterError
 from tests.validation.measurements.synthetic import synthetic_measurement
 from validation.measurements import evaluate, predict
@@ -51,17 +51,6 @@ def test_prediction_follows_a_tooth_pair_through_a_transient(pair):
     )
     np.testing.assert_array_equal(prediction.contact(u, "A"), u < prediction.geometry.contact_ratio)
     np.testing.assert_allclose(prediction.value("normal_load", u + 1.0, "B"), first, atol=1e-6 * first.max())
-
-
-def test_roll_angle_gives_the_phase(truth):
-    # The pinion's roll angle at a contact point is xi / r_b: at A it is L_XA / r_bp, one pitch later 2 pi /
-    # z more.
-    g = geometry(truth.pair)
-    spec = record(truth).spec
-    spec = spec.model_copy(update={"abscissa": spec.abscissa.model_copy(update={"kind": "roll_angle"})})
-    rolls = g.L_XA / g.base_radius_pinion + 2 * np.pi / 28 * np.arange(9)
-    measurement = dataclasses.replace(record(truth), spec=spec, abscissa=rolls)
-    np.testing.assert_allclose(mesh_cycles(measurement, truth.pair), np.arange(9), atol=1e-12)
 
 
 def test_times_are_mesh_cycles_at_the_speed_of_the_record(truth):

@@ -11,7 +11,7 @@ from validation.measurements.model_error import ModelError, measured_peak_to_pea
 from validation.measurements.record import Measurement, MeasurementSpec
 
 TEXT = """# strain-gauge record
-roll;N A;F A [kN]
+t;N A;F A [kN]
 10,0;1500,0;0,050
 10,5;1510,0;0,051
 11,0;1520,0;0,052
@@ -32,7 +32,7 @@ def description(data, **changes):
         "decimal": ",",
         "pinion_speed": 800,
         "pinion_torque": "79.1 N*m",
-        "abscissa": {"kind": "roll_angle", "column": "roll", "unit": "deg"},
+        "abscissa": {"kind": "time", "column": "t", "unit": "ms"},
         "channel": [
             {
                 "name": "normal", "column": "N A", "quantity": "normal_load", "unit": "N", "pair": "A",
@@ -56,7 +56,7 @@ def csv(tmp_path):
 def test_units_gain_and_zero_reach_si(csv):
     record = load_measurement(description(csv))
     assert record.spec.pinion_speed == pytest.approx(800 * np.pi / 30, rel=1e-15)
-    np.testing.assert_allclose(record.abscissa, np.radians(np.arange(10, 14, 0.5)), rtol=1e-14)
+    np.testing.assert_allclose(record.abscissa, 1e-3 * np.arange(10, 14, 0.5), rtol=1e-14)
     np.testing.assert_allclose(record.channels["normal"], np.arange(1500, 1580, 10), rtol=1e-14)
     # physical value = gain * (cell - zero): -1 * (0.05 - 0.05 ... 0.057 - 0.05) kN; atol: last digit of 57 N
     np.testing.assert_allclose(record.channels["friction"], -np.arange(8.0), atol=1e-12)
@@ -81,7 +81,7 @@ def changed_channel(place, **changes):
     (changed_channel(0, column="missing"), "missing"),
     (changed_channel(0, unit="m"), "channel.normal.unit"),
     (changed_channel(0, unit=None), "unit"),
-    ({"abscissa": {"kind": "time", "column": "roll", "unit": "s", "sampling_rate": "2 Hz"}}, "sampling_rate"),
+    ({"abscissa": {"kind": "time", "column": "t", "unit": "s", "sampling_rate": "2 Hz"}}, "sampling_rate"),
     (changed_channel(0, pair=None), "pair"),
     (changed_channel(0, gain=0.0), "gain"),
     (changed_channel(0, gain=1e308), "channel.normal"),

@@ -17,13 +17,13 @@ import pytest
 
 import lumped
 from floquet import gear_pair_multipliers
+from lumped.labelling import source_hash
 from lumped.losses import iso_14179_mesh_loss
 from lumped.model.averaged import modes
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from lumped.path_of_contact import pair_stiffness
 from tests.validation.reporting import recomputed as own
 from validation.prediction.motion import predicted
-from validation.reporting.chapters.evidence import source_hash
 from validation.validity.flags import validity_flags
 
 _UNITS = {

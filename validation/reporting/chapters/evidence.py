@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
-from lumped.labelling import provenance
+from lumped.labelling import provenance, source_hash
 from validation.reporting.blocks import Badge, Block, Content, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results, broken_relations, failed_checks
-
-_OWN = ("lumped", "multibody", "floquet", "validation")
-_SUFFIXES = frozenset({".py", ".toml", ".html", ".css", ".js"})
-
-
-@cache
-def source_hash() -> str:
-    """SHA-256 over names and contents of the four packages' files: says more than a version does."""
-    digest = hashlib.sha256()
-    for package in _OWN:
-        root = Path(str(resources.files(package)))
-        for path in sorted(p for p in root.rglob("*") if p.suffix in _SUFFIXES):
-            digest.update(f"{package}/{path.relative_to(root).as_posix()}\0".encode())
-            digest.update(path.read_bytes() + b"\0")
-    return digest.hexdigest()
 
 
 @cache
