@@ -13,7 +13,7 @@ import multibody
 from floquet.rank_one.kernels.taylor import propagate_points
 from lumped import load_gear_pair
 from multibody.contact.kernels import tooth_forces
-from multibody.run.bridge import bridge
+from multibody.run.integration import bridge
 from validation.commands import kernels
 
 

@@ -11,8 +11,7 @@ from lumped.lubrication.viscosity import ISO_VG_MIDPOINT
 from lumped.schema.pair import leaf_paths
 from validation.exchange import gear_pair_from_rexs, write_rexs
 from validation.exchange.rexs.exporting import rexs_document
-from validation.exchange.rexs.model import model_of
-from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN
+from validation.exchange.rexs.model import ATTRIBUTES, KINDS, WRITTEN, model_of
 
 
 @pytest.mark.parametrize(("suffix", "first"), [(".rexs", b"<"), (".rexsj", b"{")])

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 from lumped.errors import FieldProblem, shown
 from lumped.fields.units import to_file
 from lumped.schema.pair import stated_unit
-from validation.exchange.rexs.model import Component, RexsModel
-from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
+from validation.exchange.rexs.model import ATTRIBUTES, Component, RexsModel, si_from_rexs
 
 ASSUMED = "assumed"
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.

@@ -96,10 +96,8 @@ def from_xml(data: bytes, file: str) -> Document:
         root: ET.Element = parser.close()
     except ParameterError:
         raise
-    except ET.ParseError as error:
+    except (ET.ParseError, ValueError, LookupError) as error:  # also an encoding that is not known
         raise broken(file, f"the XML is malformed: {error}") from None
-    except (ValueError, LookupError) as error:  # an encoding that expat or Python does not know
-        raise broken(file, str(error)) from None
     if root.tag != "model":
         raise broken(file, f"its root element is {root.tag[:40]!r} instead of 'model'")
 

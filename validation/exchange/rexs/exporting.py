@@ -13,8 +13,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.exchange.rexs.encodings import FORMS, encoded
 from validation.exchange.rexs.gears import RELIEFS, diameter_at, end_of_flank
-from validation.exchange.rexs.model import Document
-from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN, rexs_from_si
+from validation.exchange.rexs.model import ATTRIBUTES, KINDS, WRITTEN, Document, rexs_from_si
 from validation.files.output import check_file, whole_file
 
 

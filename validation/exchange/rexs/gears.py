@@ -7,8 +7,7 @@ import math
 from lumped.fields.units import to_file
 from lumped.gear_geometry.geometry import Geometry
 from validation.exchange.rexs.draft import Draft, Reading
-from validation.exchange.rexs.model import Component
-from validation.exchange.rexs.vocabulary import NOT_TAKEN, derived_number
+from validation.exchange.rexs.model import NOT_TAKEN, Component, derived_number
 
 #: Field -> attribute of the gear, and of its material.
 _BLANK = {

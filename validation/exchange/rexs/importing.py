@@ -16,8 +16,7 @@ from validation.exchange.new_pair_file import completed
 from validation.exchange.rexs.draft import ASSUMED, Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
 from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
-from validation.exchange.rexs.model import Component, RexsModel, broken
-from validation.exchange.rexs.vocabulary import VERSIONS
+from validation.exchange.rexs.model import VERSIONS, Component, RexsModel, broken
 
 _GEARS_OF_PAIR = ("pinion", "gear")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
@@ -193,8 +192,7 @@ def _note_assumptions(draft: Draft, pair: GearPair, sources: dict[str, str]) -> 
         draft.note("assumed, not known: " + ", ".join(assumed))
     for which in _GEARS_OF_PAIR:
         if f"{which}.inertia" not in sources and f"{which}.mass" in sources:
-            text = f"{which}.inertia: REXS has none of a gear; it is that of a solid disc, not of its mass"
-            draft.note(text)
+            draft.note(f"{which}.inertia is not in REXS: that of a solid disc is taken, not of its mass")
     if draft.model.of_type("shaft_section"):
         draft.note("shafts of the file are not read: describe them and their bearings in [shafts]")
     if pair.pinion.tip_relief or pair.gear.tip_relief:
