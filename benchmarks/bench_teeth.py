@@ -24,7 +24,7 @@ BASE |= {"friction.coefficient": 0.0, "mesh.relief": "ignored"}
 OTHER = {"pinion.teeth": 19, "gear.teeth": 41, "centre_distance": None}
 OTHER |= {f"{gear}.{what}": None for gear in ("pinion", "gear") for what in ("tip_relief", "tip_diameter")}
 ALIKE, UNLIKE = (lumped.load_gear_pair("nasa_28_28").with_(BASE | more) for more in ({}, OTHER))
-FORMS = {"k": ("prescribed", "linear"), "o": ("loaded", "linear"), "x": ("loaded", "push_only")}
+FORMS = {"k": ("prescribed", "linear"), "o": ("loaded", "linear"), "x": ("loaded", "unilateral")}
 
 
 def classed(number: int) -> dict[str, dict[str, int]]:
@@ -85,7 +85,7 @@ def forms() -> None:
 def classes() -> None:
     """Error of the transmission error of random 19/41 over its peak to peak; largest load over the mean."""
     force = UNLIKE.operating.pinion_torque / UNLIKE.geometry.base_radius_pinion
-    line("class", "rpm", "(k)", "(o)", "load (k)", "load (x)", "parts, %")
+    line("class", "rpm", "(k)", "(o)", "load (k)", "load (x)", "lost, %")
     for number in (4, 6, 8):
         for rpm in (1450, 4000, 9000, 15000):
             pair = UNLIKE.with_(classed(number) | {"operating.pinion_speed": rpm})
@@ -132,7 +132,7 @@ def times() -> None:
     line("pair", "contact", "touch", "s")
     for teeth in ((19, 41), (37, 71)):
         pair = UNLIKE.with_(classed(6) | {"pinion.teeth": teeth[0], "gear.teeth": teeth[1]})
-        for contact, touch in (("loaded", "push_only"), ("loaded", "linear"), ("prescribed", "linear")):
+        for contact, touch in (("loaded", "unilateral"), ("loaded", "linear"), ("prescribed", "linear")):
             took = []
             for _ in range(2):
                 start = time.process_time()

@@ -4,7 +4,7 @@ Why does the vibration jump at resonance?
 
 The vibration of a lightly damped 50/50 pair differs between rising and falling speed. With falling speed the
 large motion, in which teeth separate, continues to speeds at which a rising sweep still has the small motion.
-The linear model has one motion at each speed. The same equations with teeth that only push have both motions
+The linear model has one motion at each speed. The same equations with unilateral contact have both motions
 (grey), and unstable motions between them (dotted).
 """
 

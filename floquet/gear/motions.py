@@ -117,9 +117,9 @@ class GearOrbit:
         return self.orbit.stable
 
     @property
-    def parts(self) -> bool:
+    def contact_lost(self) -> bool:
         """Whether a tooth pair loses contact that the linear model takes for granted."""
-        return self.orbit.parts
+        return self.orbit.contact_lost
 
     @property
     def reaches_back_side(self) -> bool:

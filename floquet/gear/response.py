@@ -270,7 +270,7 @@ class ResponseBranches:
                 ("largest_load", [o.run.largest_load for o in orbits], "N", "largest normal load"),
                 ("spectral_radius", radius, "1", "spectral radius over n cycles"),
                 ("stable", radius < MARGINAL, "1", "stable"),
-                ("parts", [o.parts for o in orbits], "1", "contact loss"),
+                ("contact_lost", [o.contact_lost for o in orbits], "1", "contact loss"),
             )
         }  # fmt: skip
         for f in fields(Jump):

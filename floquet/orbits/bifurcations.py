@@ -101,8 +101,8 @@ def _tests(path: Path, j: int) -> list[tuple[Kind, _Test]]:
         for kind, test in tests
         if test(*one) * test(*two) < 0.0 and min(abs(test(*one)), abs(test(*two))) > _ROUNDING
     ]
-    if one[0].parts != two[0].parts:
-        result.append(("grazing", lambda o, _: 1.0 if o.parts else -1.0))
+    if one[0].contact_lost != two[0].contact_lost:
+        result.append(("grazing", lambda o, _: 1.0 if o.contact_lost else -1.0))
     elif one[0].strikes != two[0].strikes:
         result.append(("grazing", lambda o, _: 1.0 if o.strikes else -1.0))
     return result

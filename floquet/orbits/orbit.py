@@ -92,7 +92,7 @@ class Orbit:
         return tuple((int(i), int(new)) for _, i, new in self.run.events)
 
     @property
-    def parts(self) -> bool:
+    def contact_lost(self) -> bool:
         """Whether a contact changes its state in the motion."""
         return bool(self.run.events.shape[0])
 

@@ -330,7 +330,7 @@ class _Search:
         singles = [branch for branch in self.branches if branch.n == 1]
         for n in sorted(self.periods - {1}):
             for branch in singles:
-                beyond = [o for o in branch.orbits if o.parts and n / o.period <= self.limits.fastest]
+                beyond = [o for o in branch.orbits if o.contact_lost and n / o.period <= self.limits.fastest]
                 for single in beyond[:: max(1, len(beyond) // _SUBHARMONICS)]:
                     start = single.start * np.repeat([1.0, 1.0 / n], single.start.size // 2)
                     self.follow_near(start, single.period / n, n, single.parameter)

@@ -22,7 +22,7 @@ compiled = Compiler(FILES)
 #: Of functions that allocate nothing: counting references would take most of their time.
 inlined = partial(compiled, _nrt=False, forceinline=True)
 
-#: Forms of the contact: fixed windows, linear; the same, push-only; own gaps and corners, push-only; the
+#: Forms of the contact: fixed windows, linear; the same, unilateral; own gaps and corners, unilateral; the
 #: linear form about the own static state.
 FIXED, FIXED_PUSH, PUSH, LINEAR = 0, 1, 2, 3
 #: Rows of the contact of all places at an approach: gap [m], its slopes over xi and over the approach, sine

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 #: Form of the kernels -> how a result says it.
 FORMS = (
     "fixed windows of contact, teeth tied (linear)",
-    "fixed windows of contact, teeth push only",
-    "own gaps and tip corners, teeth push only",
+    "fixed windows of contact, unilateral",
+    "own gaps and tip corners, unilateral",
     "linear about the own static state of every pair",
 )
 #: Most and least outputs of a mesh cycle by default, and how many all cycles together are to have.
@@ -132,7 +132,7 @@ def steps_of(system: LTVSystem) -> int:
 def push_motion(
     pair: GearPair, samples: int, supports: Supports = "springs", steps: int | None = None
 ) -> OwnMotion:
-    """Periodic motion of a pair whose teeth differ and push only.
+    """Periodic motion of a pair whose teeth differ, with unilateral contact.
 
     Started from the motion of the healthy twin, it is followed until the start has faded, then recorded
     over one period. A first run with coarser steps gives the brake torque, which the common rotation alone

@@ -41,7 +41,7 @@ def motion_cycles(
     bearing: FloatArray,
     sliding: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Motion of teeth that push only over mesh cycles by the classical Runge-Kutta method of order 4.
+    """Motion with unilateral contact over mesh cycles by the classical Runge-Kutta method of order 4.
 
     ``corners``: own gaps and tip corners, else the windows of the tables; ``constant`` (m, 2m) acceleration
     of z per z and z' with the teeth apart, ``per_load`` (3, m) per N, F and F xi, ``per_moment`` (2, m) per

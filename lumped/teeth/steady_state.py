@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: How the teeth touch in the motion over a period of teeth that differ.
-Touch = Literal["push_only", "linear"]
+Touch = Literal["unilateral", "linear"]
 
 
 def steady_state(
@@ -31,13 +31,13 @@ def steady_state(
     samples_per_cycle: int | None = None,
     as_printed: Collection[int] = (),
     supports: Supports = "springs",
-    touch: Touch = "push_only",
+    touch: Touch = "unilateral",
 ) -> xr.Dataset:
     """Periodic motion over one mesh cycle without settling, or over the whole period of teeth that differ.
 
     Teeth differ by deviations, an eccentric mounting or faults; a ripple of a torque has a period of its own
     too. Then the motion is that over a revolution or the hunting period, see ``revolution``: every meeting
-    pair has its own gap with its own tip corners, its own stiffness, and pushes only. It is settled from
+    pair has unilateral contact with its own gap, tip corners and stiffness. It is settled from
     the motion of like teeth; the linear form is closed over the period by the maps of its mesh cycles.
 
     Parameters
@@ -48,7 +48,7 @@ def steady_state(
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; then
         ``bearing_force`` over ``bearing`` and ``direction`` is the force of each bearing on its shaft, and
         ``power_shafts`` what the shafts' damping takes [W]
-    touch : of teeth that differ: "push_only", or "linear", the linear form about the own static state of
+    touch : of teeth that differ: "unilateral", or "linear", the linear form about the own static state of
         every pair (with prescribed contact: in its fixed windows), which stability and sweeps rest on
 
     Returns
@@ -79,7 +79,7 @@ def steady_state(
         )
     if as_printed:
         raise refuse("as_printed", list(as_printed), "() where teeth differ", "Use pair.healthy.")
-    one_of("touch", touch, ("push_only", "linear"))
+    one_of("touch", touch, ("unilateral", "linear"))
     cycles = period_of(pair)
     count = default_samples(cycles) if samples_per_cycle is None else samples_per_cycle
     motion = (linear_motion if touch == "linear" else push_motion)(pair, count, supports)

@@ -54,7 +54,7 @@ EFFECTS: dict[str, Effect] = {
 #: Why the models may differ, in words. Rotations, centres, tip circles and gaps together say where and if
 #: teeth touch; one without the others is no motion of the machine, so these effects are one cause.
 CAUSES: dict[str, str] = {
-    "contact": "teeth touch where the actual flanks meet, and push only",
+    "contact": "contact is where the actual flanks meet, and unilateral",
     "sliding_velocity": "friction follows the actual sliding and rolling velocities",
     "path_work": "bent teeth turn the contact normal: the shafts supply what the teeth store",
     "friction_load": "friction law at the momentary load of each pair",

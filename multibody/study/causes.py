@@ -48,7 +48,7 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     that changes the transmission error most. "friction_load" stands below "all": it is no part of the
     difference. A quantity that does not move without effects (y_p without friction) is NaN.
 
-    Every exact motion includes "contact": teeth touch where their actual flanks meet, and only push.
+    Every exact motion includes "contact": where the actual flanks meet, and unilateral.
     ``alone`` of another cause is the change of the motion with "contact". The ``without`` of "contact" is
     NaN, because teeth would then pull over a gap.
 

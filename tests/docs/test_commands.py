@@ -71,7 +71,7 @@ def test_commands_in_running_text_are_understood(page, blocks):
 def belongings(tmp_path_factory, root, blocks) -> Path:
     """What pages take for granted: the reader's parameter file, his gear program's file, his study."""
     folder = tmp_path_factory.mktemp("belongings")
-    # With its relief the teeth would part, which the cross-check does not confirm.
+    # With its relief contact would be lost, which the cross-check does not confirm.
     pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
     (folder / "mypair.toml").write_text(pair.to_toml())
     (folder / "my_pair.toml").write_text(pair.to_toml())

@@ -204,7 +204,7 @@ def _owed(pair: GearPair) -> float:
 
 
 def _powers_error(pair: GearPair) -> float:
-    """Losses by place, and what is unpaid, against those with the levers of the multibody model."""
+    """Losses by place, and the energy residual, against those with the levers of the multibody model."""
     motion, weights = _motion(pair)
     found = mean_powers(periodic_cycle(pair, 8))
     wanted = losses(motion.system, machine(pair), motion.time, motion.states, weights)

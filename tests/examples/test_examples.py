@@ -81,7 +81,7 @@ def test_19_only_torques_far_from_that_of_the_relief_jump(example):
     module.draw(result)
     assert set(result["jump_torque"].to_numpy()) == {25.0, 136.0}
     assert result["contact_kept"].all("speed_rpm").values.tolist() == [False, True, False]
-    # Above the relief's torque the large motion, in which teeth part, ends more than ten times the small one.
+    # Above the relief's torque the large motion, with contact loss, ends more than ten times the small one.
     falling = result.sel(jump=(result["jump_torque"] == 136.0) & ~result["jump_rising"])
     assert float((falling["jump_dte_rms"] / falling["jump_dte_rms_after"]).min()) > 10.0
 

@@ -157,7 +157,7 @@ def bouncing(pair):
     there = at(pair, 16169.0)
     one = floquet.response_branches(there, (16000.0, 16300.0), (1,))
     orbit = max((o for o in one.at(16169.0) if o.stable), key=lambda o: o.dte_rms)
-    assert orbit.parts
+    assert orbit.contact_lost
     return orbit
 
 

@@ -30,7 +30,7 @@ def test_where_contact_holds_it_is_the_linear_motion(brake):
     )
     pair = at(pair, 12000.0)
     orbit, linear = floquet.periodic_orbit(pair), lumped.steady_state(pair, samples_per_cycle=256)
-    assert not orbit.parts
+    assert not orbit.contact_lost
     span = float(np.ptp(linear.dte.values))
     assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-11 * span)
     assert orbit.motion.attrs["dte_peak_to_peak"] == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=1e-6)
@@ -51,7 +51,7 @@ def test_without_clearance_motions_are_proportional_to_the_torque(frictionless):
     pair = at(frictionless, 8000.0)
     one = floquet.periodic_orbit(pair)
     two = floquet.periodic_orbit(pair.with_(operating__pinion_torque=3.0 * 56.5))
-    assert one.parts
+    assert one.contact_lost
     assert one.spectral_radius == pytest.approx(two.spectral_radius, rel=1e-9)
     assert two.dte_rms == pytest.approx(3.0 * one.dte_rms, rel=1e-9)
     assert one.events[:, 1:] == pytest.approx(two.events[:, 1:])

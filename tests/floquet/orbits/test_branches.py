@@ -32,7 +32,7 @@ def meissner_map(T, e=0.4, damping=0.1):
 def test_where_contact_holds_the_multipliers_are_meissners():
     T = 4.0
     orbit = find_orbit(meissner(), np.array([1.0, 0.0]), T)
-    assert not orbit.parts
+    assert not orbit.contact_lost
     expected = np.linalg.eigvals(meissner_map(T))
     assert np.sort_complex(orbit.multipliers) == pytest.approx(np.sort_complex(expected), abs=1e-12)
     assert orbit.error < 1e-10
@@ -50,7 +50,7 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
         1.0 / b.orbit.period
         for branch in found.branches
         for b in branch.bifurcations
-        if branch.n == 1 and b.kind == "period doubling" and not b.orbit.parts
+        if branch.n == 1 and b.kind == "period doubling" and not b.orbit.contact_lost
     ]
     assert doublings
     for rate in doublings:
@@ -64,8 +64,8 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
                 assert b.orbit.monodromy @ way == pytest.approx(-way, abs=1e-6 * np.abs(way).max())
     # Inside the tongue, where no motion that holds contact is stable, the doubled one bounces and is stable.
     T = 1.0 / (max(doublings) - 0.005)
-    assert not any(o.stable for o in found.at(T) if not o.parts)
-    assert any(o.stable and o.parts and o.n == 2 for o in found.at(T))
+    assert not any(o.stable for o in found.at(T) if not o.contact_lost)
+    assert any(o.stable and o.contact_lost and o.n == 2 for o in found.at(T))
 
 
 def test_a_fold_ends_the_jump_of_the_bouncing_resonance():

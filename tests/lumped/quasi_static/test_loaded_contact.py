@@ -1,4 +1,4 @@
-"""Does the loaded contact carry the load, begin where the gap closes, and pay for every loss?"""
+"""Does the loaded contact carry the load, begin where the gap closes, and conserve energy?"""
 
 import numpy as np
 import pytest
@@ -108,7 +108,7 @@ def test_losses_by_place_are_those_of_an_independent_program(rpm, sliding, dampe
 
 @pytest.mark.parametrize("name", ["linear", "relief"])
 def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
-    """T_g = T_g(moments) + r_bg <sum H>: path forces by quadrature, losses by the ledger of the powers."""
+    """T_g = T_g(moments) + r_bg <sum H>: path forces by quadrature, losses by the power balance."""
     pair = FORMS[name].with_(mesh__stiffness={"model": "energy", "hertz": "linear"})
     g, powers = lumped.geometry(pair), mean_powers(solution(pair))
     motion = lumped.steady_state(pair, samples_per_cycle=65536)

@@ -18,7 +18,7 @@ COS = np.cos(np.radians(20.0))
 ERRORS = np.random.default_rng(5).normal(size=28) * 5.0
 ERRORS -= ERRORS.mean()
 SAMPLES = 16
-MOTION = {"push_only": push_motion, "linear": linear_motion}
+MOTION = {"unilateral": push_motion, "linear": linear_motion}
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def dte(loaded):
     return of
 
 
-FORMS = ["prescribed linear", "prescribed push_only", "loaded push_only", "loaded linear"]
+FORMS = ["prescribed linear", "prescribed unilateral", "loaded unilateral", "loaded linear"]
 LIST, NONE = tuple(ERRORS), (0.0,) * 28
 
 
@@ -97,7 +97,7 @@ class TestFixedContacts:
             return np.abs(one / healthy - 1.0).max()
 
         assert moved(self.FORM) < 1e-10
-        assert moved("loaded push_only") > 0.01
+        assert moved("loaded unilateral") > 0.01
 
     def test_torque_and_errors_times_two_double_the_motion_unless_corners_touch(self, dte):
         def off(form):
@@ -105,8 +105,8 @@ class TestFixedContacts:
             return np.abs(dte(form, tuple(2.0 * ERRORS), None, 113.0) - 2.0 * single).max() / np.ptp(single)
 
         assert off(self.FORM) < 1e-9
-        assert off("prescribed push_only") < 1e-9
-        assert off("loaded push_only") > 0.1
+        assert off("prescribed unilateral") < 1e-9
+        assert off("loaded unilateral") > 0.1
 
 
 def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):

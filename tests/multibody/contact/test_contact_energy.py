@@ -274,7 +274,7 @@ def test_neighbours_share_the_load_in_both_models(softening):
     assert {(4, 1), (4, 3), (4, 4), (2, 1)} <= seen
 
 
-def test_a_pair_that_cannot_part_pulls_and_still_moves_its_neighbour():
+def test_a_pair_that_cannot_lose_contact_pulls_and_still_moves_its_neighbour():
     loads, w = np.empty(2), np.array([[0.0, 2e-9], [2e-9, 0.0]])
     k, pressed = np.array([8e7, 6e7]), np.array([1e-5, -4e-6])
     shared_loads(2, pressed, k, 0b11, w, 0.0, 1353.0, loads)

@@ -172,7 +172,7 @@ def test_both_models_see_the_same_pair_on_shafts(run):
         assert float(np.abs(found[name] - lumped_run[name].to_numpy()).max()) < 1e-6 * span, name
 
 
-def test_on_shafts_too_the_brake_of_the_loaded_form_pays_for_every_loss():
+def test_on_shafts_too_the_brake_of_the_loaded_form_supplies_every_loss():
     pair = PAIR.with_(mesh__stiffness={"model": "energy"}, mesh__contact="loaded")
     machine = prepare(pair, initial="periodic", supports="shafts").machine
     expected = lumped.steady_state(pair, supports="shafts", samples_per_cycle=16).attrs

@@ -40,7 +40,7 @@ def apart(pair, share):
 
 
 @pytest.mark.parametrize("pair", [UNEQUAL, OWN], ids=["16/24", "19/41"])
-def test_the_loaded_form_and_the_exact_contact_part_by_finite_motions_alone(pair):
+def test_the_loaded_form_and_the_exact_contact_differ_by_finite_motions_alone(pair):
     """Their share falls with every length: 1.07 to 0.38 % and 2.5 to 0.78 % of the peak to peak measured.
 
     A stiffness that is 2 % off in one model stays: 7.0 to 4.9 % and 6.6 to 5.2 %.

@@ -108,7 +108,7 @@ def test_contact_follows_the_swing_of_bare_discs_under_a_ripple(difference):
     assert apart < 0.03 * swing
 
 
-def test_models_part_less_than_in_proportion_to_torque_and_errors(difference):
+def test_models_differ_less_than_in_proportion_to_torque_and_errors(difference):
     # What finite motions change is of second order, but for loads at touching and corners: 0.69. With errors
     # 5 % too large in one model it is 1.24, without them 0.87.
     full, quarter = (difference(own(size, **{"friction.law": "xu_kahraman"}))[0] for size in (1.0, 0.25))

@@ -59,18 +59,18 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     results = Results(PAIR, QUICK)
     assert results.pair is PAIR.healthy
     # A copy whose contact is lost at one time, and whose pinion alone carries more.
-    parted, (motion, twin, force) = copy(found), (found.motion, found.twin, found.static_force)
-    parted.__dict__.pop("contact_lost", None)
-    parted.motion = motion.assign(
+    lost, (motion, twin, force) = copy(found), (found.motion, found.twin, found.static_force)
+    lost.__dict__.pop("contact_lost", None)
+    lost.motion = motion.assign(
         normal_load=motion["normal_load"].where(motion["time"] != motion["time"][9], 0)
     )
-    parted.largest_loads = found.largest_loads.copy()
-    parted.largest_loads[3, 5] = 2.0 * force
-    results.__dict__["teeth"] = parted
+    lost.largest_loads = found.largest_loads.copy()
+    lost.largest_loads[3, 5] = 2.0 * force
+    results.__dict__["teeth"] = lost
     content = chapter.write(results)
     assert content is not None
-    assert content.result == parted.sentence
-    assert len(parted.contact_lost) == 1
+    assert content.result == lost.sentence
+    assert len(lost.contact_lost) == 1
     blocks = {block.key: block for block in content.blocks if hasattr(block, "key")}
     numbers = [(row[1].value, row[2]) for row in blocks["teeth_numbers"].rows]
     expected = [motion.attrs["dte_peak_to_peak"], found.load(motion) / force, 1.0]

@@ -85,7 +85,7 @@ def test_errors_of_the_gear_leave_the_average_of_the_pinion_in_fixed_contacts_al
     # cancel where the motion is linear in them, and do not where a pair touches when its own gap closes.
     errors = np.sin(2.1 * np.arange(22)) * 20.0
     off = {}
-    for contact, touch in (("prescribed", "linear"), ("loaded", "push_only")):
+    for contact, touch in (("prescribed", "linear"), ("loaded", "unilateral")):
         changes = {"gear.teeth": 22, "mesh.contact": contact, "centre_distance": None}
         pair = PAIR.with_(changes | {"pinion.deviations": {"index": [0.0] * Z1, "first_order": "steps"}})
         lists = {"index": list(errors - errors.mean()), "first_order": "steps"}
