@@ -41,7 +41,7 @@ def simulate(
 
     Of like teeth it is that of the linear time-varying model: the maps of the periodic motion take the state
     from output to output, steps end at every switch, and each is exact to about 1e-12. Teeth that differ
-    have unilateral contact, as in ``steady_state``, under the torques that hold the mean speed over their period.
+    have unilateral contact, as in ``steady_state``, under torques that keep the mean speed over their period.
 
     Parameters
     ----------

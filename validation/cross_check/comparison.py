@@ -95,6 +95,11 @@ class CrossCheck:
             return Verdict.NOT_CHECKED
         return Verdict.AGREES if all(a.within for a in self.of("exact")) else Verdict.DIFFERS
 
+    @property
+    def agrees(self) -> bool:
+        """Whether the multibody model has the motion of the lumped model, within the limits."""
+        return self.verdict is Verdict.AGREES
+
     def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
         """Agreements at one fidelity."""
         return tuple(a for a in self.agreements if a.fidelity == fidelity)

@@ -75,6 +75,11 @@ class Prediction:
     efficiency: float
 
     @property
+    def transmission_error(self) -> xr.DataArray:
+        """Dynamic transmission error over the times of ``cycle`` [m]."""
+        return self.cycle["dte"]
+
+    @property
     def static_force(self) -> float:
         """Mean mesh force, T_p / r_bp [N]."""
         return self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
