@@ -14,8 +14,9 @@ from lumped.schema.pair import leaf_paths
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import nearest_hazard, of_motion, pair_of
 from tests.validation.reporting.written import SMALL, known, pair, plain
+from validation.exchange import new_pair
 from validation.files.formatting import prose, read_table
-from validation.reporting.chapters import contact_loss, stability
+from validation.reporting.chapters import contact_loss, second_program, stability
 from validation.reporting.first_figures import plain_name
 from validation.reporting.page_one import Verdict, page_one
 from validation.reporting.results import Results
@@ -301,6 +302,15 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
         results.__dict__["second"] = SimpleNamespace(peak_to_peak=size)
         ends = f"to 2.7 % on springs; on the shafts its transmission error is {words}."
         assert results.second_words == f"Yes: a second program agrees {ends}"
+
+
+def test_a_pair_too_slow_for_the_second_program_has_a_report():
+    """A mesh cycle of 607 swings of the fastest mode is refused there: nothing but that motion is missing."""
+    results = Results(new_pair("16/32", 1.5, 12.8, 114, 12.2), SMALL)
+    words = results.second_words
+    assert words.startswith("The second program does not run here. operating.pinion_speed = 114 rpm: allowed")
+    assert second_program.write(results).result == words
+    assert (str(results.second), results.same_equations) == (str(results.check), None)
 
 
 def shafts_of(diameter, stiffness):

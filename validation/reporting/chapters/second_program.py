@@ -18,6 +18,8 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     check, second = results.check, results.second
+    if isinstance(check, Absent):
+        return Content(results.second_words, ())
     blocks: list[Block] = []
     if not isinstance(second, Absent):
         blocks.append(
