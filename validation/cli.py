@@ -14,16 +14,13 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from validation.commands.crosscheck import crosscheck
 from validation.commands.files import export, init, presets
-from validation.commands.floquet import floquet
-from validation.commands.report import report
+from validation.commands.motion import interactive, simulate, teeth, uncertainty
+from validation.commands.report import crosscheck, report
 from validation.commands.response import response
-from validation.commands.simulate import simulate
-from validation.commands.stability import stability
+from validation.commands.stability import floquet, stability
 from validation.commands.sweep import sweep
 from validation.commands.terminal import NUMERICAL, Once, unprinted
-from validation.commands.variation import interactive, teeth, uncertainty
 from validation.stop_signals import interrupt_once
 
 #: What to type instead of an option that no command has.

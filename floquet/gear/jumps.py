@@ -383,7 +383,7 @@ def jumps_removed_by(
     """
     checked_axis(branches.pair, axis)
     own = float(JUMP_AXES[axis].own(branches.pair))
-    low, high = _range(axis, own, within)
+    low, high = search_range(axis, own, within)
     if not _folds(branches.response):
         return ()
     search = _Removal(branches, axis, low, high)
@@ -393,7 +393,8 @@ def jumps_removed_by(
     )
 
 
-def _range(axis: str, own: float, within: tuple[float, float] | None) -> tuple[float, float]:
+def search_range(axis: str, own: float, within: tuple[float, float] | None = None) -> tuple[float, float]:
+    """Range in which an axis is searched, or mapped, by default, in its units; ``within`` is another one."""
     if within is None:
         return {
             "torque": (0.25 * own, 4.0 * own),

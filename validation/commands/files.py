@@ -86,15 +86,10 @@ def init(
     from validation.exchange.new_pair_file import new_pair_text
     from validation.files.output import check_file, write_text
 
-    own = {
-        "--module": ("basic_rack.module", module),
-        "--face-width": ("gears.face_width", face_width),
-        "--speed": ("operating.pinion_speed", speed),
-        "--torque": ("operating.pinion_torque", torque),
-        "--oil": ("oil", oil),
-        "--law": ("friction.law", law),
-        **{f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()},
-    }
+    sizes = {"module": module, "face_width": face_width, "speed": speed, "torque": torque}
+    own = {f"--{name.replace('_', '-')}": (name, value) for name, value in sizes.items()}
+    own |= {"--oil": ("oil", oil), "--law": ("law", law)}
+    own |= {f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()}
     if preset not in preset_names() and (Path(preset).exists() or preset.endswith(".toml")):
         made = "This is a file already: edit it, or copy it."
         action = made if Path(preset).exists() else f"To write this file: spurcheck init -o {preset}."
@@ -108,8 +103,8 @@ def init(
     elif preset != opt.DEFAULT_PAIR or from_rexs is not None:
         raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
     else:
-        for option in ("--module", "--face-width", "--speed", "--torque"):
-            if option not in given:
+        for option in own:
+            if option not in given and own[option][0] in sizes:
                 raise refuse(option, "missing", "a value beside --teeth", "Give it.")
         name = f"pair_{re.sub('[^0-9]+', '_', teeth)}"
         if output is not None and str(output) != "-":
@@ -175,9 +170,9 @@ def export(
     from validation.files.output import DATA_SUFFIXES, check_file
 
     if source.lower().endswith(".nc"):
-        options = {"--speed": speed, "--torque": torque, "--law": law, "--set": settings}
-        if given := [name for name, value in options.items() if value is not None]:
-            raise refuse(given[0], "with a result file", "a gear pair", "Leave it out.")
+        for option, value in {"--speed": speed, "--torque": torque, "--law": law, "--set": settings}.items():
+            if value is not None:
+                raise refuse(option, "with a result file", "a gear pair", "Leave it out.")
         check_file(output, DATA_SUFFIXES, force=force)
         result = read_netcdf(source)
         if output.suffix.lower() == ".csv":

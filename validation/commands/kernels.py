@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
@@ -14,8 +13,6 @@ if TYPE_CHECKING:
 
 #: Functions that a whole report compiles, nested ones too (listener on an empty cache, numba 0.63).
 _FUNCTIONS = 150
-#: Guess of the time of one of them before the first is compiled [s].
-_FIRST_GUESS = 0.3
 
 
 @contextmanager
@@ -58,11 +55,10 @@ def _start() -> subprocess.Popen[bytes]:
 
 
 class _Listener:
-    """Tells the remaining time while numba compiles; compilations are nested."""
+    """Tells how many functions numba has compiled, beside the progress of the work."""
 
     def __init__(self, bar: Progress) -> None:
-        self._bar, self._depth, self._done = bar, 0, 0
-        self._since = self._seconds = self._fraction = 0.0
+        self._bar, self._done, self._fraction = bar, 0, 0.0
 
     def tell(self, fraction: float, stage: str = "", /) -> None:
         """Take the progress of the work, and remember how far it is."""
@@ -71,19 +67,9 @@ class _Listener:
 
     def notify(self, event: Any) -> None:
         """Take one event of numba, the begin or the end of a compilation."""
-        if event.is_start:
-            if self._depth == 0:
-                self._since = time.monotonic()
-            self._depth += 1
-        else:
-            self._depth, self._done = self._depth - 1, self._done + 1
-        spent = self._seconds + time.monotonic() - self._since
-        if self._depth == 0:
-            self._seconds = spent
-        each = spent / self._done if self._done > 3 else _FIRST_GUESS
-        left = max(_FUNCTIONS - self._done, 1) * each
-        tens = 10 * max(round(left / 10), 1)
-        self._bar(self._fraction, f"compiling, once for this machine: about {tens} s left")
+        self._done += event.is_end
+        share = f"{self._done} of about {_FUNCTIONS} functions"
+        self._bar(self._fraction, f"compiling, once for this machine, for a minute: {share}")
 
 
 def main() -> None:

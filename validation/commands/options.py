@@ -106,7 +106,10 @@ def gear_pair(
     for option, path, text in asked:
         others = {other: value_of(value) for _, other, value in asked if other != path}
         if _READ_BY_LAWS.search(fields_of(path)[0]) and not _has_effect(own, varied, others):
-            note(f"{option} = {text} changes nothing in the motion: {_why_not(path, varied)}.")
+            given = path.endswith(".roughness") and varied.friction.composite_roughness is not None
+            law = "friction.composite_roughness is given" if given else f"the law is {varied.friction.law}"
+            why = f"mesh.relief is '{varied.mesh.relief}'" if "relief" in path else law
+            note(f"{option} = {text} changes nothing in the motion: {why}.")
     for warning in parameter_warnings(varied):
         note(warning)
     return varied
@@ -128,14 +131,6 @@ def _has_effect(own: GearPair, varied: GearPair, others: dict[str, Any]) -> bool
         without = own.with_(others)
         return without == varied or laws(without) != laws(varied)
     return True
-
-
-def _why_not(path: str, pair: GearPair) -> str:
-    if "relief" in path:
-        return f"mesh.relief is '{pair.mesh.relief}'"
-    if path.endswith(".roughness") and pair.friction.composite_roughness is not None:
-        return "friction.composite_roughness is given"
-    return f"the law is {pair.friction.law}"
 
 
 def alike(pair: GearPair) -> GearPair:
@@ -272,15 +267,9 @@ def axis_values(
 
 def axes_values(texts: list[str] | None, known: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
     """Axes by name, see `axis_values`; refuses a name that comes twice."""
-    from lumped.errors import refuse
-
-    grid: dict[str, NDArray[np.float64]] = {}
-    for text in texts or []:
-        name, values = axis_values(text, known)
-        if name in grid:
-            raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")
-        grid[name] = values
-    return grid
+    found = [axis_values(text, known) for text in texts or []]
+    once(f"--axis {name}" for name, _ in found)
+    return dict(found)
 
 
 def number_in(option: str, text: str, unit: str) -> float:

@@ -52,7 +52,7 @@ def response(
     seeds : Speeds an octave at which runs settle, to find motions apart from the others and beats or chaos;
         default 20, of a map 0.
     map_ NAME[=FROM:TO:COUNT] : Map the jumps over speed and torque (N m), damping_ratio (mesh) or tip_relief
-        (um), and find what removes them; default 26 values around the pair's own.
+        (um), and find what removes them; default 26 values of the range that is searched.
     speeds : With --map: number of speeds.
     back_side : Also let the back sides of the teeth touch.
     """
@@ -176,18 +176,11 @@ def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
     """Name and values of the second axis."""
     import numpy as np
 
-    from floquet.gear.jumps import JUMP_AXES, checked_axis
+    from floquet.gear.jumps import JUMP_AXES, checked_axis, search_range
 
     name = text.partition("=")[0].strip()
-    if "=" in text:
-        name, values = opt.axis_values(text, JUMP_AXES, "--map")
-        checked_axis(pair, name)
-        return name, values
     checked_axis(pair, name, "--map")
+    if "=" in text:
+        return opt.axis_values(text, JUMP_AXES, "--map")
     own = float(JUMP_AXES[name].own(pair))
-    ends = {
-        "torque": (0.2 * own, 3.0 * own),
-        "damping_ratio": (0.2 * own, min(1.0, max(0.1, 2.4 * own))),
-        "tip_relief": (0.0, max(20.0, 2.0 * own)),
-    }
-    return name, np.linspace(*ends[name], _VALUES)
+    return name, np.linspace(*search_range(name, own), _VALUES)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +13,6 @@ from validation.commands.terminal import (
     INTERRUPTED,
     fail,
     guarded,
-    note,
     progress_bar,
     show,
     stderr,
@@ -23,9 +21,6 @@ from validation.commands.terminal import (
 
 if TYPE_CHECKING:
     from validation.studies import Study
-
-#: Time from which a study is hardly meant [h].
-_LONG = 48.0
 
 
 @guarded
@@ -73,12 +68,10 @@ def sweep(
     if dry_run:
         _estimate(wanted, processes)
         return
-    start = time.monotonic()
     with progress_bar("sweep") as tell:
 
         def progress(done: int, total: int, failed: int) -> None:
-            rate = done / max(time.monotonic() - start, 1e-9)
-            tell(done / total, f"{done}/{total}, {rate:.3g} cases/s, {failed} failed")
+            tell(done / total, f"{done} of {total} cases, {failed} failed")
 
         try:
             summary = run_sweep(
@@ -91,8 +84,7 @@ def sweep(
                 progress=progress,
             )
         except KeyboardInterrupt:
-            text = f"Stopped. What was computed is in {folder}; run the same command with --resume."
-            fail(text, INTERRUPTED)
+            fail(f"Stopped; what was computed is in {folder}: run the command with --resume.", INTERRUPTED)
     show("", "status | >cases", ((s.name.lower().replace("_", " "), str(n)) for s, n in summary.statuses))
     console = stdout()
     for case, text in summary.failures:
@@ -118,5 +110,3 @@ def _estimate(study: Study, processes: int) -> None:
     seconds = evaluate_chunk(evaluator, numbers[1:], values[1:]).seconds / 3.0
     hours = seconds * study.count / max(processes, 1) / 3600.0
     stderr().print(f"about {seconds:.2g} s a case, {hours:.2g} hours in all on {max(processes, 1)} worker(s)")
-    if hours > _LONG:
-        note(f"{study.count} cases are {hours / 24.0:.3g} days: give fewer values of an axis, or samples.")

@@ -139,7 +139,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         "supports": "--supports",
         "axes": "--axis",
     }
-    taken: list[tuple[str, Any, Any]] = []
+    keyword = functools.partial(inspect.Parameter, kind=inspect.Parameter.KEYWORD_ONLY)
+    shown: list[inspect.Parameter] = []
     for one in inspect.signature(command, eval_str=True).parameters.values():
         kind = one.annotation
         if one.name in helps:
@@ -152,13 +153,10 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         group = next((m for m in getattr(kind, "__metadata__", ()) if isinstance(m, Group)), None)
         if group is not None:
             groups[one.name] = group
-            taken += [(name, kind, None) for name, kind in group.options.items()]
-            continue
-        taken.append((one.name, kind, one.default))
-    taken.append(("quiet", annotated[bool, _QUIET], False))
-    shown = [
-        inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=d, annotation=k) for n, k, d in taken
-    ]
+            shown += [keyword(name, default=None, annotation=kind) for name, kind in group.options.items()]
+        else:
+            shown.append(keyword(one.name, default=one.default, annotation=kind))
+    shown.append(keyword("quiet", default=False, annotation=annotated[bool, _QUIET]))
 
     @functools.wraps(command)
     def run(**kwargs: Any) -> None:

@@ -90,7 +90,7 @@ def test_campbell_diagram(tmp_path):
     (("--axis", "speed_rpm=0:1000:5"), "--axis speed_rpm = 0 rpm: allowed > 0"),
     (("--axis", "damping_ratio=0:2:5"), "--axis damping_ratio = 1.5: allowed >= 0 and <= 1"),
     (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),
-    ((*SPEEDS, *SPEEDS), "speed_rpm is given twice"),
+    ((*SPEEDS, *SPEEDS), "--axis speed_rpm = set 2 times"),
     (("--view", "boundaries", *SPEEDS), "one axis other than speed_rpm"),
     (("--view", "campbell", "--axis", "torque=1:2:3"), "speed_rpm"),
     (("--axis", "torque=1:2:3", "--view", "boundaries", "--axis", "damping_ratio=0:0.1:2"), "speed_rpm"),
@@ -122,7 +122,7 @@ def test_stability_on_shafts(tmp_path, shafted_file):
     springs = gear_pair_multipliers(pair).spectral_radius
     assert abs(exact - springs) > 1e-3
     for arguments, expected in (
-        (("--view", "campbell"), "--view = campbell: allowed chart, boundaries with --supports shafts"),
+        (("--view", "campbell"), "--supports = shafts: allowed springs for --tongues and --view campbell"),
         (("--tongues",), "--view boundaries"),
         (("--axis", "bearing_stiffness=1e8:2e8:2"), "shafts.pinion.bearings"),
     ):

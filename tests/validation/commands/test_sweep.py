@@ -53,11 +53,6 @@ def test_a_study_is_counted_computed_and_resumed(command, tmp_path):
     assert "0 computed, 3 kept from before" in text
 
 
-def test_a_study_of_days_is_doubted(command, monkeypatch):
-    monkeypatch.setattr("validation.commands.sweep._LONG", 0.0)
-    assert "note: 3 cases are" in command(dry_run=True)[1]
-
-
 def test_a_failed_case_is_1_and_listed(command):
     code, text = command([88.5, 88.9])
     assert code == FAILED
