@@ -425,7 +425,7 @@ def revolution_multipliers(
     pair = load_gear_pair(pair)
     one_of("supports", supports, ("springs", "shafts"))
     system = LTVSystem.of(pair.healthy, "mesh" if supports == "springs" else "elastic", supports=supports)
-    steps = 4 * linear_steps(system) if steps is None else whole_number("steps", steps, 32, 65536)
+    steps = 2 * linear_steps(system) if steps is None else whole_number("steps", steps, 32, 65536)
     cycles = period_of(pair)
     if LinearForm(pair, system, 1, steps, 1).alike:
         one = gear_pair_multipliers(pair.healthy, supports=supports)

@@ -17,6 +17,7 @@ from lumped.faults.base import ToothFault
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
+from lumped.quasi_static.kernels import gaps_at
 from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.loaded import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
@@ -30,6 +31,8 @@ from lumped.typing import FloatArray, IntArray
 _INSIDE = 1e-11
 #: Columns of ``Tables.shape``: a gear's constant error, profile slope and tip relief, pinion's then gear's.
 _SHAPES = 6
+#: Share of the gap of a tip's corner that is left when the line of action is longer or shorter.
+_LEAST_GAP = 0.8
 
 
 class Laws:
@@ -141,7 +144,11 @@ class Laws:
             min([fault.end(flank) for fault in faults], default=flank.tip)
             for flank, faults in zip(self.flanks, self.faults[kind], strict=True)
         ]
-        return np.array([g.L_XY - tips[1], tips[0], g.L_XY, g.base_radius_pinion, g.base_radius_gear])
+        found = np.array([g.L_XY - tips[1], tips[0], g.L_XY, g.base_radius_pinion, g.base_radius_gear])
+        beyond, most = np.linspace(0.0, self.high - self.low, 65)[1:], np.zeros(64)
+        early, _ = gaps_at(found[0] - beyond, most, most, most, found)
+        late, _ = gaps_at(found[1] + beyond, most, most, most, found)
+        return np.append(found, [_LEAST_GAP * (one / beyond**2).min() for one in (early, late)])
 
     def constants(self) -> FloatArray:
         """See ``Tables.constants``."""
@@ -220,11 +227,14 @@ def tables(
     if neighbours:
         found = coupled(neighbours, *flat)[:, ::-1, ::-1]
         coupling = np.ascontiguousarray(found.reshape(edges.size - 1, at.size, ahead.size, ahead.size))
+    eccentric = laws.eccentric()
+    turn = 2.0 * np.pi / eccentric[:, 2] * tau[..., None]
     pinion, gear = (np.stack([o.error, o.slope, o.relief], axis=1) for o in own_teeth(pair))
     inside = np.clip(place, g.L_XA + _INSIDE * g.base_pitch, g.L_XD - _INSIDE * g.base_pitch)
     return Tables(
         edges=edges,
         nodes=at,
+        weights=np.linalg.solve(np.vander(at, increasing=True).T, 1.0 / np.arange(1.0, at.size + 1.0)),
         outputs=starts,
         ahead=ahead,
         place=place,
@@ -241,7 +251,8 @@ def tables(
         pinion=pinion,
         gear=gear,
         constants=laws.constants(),
-        eccentric=laws.eccentric(),
+        eccentric=eccentric,
+        turned=np.stack([np.cos(turn), np.sin(turn)], axis=-1),
         first=np.array(first_teeth(pair), dtype=np.int64),
         period=period_of(pair),
         duration=g.mesh_period,

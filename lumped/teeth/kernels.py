@@ -14,7 +14,7 @@ import numpy as np
 
 from lumped.compiler import Compiler
 from lumped.quasi_static import kernels as quasi_static
-from lumped.quasi_static.kernels import corner_at, shared_loads
+from lumped.quasi_static.kernels import corner_at
 from lumped.typing import FloatArray, IntArray
 
 FILES = [Path(__file__), Path(quasi_static.__file__)]
@@ -26,10 +26,14 @@ inlined = partial(compiled, _nrt=False, forceinline=True)
 #: linear form about the own static state.
 FIXED, FIXED_PUSH, PUSH, LINEAR = 0, 1, 2, 3
 #: Rows of the contact of all places at an approach: gap [m], its slopes over xi and over the approach, sine
-#: of the tilt, compression [m], load [N], tangent stiffness, that of the own tooth alone [N/m].
-GAP, BY_XI, BY_DELTA, TILT, PRESSED, LOAD, TANGENT, SELF = range(8)
+#: of the tilt, compression [m], load [N], tangent stiffness [N/m]; then what ``shared`` works with.
+GAP, BY_XI, BY_DELTA, TILT, PRESSED, LOAD, TANGENT, STEP, MATRIX = range(9)
 _STEPS = 100
 _SETTLED = 1e-12
+#: Most changes of contact in a step that are looked at.
+_MOST_BREAKS = 8
+#: Change of the loads in a Newton's step, over their sum, after which no further one is needed.
+_CLOSE = 1e-8
 
 
 class Tables(NamedTuple):
@@ -38,7 +42,7 @@ class Tables(NamedTuple):
     Attributes
     ----------
     edges : (steps + 1,) phases of the ends of the steps, 0 and 1 included
-    nodes : (nodes,) places in a step, 0 to 1; ends are limits from inside
+    nodes, weights : (nodes,) places in a step, 0 to 1, ends are limits from inside, and those of quadrature
     outputs : (steps,) whether a step starts at an output
     ahead : (pairs,) whole pitches by which a place is ahead of the pair at A at the cycle's start; falling
     place : (steps, nodes, pairs) xi [m]
@@ -46,7 +50,8 @@ class Tables(NamedTuple):
     friction : (steps, nodes, pairs) mu
     gap, gap_slope : (v, steps, nodes, pairs) without corners and errors of single teeth [m], and over xi
     shape, shape_slope : (steps, nodes, pairs, 6) gap per unit of each number of a pair, and over xi
-    ends : (v, 5) L_XA, L_XD, L_XY, base radii, as in ``gap_at`` [m]
+    ends : (v, 7) L_XA, L_XD, L_XY, base radii, as in ``gap_at`` [m], and what the gap of either tip's corner
+        has at least, over the square of its way beyond the end [1/m]
     coupling : (1 or steps, nodes, pairs, pairs) w_ij [m/N]
     kinds : (z1, z2) kind of the pair of two teeth
     pinion, gear : (z1, 3), (z2, 3) error, profile slope, tip relief of the teeth [m]
@@ -54,6 +59,7 @@ class Tables(NamedTuple):
     eccentric : (2, 6) amplitude, phase at t = 0, teeth, L, cot(alpha_w) of pinion and gear, and way of the
         common rotation on the base circles per amplitude. A row more for each ripple of a torque, which has
         this way alone: instead of the teeth the cycles of its period, instead of L its shaft
+    turned : (steps, nodes, rows of eccentric, 2) cosine and sine of each turn since the cycle's start
     first : teeth at A at t = 0, from 0
     period : mesh cycles until all repeats
     duration : of a mesh cycle [s]
@@ -62,6 +68,7 @@ class Tables(NamedTuple):
 
     edges: FloatArray
     nodes: FloatArray
+    weights: FloatArray
     outputs: IntArray
     ahead: IntArray
     place: FloatArray
@@ -79,6 +86,7 @@ class Tables(NamedTuple):
     gear: FloatArray
     constants: FloatArray
     eccentric: FloatArray
+    turned: FloatArray
     first: IntArray
     period: int
     duration: float
@@ -101,29 +109,35 @@ def corner(
 
 
 @inlined
-def eccentric_at(cycles: float, eccentric: FloatArray, found: FloatArray) -> None:
-    """Into ``found``: e, de/dcycles, dL, turn of the line (A, D), de/dtheta of both gears, shift of xi."""
-    for i in range(8):
-        found[i] = 0.0
+def eccentric_cycle(cycle: int, turned: FloatArray, eccentric: FloatArray, moved: FloatArray) -> None:
+    """Into ``moved``: e, de/dcycles, dL, turn of the line (A, D), de/dtheta of both gears, shift of xi.
+
+    Rows (steps, nodes, 8) of a mesh cycle; ``turned`` as in ``Tables``.
+    """
+    moved[:] = 0.0
     for which in range(eccentric.shape[0]):
-        size = eccentric[which, 0]
+        size, cotangent, way = eccentric[which, 0], eccentric[which, 4], eccentric[which, 5]
         if size == 0.0:
             continue
-        turns = 2.0 * math.pi / eccentric[which, 2]
+        turns, sense = 2.0 * math.pi / eccentric[which, 2], 1.0 - 2.0 * which
         # Whole turns are taken off first: a million cycles lose no digit.
-        angle = turns * (cycles % eccentric[which, 2]) + eccentric[which, 1]
-        cosine, sine = size * math.cos(angle), size * math.sin(angle)
-        found[7] += eccentric[which, 5] * sine
-        if which > 1:
-            continue
-        sense = 1.0 - 2.0 * which
-        found[0] += cosine
-        found[1] -= turns * sine
-        found[2] += cosine - sense * sine * eccentric[which, 4]
-        line = -sense * sine / eccentric[which, 3]  # angle by which the line of action turns
-        found[3] += line  # times the base radius of the gear, and of the pinion
-        found[4] += line
-        found[5 + which] = -sine
+        angle = turns * (cycle % eccentric[which, 2]) + eccentric[which, 1]
+        start_cosine, start_sine = size * math.cos(angle), size * math.sin(angle)
+        for s in range(moved.shape[0]):
+            for node in range(moved.shape[1]):
+                turn, found = turned[s, node, which], moved[s, node]
+                cosine = start_cosine * turn[0] - start_sine * turn[1]
+                sine = start_sine * turn[0] + start_cosine * turn[1]
+                found[7] += way * sine
+                if which > 1:
+                    continue
+                found[0] += cosine
+                found[1] -= turns * sine
+                found[2] += cosine - sense * sine * cotangent
+                line = -sense * sine / eccentric[which, 3]  # angle by which the line of action turns
+                found[3] += line  # times the base radius of the gear, and of the pinion
+                found[4] += line
+                found[5 + which] = -sine
 
 
 @inlined
@@ -133,14 +147,10 @@ def contact_of_cycle(
     """Contact of a mesh cycle but for what the approach changes.
 
     Written are ``kind`` (pairs,), ``k`` (steps, nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 2), gap
-    without corners and its slope over xi, and ``moved`` (steps, nodes, 8) of ``eccentric_at``.
+    without corners and its slope over xi, and ``moved`` (steps, nodes, 8) of ``eccentric_cycle``.
     """
     steps, nodes, pairs = own.place.shape
-    edges, at, eccentric = own.edges, own.nodes, own.eccentric
-    for s in range(steps):
-        for node in range(nodes):
-            tau = edges[s] + at[node] * (edges[s + 1] - edges[s])
-            eccentric_at(cycle + tau, eccentric, moved[s, node])
+    eccentric_cycle(cycle, own.turned, own.eccentric, moved[:steps])
     for i in range(pairs):
         number = cycle - own.ahead[i]
         p, g = (own.first[0] + number) % own.pinion.shape[0], (own.first[1] + number) % own.gear.shape[0]
@@ -159,6 +169,56 @@ def contact_of_cycle(
 
 
 @inlined
+def shared(k: FloatArray, coupling: FloatArray, constants: FloatArray, here: FloatArray) -> None:
+    """``quasi_static.shared_loads`` by Newton's steps for all loads at once, from those that ``here`` has.
+
+    N_i (1/k_i - s/2 ln((N_i^2 + N_1^2)/F^2)) + sum_j w_ij N_j = p_i of the pairs that press.
+    """
+    force, softening, least, size = constants[0], constants[2], constants[3], k.size
+    for _ in range(_STEPS):
+        for i in range(size):
+            left, load = here[PRESSED, i], here[LOAD, i]
+            if left > 0.0:
+                for j in range(size):
+                    left -= coupling[i, j] * here[LOAD, j]
+            for j in range(size):
+                here[MATRIX + i, j] = 0.0
+            here[MATRIX + i, i] = 1.0
+            here[STEP, i] = here[TANGENT, i] = 0.0
+            if left > 0.0 or load > 0.0:
+                square = load * load + least * least
+                secant = 1.0 / k[i] - 0.5 * softening * math.log(square / (force * force))
+                for j in range(size):
+                    here[MATRIX + i, j] = coupling[i, j]
+                here[MATRIX + i, i] = secant - softening * load * load / square
+                here[STEP, i], here[TANGENT, i] = left - load * secant, 1.0
+        for i in range(size):  # the matrix is positive definite: no pivots
+            for row in range(i + 1, size):
+                factor = here[MATRIX + row, i] / here[MATRIX + i, i]
+                if factor != 0.0:
+                    for column in range(i + 1, size):
+                        here[MATRIX + row, column] -= factor * here[MATRIX + i, column]
+                    here[STEP, row] -= factor * here[STEP, i]
+                    here[TANGENT, row] -= factor * here[TANGENT, i]
+        change = total = 0.0
+        for i in range(size - 1, -1, -1):
+            for column in range(i + 1, size):
+                here[STEP, i] -= here[MATRIX + i, column] * here[STEP, column]
+                here[TANGENT, i] -= here[MATRIX + i, column] * here[TANGENT, column]
+            here[STEP, i] /= here[MATRIX + i, i]
+            here[TANGENT, i] /= here[MATRIX + i, i]
+            load = max(here[LOAD, i] + here[STEP, i], 0.0)
+            change += abs(load - here[LOAD, i])
+            total += load
+            here[LOAD, i] = load
+        if change <= _CLOSE * total:  # the next step is its square
+            break
+    for i in range(size):
+        if here[LOAD, i] == 0.0:
+            here[TANGENT, i] = 0.0
+
+
+@inlined
 def loads_at(
     delta: float,
     single: bool,
@@ -172,7 +232,7 @@ def loads_at(
     constants: FloatArray,
     here: FloatArray,
 ) -> None:
-    """Gaps and elastic loads of all places at the approach ``delta``, into ``here`` (8, pairs).
+    """Gaps and elastic loads of all places at the approach ``delta``, into ``here`` (rows, pairs).
 
     ``single``: linear pairs that do not move each other.
     """
@@ -180,29 +240,28 @@ def loads_at(
     half, length = 0.5 * (delta + longer), longer + moved[2]
     for i in range(k.size):
         if k[i] <= 0.0:
-            here[LOAD, i] = here[TANGENT, i] = here[SELF, i] = 0.0
+            here[LOAD, i] = here[TANGENT, i] = here[PRESSED, i] = 0.0
             continue
         gap, slope, rise, tilt = flat[i, 0], flat[i, 1], 0.0, 0.0
         of, xi = ends[kind[i]], place[i] + moved[7]
         early, late = of[0] - xi + half + of[4] * moved[3], xi - of[1] + half + of[3] * moved[4]
         line = of[2] + length
-        if early > 0.0:
-            more, steep, tilt = corner(early, of[0] + length, line, of[3], of[4])
-            gap, slope, rise = gap + more, slope - steep, 0.5 * steep
-        if late > 0.0:
-            more, steep, turned = corner(late, line - of[1], line, of[4], of[3])
-            gap, slope, rise, tilt = gap + more, slope + steep, rise + 0.5 * steep, tilt + turned
+        pressed = delta - gap - of[5] * max(early, 0.0) ** 2 - of[6] * max(late, 0.0) ** 2
+        if pressed > 0.0:  # else the tip's corner is farther away than that
+            if early > 0.0:
+                more, steep, tilt = corner(early, of[0] + length, line, of[3], of[4])
+                gap, slope, rise = gap + more, slope - steep, 0.5 * steep
+            if late > 0.0:
+                more, steep, turned = corner(late, line - of[1], line, of[4], of[3])
+                gap, slope, rise, tilt = gap + more, slope + steep, rise + 0.5 * steep, tilt + turned
+            pressed = delta - gap
         here[GAP, i], here[BY_XI, i], here[BY_DELTA, i], here[TILT, i] = gap, slope, rise, tilt
-        pressed = delta - gap
         here[PRESSED, i] = pressed
         if single:
             here[LOAD, i] = k[i] * pressed if pressed > 0.0 else 0.0
             here[TANGENT, i] = k[i] if pressed > 0.0 else 0.0
     if not single:
-        force, softening, least = constants[0], constants[2], constants[3]
-        shared_loads(
-            here[PRESSED], k, coupling, softening, force, least, here[LOAD], here[TANGENT], here[SELF]
-        )
+        shared(k, coupling, constants, here)
 
 
 @inlined
@@ -270,47 +329,130 @@ def static_cycles(
     """
     steps, nodes, pairs = own.place.shape
     approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
-    sums = np.zeros((cycles, steps, nodes, 17))
-    place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
-    constants, speed, duration = own.constants, own.speed, own.duration
-    kind, here = np.zeros(pairs, np.int64), np.zeros((8, pairs))
-    k, flat = np.zeros((steps, nodes, pairs)), np.zeros((steps, nodes, pairs, 2))
-    moved, static = np.zeros((steps, nodes, 8)), 0.0
-    single = constants[2] == 0.0 and not coupling.any()
+    sums, row = np.zeros((cycles, steps, nodes, 17)), np.zeros(17)
+    # Behind the last step the tables have room for a place between nodes.
+    place, friction = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs))
+    damping = np.zeros((own.damping.shape[0], steps + 1, nodes, pairs))
+    coupling = np.zeros((steps + 1, nodes, pairs, pairs))
+    place[:steps], friction[:steps], damping[:, :steps] = own.place, own.friction, own.damping
+    coupling[:steps] = own.coupling
+    ends, constants, speed, duration = own.ends, own.constants, own.speed, own.duration
+    kind, here = np.zeros(pairs, np.int64), np.zeros((MATRIX + pairs, pairs))
+    k, flat = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 2))
+    moved, static, looks = np.zeros((steps + 1, nodes, 8)), 0.0, nodes > 1 and not fixed
+    single, share, pressing = constants[2] == 0.0 and not coupling.any(), np.ones(nodes), np.zeros((2, pairs))
+    breaks, found = np.empty((steps, _MOST_BREAKS)), np.zeros(steps, np.int64)
+    where, inside = (
+        np.empty(nodes * steps * (_MOST_BREAKS + 1), np.int64),
+        np.empty((2, nodes * steps * (_MOST_BREAKS + 1))),
+    )
     for c in range(cycles):
         contact_of_cycle(start + c, own, kind, k, flat, moved)
-        for s in range(steps):
-            w = coupling[s if coupling.shape[0] > 1 else 0]
-            for node in range(nodes):
-                k_at, at, off, xi = k[s, node], flat[s, node], moved[s, node], place[s, node]
+        visit, visits, before = 0, steps * nodes, 0.0
+        while visit < visits:
+            at, node, more = visit // nodes, visit % nodes, visit - steps * nodes
+            if more >= 0:
+                at, node, s, x = steps, 0, where[more], inside[0, more]
+                place[at, 0], friction[at, 0], damping[:, at, 0], coupling[at, 0] = 0.0, 0.0, 0.0, 0.0
+                k[at, 0], flat[at, 0], moved[at, 0] = 0.0, 0.0, 0.0
+                for j in range(nodes):
+                    share[j] = 1.0
+                    for other in range(nodes):
+                        if other != j:
+                            share[j] *= (x - own.nodes[other]) / (own.nodes[j] - own.nodes[other])
+                    for n in range(8):
+                        moved[at, 0, n] += share[j] * moved[s, j, n]
+                    for i in range(pairs):
+                        k[at, 0, i] += share[j] * k[s, j, i]
+                        place[at, 0, i] += share[j] * place[s, j, i]
+                        friction[at, 0, i] += share[j] * friction[s, j, i]
+                        damping[kind[i], at, 0, i] += share[j] * damping[kind[i], s, j, i]
+                        for n in range(2):
+                            flat[at, 0, i, n] += share[j] * flat[s, j, i, n]
+                        for n in range(pairs):
+                            coupling[at, 0, i, n] += share[j] * coupling[s, j, i, n]
+            k_at, gap, off, xi, w = (
+                k[at, node],
+                flat[at, node],
+                moved[at, node],
+                place[at, node],
+                coupling[at, node],
+            )
+            if not fixed:
+                guess = 0.0 if math.isnan(static) else static
+                static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
+            for n in range(17):
+                row[n] = 0.0
+            row[9], row[10] = off[5], off[6]
+            for i in range(pairs):
+                if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
+                    continue
+                c_i, rise, load = damping[kind[i], at, node, i], k_at[i], -k_at[i] * gap[i, 0]
+                closing, slope, tilt = 1.0, gap[i, 1], 0.0
                 if not fixed:
-                    guess = 0.0 if math.isnan(static) else static
-                    static = settled(guess, single, k_at, at, off, xi, w[node], kind, ends, constants, here)
-                    approach[c, s, node] = static
-                row = sums[c, s, node]
-                row[9], row[10] = off[5], off[6]
-                for i in range(pairs):
-                    if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
-                        continue
-                    c_i, rise, load = damping[kind[i], s, node, i], k_at[i], -k_at[i] * at[i, 0]
-                    closing, slope, tilt = 1.0, at[i, 1], 0.0
-                    if not fixed:
-                        part = min(here[LOAD, i] / constants[4], 1.0)
-                        c_i *= part * part * (3.0 - 2.0 * part)
-                        rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
-                        closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
-                    rolling = slope * speed + off[1] / duration
-                    load -= c_i * rolling
-                    mu = friction[s, node, i]
-                    for n, value in ((0, rise), (1, c_i * closing), (2, load)):
-                        row[3 * n] += value
-                        row[3 * n + 1] += mu * value
-                        row[3 * n + 2] += mu * value * xi[i]
-                        row[14 + n] += tilt * value
-                    row[11] += c_i * closing**2
-                    row[12] -= 2.0 * c_i * closing * rolling
-                    row[13] += c_i * rolling**2
-                    if node == 0:
-                        each[0, i, c, s] = here[LOAD, i]
-                        each[1, i, c, s], each[2, i, c, s], each[3, i, c, s] = rise, c_i * closing, load
+                    part = min(here[LOAD, i] / constants[4], 1.0)
+                    c_i *= part * part * (3.0 - 2.0 * part)
+                    rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
+                    closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
+                rolling = slope * speed + off[1] / duration
+                load -= c_i * rolling
+                mu = friction[at, node, i]
+                for n, value in ((0, rise), (1, c_i * closing), (2, load)):
+                    row[3 * n] += value
+                    row[3 * n + 1] += mu * value
+                    row[3 * n + 2] += mu * value * xi[i]
+                    row[14 + n] += tilt * value
+                row[11] += c_i * closing**2
+                row[12] -= 2.0 * c_i * closing * rolling
+                row[13] += c_i * rolling**2
+                if more < 0 and node == 0:
+                    each[0, i, c, at] = here[LOAD, i]
+                    each[1, i, c, at], each[2, i, c, at], each[3, i, c, at] = rise, c_i * closing, load
+            visit += 1
+            if more >= 0:
+                for j in range(nodes):
+                    for n in range(17):
+                        sums[c, s, j, n] += inside[1, more] * share[j] / own.weights[j] * row[n]
+                continue
+            approach[c, at, node] = static
+            for n in range(17):
+                sums[c, at, node, n] = row[n]
+            if not looks:
+                continue
+            tau = own.edges[at] + own.nodes[node] * (own.edges[at + 1] - own.edges[at])
+            rise = 0.0
+            for i in range(pairs):
+                rise += here[TANGENT, i] * (1.0 - here[BY_DELTA, i])
+            for i in range(pairs):  # where a pair touches or leaves, or its damper is full, between two nodes
+                left = here[PRESSED, i]
+                for n in range(pairs):
+                    left -= w[i, n] * here[LOAD, n]
+                left *= rise  # as a force it has one slope on both sides
+                for which, value in ((0, left), (1, here[LOAD, i] - constants[4])):
+                    last, pressing[which, i] = pressing[which, i], value
+                    if visit > 1 and last * value < 0.0:
+                        change = before + (tau - before) * last / (last - value)
+                        s = at if change > own.edges[at] else at - 1
+                        if found[s] < _MOST_BREAKS:
+                            breaks[s, found[s]] = (change - own.edges[s]) / (own.edges[s + 1] - own.edges[s])
+                            found[s] += 1
+            before = tau
+            for s in range(steps if visit == steps * nodes else 0):
+                if found[s] > 0:
+                    sums[c, s] = 0.0
+                    low = 0.0
+                    for _ in range(found[s] + 1):
+                        high = 1.0
+                        for n in range(found[s]):
+                            if low < breaks[s, n] < high:
+                                high = breaks[s, n]
+                        for j in range(nodes):
+                            where[visits - visit], inside[0, visits - visit] = (
+                                s,
+                                low + (high - low) * own.nodes[j],
+                            )
+                            inside[1, visits - visit] = (high - low) * own.weights[j]
+                            visits += 1
+                        low = high
+                    found[s] = 0
     return approach, each, sums

@@ -14,20 +14,22 @@ from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
 from lumped.model.kernels import chained, states_along
 from lumped.model.periodic_system import LTVSystem, Supports
-from lumped.model.propagation import STAGES, distinct_lengths, fastest_frequency, padded, without_mesh
+from lumped.model.propagation import distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.steady import balanced_start, periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.motion import OwnMotion, moments, static_mesh, swinging, without_drift
-from lumped.teeth.motion_kernels import linear_cycles
+from lumped.teeth.motion_kernels import STAGES, linear_cycles
 from lumped.teeth.pairs import ripples
 from lumped.typing import FloatArray
 
 #: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of that vibration, less
 #: than the touches of pairs inside steps do.
 _STEP_ANGLE = 2.4
-_LEAST_STEPS = 48
+_LEAST_STEPS = 32
+#: Steps are so much longer than asked for where they then end at every output.
+_LONGER = 1.25
 #: Mesh cycles that are worked on together.
 _BLOCK = 64
 
@@ -50,6 +52,7 @@ class LinearForm:
         self.pair, self.system = pair, system
         self.laws, self.fixed = Laws(pair), pair.mesh.contact != "loaded"
         tableau = gauss_tableau(STAGES)
+        steps = samples if samples <= steps <= _LONGER * samples else steps
         self.own = tables(self.laws, 1.0 / steps, samples, tableau[2])
         if system.form == "full":
             self.own = swinging(self.own, system)
@@ -63,7 +66,8 @@ class LinearForm:
         forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
         forces = np.vstack([forces, torques[m:].T])
         by_force = np.einsum("fm,ksmr->ksfr", forces, feedback)
-        self.steps = (which, end, p, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
+        free = np.ascontiguousarray(np.concatenate([p, end], axis=1).swapaxes(1, 2))
+        self.steps = (which, free, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
         self.width = end.shape[2]
         #: Whether the cycles differ in their forcing alone, and in that by the errors of their teeth.
         self.alike = self.fixed and len(self.laws.faults) == 1 and not self.own.eccentric[:, 0].any()
@@ -81,14 +85,27 @@ class LinearForm:
         return linear_cycles(first, columns, keeps, sums, *self.steps, deflection, ripple, self.own)
 
     def cycle_maps(self, kept: dict[int, FloatArray] | None = None) -> FloatArray:
-        """Affine map of each mesh cycle, (cycles, n, n + columns); ``kept`` takes ``mesh`` of each block."""
-        units = np.tile(np.eye(self.width), (_BLOCK, 1, 1))
+        """Affine map of each mesh cycle, (cycles, n, n + 3); ``kept`` takes ``mesh`` of each block.
+
+        States that move no tooth, of which all cycles make the same, are followed once.
+        """
+        support, n = self.system.supports, 2 * len(self.system.coordinates)
+        fed = len(support.coordinates("mesh").names)
+        full, twice = self.system.form == "full", np.eye(2)
+        to = np.kron(twice, (support.relative if full else np.eye(n // 2))[:fed])
+        back = np.kron(twice, (support.back if full else np.eye(n // 2))[:, :fed])
+        units = np.zeros((1, 2 * fed + 3, self.width))
+        units[0, : 2 * fed, :n], units[0, 2 * fed :, n : n + 3] = back.T, np.eye(3)
+        others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
+        nothing = np.zeros((1, self.lengths.size, STAGES, 17))
+        still = self.along(0, others[None], nothing, False)[0][0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
             sums = self.mesh(block)
             if kept is not None:
                 kept[block[0]] = sums
-            return self.along(block[0], units[: block[1]], sums, False)[0]
+            ends = self.along(block[0], np.tile(units, (block[1], 1, 1)), sums, False)[0].swapaxes(1, 2)
+            return np.concatenate([ends[..., : 2 * fed] @ to + still, ends[..., 2 * fed :]], axis=2)
 
         return np.concatenate(in_threads(maps, self.cycles))
 
@@ -112,7 +129,7 @@ def linear_motion(
     coarse = LinearForm(pair, system, 1, -(-steps // 2), _BLOCK)
     form = LinearForm(pair, system, samples, steps)
     mesh: dict[int, FloatArray] = {}
-    cycles, weights = _superposed(form) if form.alike else _closed(form, mesh)
+    cycles, weights = _closed(form, mesh)
     other = states_along(coarse.cycle_maps(), cycles[0], weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
     states, powers = _inside(form, mesh, cycles, weights)
@@ -149,36 +166,6 @@ def _closed(form: LinearForm, mesh: dict[int, FloatArray]) -> tuple[FloatArray, 
     return states_along(maps, start + moved.ravel(), weights), weights
 
 
-def _superposed(form: LinearForm) -> tuple[FloatArray, FloatArray]:
-    """As ``_closed``, of cycles that are ``alike``: one solve for each order of the errors of either gear."""
-    own, lists = form.own, (form.own.pinion, form.own.gear)
-
-    def cycle_map(teeth: list[FloatArray]) -> FloatArray:
-        sums = static_mesh(own._replace(pinion=teeth[0], gear=teeth[1]), 0, 1, True)[2]
-        found: FloatArray = form.along(0, np.eye(form.width)[None], sums, False)[0][0]
-        return found
-
-    mean = [np.tile(errors.mean(axis=0), (len(errors), 1)) for errors in lists]
-    base, n = cycle_map(mean), 2 * len(form.system.coordinates)
-    start, weights = balanced_start(form.system, base[:, :n], base[:, n : n + 3])
-    spectrum = np.zeros((own.period, n), dtype=np.complex128)
-    spectrum[0] = own.period * start
-    for which, errors in enumerate(lists):
-        z, first, differing = len(errors), int(own.first[which]), np.flatnonzero(np.ptp(errors, axis=0))
-        turn = np.exp(2j * np.pi * np.arange(1, z) / z)[:, None]
-        size, forced = np.fft.fft(np.roll(errors, -first, axis=0), axis=0)[1:], np.zeros((z - 1, n), complex)
-        for column in differing:
-            for ahead in own.ahead.tolist():
-                unit = [one.copy() for one in mean]
-                unit[which][(first - ahead) % z, column] += 1.0
-                forced += size[:, [column]] * turn ** float(-ahead) * (cycle_map(unit) - base)[:, n]
-        if differing.size:
-            found = np.linalg.solve(turn[..., None] * np.eye(n) - base[:, :n], forced[..., None])[..., 0]
-            spectrum[own.period // z * np.arange(1, z)] += own.period // z * found
-    cycles: FloatArray = np.fft.ifft(spectrum, axis=0).real
-    return np.vstack([cycles, cycles[:1]]), weights
-
-
 def _inside(
     form: LinearForm, mesh: dict[int, FloatArray], cycles: FloatArray, weights: FloatArray
 ) -> tuple[FloatArray, dict[str, float]]:
@@ -186,13 +173,17 @@ def _inside(
     system, own = form.system, form.own
     m, gears, b = len(system.coordinates), system.gears, gauss_tableau(STAGES)[1]
     rates = np.vstack([gears[:2], gears[5] - gears[4]])
-    g, padding = form.pair.geometry, np.zeros(form.width - 2 * m - weights.size)
+    g = form.pair.geometry
 
     def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
         first, count = block
-        sums = mesh[first] if first in mesh else form.mesh(block)
-        start = [np.concatenate([state, weights, padding]) for state in cycles[first : first + count]]
-        _, states, inside = form.along(first, np.array(start)[..., None], sums, True)
+        sums = mesh[first]
+        start = np.zeros((count, 1, form.width))
+        start[:, 0, : 2 * m], start[:, 0, 2 * m : 2 * m + weights.size] = (
+            cycles[first : first + count],
+            weights,
+        )
+        _, states, inside = form.along(first, start, sums, True)
         delta, closing = np.moveaxis(inside.reshape(*inside.shape[:2], 2, b.size), 2, 0)
         n = np.moveaxis(sums, -1, 0)
         load, taken = n[0] * delta + n[3] * closing + n[6], (n[11] * closing + n[12]) * closing + n[13]

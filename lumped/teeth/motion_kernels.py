@@ -14,12 +14,24 @@ import numpy as np
 from lumped.compiler import Compiler
 from lumped.model import kernels as gauss
 from lumped.model.kernels import solve_in_place
-from lumped.teeth.kernels import BY_DELTA, BY_XI, FILES, LOAD, TILT, Tables, contact_of_cycle, loads_at
+from lumped.teeth.kernels import (
+    BY_DELTA,
+    BY_XI,
+    FILES,
+    LOAD,
+    MATRIX,
+    TILT,
+    Tables,
+    contact_of_cycle,
+    loads_at,
+)
 from lumped.typing import FloatArray, IntArray
 
 compiled = Compiler([Path(__file__), Path(gauss.__file__), *FILES])
 #: Directions of the forces of the mesh: N, its moments on both gears, F, F xi, tip corners; both torques.
 FORCES = 8
+#: Stages of the Gauss steps.
+STAGES = 4
 
 
 @compiled
@@ -59,7 +71,7 @@ def motion_cycles(
     x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
     place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
     constants, speed, edges, outputs = own.constants, own.speed, own.edges, own.outputs
-    kind, here, normal = np.zeros(pairs, np.int64), np.zeros((8, pairs)), np.zeros(pairs)
+    kind, normal, here = np.zeros(pairs, np.int64), np.zeros(pairs), np.zeros((MATRIX + pairs, pairs))
     k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 2))
     moves = np.zeros((steps, 3, 8))
     single = constants[2] == 0.0 and not coupling.any()
@@ -166,8 +178,7 @@ def linear_cycles(
     keeps: bool,
     sums: FloatArray,
     which: IntArray,
-    free_end: FloatArray,
-    free_p: FloatArray,
+    free: FloatArray,
     by_force: FloatArray,
     by_p: FloatArray,
     reach: FloatArray,
@@ -177,35 +188,31 @@ def linear_cycles(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Gauss steps of the linear form through mesh cycles from ``first`` on, each from its own start.
 
-    ``columns`` (cycles, 2m + forcings, count) are states at the starts over the weights of the forcings,
-    ``sums`` those of ``static_cycles``, ``which`` (steps,) the length of each step, a row of the next five:
-    free_end, free_p and by_p as of ``lumped.model.propagation.without_mesh``, ``by_force`` (k, s, FORCES,
-    s + 2m) its by_feedback along the directions of ``FORCES``, ``reach`` (k, s) the time to each stage [s];
-    ``ripple`` as in ``motion_cycles``. Returned are the states at the ends (cycles, 2m, count) and, where it
-    ``keeps``, of the first column the state at the start of every step (cycles, steps, 2m), and delta, then
-    its rate, at the stages (cycles, steps, 2s).
+    ``columns`` (cycles, count, 2m + forcings) are states at the starts before the weights of the forcings,
+    ``sums`` those of ``static_cycles``, ``which`` (steps,) the length of each step, a row of the next four:
+    ``free`` (k, 2m + forcings, STAGES + 2m) p and end of ``lumped.model.propagation.without_mesh`` side by
+    side, ``by_force`` (k, s, FORCES, STAGES + 2m) its by_feedback along the directions of ``FORCES``, its
+    by_p, and ``reach`` (k, s) the time to each stage [s]; ``ripple`` as in ``motion_cycles``. Returned are
+    the states at the ends (cycles, count, 2m) and, where it ``keeps``, of the first column the state at the
+    start of every step (cycles, steps, 2m), and delta, then its rate, at the stages (cycles, steps, 2s).
     """
-    cycles, wide, count = columns.shape
-    steps, stages, m = sums.shape[1], sums.shape[2], deflection.size
-    n, rows = 2 * m, stages + 2 * m
-    ends, kept = np.empty((cycles, n, count)), cycles if keeps else 0
-    states, inside = np.empty((kept, steps, n)), np.empty((kept, steps, 2 * stages))
-    now, then = np.empty((wide, count)), np.empty((wide, count))
-    start, p = np.empty((2 * stages, count)), np.empty((stages, count))
-    to, matrix = np.empty((2 * stages + 1, rows)), np.empty((stages, stages))
-    strength, targets = np.zeros((3, FORCES)), np.zeros(3, np.int64)
-    fixed = 2 * stages
-    targets[2] = fixed
+    cycles, count, wide = columns.shape
+    steps, m = sums.shape[1], deflection.size
+    n, rows = 2 * m, STAGES + 2 * m
+    ends, kept = np.empty((cycles, count, n)), cycles if keeps else 0
+    states, inside = np.empty((kept, steps, n)), np.empty((kept, steps, 2 * STAGES))
+    now, to, found = np.empty((count, wide)), np.empty((2 * STAGES, rows)), np.empty(rows)
+    start, p, strength = np.empty(2 * STAGES), np.empty(STAGES), np.zeros((3, FORCES))
+    fixed, matrix, inverse = np.empty(rows), np.empty((STAGES, STAGES)), np.empty((STAGES, STAGES))
     for c in range(cycles):
-        for row in range(wide):
-            for column in range(count):
-                now[row, column] = then[row, column] = columns[c, row, column]
+        for column in range(count):
+            for row in range(wide):
+                now[column, row] = columns[c, column, row]
         for s in range(steps):
             of = which[s]
             for row in range(rows):
-                to[fixed, row] = 0.0
-            for stage in range(stages):
-                targets[0], targets[1] = stage, stages + stage
+                fixed[row] = 0.0
+            for stage in range(STAGES):
                 at = sums[c, s, stage]
                 for part in range(3):
                     strength[part, 0], strength[part, 5] = at[3 * part], at[14 + part]
@@ -217,63 +224,59 @@ def linear_cycles(
                     turn = ripple[i, 1] * ((first + c + tau) % ripple[i, 4]) + ripple[i, 2]
                     strength[2, 6 + int(ripple[i, 0])] += ripple[i, 3] * math.cos(turn)
                 for row in range(rows):
-                    to[stage, row] = to[stages + stage, row] = 0.0
+                    to[stage, row] = to[STAGES + stage, row] = 0.0
                 for force in range(FORCES):
-                    for part in range(3):
-                        factor, target = strength[part, force], targets[part]
-                        if factor != 0.0:
-                            for row in range(rows):
-                                to[target, row] += factor * by_force[of, stage, force, row]
+                    by_delta, by_rate, constant = strength[0, force], strength[1, force], strength[2, force]
+                    if by_delta != 0.0 or by_rate != 0.0 or constant != 0.0:
+                        for row in range(rows):
+                            factor = by_force[of, stage, force, row]
+                            to[stage, row] += by_delta * factor
+                            to[STAGES + stage, row] += by_rate * factor
+                            fixed[row] += constant * factor
+            for row in range(STAGES):
+                for column in range(STAGES):
+                    matrix[row, column] = inverse[row, column] = 1.0 if row == column else 0.0
+                    for i in range(2 * STAGES):
+                        matrix[row, column] -= to[i, row] * by_p[of, i, column]
+            solve_in_place(matrix, inverse)
             for column in range(count):
-                place, rate = 0.0, 0.0
+                x = now[column]
+                place = rate = 0.0
                 for j in range(m):
-                    place += deflection[j] * now[j, column]
-                    rate += deflection[j] * now[m + j, column]
-                for stage in range(stages):
-                    start[stage, column] = place + reach[of, stage] * rate
-                    start[stages + stage, column] = rate
-            for row in range(stages):
-                for column in range(count):
-                    p[row, column] = to[fixed, row] * now[n, column]
-                for inner in range(wide):
-                    factor = free_p[of, row, inner]
-                    if factor != 0.0:
-                        for column in range(count):
-                            p[row, column] += factor * now[inner, column]
-                for column in range(stages):
-                    matrix[row, column] = 0.0
-                matrix[row, row] = 1.0
-                for i in range(2 * stages):
-                    factor = to[i, row]
-                    for column in range(count):
-                        p[row, column] += factor * start[i, column]
-                    for column in range(stages):
-                        matrix[row, column] -= factor * by_p[of, i, column]
-            solve_in_place(matrix, p)
-            for row in range(2 * stages):
-                for i in range(stages):
-                    factor = by_p[of, row, i]
-                    for column in range(count):
-                        start[row, column] += factor * p[i, column]
-            if keeps:
+                    place += deflection[j] * x[j]
+                    rate += deflection[j] * x[m + j]
+                for row in range(rows):
+                    found[row] = fixed[row] * x[n]
+                for inner in range(0, wide, 4):  # four together, for a processor loads and stores fewer rows
+                    f0, f1, f2, f3 = x[inner], x[inner + 1], x[inner + 2], x[inner + 3]
+                    a = free[of, inner : inner + 4]
+                    for row in range(rows):
+                        found[row] += f0 * a[0, row] + f1 * a[1, row] + f2 * a[2, row] + f3 * a[3, row]
+                for stage in range(STAGES):
+                    start[stage], start[STAGES + stage] = place + reach[of, stage] * rate, rate
+                for row in range(STAGES):
+                    for i in range(2 * STAGES):
+                        found[row] += to[i, row] * start[i]
+                for row in range(STAGES):
+                    p[row] = 0.0
+                    for i in range(STAGES):
+                        p[row] += inverse[row, i] * found[i]
+                for row in range(2 * STAGES):
+                    for i in range(STAGES):
+                        start[row] += by_p[of, row, i] * p[i]
+                if keeps and column == 0:
+                    for row in range(n):
+                        states[c, s, row] = x[row]
+                    for row in range(2 * STAGES):
+                        inside[c, s, row] = start[row]
+                for half in range(0, 2 * STAGES, 4):
+                    f0, f1, f2, f3 = start[half], start[half + 1], start[half + 2], start[half + 3]
+                    a = to[half : half + 4]
+                    for row in range(STAGES, rows):
+                        found[row] += f0 * a[0, row] + f1 * a[1, row] + f2 * a[2, row] + f3 * a[3, row]
                 for row in range(n):
-                    states[c, s, row] = now[row, 0]
-                for row in range(2 * stages):
-                    inside[c, s, row] = start[row, 0]
+                    x[row] = found[STAGES + row]
+        for column in range(count):
             for row in range(n):
-                for column in range(count):
-                    then[row, column] = to[fixed, stages + row] * now[n, column]
-                for inner in range(wide):
-                    factor = free_end[of, row, inner]  # few on springs, which couple nothing
-                    if factor != 0.0:
-                        for column in range(count):
-                            then[row, column] += factor * now[inner, column]
-                for i in range(2 * stages):
-                    factor = to[i, stages + row]
-                    for column in range(count):
-                        then[row, column] += factor * start[i, column]
-            now, then = then, now
-        for row in range(n):
-            for column in range(count):
-                ends[c, row, column] = now[row, column]
+                ends[c, column, row] = now[column, row]
     return ends, states, inside

@@ -120,9 +120,11 @@ def test_like_teeth_have_the_multipliers_of_the_mesh_cycle_to_the_28th_power(con
     expected = floquet.gear_pair_multipliers(pair).feedback
     found = floquet.revolution_multipliers(pair.with_({"pinion.deviations": LIKE}))
     assert found.cycles == 28
-    assert abs(found.rate - abs(expected[0])) <= found.error + 1e-9
+    # The loaded elements of like teeth are fits, of which k is off by 7e-5 of its mean and c by 9e-4.
+    fits = {"prescribed": 1e-9, "loaded": 1.1e-5}[contact]
+    assert abs(found.rate - abs(expected[0])) <= found.error + fits
     assert found.certificate == {"prescribed": "proven", "loaded": "estimate"}[contact]
-    assert found.error < {"prescribed": 1e-9, "loaded": 1e-4}[contact]
+    assert found.error < {"prescribed": 1e-9, "loaded": 1e-5}[contact]
     moved = {"pinion.mounting": {"eccentricity": 1e-9}}  # so little makes the maps of the cycles differ
     maps = floquet.revolution_multipliers(pair.with_(moved))
     assert maps.certificate == "estimate"
