@@ -201,7 +201,8 @@ def tables(
     starts[np.searchsorted(edges, even[:-1] - _INSIDE)] = 1
     low, high = edges[:-1], edges[1:]
     at = np.asarray(nodes, dtype=np.float64)
-    weights: FloatArray = np.linalg.solve(np.vander(at, increasing=True).T, 1.0 / np.arange(1.0, at.size + 1))
+    moments = 1.0 / np.arange(1.0, at.size + 1.0)
+    weights = np.asarray(np.linalg.solve(np.vander(at, increasing=True).T, moments), dtype=np.float64)
     tau = np.clip(low[:, None] + (high - low)[:, None] * at, low[:, None] + _INSIDE, high[:, None] - _INSIDE)
     ahead = np.arange(
         int(np.ceil((laws.high - g.L_XA) / g.base_pitch)) - 1,
