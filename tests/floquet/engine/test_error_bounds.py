@@ -1,5 +1,7 @@
 """Is the true error never above the reported bound, in easy and in awkward cases?"""
 
+import itertools
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -231,3 +233,22 @@ def test_order_survives_declared_switches(method) -> None:
     system, exact = lyapunov_system(0.5 * B, 0.6 * S, 7.0, "triangle")
     # 0.3: the next term of the error series.
     assert observed_order(method, system, exact) == pytest.approx(method.order, abs=0.3)
+
+
+@pytest.mark.parametrize("method", PROPAGATORS.values(), ids=PROPAGATORS)
+def test_a_step_is_exact_on_all_products_of_powers_up_to_its_order(method) -> None:
+    """A has t^e_1, t^e_2, ... above its diagonal, so the corner of Phi(1, 0) is an integral of integrals.
+
+    It is of order sum(e) + m in the step: the order conditions of linear equations, one by one.
+    """
+    for m in (1, 2, 3, 4):
+        for e in itertools.product(range(4), repeat=m):
+            if sum(e) + m > min(method.order, 8):
+                continue
+            A = np.stack([np.diag(t ** np.array(e, dtype=float), 1) for t in method.nodes])
+            exact, power = 1.0, 0
+            for one in reversed(e):
+                power += one + 1
+                exact /= power
+            found = method.step_matrices(A[None], np.ones(1))[0, 0, -1]
+            assert found == pytest.approx(exact, rel=1e-12), e
