@@ -169,7 +169,7 @@ def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: 
     import numpy as np
 
     from validation.prediction.motion import QUANTITIES
-    from validation.prediction.uncertainty import TEETH
+    from validation.prediction.uncertainty import TEETH, transmission_error
     from validation.prediction.uncertainty import uncertainty as run
 
     with progress_bar("uncertain inputs") as tell:
@@ -180,14 +180,14 @@ def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: 
         if f"given_{name}" in found.attrs
     )
     show(f"{pair.name}: results", "result | >as given | >5 % | >50 % | >95 %", rows)
-    swing = found["dte_peak_to_peak_swing"].to_numpy()
-    correlation = found["dte_peak_to_peak_rank_correlation"].to_numpy()
+    name = transmission_error(found)
+    swing, correlation = (found[f"{name}_{one}"].to_numpy() for one in ("swing", "rank_correlation"))
     moves = [
         (str(found["input"].to_numpy()[j]), str(found.attrs["written"][j]), (swing[j].min(), "m"),
          (swing[j].max(), "m"), round(float(correlation[j]), 2))
         for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
     ]  # fmt: skip
-    show("what moves the transmission error", "input | range | >from | >to | >rank corr.", moves)
+    show(f"what moves the {(QUANTITIES | TEETH)[name][1]}", "input | range | >from | >to | >rank corr.", moves)
     counts = ("refused", "contact_lost", "unstable")
     stdout().print(
         f"{samples} samples, seed {seed}: "

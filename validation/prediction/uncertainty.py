@@ -112,6 +112,11 @@ def uncertainty(
     return found.assign_attrs(provenance(pair, samples=samples, seed=seed))
 
 
+def transmission_error(found: xr.Dataset) -> str:
+    """Name of the peak to peak of the transmission error, of teeth that differ over their period."""
+    return "revolution_dte_peak_to_peak" if "revolution_dte_peak_to_peak" in found else "dte_peak_to_peak"
+
+
 def speed_band(pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, samples: int = 32) -> xr.Dataset:
     """Return 5 and 95 % of the linear peak to peak, ``low`` and ``high`` [m], over ``speed_rpm``.
 

@@ -16,6 +16,7 @@ from validation.prediction.uncertainty import (
     _points,
     percentile_interval,
     speed_band,
+    transmission_error,
     uncertainty,
 )
 
@@ -135,7 +136,7 @@ def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
     # Torque alone moves it by 8 %; the class allows indices of 28 um.
     assert swings.max() > 1.2 * swings.min()
     assert swings.max() < 28e-6 + 1.1 * torque.dte_peak_to_peak.values.max()
-    assert "sideband_ratio" in found
+    assert ("sideband_ratio" in found, transmission_error(found)) == (True, "revolution_dte_peak_to_peak")
     assert "sideband_ratio" not in torque
     for alike in (lambda: lumped.speed_sweep(pair, [1000.0]), lambda: floquet.periodic_orbit(pair)):
         with pytest.warns(lumped.LikeTeethWarning):

@@ -12,6 +12,7 @@ from validation.files.formatting import quantity
 from validation.measurements.model_error import ModelError
 from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
+from validation.prediction.uncertainty import TEETH, transmission_error
 from validation.reporting.blocks import Block, Cell, Content, Picture, Quantity, Table, Text
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -100,7 +101,9 @@ def _measured_table(found: ModelError) -> Table:
 
 def _ranges(found: xr.Dataset) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for name, (unit, words) in QUANTITIES.items():
+    for name, (unit, words) in (QUANTITIES | TEETH).items():
+        if f"{name}_percentile" not in found:
+            continue
         low, middle, high = found[f"{name}_percentile"].to_numpy()
         given = float(found.attrs[f"given_{name}"])
         rows.append((words, *(Quantity(float(v), unit) for v in (given, low, middle, high))))
@@ -110,8 +113,8 @@ def _ranges(found: xr.Dataset) -> Table:
 
 def inputs_table(found: xr.Dataset) -> Table:
     """Each uncertain input with its range and what it does to the transmission error, the largest first."""
-    correlation = found["dte_peak_to_peak_rank_correlation"].to_numpy()
-    swing = found["dte_peak_to_peak_swing"].to_numpy()
+    name = transmission_error(found)
+    swing, correlation = (found[f"{name}_{one}"].to_numpy() for one in ("swing", "rank_correlation"))
     order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
     rows = tuple(
         (
@@ -127,7 +130,7 @@ def inputs_table(found: xr.Dataset) -> Table:
     columns = {
         "field": "input",
         "spread": "range",
-        "low": "transmission error, smallest",
+        "low": f"{(QUANTITIES | TEETH)[name][1]}: smallest",
         "high": "largest",
         "correlation": "rank correlation",
         "reason": "why this range",
