@@ -19,6 +19,7 @@ from lumped.fields.units import Quantity, QuantityList
 
 #: Column of a file of measured deviations -> field; lengths in um.
 _COLUMNS = {"index_um": "index", "profile_slope_um": "profile_slope", "tip_relief_um": "tip_relief"}
+#: A semicolon or tab between the columns goes with decimal commas, as spreadsheets write in many countries.
 _FORMAT = "a header tooth,index_um[,profile_slope_um][,tip_relief_um], then a row for each tooth: 1, 2, ..."
 _MAX_BYTES = 1_000_000
 
@@ -70,6 +71,9 @@ class Deviations(Section):
         if self.tolerance_class is not None and self.index is not None:
             action = "Remove one: a tolerance class draws the index deviations."
             raise refuse("index", f"{len(self.index)} values", "tolerance_class, index or file", action)
+        if self.tolerance_class is None and self.seed != 1:
+            action = "Give the class too, or leave the seed out."
+            raise refuse("seed", str(self.seed), "a tolerance_class whose teeth it draws", action)
         if self.tolerance_class is None and not given:
             raise refuse("tolerance_class", "missing", "tolerance_class, index or file", "Give one of them.")
         return self
@@ -122,7 +126,11 @@ def read_deviations(file: object, folder: str | Path = ".") -> dict[str, object]
         raise refuse("file", file, "the name of a CSV file", "Write the name as text.")
     path = Path(folder) / file
     text = read_text(path, _MAX_BYTES, kind="CSV file")
-    rows = list(csv.reader(line for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"))
+    lines = [line.strip() for line in text.splitlines() if line.strip() and line.lstrip()[0] != "#"]
+    mark = next((one for one in ";\t" if lines and one in lines[0]), ",")
+    if mark != ",":  # a spreadsheet with decimal commas
+        lines = [line.replace(",", ".").rstrip(mark) for line in lines]
+    rows = list(csv.reader(lines, delimiter=mark))
     names = [name.strip().lower() for name in rows[0]] if rows else []
     known = {"tooth", *_COLUMNS}
     if not {"tooth"} < {*names} <= known or len(names) != len({*names}) or len(rows) < 2:

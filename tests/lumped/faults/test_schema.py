@@ -10,6 +10,7 @@ INDEX = [round(0.1 * j, 1) for j in range(28)]
 @pytest.mark.parametrize(("changes", "field", "allowed"), [
     ({"pinion.deviations": {"index": INDEX[:27]}}, "pinion.deviations.index", "one a tooth, 28"),
     ({"gear.deviations": {"tolerance_class": 12}}, "gear.deviations.tolerance_class", "11"),
+    ({"gear.deviations": {"seed": 3, "index": INDEX}}, "gear.deviations.seed", "tolerance_class"),
     ({"gear.deviations": {}}, "gear.deviations.tolerance_class", "index or file"),
     ({"gear.deviations": {"tolerance_class": 6, "index": INDEX}}, "gear.deviations.index", "tolerance_class"),
     ({"gear.deviations": {"tolerance_class": 6}, "gear.mounting": {"eccentricity": 9}},
@@ -57,6 +58,13 @@ def test_a_measured_file_is_its_lists_in_the_order_of_the_teeth(nasa, tmp_path):
     found = load_gear_pair(tmp_path / "pair.toml").pinion.deviations
     assert [value.to("um") for value in found.index] == INDEX
     assert [value.to("um") for value in found.profile_slope] == [-value for value in INDEX]
+
+
+def test_a_file_of_a_spreadsheet_with_decimal_commas_is_read(nasa, tmp_path):
+    rows = [f"{j + 1};{value};".replace(".", ",") for j, value in enumerate(INDEX)]
+    (tmp_path / "d.csv").write_text("\ufeff" + "\r\n".join(["Tooth;index_um;", *rows, ""]), encoding="utf-8")
+    found = nasa.with_({"pinion.deviations": {"file": str(tmp_path / "d.csv")}}).pinion.deviations
+    assert [value.to("um") for value in found.index] == INDEX
 
 
 def test_the_healthy_twin_has_like_teeth_and_a_like_pair_is_its_own(nasa):
