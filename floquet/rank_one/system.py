@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh
 
-from floquet.engine.system import PeriodicSystem, second_order
+from floquet.engine.system import second_order
 from lumped.errors import refuse, shown
 from lumped.typing import ComplexArray, FloatArray
 
@@ -74,19 +73,6 @@ class RankOneSystem:
         """The sum of the parts, each with factor 1."""
         w, wd = (stacked(self.parts, key).sum(axis=0) for key in ("w", "wd"))
         return Gains(w, wd, np.sum([part.fit_errors for part in self.parts], axis=0))
-
-    def to_periodic_system(self) -> PeriodicSystem:
-        """Return the same system for the general engine, which checks the kernel independently."""
-        T, gains = self.period, self.total
-
-        def A(t: FloatArray) -> FloatArray:
-            phase = t / T
-            piece = np.clip(np.searchsorted(self.phases, phase, side="right") - 1, 0, self.phases.size - 2)
-            low, high = self.phases[piece], self.phases[piece + 1]
-            u = (2.0 * phase - low - high) / (high - low)
-            return self._state_matrices(_horner(gains.w, piece, u), _horner(gains.wd, piece, u))
-
-        return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True)
 
     def _state_matrices(self, w: FloatArray, wd: FloatArray) -> FloatArray:
         """A (..., 2m, 2m) of (z, z') with gains (..., m)."""
@@ -171,14 +157,6 @@ class ModalForm:
         """The same of G, dimensionless; 0 but for rounding where G does no work."""
         return _drive(self.gyroscopic)
 
-    def state_matrix(self) -> FloatArray:
-        """Matrix (2m, 2m) that turns x = (omega eta, eta') into (z, z')."""
-        m = self.omega.size
-        out = np.zeros((2 * m, 2 * m))
-        out[:m, :m] = self.shapes / self.omega
-        out[m:, m:] = self.shapes
-        return out
-
 
 def _drive(C: FloatArray) -> float:
     return max(0.0, -float(np.linalg.eigvalsh(0.5 * (C + C.T)).min()))
@@ -200,11 +178,3 @@ def stacked(parts: tuple[Gains, ...], key: str) -> FloatArray:
     polys = [getattr(part, key) for part in parts]
     count = max(poly.shape[2] for poly in polys)
     return np.stack([padded(poly, count) for poly in polys])
-
-
-def _horner(poly: FloatArray, piece: npt.NDArray[np.intp], u: FloatArray) -> FloatArray:
-    coefficients = poly[piece]
-    value = np.zeros(coefficients.shape[:2])
-    for j in range(coefficients.shape[2] - 1, -1, -1):
-        value = value * u[:, None] + coefficients[:, :, j]
-    return value

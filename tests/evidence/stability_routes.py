@@ -16,6 +16,7 @@ from floquet import fast_multipliers, gear_block, gear_pair_multipliers, gear_pa
 from lumped import GearPair
 from lumped.model.periodic_system import periodic_system
 from tests.evidence.check import Check
+from tests.evidence.floquet.extended import as_periodic_system
 
 #: Rows of q, x_p, x_g with their rates among the ten relative states.
 _FEEDBACK = [0, 1, 2, 5, 6, 7]
@@ -48,7 +49,7 @@ def stability_routes(pair: GearPair) -> Iterator[Check]:
 def fit_bound(pair: GearPair) -> Check:
     """The misfit that the compiled multipliers' bound counts with, against the gains of A(t) themselves."""
     block, system = gear_block(pair), periodic_system(pair, "mesh")
-    fitted, m = block.to_periodic_system(), block.v.size
+    fitted, m = as_periodic_system(block), block.v.size
     ends, u = block.phases * block.period, np.linspace(-1.0, 1.0, _PLACES + 2)[1:-1]
     used = 0.0
     for piece, (low, high) in enumerate(itertools.pairwise(ends.tolist())):

@@ -13,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
+from floquet.engine.system import PeriodicSystem, second_order
 from floquet.gear.axes import GearVariation
 from floquet.gear.multipliers import feedback_system, fitted_block
 from floquet.rank_one.batch import fast_multipliers
-from floquet.rank_one.system import RankOneSystem
+from floquet.rank_one.system import ModalForm, RankOneSystem
 from lumped import GearPair, load_gear_pair, preset_names
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
@@ -27,6 +28,31 @@ LongArray = npt.NDArray[np.longdouble]
 
 _TERMS = 30  # of steps that turn by 1 rad at most: 1/30! is far below the precision
 _LD = np.longdouble
+
+
+def as_periodic_system(system: RankOneSystem) -> PeriodicSystem:
+    """The same system for the general engine, which checks the kernel independently."""
+    gains, G = system.total, 0.0 if system.gyroscopic is None else system.gyroscopic
+
+    def A(t: FloatArray) -> FloatArray:
+        phase = t / system.period
+        piece = np.clip(np.searchsorted(system.phases, phase, side="right") - 1, 0, system.phases.size - 2)
+        low, high = system.phases[piece], system.phases[piece + 1]
+        u = ((2.0 * phase - low - high) / (high - low))[:, None]
+        w, wd = (
+            np.einsum("tmj,tj->tm", poly[piece], u ** np.arange(poly.shape[2]))
+            for poly in (gains.w, gains.wd)
+        )
+        C = system.damping + G / system.period + wd[..., None] * system.v
+        return second_order(system.stiffness + w[..., None] * system.v, C)
+
+    return PeriodicSystem(A, system.period, tuple(system.phases[1:-1] * system.period), vectorized=True)
+
+
+def state_matrix(form: ModalForm) -> FloatArray:
+    """Matrix (2m, 2m) that turns the states of the modal form, (omega eta, eta'), into (z, z')."""
+    zero = np.zeros_like(form.shapes)
+    return np.block([[form.shapes / form.omega, zero], [zero, form.shapes]])
 
 
 def extended_transitions(
@@ -74,7 +100,7 @@ def extended_matrix(system: RankOneSystem) -> LongArray:
     L, v = system.stiffness.astype(_LD), system.v.astype(_LD)
     for flow in extended_transitions(np.array(lengths), w, wd, L, D, v, rate):
         M = flow @ M
-    S = form.state_matrix().astype(_LD)
+    S = state_matrix(form).astype(_LD)
     S[m:] /= rate
     inverse = np.linalg.inv(S.astype(float)).astype(_LD)
     for _ in range(2):  # Newton

@@ -9,6 +9,7 @@ from floquet.gear.multipliers import feedback_system, fitted_block
 from lumped import load_gear_pair, preset_names
 from lumped.friction import LAWS, base
 from lumped.path_of_contact.friction import contact_path, friction_path_function
+from tests.evidence.floquet.extended import as_periodic_system
 
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
 
@@ -130,5 +131,5 @@ def test_level_apart_changes_nothing() -> None:
     apart = fitted_block(feedback_system(variation), 1.0, 1e-11, [0.0, 0.04])
     assert len(apart.parts) == 3
     t = np.linspace(0.01, 0.99, 50) * whole.period
-    one, other = (block.to_periodic_system().evaluate(t) for block in (whole, apart))
+    one, other = (as_periodic_system(block).evaluate(t) for block in (whole, apart))
     assert np.abs(one - other).max() <= 1e-10 * np.abs(one).max()

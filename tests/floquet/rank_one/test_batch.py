@@ -22,6 +22,7 @@ from floquet.rank_one.batch import _quick, multipliers_of
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
+from tests.evidence.floquet.extended import as_periodic_system, state_matrix
 
 
 def random_system(rng: np.random.Generator) -> RankOneSystem:
@@ -43,7 +44,7 @@ def random_system(rng: np.random.Generator) -> RankOneSystem:
 
 
 def in_energy_coordinates(system: RankOneSystem, matrix: np.ndarray) -> np.ndarray:
-    S = system.modal().state_matrix()
+    S = state_matrix(system.modal())
     return np.linalg.solve(S, matrix @ S)
 
 
@@ -53,7 +54,7 @@ def test_kernel_error_is_below_its_bound_on_random_systems(tolerance: float) -> 
     for _ in range(40):
         system = random_system(rng)
         fast = fast_monodromies(system, tolerance=tolerance)
-        slow = monodromy(system.to_periodic_system(), rtol=1e-11)
+        slow = monodromy(as_periodic_system(system), rtol=1e-11)
         exact = in_energy_coordinates(system, slow.matrix)
         # The reference is itself uncertain by 1e-11 of its norm, times the change of coordinates (below 100).
         assert np.linalg.norm(fast.matrices[0] - exact) <= fast.errors[0] + 1e-9 * np.linalg.norm(exact)

@@ -12,6 +12,7 @@ from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, powers_of_ra
 from floquet.rank_one.kernels.product import divide
 from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import Gains
+from tests.evidence.floquet.extended import state_matrix
 
 
 def test_too_many_terms_are_said() -> None:
@@ -52,7 +53,7 @@ def test_supports_that_feed_energy_in_enter_the_bound() -> None:
         phases=np.array([0.0, 1.0]), gains=declared, period=1.0, metric=np.array([1.0]),
     )  # fmt: skip
     found = fast_monodromies(system)
-    S = system.modal().state_matrix()
+    S = state_matrix(system.modal())
     exact = np.linalg.solve(S, expm(np.array([[0.0, 1.0], [-0.251 - e, 4.0]])) @ S)
     distance = np.linalg.norm(found.matrices[0] - exact)
     assert distance <= found.errors[0]
@@ -74,7 +75,7 @@ def test_a_break_that_is_off_enters_the_bound() -> None:
         )  # fmt: skip
 
     exact, given, silent = system(0.7 + e, None), system(0.7, jump), system(0.7, None)
-    S = np.linalg.solve(given.modal().state_matrix(), exact.modal().state_matrix())
+    S = np.linalg.solve(state_matrix(given.modal()), state_matrix(exact.modal()))
     moved = S @ fast_monodromies(exact).matrices[0] @ np.linalg.inv(S)
     found = fast_monodromies(given)
     distance = np.linalg.norm(found.matrices[0] - moved)

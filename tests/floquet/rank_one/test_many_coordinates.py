@@ -9,7 +9,7 @@ from floquet import RankOneSystem, fast_monodromies, fast_multipliers, monodromy
 from floquet.engine.multipliers import radii_with_bounds
 from floquet.rank_one.system import Gains
 from lumped.errors import NumericalError, ParameterError
-from tests.evidence.floquet.extended import extended_matrix
+from tests.evidence.floquet.extended import as_periodic_system, extended_matrix
 
 
 def shafts(m: int, seed: int = 1) -> RankOneSystem:
@@ -55,7 +55,7 @@ def test_general_engine_and_other_speeds_agree() -> None:
     periods = np.array([3e-4, 8e-4])
     found = fast_multipliers(system, periods)
     for T, values, errors in zip(periods, found.multipliers, found.errors, strict=True):
-        slow = monodromy(replace(system, period=float(T)).to_periodic_system(), rtol=1e-9)
+        slow = monodromy(as_periodic_system(replace(system, period=float(T))), rtol=1e-9)
         distance = np.abs(values[:, None] - slow.multipliers)
         assert (distance.min(axis=1) <= errors + slow.multiplier_errors.max()).all()
     still = fast_multipliers(replace(system, gyroscopic=None), periods)
