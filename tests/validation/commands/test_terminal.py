@@ -38,6 +38,14 @@ def test_text_is_shown_as_it_is_written(text, capsys, monkeypatch):
     assert capsys.readouterr().out.count(TEXTS[text]) == 3
 
 
+def test_cells_of_a_table_have_digits_and_units(capsys):
+    show("", "what | >value", [("length", (4.56e-6, "m")), ("speed", 1450.04), ("word", "kept")])
+    rows = [line.strip("│ ").split(" │ ") for line in capsys.readouterr().out.splitlines() if "│" in line]
+    assert [[cell.strip() for cell in row] for row in rows] == [
+        ["length", "4.56\u00a0µm"], ["speed", "1450"], ["word", "kept"]
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize("text", TEXTS)
 def test_a_note_and_an_error_show_text_as_it_is_written(text, capsys):
     note(text)
