@@ -239,7 +239,8 @@ def teeth(pair: opt.Pair, files: opt.DataFiles) -> None:
     for gear in GEARS:
         data = found.indicators(gear)["value"].sel(record=["pair", "healthy twin"])
         for name in ("RMS_residual", "FM4"):
-            rows.append((f"{name}, {gear}", *((float(one), "1") for one in data.sel(indicator=name))))
+            unit = "m/s^2" if name.startswith("RMS") else "1"
+            rows.append((f"{name}, {gear}", *((float(one), unit) for one in data.sel(indicator=name))))
     show("", "result | >teeth as given | >like teeth", rows)
     console.print(f"indicators: acceleration of the pinion, with noise of {100 * NOISE:.0f} % of its rms")
     console.print(found.sentence)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped.quasi_static.kernels import corner_at
+from lumped.quasi_static.kernels import corner_at, shared_loads
 from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
 from lumped.teeth import kernels
@@ -260,6 +260,19 @@ class TestOfEveryPair:
         expected = -8e-6 / (flank.tip - flank.start) * way * 20e-6 * np.sin(turn)
         assert single.sum() > 150
         assert (moved - unmoved)[..., 0][single] == pytest.approx(expected[single], abs=1e-12)
+
+
+def test_loads_of_pairs_that_move_each_other_are_those_that_like_teeth_relax_to():
+    k, force, softening, least = np.array([3e8, 4e8, 0.0, 3.5e8]), 3600.0, 1.4e-10, 3.6
+    w = 6e-10 * (1.0 - np.eye(4))
+    here = np.zeros((kernels.MATRIX + 4, 4))  # loads of the last one are the first guess
+    for pressed in np.random.default_rng(3).normal(2e-6, 8e-6, (200, 4)):
+        here[kernels.PRESSED] = np.where(k > 0.0, pressed, 0.0)
+        kernels.shared(k, w, np.array([force, 0.0, softening, least, 0.0]), here)
+        loads, tangents = np.zeros(4), np.zeros(4)
+        shared_loads(pressed, k, w, softening, force, least, loads, tangents, np.zeros(4))
+        assert here[kernels.LOAD] == pytest.approx(loads, abs=1e-8)
+        assert here[kernels.TANGENT] == pytest.approx(tangents, rel=1e-6)
 
 
 def test_slope_of_a_tip_corner_is_the_rate_of_its_gap(nasa):

@@ -123,7 +123,8 @@ def _loads(found: TeethFindings) -> list[Picture]:
     if found.period not in (pair.pinion.teeth, pair.gear.teeth):
         coordinates = {f"{gear}_tooth": (teeth[gear], "1", f"tooth of the {gear}") for gear in GEARS}
         data = labelled_dataset({"share": (tuple(coordinates), share, "1", words)}, coordinates)
-        caption = "Largest load of each meeting pair over the mean mesh force. White: these teeth never meet."
+        white = " White: these teeth never meet." if np.isnan(share).any() else ""
+        caption = f"Largest load of each meeting pair over the mean mesh force.{white}"
         return [Picture("teeth_loads", caption, data, loads_figure)]
     pictures = []
     for axis, gear in enumerate(GEARS):
