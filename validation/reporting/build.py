@@ -143,9 +143,9 @@ def report(
 def findings(results: Results) -> frozenset[str]:
     """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold"."""
     found = {
-        "contact": results.prediction.contact_lost,
+        "contact": results.contact_lost,
         "stable": not results.prediction.stable,
-        "holds": bool(results.outside) or results.prediction.contact_lost or not results.prediction.stable,
+        "holds": bool(results.outside) or results.contact_lost or not results.prediction.stable,
     }
     return frozenset(name for name, there in found.items() if there)
 

@@ -211,6 +211,11 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
         return Verdict.OUTSIDE, f"{Verdict.OUTSIDE.value}: {outside[0]}.", "; ".join(outside[1:])
     if reason := _hazard(results, prediction):
         return Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {reason[0]}.", reason[1]
+    if prediction.contact_lost:
+        text = (
+            "In the linear motion on the shafts teeth pull. In the second program they only push, and contact"
+        )
+        return Verdict.COMPARE, Verdict.COMPARE.value, f"{text} is kept: its numbers are the better ones."
     calm = _calm(results)
     found = results.uncertainty
     given, assumed, word = results.inputs
@@ -241,7 +246,7 @@ def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
     hazard = results.nearest_hazard
     near = hazard is not None and abs(hazard[0] / results.operating_rpm - 1.0) <= NEAR
     what = f"{hazard[1]} at {_rpm(hazard[0])}" if near and hazard else ""
-    if prediction.contact_lost:
+    if results.contact_lost:
         apart = 0.0 if hazard is None else 100.0 * (results.operating_rpm / hazard[0] - 1.0)
         side = "above" if apart > 0.0 else "below"
         kind = "" if hazard is None else _KINDS.get(hazard[1].split()[0].strip(","), "an unstable speed")

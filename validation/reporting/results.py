@@ -196,6 +196,17 @@ class Results:
         speeds = np.linspace(low**0.5, high**0.5, self.effort.band_speeds) ** 2
         return speed_band(self.pair, speeds, self.uncertainty, self.effort.band_samples)
 
+    @property
+    def contact_lost(self) -> bool:
+        """Whether contact is lost at the operating point.
+
+        On the shafts, where the linear motion lets teeth pull, by the second program if it has a motion.
+        """
+        lost = self.prediction.contact_lost
+        if not lost or self.pair.shafts is None or isinstance(self.second, Absent):
+            return lost
+        return self.second.contact_lost
+
     @cached_property
     def loses_contact(self) -> bool:
         """Whether contact is lost at the operating point or, by the linear motion, near it."""

@@ -30,7 +30,7 @@ def write(results: Results) -> Content:
         shared = _load_sharing(results)
         return Content(words, (Text(shared),) if shared else ())
     jumps = branches.jumps
-    lost = "Contact is lost" if results.prediction.contact_lost else "Contact is kept"
+    lost = "Contact is lost" if results.contact_lost else "Contact is kept"
     low, high = (number(speed, 5) for speed in branches.speeds_rpm)
     found = f"{_count(len(jumps), 'jump')} found{results.on_springs}"
     result = f"{lost} at the operating point. From {low} to {high} rpm {found}."
