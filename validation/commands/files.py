@@ -98,8 +98,7 @@ def init(
     given = {option: (path, value) for option, (path, value) in own.items() if value is not None}
     if teeth is None:
         for option, (_, value) in given.items():
-            action = "Give --teeth PINION/GEAR too, or edit the file."
-            raise refuse(option, value, "with --teeth", action)
+            raise refuse(option, value, "with --teeth", "Give --teeth PINION/GEAR too, or edit the file.")
     elif preset != opt.DEFAULT_PAIR or from_rexs is not None:
         raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
     else:

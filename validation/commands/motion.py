@@ -187,9 +187,8 @@ def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: 
          (swing[j].max(), "m"), round(float(correlation[j]), 2))
         for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
     ]  # fmt: skip
-    show(
-        f"what moves the {(QUANTITIES | TEETH)[name][1]}", "input | range | >from | >to | >rank corr.", moves
-    )
+    title = f"what moves the {(QUANTITIES | TEETH)[name][1]}"
+    show(title, "input | range | >from | >to | >rank corr.", moves)
     counts = ("refused", "contact_lost", "unstable")
     stdout().print(
         f"{samples} samples, seed {seed}: "
