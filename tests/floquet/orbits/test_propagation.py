@@ -15,12 +15,13 @@ BOUNCER = ContactSystem(
     [[0.0]], [[0.0]], [GRAVITY], (Contact([1.0], [-1.0], STIFFNESS),), phases=[0.0, 1.0], output=[1.0]
 )
 K = np.array([[3.0, 1.0, -0.5], [2.5, -1.0, 0.3]])
+DAMPING = np.array([[0.2, 0.3], [0.25, -0.2]])
 FORCE = np.array([[[-1.0, 0.1], [0.8, 0.05], [0.3, 0.0]]] * 2)
 #: Two masses, two contacts with clearances and polynomial coefficients, and a row that gathers.
 GEARLIKE = ContactSystem(
     [[0.6, -0.1], [-0.1, 0.9], [0.2, 0.0]], [[0.03, 0.0], [0.0, 0.04], [0.0, 0.01]], [0.3, -0.1, 0.2],
     (
-        Contact([1.0, -1.0], FORCE, K, 0.2, [[0.0, 0.1]] * 2),
+        Contact([1.0, -1.0], FORCE, K, DAMPING, [[0.0, 0.1]] * 2),
         Contact([1.0, -1.0], [-0.9, 0.7, -0.2], 0.5 * K, 0.1, [[0.05, 0.0], [0.05, -0.2]],
                 present=[False, True]),
     ),
@@ -83,7 +84,9 @@ def by_solve_ivp(s, x, T, cycles, p):
         acceleration = T**2 * (s.force + p * np.array(s.parameter_force) - s.stiffness @ z)
         acceleration = acceleration - T * s.damping @ v
         stiffness = K[piece] @ local ** np.arange(3)
-        contacts = [(0.1 * local, 0.1, stiffness, 0.2, np.array([-1 + 0.1 * local, 0.8 + 0.05 * local, 0.3]))]
+        damping = DAMPING[piece] @ local ** np.arange(2)
+        force = np.array([-1 + 0.1 * local, 0.8 + 0.05 * local, 0.3])
+        contacts = [(0.1 * local, 0.1, stiffness, damping, force)]
         if piece == 1:
             contacts += [(0.05 - 0.2 * local, -0.2, 0.5 * stiffness, 0.1, np.array([-0.9, 0.7, -0.2]))]
         for e, slope, ki, ci, a in contacts:
