@@ -117,7 +117,9 @@ class TorqueRipple(Section):
     amplitude: Annotated[float, Quantity("N*m", at_least=0, at_most=1e9)] = Field(
         description="of the torque, amplitude cos(order rotation + phase); driving pinion, braking gear"
     )
-    phase: Annotated[float, Quantity("deg", at_least=0, at_most=360)] = Field(0.0, description="at t = 0")
+    phase: Annotated[float, Quantity("deg", at_least=0, at_most=360)] = Field(
+        0.0, description="where tooth 1 is at the start of contact A"
+    )
 
 
 def read_deviations(file: object, folder: str | Path = ".") -> dict[str, object]:
