@@ -179,9 +179,17 @@ class TestEccentricGears:
         ):
             rows = np.zeros((2, 6))
             rows[:, 2] = 25, 31
-            rows[which] = eps, turn, rows[which, 2], g.L_XY, 1.0 / np.tan(g.operating_pressure_angle), 0.0
-            moved = np.zeros((1, 1, 8))
-            kernels.eccentric_cycle(0, np.array([[[[1.0, 0.0]] * 2]]), rows, moved)
+            rows[which] = (
+                eps,
+                turn - 0.5,
+                rows[which, 2],
+                g.L_XY,
+                1.0 / np.tan(g.operating_pressure_angle),
+                0.0,
+            )
+            moved, turned = np.zeros((1, 1, 8)), np.array([[[[1.0, 0.0]] * 2]])
+            turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
+            kernels.eccentric_cycle(0, turned, rows, moved)
             found = moved[0, 0]
             length, angle = line(u)
             assert found[2] == pytest.approx(length - g.L_XY, rel=1e-5)
