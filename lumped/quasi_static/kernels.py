@@ -17,9 +17,14 @@ compiled = Compiler([Path(__file__)])
 
 #: Newton's steps for the load of a pair, of which six are the most needed, and for the approach.
 _LOAD_STEPS, _APPROACH_STEPS = 20, 200
+#: Steps by chords; then Newton's, within a bracket that always closes.
+_QUICK_STEPS = 12
 #: Most times that the loads of neighbours are relaxed; each gains a decade or more.
 _SWEEPS = 100
+#: Relative change at which an iteration has converged.
 _SETTLED = 2e-15
+#: For the approach, that of the first loads and of tangents, and the least step whose chord is a slope.
+_COARSE, _SLOPE, _CHORD = 1e-5, 1e-2, 1e-7
 
 
 @compiled
@@ -58,6 +63,8 @@ def shared_loads(
     loads: FloatArray,
     tangents: FloatArray,
     self_tangents: FloatArray,
+    settled: float = _SETTLED,
+    settled_tangents: float = _SETTLED,
 ) -> None:
     """Loads of tooth pairs that move each other, and how they grow when all are compressed further together.
 
@@ -65,7 +72,8 @@ def shared_loads(
     are relaxed one after the other find the minimum of a convex energy. A pair of k_i = 0 is not followed;
     ``coupling`` is w_ij, zero on the diagonal [m/N]. ``loads`` are a first guess and receive N_i,
     ``tangents`` receive dN_i/dp at a common p, ``self_tangents`` the same of each pair without the others
-    (zero where not followed).
+    (zero where not followed). Both are relaxed until a sweep changes their sum by less than the shares
+    ``settled`` and ``settled_tangents``.
     """
     most = _SWEEPS if coupling.any() else 1
     for _ in range(most):
@@ -79,7 +87,7 @@ def shared_loads(
                 change += abs(load - loads[i])
                 total += load
                 loads[i] = load
-        if change <= _SETTLED * total:
+        if change <= settled * total:
             break
     for i in range(loads.size):  # to assign whole arrays takes the compiler two seconds
         tangents[i] = self_tangents[i]
@@ -93,7 +101,7 @@ def shared_loads(
                 change += abs(self_tangents[i] * left - tangents[i])
                 tangents[i] = self_tangents[i] * left
                 total += tangents[i]
-        if change <= _SETTLED * total:
+        if change <= settled_tangents * total:
             break
 
 
@@ -171,6 +179,8 @@ def middle_loads(
             loads,
             tangents,
             np.zeros(loads.size),
+            _SETTLED,
+            _SETTLED,
         )
         found[i, 0], found[i, 1], found[i, 2] = loads[middle], tangents[middle], compression[i, middle]
         for j in range(loads.size):
@@ -212,7 +222,8 @@ def approaches(
         for j in range(pairs):
             if not stiffness[i, j] > 0.0:
                 loads[j] = 0.0
-        for _ in range(_APPROACH_STEPS):
+        settled, before, total_before, slope = _COARSE, delta, 0.0, 0.0
+        for number in range(_APPROACH_STEPS):
             half = 0.5 * (delta + lengthening)
             for j in range(pairs):
                 if stiffness[i, j] > 0.0:
@@ -227,19 +238,30 @@ def approaches(
                 loads,
                 tangents,
                 self_tangents,
+                settled,
+                _SLOPE,
             )
-            total, slope = loads.sum() - force, tangents.sum()
-            if total < 0.0:
+            total, quick = loads.sum() - force, number < _QUICK_STEPS
+            if abs(delta - before) > _CHORD * delta:
+                slope = (total - total_before) / (delta - before)
+            if not (slope > 0.0 and quick):
+                slope = tangents.sum()
+            before, total_before = delta, total
+            # A total within the error of the loads is on no known side of the root.
+            known = settled * force if quick else 0.0
+            if total < -known:
                 low = delta
-            else:
+            elif total >= known:
                 high = delta
-            # Newton's step; where it leaves the bracket, or nothing touches yet, bisect or double.
+            # Where the step leaves the bracket, or nothing touches yet, bisect or double.
             following = delta - total / slope if slope > 0.0 else math.inf
             if not low < following < high:
                 following = 0.5 * (low + high) if high < math.inf else 2.0 * delta
             change = abs(following - delta)
             delta = following
-            if change <= _SETTLED * delta:
+            if change <= _SETTLED * delta and settled == _SETTLED:
                 found[i] = delta
                 break
+            # The next step leaves an error of this step's square: loads need not be more exact than that.
+            settled = max(min(1e-2 * (change / delta) ** 2, _COARSE), _SETTLED) if quick else _SETTLED
     return found
