@@ -22,7 +22,6 @@ from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces_over
 from multibody.contact.machine import Machine
-from multibody.shafts.train import Train
 
 #: Angle by which the fastest mode turns in a step [rad]: the method of eighth order then errs by some 1e-9.
 _STEP_ANGLE = 1.0
@@ -55,7 +54,8 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     brake : braking torque, so that the driving one balances; None: the driving torque is the machine's
     Raises NumericalError : the speed sits on a stability boundary
     """
-    train = _train(machine)
+    train = machine.train
+    assert train is not None
     n = train.size
     start = np.zeros((2 * n, 2 * n + 3))
     start[:, : 2 * n] = np.eye(2 * n)
@@ -107,14 +107,10 @@ def bordered(
     return matrix
 
 
-def _train(machine: Machine) -> Train:
-    assert machine.train is not None
-    return machine.train
-
-
 def energy_residual(machine: Machine, motion: LinearMotion) -> float:
     """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W]."""
-    train, p = _train(machine), machine.parameters
+    train, p = machine.train, machine.parameters
+    assert train is not None
     n, lost = train.size, 0.0
     weights = np.array([[1.0], [motion.torque_pinion - machine.torque_pinion], [motion.torque_gear]])
     run = _propagated(machine, motion.state[:, None], weights, _STEP_ANGLE / 4.0)
@@ -140,7 +136,8 @@ def _propagated(
     Every interval yields its start, too. ``forcing`` (3, k) has the weights of the three forcings in the last
     k columns of ``start`` (2n, m).
     """
-    train, period = _train(machine), machine.period
+    train, period = machine.train, machine.period
+    assert train is not None
     n, k = train.size, forcing.shape[1]
     fastest = 2.0 * np.pi * machine.vibrations_per_cycle / period
     springs, dampers = train.inverse @ train.stiffness, train.inverse @ train.damping

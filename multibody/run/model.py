@@ -87,8 +87,7 @@ class CallBudget:
         elif t - self.seen < self.least:
             self.reason = "standstill"
         else:
-            self.watch(t, self.least)
-            return
+            return self.watch(t, self.least)
         raise _Stop
 
 

@@ -189,11 +189,9 @@ def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: 
     ]  # fmt: skip
     title = f"what moves the {(QUANTITIES | TEETH)[name][1]}"
     show(title, "input | range | >from | >to | >rank corr.", moves)
-    counts = ("refused", "contact_lost", "unstable")
-    stdout().print(
-        f"{samples} samples, seed {seed}: "
-        + ", ".join(f"{found.attrs[name]} {name.replace('_', ' ')}" for name in counts)
-    )
+    counts = {"refused": "refused", "contact_lost": "contact lost", "unstable": "unstable"}
+    shares = ", ".join(f"{found.attrs[name]} {words}" for name, words in counts.items())
+    stdout().print(f"{samples} samples, seed {seed}: {shares}")
     files.write(found)
 
 
