@@ -67,7 +67,7 @@ class Effort:
     full: bool
 
 
-FULL = Effort(128, 16, 31, 160, 1601, 101, 61, full=True)
+FULL = Effort(128, 32, 41, 160, 1601, 101, 61, full=True)
 QUICK = Effort(0, 0, 0, 48, 401, 41, 25, full=False)
 
 
