@@ -261,7 +261,7 @@ def _call_limit(numbers: Machine) -> int:
             f"{rpm:.4g} rpm",
             f"at least {rpm * vibrations / _MOST_VIBRATIONS:.3g} rpm for the multibody model of this pair",
             f"The fastest mode would swing {vibrations:.0f} times in a mesh cycle: the motion is "
-            "quasi-static. Use lumped.static_transmission_error, or raise the speed.",
+            "quasi-static. Take lumped.static_transmission_error, which holds there, or raise the speed.",
         )
     return int(CALL_LIMIT * max(1.0, vibrations / _ORDINARY_VIBRATIONS))
 

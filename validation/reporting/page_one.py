@@ -237,7 +237,7 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
     return (
         Verdict.COMPARE,
         Verdict.COMPARE.value,
-        f"{calm} But {inputs}, and they move the result by ±{100 * half:.0f} %.",
+        f"{calm} But {inputs}, and they move the transmission error by ±{100 * half:.0f} %.",
     )
 
 

@@ -103,7 +103,7 @@ def test_the_verdict(written):
             f"The inputs leave {half:.0f} %; no measurement confirms it."
             if half <= 10.0
             else f"But {inputs_of(written)[1]} of {sum(map(int, inputs_of(written)))} inputs are assumed, "
-            f"and they move the result by ±{half:.0f} %."
+            f"and they move the transmission error by ±{half:.0f} %."
         )
         own.assert_says(reason, pattern, (0.1 * speed, "rpm"), (2.0 * speed, "rpm"), tail)
         return
