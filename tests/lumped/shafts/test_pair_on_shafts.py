@@ -81,7 +81,7 @@ def test_every_form_is_the_same_system(shafted):
 
 def test_without_shafts_there_are_none(unequal):
     for function in (steady_state, lambda pair, supports: periodic_system(pair, supports=supports)):
-        with pytest.raises(ParameterError, match=r"a gear pair with a section \[shafts\]"):
+        with pytest.raises(ParameterError, match=r"springs for a pair without \[shafts\]"):
             function(unequal, supports="shafts")
     with pytest.raises(ParameterError, match="springs, shafts"):
         periodic_system(unequal, supports="shaft")
