@@ -85,7 +85,7 @@ def _indicators(found: TeethFindings) -> Table:
         "of each shaft.",
         {"shaft": "shaft", "indicator": "indicator", "pair": "teeth as given", "twin": "like teeth"},
         tuple(rows),
-        f"With white noise of {100 * NOISE:.0f} % of the root mean square of like teeth. RMS in m/s^2.",
+        f"With white noise of {100 * NOISE:.0f} % of the root mean square of like teeth. RMS in m/s².",
     )
 
 
