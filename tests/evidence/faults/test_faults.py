@@ -114,6 +114,7 @@ def test_a_sound_report_passes_and_faults_in_it_are_seen(pair):
     """Two faults of those that show on both pairs, others at every change of the code."""
     assert seen_by(None, [pair]) == ()
     both = [key for key in REPORT_FAULTS if key.startswith(("order_", "force_", "axis_", "csv_"))]
+    both.remove("force_least")  # where contact is lost, the least of both is zero
     number = int(source_digest()[:8], 16)
     for key in (both[number % len(both)], both[number // 97 % len(both)]):
         assert seen_by(REPORT_FAULTS[key], [pair]), key
