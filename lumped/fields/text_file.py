@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
 import stat
@@ -43,12 +44,16 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 def read_text(
     path: str | Path, limit: int, *, field: str = "file", kind: str = "text file", **words: str
 ) -> str:
-    """Return the text of an ordinary file in UTF-8, with or without Windows' mark; as ``read_bytes``."""
+    """Return the text of an ordinary file in UTF-8, with or without Windows' mark; as ``read_bytes``.
+
+    A CSV file may be in UTF-16 with a mark, as spreadsheets and measuring machines write it.
+    """
     data = read_bytes(path, limit, field=field, kind=kind, **words)
+    wide = kind == "CSV file" and data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return data.decode("utf-8-sig")
+        return data.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError as error:
-        why = f"It cannot be read: byte {error.start} is no UTF-8. Save it as UTF-8 text."
+        why = f"It cannot be read: byte {error.start} is no {error.encoding}. Save it as UTF-8 text."
         raise refuse(field, Path(path), f"a {kind} in UTF-8", why) from None
 
 

@@ -62,7 +62,7 @@ N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
 # Places in the block of teeth that differ: of pinion and gear eccentricity [m], its angle at t = 0 [rad],
 # number of teeth, tooth at A at t = 0; then the numbers of faults and of ripples, the errors of the pinion's
 # teeth and of the gear's [m], their rise along the own base tangents from the pitch point [-], their tip
-# relief beyond the design's [m], a row for each ripple of a torque, and one for each fault.
+# relief beyond the design's [m], a row for each fault, and one for each ripple of a torque.
 ECCENTRICITY, ANGLE, TEETH, FIRST, OWN_COLUMNS = range(5)
 OWN_FAULTS = 2 * OWN_COLUMNS
 OWN_RIPPLES = OWN_FAULTS + 1
@@ -393,9 +393,10 @@ def move_moments(ways: FloatArray, wrench: FloatArray) -> None:
 def ripple_torques(
     own: FloatArray, t: float, q: FloatArray, omega_p: float, omega_g: float
 ) -> tuple[float, float]:
-    """What the ripples add to the driving and to the braking torque, at the actual angles of the gears."""
+    """What the ripples add to the driving and to the braking torque, at these angles of the rotors."""
     torques = np.zeros(2)
     row = OWN_ERRORS + 3 * (int(own[TEETH]) + int(own[OWN_COLUMNS + TEETH]))
+    row += FAULT_COLUMNS * int(own[OWN_FAULTS])
     for _ in range(int(own[OWN_RIPPLES])):
         which = int(own[row + RIPPLE_GEAR])
         angle = omega_g * t + q[5] if which else omega_p * t - q[2]  # the pinion turns clockwise
@@ -447,8 +448,7 @@ def own_pair(
     rise = rise if held == xi else 0.0
     softer, slope, tip_p, tip_g = 0.0, 0.0, p[TIP_P], p[TIP_G]
     for i in range(int(own[OWN_FAULTS])):
-        row = OWN_ERRORS + 3 * (z_p + z_g) + RIPPLE_COLUMNS * int(own[OWN_RIPPLES])
-        row += FAULT_COLUMNS * i
+        row = OWN_ERRORS + 3 * (z_p + z_g) + FAULT_COLUMNS * i
         of_gear = own[row + FAULT_GEAR] == 1.0
         if own[row + FAULT_TOOTH] != (gear if of_gear else pinion):
             continue

@@ -64,6 +64,7 @@ class Machine:
     period : mesh cycle
     switches : phases of the mesh cycle in [0, 1) at which the nominal element laws jump or have a kink
     events : (n, 2) what makes the contact force jump or bend in finite motion, see ``events.event_table``
+    own : block of teeth that differ, as of ``own_block``; that in the parameters has no ripples on shafts
     train : both shafts where these support the gears, whose bearing springs are then zero; else None
     """
 
@@ -80,6 +81,7 @@ class Machine:
     period: float
     switches: FloatArray
     events: FloatArray
+    own: FloatArray
     train: Train | None = None
 
     @property
@@ -92,6 +94,16 @@ class Machine:
         """Row (6,) that reads the overlap of the driving flanks off small (x_p, y_p, phi_p, x_g, ...) [m]."""
         p = self.parameters
         return np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
+
+    def torques(self, t: FloatArray, q: FloatArray) -> FloatArray:
+        """Driving and braking torque (n, 2), ripples at the actual angles of their rotors, at n states."""
+        p, angles = self.parameters, np.zeros((t.size, 6))
+        angles[:, [2, 5]] = q[:, [2, 5]] if self.train is None else q @ self.train.torques.T
+        found = np.tile([self.torque_pinion, self.torque_gear], (t.size, 1))
+        if self.own.size:
+            speeds = p[kn.OMEGA_P], p[kn.OMEGA_G]
+            found += [kn.ripple_torques(self.own, t[i], angles[i], *speeds) for i in range(t.size)]
+        return found
 
     @cached_property
     def bodies(self) -> FloatArray:
@@ -133,9 +145,6 @@ def machine(
     lose contact, the stiffness holds wherever teeth touch; else relief takes it off where the lumped model
     sees no contact. ``cycle`` is the lumped mesh cycle, where it is known.
     """
-    if supports == "shafts" and pair.operating.torque_ripple:
-        allowed = "'springs' where a torque ripples: here it acts on the gear"
-        raise refuse("supports", supports, allowed, "Leave operating.torque_ripple out.")
     drawn, (mass, inertia) = circles(pair), masses(pair)
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
     tooth_p = base_tooth_angle(pair, pair.pinion, drawn.base_pinion)
@@ -213,9 +222,12 @@ def machine(
             pitch,
             corners=bool(flags & kn.TIP_CONTACT),
         ),
+        own=own,
     )
     if supports == "springs":
         return found
+    if own.size:  # ripples act on motor and load
+        p[int(p[kn.OWN]) + kn.OWN_RIPPLES] = 0.0
     none = np.zeros((2, 2))
     shafts = train(pair, mass, inertia, (omega_p, float(p[kn.OMEGA_G])), _highest(found))
     return replace(found, bearing_stiffness=none, bearing_damping=none, train=shafts)
@@ -244,7 +256,7 @@ def own_block(pair: GearPair) -> FloatArray:
     rises = [-one.slope / (flank.tip - flank.start) for one, flank in zip(teeth, flanks, strict=True)]
     counts = [len(faults), len(pair.operating.torque_ripple)]
     lists = [one.error for one in teeth] + rises + [one.relief for one in teeth]
-    return np.concatenate([np.ravel(rows), counts, *lists, ripples, *faults])
+    return np.concatenate([np.ravel(rows), counts, *lists, *faults, ripples])
 
 
 def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:

@@ -124,7 +124,7 @@ def build(machine: Machine, flags: int, call_limit: int) -> ExudynModel:
     if machine.train is None:
         nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
     else:
-        nodes, bodies = _add_shafts(system, machine.train, centres, torques)
+        nodes, bodies = _add_shafts(system, machine, machine.train, centres)
     parameters = p.copy()
     budget = CallBudget(call_limit)
     mesh = system.AddObject(
@@ -171,9 +171,9 @@ def stored(model: ExudynModel) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 def _add_shafts(
     system: exu.MainSystem,
+    machine: Machine,
     train: Train,
     centres: tuple[tuple[float, float], ...],
-    torques: tuple[float, float],
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Add both shafts with gears, bearings and torques; returns the nodes of the gears, and the objects.
 
@@ -183,7 +183,7 @@ def _add_shafts(
         int(system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))) for centre in centres
     )
     objects = []
-    for node, shaft, torque in zip(nodes, train.shafts, torques, strict=True):
+    for which, (node, shaft) in enumerate(zip(nodes, train.shafts, strict=True)):
         on, further = [node], shaft.size - 3
         if further:
             modal = items.NodeGenericODE2(
@@ -198,10 +198,23 @@ def _add_shafts(
             massMatrix=shaft.mass,
             stiffnessMatrix=shaft.stiffness,
             dampingMatrix=shaft.damping,
-            forceVector=torque * shaft.torque,
+            **_load_of(machine, train, which),
         )
         objects.append(int(system.AddObject(body)))
     return nodes, tuple(objects)
+
+
+def _load_of(machine: Machine, train: Train, which: int) -> dict[str, object]:
+    """Force on a shaft by its motor or load: constant, or with ripples a function."""
+    row, own, state = train.shafts[which].torque, train.places[which], np.zeros((1, train.size))
+
+    def force(_: object, t: float, _item: int, q: list[float], _rates: list[float]) -> FloatArray:
+        state[0, own] = q
+        return np.asarray(-machine.torques(np.array([t]), state)[0, which] * row)
+
+    if machine.own.size and machine.own[kn.OWN_RIPPLES]:
+        return {"forceUserFunction": force}
+    return {"forceVector": force(None, 0.0, 0, [0.0] * own.size, [])}
 
 
 def _add_gear(
@@ -292,7 +305,7 @@ def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: Float
     train = model.machine.train
     if train is not None:
         whole = -(q @ train.stiffness.T + v @ train.damping.T)
-        whole -= np.array([model.machine.torque_pinion, model.machine.torque_gear]) @ train.torques
+        whole -= model.machine.torques(times, q) @ train.torques
         whole[:, :6] += force
         return np.asarray(whole @ train.inverse, dtype=np.float64)
     inertia, stiffness, damping, load = model.machine.bodies

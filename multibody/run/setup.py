@@ -18,6 +18,7 @@ from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth.motion import push_motion
+from lumped.teeth.pairs import ripples
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
@@ -240,7 +241,15 @@ def _on_shafts(
     numbers = loaded_phase(numbers, flags, static[:6])
     if initial == "static":
         return numbers, static, np.zeros(train.size), mean_balance, motion
-    return numbers, motion.state[: train.size], motion.state[train.size :], mean_balance, motion
+    q, v = motion.state.copy().reshape(2, -1)
+    mesh = np.pad(np.outer(numbers.overlap, numbers.overlap), (0, train.size - 6))
+    stiffness = train.stiffness + system.cycle.mean_stiffness * mesh
+    for which, angle, phase, amplitude, _ in ripples(pair):  # else they would push the free train off
+        turning = 1j * angle / numbers.period
+        dynamic = stiffness + turning * train.damping + turning**2 * train.mass
+        moved = np.linalg.solve(dynamic, -amplitude * np.exp(1j * phase) * train.torques[int(which)])
+        q, v = q + moved.real, v + (turning * moved).real
+    return numbers, q, v, mean_balance, motion
 
 
 def _call_limit(numbers: Machine) -> int:

@@ -184,12 +184,7 @@ def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> 
     m = model.machine
     omega_p, omega_g = _speeds(model, v)
     powers = np.zeros((t.size, 6))
-    torques = np.array([[m.torque_pinion, m.torque_gear]])
-    p = model.parameters
-    if p[kn.OWN] > 0.0:
-        own, speeds = p[int(p[kn.OWN]) :], (float(p[kn.OMEGA_P]), float(p[kn.OMEGA_G]))
-        torques = torques + [kn.ripple_torques(own, t[i], q[i], *speeds) for i in range(t.size)]
-    powers[:, 0], powers[:, 1] = (torques * np.stack([omega_p, omega_g], axis=1)).T
+    powers[:, 0], powers[:, 1] = (m.torques(t, q) * np.stack([omega_p, omega_g], axis=1)).T
     powers[:, 2] = v[:, [0, 1, 3, 4]] ** 2 @ m.bearing_damping.ravel()
     _, contacts, counts = contact_state(model, t, q, v)
     contacts[np.arange(contacts.shape[1]) >= counts[:, None]] = 0.0

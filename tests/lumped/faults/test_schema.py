@@ -60,9 +60,10 @@ def test_a_measured_file_is_its_lists_in_the_order_of_the_teeth(nasa, tmp_path):
     assert [value.to("um") for value in found.profile_slope] == [-value for value in INDEX]
 
 
-def test_a_file_of_a_spreadsheet_with_decimal_commas_is_read(nasa, tmp_path):
+@pytest.mark.parametrize("code", ["utf-8", "utf-16-le", "utf-16-be"])
+def test_a_file_of_a_spreadsheet_with_a_mark_and_decimal_commas_is_read(nasa, tmp_path, code):
     rows = [f"{j + 1};{value};".replace(".", ",") for j, value in enumerate(INDEX)]
-    (tmp_path / "d.csv").write_text("\ufeff" + "\r\n".join(["Tooth;index_um;", *rows, ""]), encoding="utf-8")
+    (tmp_path / "d.csv").write_text("\ufeff" + "\r\n".join(["Tooth;index_um;", *rows, ""]), encoding=code)
     found = nasa.with_({"pinion.deviations": {"file": str(tmp_path / "d.csv")}}).pinion.deviations
     assert [value.to("um") for value in found.index] == INDEX
 

@@ -79,8 +79,5 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
 
 
 def test_what_it_does_not_have_is_refused(pair):
-    ripple = {"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}
-    with pytest.raises(lumped.ParameterError, match="supports"):
-        multibody.simulate(pair.with_(ripple), 1, supports="shafts")
     with pytest.raises(lumped.ParameterError, match="fidelity"):
         multibody.simulate(pair.with_(OWN), 1, fidelity="linear")
