@@ -97,6 +97,11 @@ class GearOrbit:
         return _torques(self.pair, self.orbit.parameter)[1]
 
     @property
+    def pinion_torque(self) -> float:
+        """T_p, given or found [N m]."""
+        return _torques(self.pair, self.orbit.parameter)[0]
+
+    @property
     def multipliers(self) -> ComplexArray:
         """(6,) Floquet multipliers over n cycles, largest first; (10,) with the back sides."""
         return self.orbit.multipliers

@@ -32,6 +32,7 @@ from validation.cross_check.motions import (
 from validation.cross_check.own_teeth import both_motions
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit_of
+from validation.prediction.motion import by_momentary_load
 
 #: Cycles at the end of a run that are compared where the exact model has no periodic motion.
 _COMPARED_CYCLES = 4
@@ -50,7 +51,7 @@ class CrossCheck:
     ----------
     pair : the gear pair; of teeth that differ counted from the first tooth of the cycles that were run
     agreements : one per quantity and fidelity
-    lumped : dataset of the lumped model
+    lumped : dataset of the lumped model that "exact" is compared with
     multibody : fidelity -> dataset of the multibody model, at the same times
     periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
     conservation : conservation laws, checked on both models
@@ -128,7 +129,8 @@ def crosscheck(
     of the lumped motion is the answer; beyond its limit the lumped model is not accurate enough. Where the
     lumped motion is unstable, or the exact model has no periodic motion near it, the end of a run from the
     lumped motion is shown and not judged. Where the linear motion needs teeth that pull, the lumped motion is
-    the one with unilateral contact (``floquet.periodic_orbit``), and so are the equations of "linear".
+    the one with unilateral contact (``floquet.periodic_orbit``), and so are the equations of "linear";
+    "exact" is then compared with the prediction, whose contact follows the momentary load.
 
     Parameters
     ----------
@@ -232,8 +234,11 @@ def _compared(
         reference = lumped.simulate(
             pair, cycles, samples_per_cycle=samples, initial="periodic", progress=part(0)
         )
+        best = reference
     else:
         stable, reference = True, repeated(orbit.sampled(samples), cycles)
+        momentary = by_momentary_load(orbit, samples)
+        best = reference if momentary is None else repeated(momentary, cycles)
     cycle = reference.isel(time=slice(-samples - 1, -1))
     rtol = integration_tolerances({name: cycle[name].to_numpy() for name in QUANTITIES})
     results: dict[Fidelity, xr.Dataset] = {}
@@ -263,7 +268,7 @@ def _compared(
     end = slice(-compared * samples - 1, None)
     agreements = []
     for fidelity, result in results.items():
-        a, b = (d if fidelity == "linear" else d.isel(time=end) for d in (result, reference))
+        a, b = (result, reference) if fidelity == "linear" else (d.isel(time=end) for d in (result, best))
         agreements += [
             agreement(pair, quantity, fidelity, a, b, limit_of(quantity, fidelity, limit))
             for quantity in QUANTITIES
@@ -272,7 +277,7 @@ def _compared(
     return CrossCheck(
         pair=pair,
         agreements=tuple(agreements),
-        lumped=reference.isel(time=slice(None, None, every)),
+        lumped=best.isel(time=slice(None, None, every)),
         multibody={f: run.isel(time=slice(None, None, every)) for f, run in results.items()},
         periodic=exact is not None,
         conservation=checks,

@@ -139,15 +139,17 @@ def _rows(known: Known) -> Iterator[Row]:
     poorer: Prediction | Absent = (
         linear if isinstance(linear, Absent) else measured(pair, linear, Motion.LINEAR)
     )
-    if not isinstance(linear, Absent):
-        share = float(linear.attrs["error_estimate"])  # of every quantity
+    for motion in (own.cycle, linear):  # an orbit has no steps
+        if not isinstance(motion, Absent) and "error_estimate" in motion.attrs:
+            share = float(motion.attrs["error_estimate"])  # of every quantity
+            break
     sizes = share * own.peak_to_peak, share * own.tooth_load, share * own.bearing_rms
     yield Row(
         "numerics",
         "numerical error",
         "numerics",
         sizes,
-        _note(linear, "estimated, by steps of half the length"),
+        "estimated, by steps of another length" if np.isfinite(share) else _note(linear, ""),
     )
     size, note = (np.nan, "the second program did not run") if same is None else (same * own.peak_to_peak, "")
     yield Row("programs", "same equations in two programs", "numerics", (size, np.nan, np.nan), note)

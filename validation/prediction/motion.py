@@ -2,7 +2,8 @@
 
 The linear motion about the static state is the prediction while every tooth pair pushes. Elsewhere it is the
 motion with unilateral contact: the one that Newton's method finds from the linear motion, if it is stable,
-else the one to which a run from there settles. Contact is lost where the total mesh force is zero.
+else the one to which a run from there settles. Near it is the motion whose contact and dampers follow the
+momentary load. Contact is lost where the total mesh force is zero.
 
 Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Prediction".
 """
@@ -11,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
 
@@ -26,13 +27,17 @@ from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import cycle_peak_to_peak
+from lumped.quasi_static.contacts import contact_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
+from lumped.teeth.closed import closed_motion
 from lumped.typing import FloatArray
 
 _SAMPLES = 512
 #: Load of a tooth pair over the mean mesh force that counts as pulling: rounding of a pair that just touches.
 _PULLS = -1e-6
+#: Change of the peak to peak by momentary loads, at most, that is still the same motion.
+_NEAR = 0.25
 ORDERS = 10
 
 
@@ -199,7 +204,34 @@ def predicted(pair: GearPair, motion: Callable[..., xr.Dataset] = lumped.steady_
         linear = None
     if linear is not None and float(linear["normal_load"].min()) >= _PULLS * force:
         return _of_cycle(pair, linear)
-    return _of_orbit(*unilateral_motion(pair))
+    orbit, which = unilateral_motion(pair)
+    cycle = by_momentary_load(orbit)
+    if cycle is None:
+        return _of_orbit(orbit, which)
+    return replace(measured(pair, cycle, which), stable=orbit.stable)
+
+
+def by_momentary_load(orbit: GearOrbit, samples: int = _SAMPLES) -> xr.Dataset | None:
+    """Return the motion near an orbit whose contact and dampers follow the momentary load, over its cycle.
+
+    An orbit has the tangents and dampers of the static load. None with prescribed contact, which knows no
+    other, with back sides that strike, after several cycles, or where no such motion is near.
+    """
+    pair = orbit.pair
+    if contact_of(pair).name != "loaded" or orbit.n > 1 or orbit.reaches_back_side:
+        return None
+    balanced = pair.operating.brake_torque == "balanced"
+    torque = orbit.brake_torque if balanced else orbit.pinion_torque
+    start, known = np.zeros((2, 5)), orbit.orbit.start.reshape(2, -1)
+    start[:, : known.shape[1]] = known  # y, which friction alone drives, follows
+    start[1] /= orbit.orbit.period
+    try:
+        found = closed_motion(pair, samples, start.ravel(), torque)
+    except NumericalError:
+        return None
+    size = cycle_peak_to_peak(found, "dte")
+    low, high = orbit.dte_range
+    return found if abs(size - (high - low)) < _NEAR * (high - low) else None
 
 
 def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:

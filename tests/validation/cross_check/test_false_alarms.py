@@ -169,14 +169,14 @@ def test_backs_that_strike_are_named_as_the_reason_why_a_pulling_motion_is_compa
 @pytest.mark.parametrize(("pair", "quantity", "share"), [
     # Order 3 stands on the gear's natural frequency: 1.5 N of 520 N are 15 % of a swing of 2.3 um.
     (own("19/41", 2.5, 20.0, 1450.0, 80.0, ENERGY, {"centre_distance": 76.0}), "x_g", 0.1),
-    # Above resonance: 0.3 N, 3 % of the mean force, are 83 % of the swing of the bearing's force.
-    (own("31/57", 3.0, 25.0, 12000.0, 150.0, ENERGY), "y_g", 0.8),
-    (own("31/57", 3.0, 25.0, 12000.0, 150.0, ENERGY, {"friction.law": "none"}), "y_g", 0.5),
+    # Above resonance: 0.1 N, 1 % of the mean force, are 28 % of the swing of the bearing's force.
+    (own("31/57", 3.0, 25.0, 12000.0, 150.0, ENERGY), "y_g", 0.25),
+    (own("31/57", 3.0, 25.0, 12000.0, 150.0, ENERGY, {"friction.law": "none"}), "y_g", 0.15),
     # Slow: the load swings by 2 % of itself.
     (own("39/108", 1.5, 9.7, 497.0, 23.86, ENERGY), "normal_load", 0.1),
 ], ids=["x", "y", "y of corners", "load"])  # fmt: skip
 def test_a_small_swing_is_no_difference_of_the_models(pair, quantity, share):
-    """Over its own swing the difference is above the limit; over what it stands for it is small."""
+    """Over its own swing the difference is large; over what it stands for it is small."""
     found = crosscheck(pair, cycles=6, samples_per_cycle=128, variant=False)
     motions = [m.isel(time=slice(-129, None)) for m in (found.multibody["exact"], found.lumped)]
     keep = off_switch_samples(pair, motions[1]["time"].to_numpy(), 0.02)

@@ -9,7 +9,7 @@ import floquet
 import lumped
 import multibody
 from validation.exchange.new_pair_file import new_pair_text
-from validation.prediction.motion import Motion, predicted
+from validation.prediction.motion import Motion, predicted, unilateral_motion
 
 PRESETS = ("fzg_c", "high_contact_ratio_29_47", "kahraman_blankenship_50_50", "nasa_28_28", "nasa_art_25_31")
 
@@ -19,11 +19,11 @@ def loaded(name: str) -> lumped.GearPair:
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_it_is_within_two_percent_of_the_exact_multibody_motion(name):
-    """What is left are finite motions: 0.07 to 1.3 % of the peak to peak on these pairs."""
+def test_it_is_within_one_percent_of_the_exact_multibody_motion(name):
+    """What is left are finite motions: 0.02 to 0.7 % of the peak to peak on these pairs."""
     pair = loaded(name)
     exact = float(np.ptp(multibody.steady_state(pair)["dte"].to_numpy()))
-    assert predicted(pair).peak_to_peak == pytest.approx(exact, rel=0.02)
+    assert predicted(pair).peak_to_peak == pytest.approx(exact, rel=0.01)
 
 
 def test_teeth_that_push_all_the_time_keep_the_linear_motion():
@@ -77,7 +77,9 @@ def test_a_motion_that_newton_does_not_find_is_the_one_a_run_settles_to():
     for rpm in np.linspace(13000.0, 12000.0, 11)[1:]:
         start = floquet.periodic_orbit(pair.with_({"operating.pinion_speed": float(rpm)}), start=start)
     low, high = start.dte_range
-    assert found.peak_to_peak == pytest.approx(high - low, rel=1e-6)
+    assert np.diff(unilateral_motion(pair)[0].dte_range) == pytest.approx(high - low, rel=1e-6)
+    # Contact and dampers that follow the momentary load move it by 0.2 %.
+    assert found.peak_to_peak == pytest.approx(high - low, rel=0.005)
 
 
 def test_an_unstable_motion_of_one_cycle_is_left_for_the_one_a_run_settles_to():
