@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from floquet.orbits.orbit import CLOSED_TO, Orbit, closure, one_pass
+from floquet.orbits.orbit import Orbit, one_pass
 from floquet.orbits.system import ContactSystem
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -155,7 +155,7 @@ class Continuation:
                 step, tangent = np.linalg.solve(np.vstack([J, border]), right).T
             except np.linalg.LinAlgError as error:
                 raise NumericalError("the branch has no tangent there.") from error
-            if closure(orbit.run) < CLOSED_TO:
+            if orbit.closes:
                 return X, orbit, tangent / np.linalg.norm(tangent), iteration
             if not np.abs(step).max() < 10.0:
                 break

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from floquet.orbits.branch import Continuation
-from floquet.orbits.orbit import CLOSED_TO, Orbit, closure
+from floquet.orbits.orbit import Orbit
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -121,7 +121,7 @@ class FoldContinuation:
                 step, tangent = np.linalg.solve(matrix, right).T
             except np.linalg.LinAlgError as error:
                 raise NumericalError("the fold has no tangent there.") from error
-            if closure(fold.orbit.run) < CLOSED_TO and abs(F[-1]) < _SINGULAR:
+            if fold.orbit.closes and abs(F[-1]) < _SINGULAR:
                 return Y, fold, tangent / np.linalg.norm(tangent)
             if not np.abs(step).max() < 2.0:
                 break

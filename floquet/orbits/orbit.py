@@ -17,6 +17,9 @@ from lumped.typing import ComplexArray, FloatArray
 
 #: Residual of a motion that counts as periodic, over the largest displacement or phase rate.
 CLOSED_TO = 1e-11
+#: Rounding of the accumulated row over what the parameter alone gathers: at low speeds, where the cycle is long,
+#: that is far more than a state, and no number for the parameter closes the row better.
+_BALANCED_TO = 16.0 * float(np.finfo(np.float64).eps)
 _MOST_ITERATIONS = 15
 _LOWER_ORDER = 14
 _MOST_EVENTS = 1024
@@ -87,6 +90,15 @@ class Orbit:
         return float(np.linalg.cond(np.linalg.eig(M)[1]) * (off + rounding))
 
     @property
+    def closes(self) -> bool:
+        """Whether it is periodic to rounding: the state by its largest displacement and rate, and the row."""
+        run = self.run
+        scale = np.maximum(state_scale(run.start), state_scale(run.end))
+        gathered = np.abs(self.parameter * run.derivative[self.system.size :, -1])
+        off = np.abs(run.accumulated) / np.maximum(CLOSED_TO * scale[-1], _BALANCED_TO * gathered)
+        return bool((np.abs(run.end - run.start) < CLOSED_TO * scale).all() and (off < 1.0).all())
+
+    @property
     def signature(self) -> tuple[tuple[int, int], ...]:
         """The order of contact events, (contact, new state)."""
         return tuple((int(i), int(new)) for _, i, new in self.run.events)
@@ -112,13 +124,6 @@ def state_scale(start: FloatArray) -> FloatArray:
     length = max(float(np.abs(start[:m]).max()), 1e-300)
     rate = max(float(np.abs(start[m:]).max()), length)
     return np.repeat([length, rate], m)
-
-
-def closure(run: Run) -> float:
-    """How far a run is from closing, accumulated rows included, over its largest displacement and rate."""
-    scale = np.maximum(state_scale(run.start), state_scale(run.end))
-    off = np.abs((run.end - run.start) / scale).max()
-    return float(max(off, np.abs(run.accumulated).max(initial=0.0) / scale[-1]))
 
 
 def one_pass(
@@ -148,8 +153,9 @@ def find_orbit(
     unknowns = [*range(size), *([size + 1] if system.balanced else [])]
     for _ in range(_MOST_ITERATIONS):
         r, J, run = one_pass(system, x, period, n, parameter)
-        if closure(run) < CLOSED_TO:
-            return Orbit(system, period, n, parameter, run)
+        orbit = Orbit(system, period, n, parameter, run)
+        if orbit.closes:
+            return orbit
         rows = np.linalg.norm(J[:, unknowns], axis=1)
         if not (np.isfinite(rows).all() and rows.all()):
             break

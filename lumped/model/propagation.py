@@ -142,11 +142,13 @@ def step_maps(
     grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
     forcings = 1 + extra.shape[1]
     extra = padded(system, extra)
+    first, which = distinct_lengths(system, grid.length)
+    free = without_mesh(system, grid.length[first], extra, gauss_tableau(stages))
 
     def steps() -> Iterator[Steps]:
         for low in range(0, grid.length.size, _BLOCK):
             at = slice(low, low + _BLOCK)
-            yield _steps(system, grid.segment[at], grid.edges[:-1][at], grid.length[at], extra, stages)
+            yield _steps(system, grid.segment[at], grid.edges[:-1][at], grid.length[at], which[at], free)
 
     kept = list(steps()) if grid.length.size <= _MOST_KEPT else None
     parts, groups, low = [], [], 0
@@ -169,9 +171,14 @@ def padded(system: LTVSystem, extra: FloatArray) -> FloatArray:
 
 
 def _steps(
-    system: LTVSystem, segment: IntArray, start: FloatArray, h: FloatArray, extra: FloatArray, stages: int
+    system: LTVSystem,
+    segment: IntArray,
+    start: FloatArray,
+    h: FloatArray,
+    which: IntArray,
+    free: tuple[FloatArray, ...],
 ) -> Steps:
-    """Gauss steps of lengths h (k,) from the times ``start``.
+    """Gauss steps of lengths h (k,) from the times ``start``; ``which`` of the lengths of ``free`` each has.
 
     In x = (z, v) with z' = v only the stage accelerations W_i are unknown. With the constant part (K, C) of
     A, the deflections delta = u.z and delta' = u.v at the stages and the mesh's feedback (g_k, g_c, g_0),
@@ -182,12 +189,11 @@ def _steps(
     The part without n depends on h alone, and few lengths differ. W reaches n through the numbers p_i = u.W_i
     only, so each step solves s equations instead of s m, for all unit states and forcings together.
     """
-    m, k = system.size // 2, h.size
+    m, k, stages = system.size // 2, h.size, free[1].shape[1]
     times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
     gain = system.gain(times, np.repeat(segment, stages))
     gains = [values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error)]
-    first, which = distinct_lengths(system, h)
-    maps, inside = gauss_steps(which, *without_mesh(system, h[first], extra, gauss_tableau(stages)), *gains)
+    maps, inside = gauss_steps(which, *free, *gains)
     pairs = gain.pairs
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
     return Steps(h, maps, inside, teeth.reshape(*teeth.shape[:2], k, stages))

@@ -62,9 +62,11 @@ def test_slow_motion_with_relief_is_the_static_transmission_error():
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         mesh__contact="prescribed", mesh__relief="static", friction__law="none"
     )
-    pair = pair.with_({"operating.pinion_speed": 50.0, "mesh.damping_ratio": 0.05})
+    pair = pair.with_({"operating.pinion_speed": 10.0, "mesh.damping_ratio": 0.05})
     static = lumped.static_transmission_error(pair)["transmission_error"].values
     assert floquet.periodic_orbit(pair).dte_rms == pytest.approx(np.std(static), rel=2e-3)
+    # In a long cycle the rigid rotation gathers more rounding of the torque than a state may be off.
+    assert floquet.periodic_orbit(pair.with_(friction__law="coulomb")).stable
 
 
 @pytest.fixture(scope="module")
