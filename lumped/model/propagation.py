@@ -23,8 +23,10 @@ STAGES = 4
 _ROUNDING = 1e-15
 #: A step passes over joints of pieces that are no shorter than this share of it.
 _SHORT_PIECE = 0.5
-#: Bounds on memory: steps solved together, most that are kept, and most intervals where every step is one.
-_BLOCK, _MOST_KEPT, _MOST_INTERVALS = 1024, 4096, 16384
+#: Bounds on memory: steps solved together where they are not kept, most numbers of maps that are kept (and so
+#: many steps in any case), and most intervals where every step is one.
+_BLOCK, _MOST_KEPT, _MOST_INTERVALS = 1024, 4_000_000, 16384
+_ALWAYS_KEPT = 4096
 #: Most steps of a mesh cycle: some ten seconds of work.
 _MAX_STEPS = 1_000_000
 #: Most stretches of the mesh cycle on which the stiffness is looked at, beside those between switches.
@@ -145,18 +147,22 @@ def step_maps(
     first, which = distinct_lengths(system, grid.length)
     free = without_mesh(system, grid.length[first], extra, gauss_tableau(stages))
 
+    count = grid.length.size
+    few = count <= max(_ALWAYS_KEPT, _MOST_KEPT // free[0][0].size)
+    together = count if few else _BLOCK  # kept ones at once: maps need not be copied into one array
+
     def steps() -> Iterator[Steps]:
-        for low in range(0, grid.length.size, _BLOCK):
-            at = slice(low, low + _BLOCK)
+        for low in range(0, count, together):
+            at = slice(low, low + together)
             yield _steps(system, grid.segment[at], grid.edges[:-1][at], grid.length[at], which[at], free)
 
-    kept = list(steps()) if grid.length.size <= _MOST_KEPT else None
+    kept = list(steps()) if few else None
     parts, groups, low = [], [], 0
     for block in kept or steps():
-        group = grid.interval[low : low + _BLOCK]
+        group = grid.interval[low : low + together]
         parts.append(merged(block.maps, group - group[0]))
         groups.append(np.unique(group))
-        low += _BLOCK
+        low += together
     maps = merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
         raise NumericalError(

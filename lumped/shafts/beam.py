@@ -174,27 +174,26 @@ def beam(pieces: Sequence[Piece], places: Sequence[float], omega: float, angle: 
     # Places that differ by rounding are one.
     marks = marks[np.append(True, np.diff(marks) > 1e-9 * ends[-1])]
     stations = [marks[:1]]
-    kinds: list[Piece] = []
+    elements: list[tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]]] = []
     for low, high in itertools.pairwise(marks):
         piece = pieces[min(int(np.searchsorted(ends, 0.5 * (low + high))) - 1, len(pieces) - 1)]
         count = max(1, math.ceil(piece.wave_number(omega) * (high - low) / angle))
         stations.append(np.linspace(low, high, count + 1)[1:])
-        kinds += [piece] * count
+        length = float(high - low) / count
+        elements += [(_bending(piece, length), _twist(piece, length))] * count
     z = np.concatenate(stations)
     n = z.size
     inside = len(_BUBBLES)
     size, twist_size = 2 * n + 2 * inside * (n - 1), n + inside * (n - 1)
     stiffness, mass, spin = np.zeros((3, size, size))
     twist_stiffness, twist_mass = np.zeros((2, twist_size, twist_size))
-    for j, (piece, length) in enumerate(zip(kinds, np.diff(z), strict=True)):
+    for j, ((k, m, g), twist) in enumerate(elements):
         own = 2 * n + 2 * inside * j + np.arange(2 * inside)
         at = np.ix_(*[np.append(np.arange(2 * j, 2 * j + 4), own)] * 2)
-        k, m, g = _bending(piece, float(length))
         stiffness[at] += k
         mass[at] += m
         spin[at] += g
         at = np.ix_(*[np.append([j, j + 1], n + inside * j + np.arange(inside))] * 2)
-        k, m = _twist(piece, float(length))
-        twist_stiffness[at] += k
-        twist_mass[at] += m
+        twist_stiffness[at] += twist[0]
+        twist_mass[at] += twist[1]
     return Beam(z, mass, stiffness, spin, twist_mass, twist_stiffness)

@@ -25,9 +25,13 @@ _STEPS, _CLOSED = 12, 1e-9
 _DIFFERENCE = 1e-4
 #: Size of the change of the torque over the torque.
 _OF_TORQUE = 1e-3
+#: A disturbance of which less is left after a cycle has no derivatives of its own: the torque alone has.
+_FADED = 1e-3
 
 
-def closed_motion(pair: GearPair, samples: int, start: FloatArray, torque: float) -> xr.Dataset:
+def closed_motion(
+    pair: GearPair, samples: int, start: FloatArray, torque: float, radius: float = 1.0
+) -> xr.Dataset:
     """Periodic motion over one mesh cycle on springs, the one near a motion that is known.
 
     Stiffness, place of contact and how far the damper of a tooth pair has taken hold follow the momentary
@@ -39,6 +43,7 @@ def closed_motion(pair: GearPair, samples: int, start: FloatArray, torque: float
     samples : outputs in the cycle, even
     start : (10,) q, x_p, x_g, y_p, y_g at the start of the cycle and their rates, to begin with
     torque : of the brake, or of the drive where the brake torque is given, to begin with [N m]
+    radius : spectral radius of the motion that is known; a small one saves derivatives
 
     Returns
     -------
@@ -60,11 +65,13 @@ def closed_motion(pair: GearPair, samples: int, start: FloatArray, torque: float
             return pair.operating.pinion_torque, float(unknown[-1])
         return float(unknown[-1]), float(given)
 
-    def cycle(unknown: FloatArray, of: Tables = own) -> tuple[FloatArray, tuple[FloatArray, ...]]:
-        """What is left after a cycle, that of the common rate last, and the motion."""
+    def cycle(
+        unknown: FloatArray, of: Tables = own, rate: float = 0.0
+    ) -> tuple[FloatArray, tuple[FloatArray, ...]]:
+        """What is left after a cycle from a common rate, that of this rate last, and the motion."""
         driving, brake = torques_of(unknown)
         torques = driving * system.torque_pinion + brake * system.torque_gear
-        state = back @ unknown[:-1]
+        state = back @ unknown[:-1] + np.append(np.zeros(m), rate * support.common)
         found = run(pair, of, system, True, 0, 1, 1, state, torques)
         moved = found[2] - state
         return np.append(relative @ moved, weights @ moved[m:]), found
@@ -72,8 +79,10 @@ def closed_motion(pair: GearPair, samples: int, start: FloatArray, torque: float
     unknown = np.append(start, torque)
     sizes = np.append(np.abs(unknown[:-1]).reshape(2, -1).max(axis=1).repeat(m - 1), _OF_TORQUE * torque)
     left, found = cycle(unknown)
-    rows = [(cycle(unknown + step)[0] - left) / step.max() for step in np.diag(_DIFFERENCE * sizes)]
-    slopes = np.stack(rows, axis=1)
+    slopes = -np.eye(unknown.size)
+    for j in range(unknown.size - 1 if radius < _FADED else 0, unknown.size):
+        moved = unknown + _DIFFERENCE * sizes * (np.arange(unknown.size) == j)
+        slopes[:, j] = (cycle(moved)[0] - left) / (moved[j] - unknown[j])
     for _ in range(_STEPS):
         change = np.linalg.solve(slopes, left)
         unknown = unknown - change
@@ -81,8 +90,12 @@ def closed_motion(pair: GearPair, samples: int, start: FloatArray, torque: float
         if np.abs(change / sizes).max() < _CLOSED:
             break
     else:
+        if radius < _FADED:
+            return closed_motion(pair, samples, start, torque)
         raise NumericalError("No periodic motion that follows the momentary load is near this one.")
-    states, load, end, work = found
+    # Powers are those of the mean speed: from a common rate whose mean vanishes.
+    rates = found[0][:, m:] @ weights / (weights @ support.common)
+    states, load, end, work = cycle(unknown, rate=-float(rates.mean()))[1]
     dte = states[:, :m] @ system.deflection
     other = cycle(unknown, coarse)[1][0][:, :m] @ system.deflection
     work = work / system.period
@@ -94,7 +107,10 @@ def closed_motion(pair: GearPair, samples: int, start: FloatArray, torque: float
         {name: float(value) for name, value in powers.items()},
         closure=float(np.abs(relative @ (end - states[0])).max() / np.abs(relative @ end).max()),
         error=float(np.abs(other - dte[::2]).max() / np.abs(dte).max()),
-        spectral_radius=float(np.abs(np.linalg.eigvals(slopes[:-1, :-1] + np.eye(2 * m - 2))).max()),
+        spectral_radius=max(
+            float(np.abs(np.linalg.eigvals(slopes[:-1, :-1] + np.eye(2 * m - 2))).max()),
+            radius if radius < _FADED else 0.0,
+        ),
     )
     result = labelled_motion(motion, {}).drop_vars(["pinion_tooth", "gear_tooth"])
     return result.assign_attrs(teeth="alike")

@@ -226,7 +226,7 @@ def by_momentary_load(orbit: GearOrbit, samples: int = _SAMPLES) -> xr.Dataset |
     start[:, : known.shape[1]] = known  # y, which friction alone drives, follows
     start[1] /= orbit.orbit.period
     try:
-        found = closed_motion(pair, samples, start.ravel(), torque)
+        found = closed_motion(pair, samples, start.ravel(), torque, orbit.spectral_radius)
     except NumericalError:
         return None
     size = cycle_peak_to_peak(found, "dte")

@@ -47,6 +47,10 @@ def test_contact_loss_is_that_of_the_total_mesh_force():
     assert loads.min() == 0.0  # a pair is apart while it is on the path
     assert found.least_force > 0.7
     assert not found.contact_lost
+    # Friction that varies in a long cycle swings a free train about its mean speed, at which it loses power.
+    slow = predicted(pair.with_({"operating.pinion_speed": 30.0})).cycle
+    sliding = -float(slow["friction_power"].sum("pair").mean())
+    assert slow.attrs["power_sliding"] == pytest.approx(sliding, rel=1e-4)
 
 
 def test_losses_of_the_motion_with_unilateral_contact_are_those_of_the_linear_one_where_they_agree():
