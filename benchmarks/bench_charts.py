@@ -1,6 +1,6 @@
 """Charts that refine themselves against the full grid and against closed forms.
 
-    python benchmarks/bench_charts.py [PAIRS]
+    python -m benchmarks.bench_charts [PAIRS]
 
 prints the tables of docs/verification/charts.md; processor seconds.
 """

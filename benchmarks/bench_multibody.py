@@ -1,6 +1,6 @@
 """Cost of a multibody mesh cycle at rtol 1e-8, beside scipy's DOP853 on the lumped equations in the same run.
 
-    python benchmarks/bench_multibody.py [--cycles N] [--repeats N]
+    python -m benchmarks.bench_multibody [--cycles N] [--repeats N]
 
 DOP853 gets every help: the right-hand side is compiled, and the integration restarts at the switches of the
 element laws (without that it would lose its order). All solvers take turns, so that a busy machine slows all

@@ -1,6 +1,6 @@
 """Branches of motions beyond contact loss and jump maps beside plain runs of the same equations.
 
-    python benchmarks/bench_orbits.py [--values 26] [--speeds 800]
+    python -m benchmarks.bench_orbits [--values 26] [--speeds 800]
 
 Seconds of processor time of one core, after compilation. The baseline of a branch is to let a run settle at
 each of its speeds, up and down, for 400 mesh cycles: it finds stable motions only and no multipliers. That of

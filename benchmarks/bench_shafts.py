@@ -1,6 +1,6 @@
 """Cost of a mesh cycle on elastic shafts, and what leaving out modes costs in accuracy.
 
-    python benchmarks/bench_shafts.py [--cycles N] [--repeats N]
+    python -m benchmarks.bench_shafts [--cycles N] [--repeats N]
 
 Each row keeps the modes of both shafts with their gears held up to another frequency. The motion is the
 periodic one with the linear mesh, the pair of the 28/28 preset without relief, whose stiffness jumps: nothing

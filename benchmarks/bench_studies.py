@@ -1,6 +1,6 @@
 """What a sweep costs beside its cases.
 
-    python benchmarks/bench_studies.py [--quick]
+    python -m benchmarks.bench_studies [--quick]
 
 Prints one line a figure. The cases are geometries (below 1 ms) and, for the strong scaling, periodic motions
 of the lumped model at 300 rpm to 1200 rpm. Overheads are processor times; the speed-up is of wall times, so

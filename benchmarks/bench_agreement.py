@@ -1,0 +1,169 @@
+"""Lumped prediction and exact contact: how far apart are they, and by what?
+
+    python -m benchmarks.bench_agreement [sizes] [effects] [presets] [forms] [speeds] [scales]
+
+Tables of docs/verification/agreement.md ("Prediction and exact contact"), docs/theory/multibody.md
+("Effects", "The verdict") and docs/theory/contact_energy.md ("Loaded contact of the linear model").
+"""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from lumped import GearPair, load_gear_pair
+from lumped.errors import NumericalError
+from multibody.run.effects import EFFECTS
+from validation.cross_check.comparison import crosscheck
+from validation.cross_check.motions import CONTACT_LOSS, unilateral_orbit
+from validation.exchange.new_pair_file import new_pair
+from validation.prediction.motion import predicted
+
+PRESETS = {
+    "FZG-C": "fzg_c", "29/47": "high_contact_ratio_29_47", "50/50": "kahraman_blankenship_50_50",
+    "28/28": "nasa_28_28", "25/31": "nasa_art_25_31",
+}  # fmt: skip
+OWN = {
+    "31/57": (3.0, 25.0, 12_000.0, 150.0),
+    "37/71": (2.0, 18.0, 1450.0, 60.0),
+    "19/41": (2.5, 20.0, 1450.0, 80.0),
+}
+PAIRS = {name: load_gear_pair(preset) for name, preset in PRESETS.items()}
+PAIRS |= {teeth: new_pair(teeth, *drawing) for teeth, drawing in OWN.items()}
+ENERGY = PAIRS["28/28"].with_(mesh__stiffness={"model": "energy"})
+SAMPLES = 512
+
+
+def line(*cells: object) -> None:
+    """A line of a table."""
+    texts = (f"{one:.2f}" if isinstance(one, float) else str(one) for one in cells)
+    print(f"| {' | '.join(texts)} |", flush=True)
+
+
+def smaller(pair: GearPair, share: float) -> GearPair:
+    """Every length of the flanks times a share; without finite motions nothing else would change."""
+    sizes = {"operating.pinion_torque": pair.operating.pinion_torque}
+    sizes |= {"mesh.backlash": 1e3 * pair.mesh.backlash}
+    for name in ("pinion", "gear"):
+        if (relief := getattr(pair, name).tip_relief) is not None:
+            sizes |= {f"{name}.tip_relief.amount": 1e6 * relief.amount}
+    return pair.with_({field: share * size for field, size in sizes.items()})
+
+
+def damped(pair: GearPair, share: float) -> GearPair:
+    return pair.with_(mesh__damping_ratio=share * pair.mesh.damping_ratio)
+
+
+def exact_motion(pair: GearPair, without: str = "") -> xr.Dataset:
+    """The exact model's own periodic motion, as the cross-check starts it; without one effect."""
+    orbit, _ = unilateral_orbit(pair)
+    effects = {} if orbit is None else dict(CONTACT_LOSS["exact"])
+    effects |= {without: False} if without else {}
+    start = None if orbit is None else orbit.states[0]
+    return multibody.steady_state(pair, samples_per_cycle=SAMPLES, initial=start, effects=effects)
+
+
+def apart(pair: GearPair, without: str = "") -> float:
+    """Peak to peak of the transmission error, exact less prediction, over the prediction's [%]."""
+    try:
+        exact = np.ptp(exact_motion(pair, without)["dte"].to_numpy())
+    except NumericalError:
+        return np.nan
+    return float(100.0 * (exact / np.ptp(predicted(pair).transmission_error.to_numpy()) - 1.0))
+
+
+def off(own: xr.Dataset, exact: xr.Dataset, name: str = "dte") -> float:
+    """Largest difference from the exact motion over the peak to peak of the compared one [%]."""
+    values = own[name].to_numpy()
+    return float(100.0 * np.abs(values - exact[name].to_numpy()).max() / np.ptp(values))
+
+
+def sizes() -> None:
+    """Exact less prediction in per cent: as given, with smaller lengths or damping, without a moving line."""
+    line("pair", "as given", "lengths x 1/4", "damping x 1/2", "line does not move", "damping x 1/4")
+    for name, pair in PAIRS.items():
+        cases = pair, smaller(pair, 0.25), damped(pair, 0.5)
+        line(name, *map(apart, cases), apart(pair, "moving_line"), apart(damped(pair, 0.25)))
+
+
+def effects() -> None:
+    """The same as given, and how much it changes without each effect of the exact model."""
+    line("pair", "as given", *EFFECTS)
+    for name, pair in PAIRS.items():
+        given = apart(pair)
+        line(name, given, *(apart(pair, effect) - given for effect in EFFECTS))
+
+
+def presets() -> None:
+    """Differences of the exact model by the measure of the cross-check, relief ignored, in per cent."""
+    shown = ("dte", "x_p", "x_g", "y_p", "y_g", "normal_load")
+    line("preset", *shown)
+    for name in PRESETS:
+        pair = PAIRS[name].with_(mesh__relief="ignored")
+        check = crosscheck(pair, cycles=6, fidelities=("exact",))
+        found = {one.quantity: 100.0 * one.difference for one in check.of("exact")}
+        line(name, *(found[quantity] for quantity in shown))
+    pair = ENERGY.with_(mesh__relief="ignored", friction__law="coulomb")
+    causes = multibody.attribution(pair)["alone"].sel(quantity="dte")
+    print("28/28, energy, law I, share of each cause:", causes.to_series().to_dict())
+
+
+def forms() -> None:
+    """Exact peak to peak in um; four forms of the transmission error, and y of the last, off by per cent."""
+    line("preset", "exact", "prescribed", "loaded, linear", "unilateral, static", "unilateral, momentary", "y")
+    for name in PRESETS:
+        pair, exact = PAIRS[name], exact_motion(PAIRS[name])
+        fixed = lumped.steady_state(pair.with_(mesh__contact="prescribed"), samples_per_cycle=SAMPLES)
+        linear, best = lumped.steady_state(pair, samples_per_cycle=SAMPLES), predicted(pair).cycle
+        orbit, _ = unilateral_orbit(pair)
+        static = linear if orbit is None else orbit.sampled(SAMPLES)
+        swing = 1e6 * float(np.ptp(exact["dte"].to_numpy()))
+        line(name, swing, *(off(one, exact) for one in (fixed, linear, static, best)), off(best, exact, "y_p"))
+
+
+def speeds() -> None:
+    """Transmission error of 28/28, energy stiffness, off the exact one over its own peak to peak."""
+    rpm = (500, 2000, 4875, 8000, 12000)
+    line("relief, contact", *rpm)
+    for relief in ("ignored", "static"):
+        pairs = [ENERGY.with_(mesh__relief=relief, operating__pinion_speed=one) for one in rpm]
+        exact = [exact_motion(pair) for pair in pairs]
+        for form in ("prescribed", "loaded"):
+            own = [lumped.steady_state(p.with_(mesh__contact=form), samples_per_cycle=SAMPLES) for p in pairs]
+            shares = [f"{0.01 * off(*both):.3f}" for both in zip(own, exact, strict=True)]
+            line(f"{relief}, {form}", *shares)
+
+
+def scales() -> None:
+    """Swing of a quantity, largest difference and that of the means over it, in per cent; relief ignored."""
+    slow = {"operating.pinion_speed": 300.0, "friction.law": "none"}
+    cases = {"19/41, 300 rpm, no friction": PAIRS["19/41"].with_(slow)}
+    line("pair", "quantity", "swing, um or N", "difference", "of the means")
+    for name, pair in (cases | {teeth: PAIRS[teeth] for teeth in ("19/41", "31/57")}).items():
+        own, exact = predicted(pair).cycle, exact_motion(pair)
+        for one in ("dte", "x_g", "bearing_force_y_g", "friction_force"):
+            mine, other = (np.atleast_2d(run[one].to_numpy().T).T.sum(axis=1) for run in (own, exact))
+            if (swing := float(np.ptp(mine))) == 0.0:
+                continue
+            scale = 1.0 if "force" in one else 1e6
+            ratios = float(np.abs(mine - other).max()) / swing, abs(float((mine - other).mean())) / swing
+            line(name, one, scale * swing, *(100.0 * ratio for ratio in ratios))
+
+
+def main(names: Sequence[str]) -> None:
+    """Print the tables of these names, or all."""
+    warnings.simplefilter("ignore")
+    for table in (sizes, effects, presets, forms, speeds, scales):
+        if not names or table.__name__ in names:
+            print(f"\n{table.__doc__}\n")
+            table()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

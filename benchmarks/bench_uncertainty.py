@@ -1,0 +1,129 @@
+"""How well do 128 samples of the uncertain inputs tell the percentiles, and 32 samples the band over speed?
+
+    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [--reference 4096]
+
+The tables of docs/verification/uncertainty.md. Errors are root mean squares over the seeds, in per cent of
+the range from 5 to 95 % of the reference.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import warnings
+from collections.abc import Sequence
+from functools import cache
+from unittest import mock
+
+import numpy as np
+import xarray as xr
+
+from floquet.gear.axes import speed_range
+from lumped import load_gear_pair
+from validation.exchange.new_pair_file import new_pair
+from validation.prediction import uncertainty as module
+from validation.prediction.uncertainty import speed_band, uncertainty
+
+BEARINGS = [{"position": z, "loa_stiffness": 2e8, "oloa_stiffness": 2e8} for z in (30, 150)]
+SHAFT = {"segments": [{"length": 300, "diameter": 30}], "gear_position": 90, "bearings": BEARINGS}
+TRAIN = {"position": 300, "inertia": 0.01, "coupling_stiffness": 1e5}
+#: Those of examples/26_four_springs.py, slender.
+SLENDER = {"damping_ratio": 0.02, "max_frequency": 8000, "pinion": SHAFT, "gear": SHAFT}
+PAIRS = {
+    "19/41": (new_pair("19/41", 2.5, 20.0, 1450.0, 80.0), 8),
+    "31/57": (new_pair("31/57", 3.0, 25.0, 12_000.0, 150.0), 4),
+    "28/28": (load_gear_pair("nasa_28_28"), 4),
+}
+PAIRS["shafts"] = PAIRS["28/28"][0].with_(shafts=SLENDER | {"motor": TRAIN, "load": TRAIN}), 4
+QUANTITIES = ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "bearing_rms", "efficiency")
+ENDS = (5.0, 95.0)
+SAMPLES, REFERENCE_SEED = 128, 1000
+
+
+def line(*cells: object) -> None:
+    """A line of a table."""
+    print(
+        "|",
+        " | ".join(f"{one:.4g}" if isinstance(one, float) else str(one) for one in cells),
+        "|",
+        flush=True,
+    )
+
+
+def ends_of(found: xr.Dataset, name: str, kind: str = "percentile") -> np.ndarray:
+    return found[f"{name}_{kind}"].sel(percentile=list(ENDS)).to_numpy()
+
+
+@cache
+def reference_of(name: str, count: int) -> xr.Dataset:
+    return uncertainty(PAIRS[name][0], count, REFERENCE_SEED)
+
+
+def samples(name: str, reference: int) -> None:
+    """Percentiles of 128 samples against those of many."""
+    start = time.process_time()
+    pair, seeds = PAIRS[name]
+    many = reference_of(name, reference)
+    few = [uncertainty(pair, SAMPLES, seed + 1) for seed in range(seeds)]
+    counts = ", ".join(f"{many.attrs[what]} {what}" for what in ("refused", "contact_lost", "unstable"))
+    took = time.process_time() - start
+    print(f"\n{name}, {reference} samples ({counts}), {seeds} seeds of {SAMPLES}; {took:.0f} s\n")
+    line("result", "given", "5 %", "95 %", "error of 5 %", "error of 95 %", "interval holds it")
+    for quantity in QUANTITIES:
+        wanted = ends_of(many, quantity)
+        off = np.array([ends_of(one, quantity) - wanted for one in few]) / np.ptp(wanted)
+        within = np.array([ends_of(one, quantity, "interval") for one in few])
+        held = (within[..., 0] <= wanted) & (wanted <= within[..., 1])
+        errors = (100.0 * np.sqrt(np.mean(off**2, axis=0))).tolist()
+        given = float(many.attrs[f"given_{quantity}"])
+        line(quantity, given, *wanted.tolist(), *errors, f"{held.sum()} of {held.size}")
+
+
+def order(reference: int) -> None:
+    """The same for 19/41 with the inputs in the order of the file."""
+    reference_of("19/41", reference)
+    print("\nInputs in the order of the file:")
+    with mock.patch.object(module, "_importance", lambda ends: -np.arange(float(len(ends)))):
+        samples("19/41", reference)
+
+
+def speeds_between(low: float, high: float, count: int) -> np.ndarray:
+    """As the report has them."""
+    return np.linspace(low**0.5, high**0.5, count) ** 2
+
+
+def band(reference: int) -> None:
+    """Ends of the band over speed of 19/41 against 128 samples at 61 speeds, in per cent of its width."""
+    pair, _ = PAIRS["19/41"]
+    known = uncertainty(pair, SAMPLES)
+    ends = speed_range(pair)
+    wide = speeds_between(*ends, 61)
+    many = speed_band(pair, wide, known, 128)
+    width = float((many["high"] - many["low"]).mean())
+    print("\nBand over speed of 19/41 against 128 samples at 61 speeds, in per cent of its mean width\n")
+    line("samples", "speeds", "lower end", "upper end", "most", "s")
+    for count, speeds in ((32, 41), (32, 61), (16, 31)):
+        own = speeds_between(*ends, speeds)
+        start = time.process_time()
+        found = speed_band(pair, own, known, count)
+        took = time.process_time() - start
+        off = [
+            100.0 * (np.interp(wide, own, found[end].to_numpy()) - many[end].to_numpy()) / width
+            for end in ("low", "high")
+        ]
+        errors = [float(np.sqrt(np.mean(one**2))) for one in off]
+        line(count, speeds, *errors, float(np.abs(off).max()), took)
+
+
+def main(names: Sequence[str], reference: int) -> None:
+    warnings.simplefilter("ignore")
+    for name in names or (*PAIRS, "order", "band"):
+        {"order": order, "band": band}.get(name, lambda n, name=name: samples(name, n))(reference)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="TABLE", help="default all")
+    parser.add_argument("--reference", type=int, default=4096, help="samples of the reference")
+    given = parser.parse_args()
+    main(given.names, given.reference)
