@@ -1,9 +1,9 @@
 """Lumped prediction and exact contact: how far apart are they, and by what?
 
-    python -m benchmarks.bench_agreement [sizes] [effects] [presets] [forms] [speeds] [scales]
+    python -m benchmarks.bench_agreement [sizes] [effects] [presets] [scales]
 
-Tables of docs/verification/agreement.md ("Prediction and exact contact"), docs/theory/multibody.md
-("Effects", "The verdict") and docs/theory/contact_energy.md ("Loaded contact of the linear model").
+Tables of docs/verification/agreement.md ("Prediction and exact contact") and docs/theory/multibody.md
+("Effects", "The verdict").
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-import lumped
 import multibody
 from lumped import GearPair, load_gear_pair
 from lumped.errors import NumericalError
@@ -78,12 +77,6 @@ def apart(pair: GearPair, without: str = "") -> float:
     return float(100.0 * (exact / np.ptp(predicted(pair).transmission_error.to_numpy()) - 1.0))
 
 
-def off(own: xr.Dataset, exact: xr.Dataset, name: str = "dte") -> float:
-    """Largest difference from the exact motion over the peak to peak of the compared one [%]."""
-    values = own[name].to_numpy()
-    return float(100.0 * np.abs(values - exact[name].to_numpy()).max() / np.ptp(values))
-
-
 def sizes() -> None:
     """Exact less prediction in per cent: as given, with smaller lengths or damping, without a moving line."""
     line("pair", "as given", "lengths x 1/4", "damping x 1/2", "line does not move", "damping x 1/4")
@@ -114,32 +107,6 @@ def presets() -> None:
     print("28/28, energy, law I, share of each cause:", causes.to_series().to_dict())
 
 
-def forms() -> None:
-    """Exact peak to peak in um; four forms of the transmission error, and y of the last, off by per cent."""
-    line("preset", "exact", "prescribed", "loaded, linear", "unilateral, static", "unilateral, momentary", "y")
-    for name in PRESETS:
-        pair, exact = PAIRS[name], exact_motion(PAIRS[name])
-        fixed = lumped.steady_state(pair.with_(mesh__contact="prescribed"), samples_per_cycle=SAMPLES)
-        linear, best = lumped.steady_state(pair, samples_per_cycle=SAMPLES), predicted(pair).cycle
-        orbit, _ = unilateral_orbit(pair)
-        static = linear if orbit is None else orbit.sampled(SAMPLES)
-        swing = 1e6 * float(np.ptp(exact["dte"].to_numpy()))
-        line(name, swing, *(off(one, exact) for one in (fixed, linear, static, best)), off(best, exact, "y_p"))
-
-
-def speeds() -> None:
-    """Transmission error of 28/28, energy stiffness, off the exact one over its own peak to peak."""
-    rpm = (500, 2000, 4875, 8000, 12000)
-    line("relief, contact", *rpm)
-    for relief in ("ignored", "static"):
-        pairs = [ENERGY.with_(mesh__relief=relief, operating__pinion_speed=one) for one in rpm]
-        exact = [exact_motion(pair) for pair in pairs]
-        for form in ("prescribed", "loaded"):
-            own = [lumped.steady_state(p.with_(mesh__contact=form), samples_per_cycle=SAMPLES) for p in pairs]
-            shares = [f"{0.01 * off(*both):.3f}" for both in zip(own, exact, strict=True)]
-            line(f"{relief}, {form}", *shares)
-
-
 def scales() -> None:
     """Swing of a quantity, largest difference and that of the means over it, in per cent; relief ignored."""
     slow = {"operating.pinion_speed": 300.0, "friction.law": "none"}
@@ -148,7 +115,10 @@ def scales() -> None:
     for name, pair in (cases | {teeth: PAIRS[teeth] for teeth in ("19/41", "31/57")}).items():
         own, exact = predicted(pair).cycle, exact_motion(pair)
         for one in ("dte", "x_g", "bearing_force_y_g", "friction_force"):
-            mine, other = (np.atleast_2d(run[one].to_numpy().T).T.sum(axis=1) for run in (own, exact))
+            mine, other = (
+                (run[one].sum("pair") if "pair" in run[one].dims else run[one]).to_numpy()
+                for run in (own, exact)
+            )
             if (swing := float(np.ptp(mine))) == 0.0:
                 continue
             scale = 1.0 if "force" in one else 1e6
@@ -159,7 +129,7 @@ def scales() -> None:
 def main(names: Sequence[str]) -> None:
     """Print the tables of these names, or all."""
     warnings.simplefilter("ignore")
-    for table in (sizes, effects, presets, forms, speeds, scales):
+    for table in (sizes, effects, presets, scales):
         if not names or table.__name__ in names:
             print(f"\n{table.__doc__}\n")
             table()

@@ -1,6 +1,7 @@
 """Branches of motions beyond contact loss and jump maps beside plain runs of the same equations.
 
     python -m benchmarks.bench_orbits [--values 26] [--speeds 800]
+    python -m benchmarks.bench_orbits --points    what docs/theory/orbits.md has of the 28/28 pair
 
 Seconds of processor time of one core, after compilation. The baseline of a branch is to let a run settle at
 each of its speeds, up and down, for 400 mesh cycles: it finds stable motions only and no multipliers. That of
@@ -42,13 +43,33 @@ def settled(count: int) -> None:
         state = system.run(state, cycle / rpm, SETTLE).end
 
 
+def points() -> None:
+    """Bifurcations of the 28/28 pair with prescribed contact, and what removes its last jump."""
+    plain, relieved = (pair.with_(mesh__contact="prescribed") for pair in (PLAIN, PAIR))
+    found = floquet.response_branches(plain, SPEEDS, (1, 2, 3))
+    for one in sorted(found.bifurcations, key=lambda one: (one.n, one.speed_rpm)):
+        if one.sharp and one.kind != "grazing":
+            print(f"n = {one.n}, {one.kind}: {one.speed_rpm:.3f} rpm, rms {1e6 * one.dte_rms:.3f} um")
+    print("no stable motion:", ", ".join(f"{low:.0f} to {high:.0f} rpm" for low, high in found.gaps))
+    changed = relieved.with_(operating__pinion_torque=200.0)
+    with_relief = floquet.response_branches(changed, SPEEDS, (1, 2), seeds=0)
+    for branches, names in ((found, ["damping_ratio"]), (with_relief, ["tip_relief", "torque"])):
+        for name in names:
+            for end in floquet.jumps_removed_by(branches, name):
+                print(f"no jump beyond {name} {end.value:.4f}, at {end.speed_rpm:.0f} rpm")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--values", type=int, default=26, help="torques of the map")
     parser.add_argument("--speeds", type=int, default=800, help="speeds of the map")
+    parser.add_argument("--points", action="store_true", help="bifurcations instead of times")
     arguments = parser.parse_args()
+    if arguments.points:
+        points()
+        return
     floquet.response_branches(PLAIN, (8000.0, 8500.0), [1], seeds=0)  # compiles
     found, took = cpu(lambda: floquet.response_branches(PLAIN, SPEEDS, [1], seeds=0))
     orbits = sum(len(branch.orbits) for branch in found.branches)
