@@ -17,8 +17,8 @@ from lumped.typing import ComplexArray, FloatArray
 
 #: Residual of a motion that counts as periodic, over the largest displacement or phase rate.
 CLOSED_TO = 1e-11
-#: Rounding of the accumulated row over what the parameter alone gathers: at low speeds, where the cycle is long,
-#: that is far more than a state, and no number for the parameter closes the row better.
+#: Rounding of the accumulated row over what the parameter alone gathers: at low speeds, where the cycle is
+#: long, that is far more than a state, and no number for the parameter closes the row better.
 _BALANCED_TO = 16.0 * float(np.finfo(np.float64).eps)
 _MOST_ITERATIONS = 15
 _LOWER_ORDER = 14

@@ -35,8 +35,9 @@ _SURE = 0.9
 #: Samples of which most must be left after refusals.
 _LEAST = 0.5
 #: Times in a mesh cycle, and largest angle of a step [rad], of motions over speed. Twice the step of other
-#: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range.
-_TIMES, _STEP_ANGLE = 32, 1.0
+#: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range. With
+#: ``LONG_STEP`` it errs by 4e-4 where a cycle has hundreds of vibrations: 21/23 and 16/32 from 12 to 240 rpm.
+_TIMES, STEP, LONG_STEP = 32, 1.0, 2.0
 #: Further quantities of teeth that differ: unit and words; in the linear form, with so many samples a cycle.
 TEETH = {
     "revolution_dte_peak_to_peak": ("m", "transmission error over the period of the teeth, peak to peak"),
@@ -117,10 +118,17 @@ def transmission_error(found: xr.Dataset) -> str:
     return "revolution_dte_peak_to_peak" if "revolution_dte_peak_to_peak" in found else "dte_peak_to_peak"
 
 
-def speed_band(pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, samples: int = 32) -> xr.Dataset:
+def speed_band(
+    pair: GearPair,
+    speeds_rpm: FloatArray,
+    known: xr.Dataset,
+    samples: int = 32,
+    step_angle: float = STEP,
+) -> xr.Dataset:
     """Return 5 and 95 % of the linear peak to peak, ``low`` and ``high`` [m], over ``speed_rpm``.
 
     ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
+    ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
     """
     inputs = uncertain_inputs(pair)
     importance = np.ptp(np.nan_to_num(known["dte_peak_to_peak_swing"].to_numpy()), axis=1)
@@ -128,7 +136,7 @@ def speed_band(pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, sample
     for point in _points(importance, samples, int(known.attrs["seed"])):
         try:
             varied = _varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])
-            found.append(_peaks(varied, speeds_rpm))
+            found.append(_peaks(varied, speeds_rpm, step_angle))
         except SpurcheckError:
             continue
     table = np.stack(found)
@@ -145,14 +153,14 @@ def speed_band(pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, sample
     )
 
 
-def _peaks(pair: GearPair, speeds_rpm: FloatArray) -> FloatArray:
+def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:
     """Peak to peak of the linear transmission error at speeds, NaN where no motion is found [m]."""
     pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds_rpm]
     found = np.full(len(pairs), np.nan)
     for j, system in enumerate(systems_over_speed(pairs, warn=False)):
         times = sample_times(system.period, _TIMES)
         try:
-            motion = periodic_solution(system, times, estimate_error=False, step_angle=_STEP_ANGLE)
+            motion = periodic_solution(system, times, estimate_error=False, step_angle=step_angle)
         except NumericalError:
             continue
         found[j] = motion.peak_to_peak["dte"]

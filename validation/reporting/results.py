@@ -19,6 +19,8 @@ from floquet.gear.response import ResponseBranches
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
+from lumped.model.periodic_system import LTVSystem
+from lumped.model.propagation import fastest_frequency
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
@@ -33,7 +35,7 @@ from validation.measurements.record import Measurement
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import ORDERS, Motion, Prediction, measured, mesh_orders, predicted
-from validation.prediction.uncertainty import speed_band, uncertainty
+from validation.prediction.uncertainty import LONG_STEP, STEP, speed_band, uncertainty
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import parameter_warnings
@@ -46,6 +48,9 @@ _SAME = 2e-3
 BRANCH_SPEEDS = (0.8, 1.25)
 #: Speeds an octave at which runs settle, to find beats and chaos.
 _SEEDS = 8
+#: Vibrations in a mesh cycle beyond which half of the samples, and of the speeds of their range, are taken:
+#: each costs as much more, and no resonance is left to be seen.
+_MANY = 300.0
 #: Times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
 
@@ -172,7 +177,18 @@ class Results:
         if not self.effort.samples or not uncertain_inputs(self.pair):
             return Absent(Outcome.NOT_ASKED)
         stage = self.stage("uncertain inputs")
-        return uncertainty(self.pair, self.effort.samples, progress=stage)
+        return uncertainty(self.pair, self.samples, progress=stage)
+
+    @property
+    def samples(self) -> int:
+        """How many samples of the uncertain inputs are taken."""
+        return self.effort.samples // (2 if self.vibrations > _MANY else 1)
+
+    @cached_property
+    def vibrations(self) -> float:
+        """Bound on the vibrations of the fastest mode, on springs, in a mesh cycle."""
+        system = LTVSystem.of(self.pair, "full")
+        return fastest_frequency(system) * system.period / (2.0 * math.pi)
 
     @cached_property
     def inputs(self) -> tuple[int, int, str]:
@@ -193,8 +209,10 @@ class Results:
         self.stage("range over speed")
         # Resonances are wider the faster the pair runs.
         low, high = self.speeds
-        speeds = np.linspace(low**0.5, high**0.5, self.effort.band_speeds) ** 2
-        return speed_band(self.pair, speeds, self.uncertainty, self.effort.band_samples)
+        slow, count = self.vibrations > _MANY, self.effort.band_speeds
+        speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
+        step = LONG_STEP if slow else STEP
+        return speed_band(self.pair, speeds, self.uncertainty, self.effort.band_samples, step)
 
     @property
     def contact_lost(self) -> bool:

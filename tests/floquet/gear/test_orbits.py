@@ -59,10 +59,9 @@ def test_without_clearance_motions_are_proportional_to_the_torque(frictionless):
 
 def test_slow_motion_with_relief_is_the_static_transmission_error():
     """Clearance decides about contact itself; the static model knows which pairs touch."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed", mesh__relief="static", friction__law="none"
-    )
-    pair = pair.with_({"operating.pinion_speed": 10.0, "mesh.damping_ratio": 0.05})
+    changes = {"mesh.contact": "prescribed", "mesh.relief": "static", "friction.law": "none"}
+    changes |= {"operating.pinion_speed": 10.0, "mesh.damping_ratio": 0.05}
+    pair = lumped.load_gear_pair("nasa_28_28").with_(changes)
     static = lumped.static_transmission_error(pair)["transmission_error"].values
     assert floquet.periodic_orbit(pair).dte_rms == pytest.approx(np.std(static), rel=2e-3)
     # In a long cycle the rigid rotation gathers more rounding of the torque than a state may be off.

@@ -27,12 +27,8 @@ def test_it_is_within_one_percent_of_the_exact_multibody_motion(name):
 
 
 def test_teeth_that_push_all_the_time_keep_the_linear_motion():
-    pair = lumped.load_gear_pair("nasa_28_28").with_(
-        {
-            "mesh.contact": "prescribed", "operating.pinion_speed": 800.0, "mesh.relief": "ignored",
-            "friction.law": "none",
-        }
-    )  # fmt: skip
+    changes = {"mesh.contact": "prescribed", "operating.pinion_speed": 800.0, "mesh.relief": "ignored"}
+    pair = lumped.load_gear_pair("nasa_28_28").with_(changes | {"friction.law": "none"})
     found, linear = predicted(pair), lumped.steady_state(pair)
     assert float(linear["normal_load"].where(linear["contact"] > 0).min()) > 0.0
     assert found.motion is Motion.LINEAR

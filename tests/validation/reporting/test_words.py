@@ -17,10 +17,11 @@ from tests.validation.reporting.test_numbers import nearest_hazard, of_motion, p
 from tests.validation.reporting.written import SMALL, known, pair, plain
 from validation.exchange import new_pair
 from validation.files.formatting import prose, read_table
+from validation.prediction.uncertainty import LONG_STEP, _peaks
 from validation.reporting.build import findings
 from validation.reporting.chapters import contact_loss, second_program, stability
 from validation.reporting.first_figures import plain_name
-from validation.reporting.page_one import Verdict, page_one
+from validation.reporting.page_one import Verdict, _remark, page_one
 from validation.reporting.results import Results
 
 _ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
@@ -208,12 +209,19 @@ def test_the_remark(written):
         assert "linear model" not in remark
         return
     size = np.ptp(written.data("linear")["dte"].to_numpy())
-    own.assert_says(
-        remark,
-        r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\.",
-        (size, "m"),
-        digits=2,
-    )
+    words = r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\."
+    own.assert_says(remark, words, (size, "m"), digits=2)
+
+
+def test_a_result_beyond_its_range_names_the_input_that_takes_it_there():
+    results, found = copy.copy(known("calm")), known("calm").uncertainty.copy(deep=True)
+    force = results.prediction.bearing_rms
+    found["bearing_rms_percentile"][:] = force * np.array([1.1, 1.5, 2.0])
+    found["bearing_rms_swing"][:] = force * np.where(np.arange(found.sizes["input"]) == 2, 1.6, 0.2)[:, None]
+    results.__dict__["uncertainty"] = found
+    name = plain_name(str(found["input"].to_numpy()[2]))
+    ends = f"below the range of the samples: what is assumed for the {name} stands at the end of its range."
+    assert _remark(results).endswith(f"on the pinion bearings, rms” lies {ends}")
 
 
 def test_findings(written):
@@ -328,6 +336,9 @@ def test_a_pair_too_slow_for_the_second_program_has_a_report():
     assert words.startswith("The second program does not run here. operating.pinion_speed = 114 rpm: allowed")
     assert second_program.write(results).result == words
     assert (str(results.second), results.same_equations) == (str(results.check), None)
+    assert results.samples == SMALL.samples // 2  # each costs much
+    sizes = lumped.speed_sweep(results.pair, [20.0, 114.0])["dte_peak_to_peak"].to_numpy()
+    np.testing.assert_allclose(_peaks(results.pair, np.array([20.0, 114.0]), LONG_STEP), sizes, rtol=5e-4)
 
 
 def shafts_of(diameter, stiffness):

@@ -38,12 +38,14 @@ def write(results: Results) -> Content:
         return Content(result, tuple(blocks))
     blocks += [_ranges(found), inputs_table(found)]
     samples = int(found.sizes["sample"])
+    half = results.samples < results.effort.samples
+    why = f" Half as many as else: a mesh cycle has {results.vibrations:.0f} vibrations." if half else ""
     lost, unstable = int(found.attrs["contact_lost"]), int(found.attrs["unstable"])
     blocks.append(
         Text(
             f"{samples} samples (scrambled Sobol points, seed {found.attrs['seed']}); "
             f"{found.attrs['refused']} were refused. Contact is lost in {lost} of them, {unstable} are "
-            "unstable."
+            f"unstable.{why}"
         )
     )
     low, high = found["dte_peak_to_peak_percentile"].to_numpy()[[0, -1]]
