@@ -10,6 +10,7 @@ Sources: docs/theory/teeth.md, "Tables".
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -188,15 +189,8 @@ def tables(
     marks = np.where(np.abs(marks - nearest) < _INSIDE, nearest, marks)
     marks = marks[np.diff(marks, prepend=-1.0) > _INSIDE]
     parts = np.maximum(1, np.ceil(np.diff(marks) / largest_step - 1e-9)).astype(np.int64)
-    edges = np.append(
-        np.concatenate(
-            [
-                low + (high - low) * np.arange(n) / n
-                for low, high, n in zip(marks, marks[1:], parts, strict=False)
-            ]
-        ),
-        1.0,
-    )
+    pieces = zip(marks, marks[1:], parts, strict=False)
+    edges = np.concatenate([*(low + (high - low) * np.arange(n) / n for low, high, n in pieces), [1.0]])
     starts = np.zeros(edges.size - 1, dtype=np.int64)
     starts[np.searchsorted(edges, even[:-1] - _INSIDE)] = 1
     low, high = edges[:-1], edges[1:]
@@ -220,8 +214,14 @@ def tables(
         found: FloatArray = rise / (after - before).reshape((1, at.size, 1) + (1,) * (rise.ndim - 3))
         return found
 
+    def all_laws(kind: int, xi: FloatArray) -> FloatArray:
+        """k, c, gap and mu, (..., 4)."""
+        mu = laws.friction(np.clip(xi, g.L_XA + _INSIDE * g.base_pitch, g.L_XD - _INSIDE * g.base_pitch))
+        return np.stack([*laws.of_kind(kind, xi), mu], axis=-1)
+
     kinds = range(len(laws.faults))
-    k, c, gap = (np.stack(part) for part in zip(*(laws.of_kind(v, place) for v in kinds), strict=True))
+    k, c, gap, mu = np.moveaxis(np.stack([all_laws(v, place) for v in kinds]), -1, 0).copy()
+    follows = 1.0 if laws.loaded else np.array([0.0, 0.0, 1.0, 0.0])  # fixed windows stay at their places
     near = (place >= laws.low) & (place <= laws.high)
     neighbours = laws.mesh.neighbours if laws.loaded else ()
     flat = place.reshape(-1, ahead.size)[:, ::-1], near.reshape(-1, ahead.size)[:, ::-1]
@@ -232,7 +232,6 @@ def tables(
     eccentric = laws.eccentric()
     turn = 2.0 * np.pi / eccentric[:, 2] * tau[..., None]
     pinion, gear = (np.stack([o.error, o.slope, o.relief], axis=1) for o in own_teeth(pair))
-    inside = np.clip(place, g.L_XA + _INSIDE * g.base_pitch, g.L_XD - _INSIDE * g.base_pitch)
     return Tables(
         edges=edges,
         nodes=at,
@@ -242,9 +241,9 @@ def tables(
         place=place,
         stiffness=k,
         damping=c,
-        friction=laws.friction(inside),
+        friction=mu[0],
         gap=gap,
-        gap_slope=np.stack([slope(lambda xi, v=v: laws.of_kind(v, xi)[2]) for v in kinds]),  # type: ignore[misc]
+        slopes=follows * np.stack([slope(partial(all_laws, v)) for v in kinds]),
         shape=laws.shapes(place),
         shape_slope=slope(laws.shapes),
         ends=np.stack([laws.ends(v) for v in kinds]),

@@ -48,7 +48,8 @@ class Tables(NamedTuple):
     place : (steps, nodes, pairs) xi [m]
     stiffness, damping : (v, steps, nodes, pairs) k [N/m], zero where a pair is not followed, and c [N s/m]
     friction : (steps, nodes, pairs) mu
-    gap, gap_slope : (v, steps, nodes, pairs) without corners and errors of single teeth [m], and over xi
+    gap : (v, steps, nodes, pairs) without corners and errors of single teeth [m]
+    slopes : (v, steps, nodes, pairs, 4) of stiffness, damping, gap and friction over xi
     shape, shape_slope : (steps, nodes, pairs, 6) gap per unit of each number of a pair, and over xi
     ends : (v, 7) L_XA, L_XD, L_XY, base radii, as in ``gap_at`` [m], and what the gap of either tip's corner
         has at least, over the square of its way beyond the end [1/m]
@@ -76,7 +77,7 @@ class Tables(NamedTuple):
     damping: FloatArray
     friction: FloatArray
     gap: FloatArray
-    gap_slope: FloatArray
+    slopes: FloatArray
     shape: FloatArray
     shape_slope: FloatArray
     ends: FloatArray
@@ -142,30 +143,63 @@ def eccentric_cycle(cycle: int, turned: FloatArray, eccentric: FloatArray, moved
 
 @inlined
 def contact_of_cycle(
-    cycle: int, own: Tables, kind: IntArray, k: FloatArray, flat: FloatArray, moved: FloatArray
+    cycle: int,
+    fixed: bool,
+    own: Tables,
+    kind: IntArray,
+    errors: FloatArray,
+    k: FloatArray,
+    flat: FloatArray,
+    moved: FloatArray,
 ) -> None:
-    """Contact of a mesh cycle but for what the approach changes.
+    """Contact of a mesh cycle but for what the approach changes, at shifted places but in ``fixed`` windows.
 
-    Written are ``kind`` (pairs,), ``k`` (steps, nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 2), gap
-    without corners and its slope over xi, and ``moved`` (steps, nodes, 8) of ``eccentric_cycle``.
+    Written are ``kind`` (pairs,), ``errors`` (pairs, 6) as in ``Tables.pinion`` and ``gear``, ``k`` (steps,
+    nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 4), gap without corners, its slope over xi, c and mu,
+    and ``moved`` (steps, nodes, 8) of ``eccentric_cycle``.
     """
     steps, nodes, pairs = own.place.shape
     eccentric_cycle(cycle, own.turned, own.eccentric, moved[:steps])
     for i in range(pairs):
         number = cycle - own.ahead[i]
         p, g = (own.first[0] + number) % own.pinion.shape[0], (own.first[1] + number) % own.gear.shape[0]
-        kind[i] = v = own.kinds[p, g]
-        pinion, gear = own.pinion[p], own.gear[g]
-        stiffness, gap, gap_slope = own.stiffness[v], own.gap[v], own.gap_slope[v]
-        shape, shape_slope = own.shape, own.shape_slope
-        for s in range(steps):
-            for node in range(nodes):
-                k[s, node, i] = stiffness[s, node, i]
-                value, slope = gap[s, node, i] + moved[s, node, 0], gap_slope[s, node, i]
-                for n in range(3):
-                    value += shape[s, node, i, n] * pinion[n] + shape[s, node, i, 3 + n] * gear[n]
-                    slope += shape_slope[s, node, i, n] * pinion[n] + shape_slope[s, node, i, 3 + n] * gear[n]
-                flat[s, node, i, 0], flat[s, node, i, 1] = value + slope * moved[s, node, 7], slope
+        kind[i] = own.kinds[p, g]
+        for n in range(3):
+            errors[i, n], errors[i, 3 + n] = own.pinion[p, n], own.gear[g, n]
+    edges, pitch = own.edges, own.speed * own.duration
+    step = 0
+    for s in range(steps):
+        for node in range(nodes):
+            off = moved[s, node]
+            at, near, whole, way = s, node, 0, off[7]
+            if off[7] != 0.0 and not fixed:  # the shifted place: its step, next node, and the way from that
+                tau = edges[s] + own.nodes[node] * (edges[s + 1] - edges[s]) + off[7] / pitch
+                whole = math.floor(tau)
+                tau -= whole
+                while step < steps - 1 and tau >= edges[step + 1]:
+                    step += 1
+                while tau < edges[step]:
+                    step -= 1
+                at, way = step, math.inf
+                for other in range(nodes):
+                    left = pitch * (tau - edges[at] - own.nodes[other] * (edges[at + 1] - edges[at]))
+                    if abs(left) < abs(way):
+                        near, way = other, left
+            for i in range(pairs):
+                row, column, j, left = at, near, i - whole, way
+                if j < 0 or j >= pairs:  # far beyond the flanks
+                    row, column, j, left = s, node, i, off[7]
+                v, found = kind[i], flat[s, node, i]
+                slopes, error = own.slopes[v, row, column, j], errors[i]
+                shape, shape_slope = own.shape[row, column, j], own.shape_slope[row, column, j]
+                k[s, node, i] = own.stiffness[v, row, column, j] + slopes[0] * left
+                value, slope = own.gap[v, row, column, j] + off[0], slopes[2]
+                for n in range(6):
+                    value += shape[n] * error[n]
+                    slope += shape_slope[n] * error[n]
+                found[0], found[1] = value + slope * left, slope
+                found[2] = own.damping[v, row, column, j] + slopes[1] * left
+                found[3] = own.friction[row, column, j] + slopes[3] * left
 
 
 @inlined
@@ -331,29 +365,25 @@ def static_cycles(
     approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
     sums, row = np.zeros((cycles, steps, nodes, 17)), np.zeros(17)
     # Behind the last step the tables have room for a place between nodes.
-    place, friction = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs))
-    damping = np.zeros((own.damping.shape[0], steps + 1, nodes, pairs))
-    coupling = np.zeros((steps + 1, nodes, pairs, pairs))
-    place[:steps], friction[:steps], damping[:, :steps] = own.place, own.friction, own.damping
-    coupling[:steps] = own.coupling
+    place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
+    place[:steps], coupling[:steps] = own.place, own.coupling
     ends, constants, speed, duration = own.ends, own.constants, own.speed, own.duration
     kind, here = np.zeros(pairs, np.int64), np.zeros((MATRIX + pairs, pairs))
-    k, flat = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 2))
+    errors = np.zeros((pairs, 6))
+    k, flat = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
     moved, static, looks = np.zeros((steps + 1, nodes, 8)), 0.0, nodes > 1 and not fixed
     single, share, pressing = constants[2] == 0.0 and not coupling.any(), np.ones(nodes), np.zeros((2, pairs))
     breaks, found = np.empty((steps, _MOST_BREAKS)), np.zeros(steps, np.int64)
-    where, inside = (
-        np.empty(nodes * steps * (_MOST_BREAKS + 1), np.int64),
-        np.empty((2, nodes * steps * (_MOST_BREAKS + 1))),
-    )
+    room = nodes * steps * (_MOST_BREAKS + 1)
+    where, inside = np.empty(room, np.int64), np.empty((2, room))
     for c in range(cycles):
-        contact_of_cycle(start + c, own, kind, k, flat, moved)
+        contact_of_cycle(start + c, fixed, own, kind, errors, k, flat, moved)
         visit, visits, before = 0, steps * nodes, 0.0
         while visit < visits:
             at, node, more = visit // nodes, visit % nodes, visit - steps * nodes
             if more >= 0:
                 at, node, s, x = steps, 0, where[more], inside[0, more]
-                place[at, 0], friction[at, 0], damping[:, at, 0], coupling[at, 0] = 0.0, 0.0, 0.0, 0.0
+                place[at, 0], coupling[at, 0] = 0.0, 0.0
                 k[at, 0], flat[at, 0], moved[at, 0] = 0.0, 0.0, 0.0
                 for j in range(nodes):
                     share[j] = 1.0
@@ -365,19 +395,12 @@ def static_cycles(
                     for i in range(pairs):
                         k[at, 0, i] += share[j] * k[s, j, i]
                         place[at, 0, i] += share[j] * place[s, j, i]
-                        friction[at, 0, i] += share[j] * friction[s, j, i]
-                        damping[kind[i], at, 0, i] += share[j] * damping[kind[i], s, j, i]
-                        for n in range(2):
+                        for n in range(4):
                             flat[at, 0, i, n] += share[j] * flat[s, j, i, n]
                         for n in range(pairs):
                             coupling[at, 0, i, n] += share[j] * coupling[s, j, i, n]
-            k_at, gap, off, xi, w = (
-                k[at, node],
-                flat[at, node],
-                moved[at, node],
-                place[at, node],
-                coupling[at, node],
-            )
+            k_at, gap, off = k[at, node], flat[at, node], moved[at, node]
+            xi, w = place[at, node], coupling[at, node]
             if not fixed:
                 guess = 0.0 if math.isnan(static) else static
                 static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
@@ -387,7 +410,7 @@ def static_cycles(
             for i in range(pairs):
                 if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
                     continue
-                c_i, rise, load = damping[kind[i], at, node, i], k_at[i], -k_at[i] * gap[i, 0]
+                c_i, rise, load = gap[i, 2], k_at[i], -k_at[i] * gap[i, 0]
                 closing, slope, tilt = 1.0, gap[i, 1], 0.0
                 if not fixed:
                     part = min(here[LOAD, i] / constants[4], 1.0)
@@ -396,11 +419,11 @@ def static_cycles(
                     closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
                 rolling = slope * speed + off[1] / duration
                 load -= c_i * rolling
-                mu = friction[at, node, i]
+                mu, arm = gap[i, 3], xi[i] + (0.0 if fixed else off[7])
                 for n, value in ((0, rise), (1, c_i * closing), (2, load)):
                     row[3 * n] += value
                     row[3 * n + 1] += mu * value
-                    row[3 * n + 2] += mu * value * xi[i]
+                    row[3 * n + 2] += mu * value * arm
                     row[14 + n] += tilt * value
                 row[11] += c_i * closing**2
                 row[12] -= 2.0 * c_i * closing * rolling
@@ -447,10 +470,8 @@ def static_cycles(
                             if low < breaks[s, n] < high:
                                 high = breaks[s, n]
                         for j in range(nodes):
-                            where[visits - visit], inside[0, visits - visit] = (
-                                s,
-                                low + (high - low) * own.nodes[j],
-                            )
+                            where[visits - visit] = s
+                            inside[0, visits - visit] = low + (high - low) * own.nodes[j]
                             inside[1, visits - visit] = (high - low) * own.weights[j]
                             visits += 1
                         low = high

@@ -113,14 +113,19 @@ class OwnMotion:
         own = self.tables
         step = np.resize(np.flatnonzero(own.outputs), self.time.size)
 
-        touches = self.load != 0.0
-        kind = own.kinds[self.teeth]
-        place = np.arange(own.ahead.size)[:, None]
-        k, c, gap = (
-            np.where(touches, v[kind, step, 0, place], 0.0) for v in (own.stiffness, own.damping, own.gap)
-        )
-        mu = np.where(touches, own.friction[step, 0].T, 0.0)
-        return PairState(own.place[step, 0].T, touches, k, c, mu, gap, np.zeros(gap.shape))
+        pitch, touches = own.speed * own.duration, self.load != 0.0
+        moved = swing(own, self.time) if self.form in (kernels.PUSH, kernels.LINEAR) else 0.0 * self.time
+        pitches, phase = np.divmod(own.edges[step] + moved / pitch, 1.0)
+        at = np.searchsorted(own.edges[1:-1], phase, side="right")
+        place, when = np.nonzero(touches)
+        place = np.clip(place - pitches[when].astype(np.int64), 0, own.ahead.size - 1)
+        kind, way = own.kinds[self.teeth][touches], ((phase - own.edges[at]) * pitch)[when]
+        found = np.zeros((4, *touches.shape))
+        for n, law in enumerate((own.stiffness, own.damping, own.gap, own.friction[None])):
+            here = law[kind if n < 3 else 0, at[when], 0, place]
+            found[n, touches] = here + own.slopes[kind, at[when], 0, place, n] * way
+        k, c, gap, mu = found
+        return PairState(own.place[step, 0].T + moved, touches, k, c, mu, gap, np.zeros(gap.shape))
 
 
 def steps_of(system: LTVSystem) -> int:
@@ -231,6 +236,13 @@ def swinging(own: Tables, system: LTVSystem) -> Tables:
             "gear.inertia.",
         )
     return own._replace(eccentric=eccentric)
+
+
+def swing(own: Tables, time: FloatArray) -> FloatArray:
+    """Common rotation that the contact follows, at times (k,) [m]; tables of ``swinging``."""
+    size, start, teeth, way = own.eccentric[:, [0, 1, 2, 5]].T[..., None]
+    moved = size * way * np.sin(2.0 * np.pi * time / (own.duration * teeth) + start)
+    return np.asarray(moved.sum(axis=0), dtype=np.float64)
 
 
 def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift: float) -> FloatArray:

@@ -69,17 +69,17 @@ def motion_cycles(
     states, record = np.empty((count, 2 * m)), np.zeros((pairs, count))
     work, power = np.zeros(4), np.zeros(4)
     x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
-    place, friction, damping, coupling, ends = own.place, own.friction, own.damping, own.coupling, own.ends
+    place, coupling, ends = own.place, own.coupling, own.ends
     constants, speed, edges, outputs = own.constants, own.speed, own.edges, own.outputs
     kind, normal, here = np.zeros(pairs, np.int64), np.zeros(pairs), np.zeros((MATRIX + pairs, pairs))
-    k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 2))
-    moves = np.zeros((steps, 3, 8))
+    k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 4))
+    moves, errors = np.zeros((steps, 3, 8)), np.zeros((pairs, 6))
     single = constants[2] == 0.0 and not coupling.any()
     row = 0
     for c in range(cycles):
         cycle = start + c
         keeps = c >= cycles - recorded
-        contact_of_cycle(cycle, own, kind, k, flat, moves)
+        contact_of_cycle(cycle, not corners, own, kind, errors, k, flat, moves)
         for s in range(steps):
             h = (edges[s + 1] - edges[s]) * own.duration
             w = coupling[s if coupling.shape[0] > 1 else 0]
@@ -111,7 +111,8 @@ def motion_cycles(
                     normal[i] = 0.0
                     if k_at[i] <= 0.0:
                         continue
-                    c_i, rise, slope, tilt = damping[kind[i], s, node, i], 0.0, gap_at[i, 1], 0.0
+                    c_i, rise, slope, tilt = gap_at[i, 2], 0.0, gap_at[i, 1], 0.0
+                    arm = xi[i] + (moved[7] if corners else 0.0)
                     elastic = k_at[i] * (delta - gap_at[i, 0])
                     if corners:
                         rise, slope, tilt = here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
@@ -125,12 +126,12 @@ def motion_cycles(
                     if load <= 0.0:
                         continue
                     normal[i] = load
-                    f = friction[s, node, i] * load
+                    f = gap_at[i, 3] * load
                     sums += load
                     apart += load * tilt
                     friction_sum += f
-                    friction_arm += f * xi[i]
-                    power[0] += f * (v_p * xi[i] - v_g * (sliding[2, m] - xi[i]) - v_y)
+                    friction_arm += f * arm
+                    power[0] += f * (v_p * arm - v_g * (sliding[2, m] - arm) - v_y)
                     power[1] += c_i * pressing**2
                 # The moments of e work on the vibration too.
                 v_p, v_g = v_p - sliding[0, m], v_g - sliding[1, m]

@@ -12,9 +12,8 @@ import lumped
 from lumped import GearPair
 from lumped.model.periodic_system import LTVSystem
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import default_samples, swinging
+from lumped.teeth.motion import default_samples, swing, swinging
 from lumped.teeth.pairs import period_of
-from lumped.typing import FloatArray
 from multibody.run.simulation import at_mean_speed
 
 #: Longest period that is compared as a whole, cycles of a window, and cycles in which a start is forgotten.
@@ -52,18 +51,9 @@ def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr
     number = np.arange((_FORGOTTEN + compared) * samples + 1)
     reference = motion.isel(time=number % motion.sizes["time"])
     time = reference["time"].to_numpy()[1] * np.arange(number.size)
-    exact = at_mean_speed(pair, reference, _swing(pair, time), samples, _FORGOTTEN // 2)
+    # What friction adds over many turns of a free train is no phase of the lumped contact.
+    followed = swing(swinging(tables(Laws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full")), time)
+    exact = at_mean_speed(pair, reference, followed, samples, _FORGOTTEN // 2)
     kept = slice(_FORGOTTEN * samples, None)
     exact = exact.isel(time=kept)
     return pair, reference.isel(time=kept).assign_coords(time=exact["time"]), exact
-
-
-def _swing(pair: GearPair, time: FloatArray) -> FloatArray:
-    """Common rotation of both gears [m] that the lumped contact follows, at times (k,) [s].
-
-    What friction adds over many turns of a free train is no phase of the lumped contact.
-    """
-    own = swinging(tables(Laws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full"))
-    size, start, teeth, way = own.eccentric[:, [0, 1, 2, 5]].T[..., None]
-    swing = size * way * np.sin(2.0 * np.pi * time / (own.duration * teeth) + start)
-    return np.asarray(swing.sum(axis=0), dtype=np.float64)

@@ -147,12 +147,13 @@ def stiff(pair):
             half[f"{axis}_stiffness"] = 0.5 * k
             half[f"{axis}_damping"] = getattr(given, f"{axis}_damping_ratio") * np.sqrt(k * mass)
         bearings = [half | {"position": position} for position in (5, 25)]
-        segments = [{"length": 30, "diameter": 40}]
-        tables[name] = {"segments": segments, "gear_position": 15, "bearings": bearings}
+        tables[name] = {
+            "segments": [{"length": 30, "diameter": 40}],
+            "gear_position": 15,
+            "bearings": bearings,
+        }
     shafts = pair.with_(shafts={"damping_ratio": 0.0, **tables}).shafts
-    rigid = {
-        name: getattr(shafts, name).model_copy(update={"youngs_modulus": 1e15}) for name in ("pinion", "gear")
-    }
+    rigid = {name: getattr(shafts, name).model_copy(update={"youngs_modulus": 1e15}) for name in tables}
     return pair.model_copy(update={"shafts": shafts.model_copy(update=rigid)}), springs
 
 
@@ -176,8 +177,7 @@ def test_both_models_see_the_same_pair_on_shafts(run):
     found = run[0].isel(time=slice(None, -1))
     lumped_run = lumped.steady_state(PAIR, supports="shafts", samples_per_cycle=64)
     assert found.attrs["brake_torque"] == pytest.approx(lumped_run.attrs["brake_torque"], rel=1e-9)
-    names = ("dte", "x_p", "y_p", "x_g", "y_g", "normal_load", "bearing_force", "bearing_force_y_g")
-    for name in names:
+    for name in ("dte", "x_p", "y_p", "x_g", "y_g", "normal_load", "bearing_force", "bearing_force_y_g"):
         span = float(np.ptp(lumped_run[name].to_numpy()))
         assert float(np.abs(found[name] - lumped_run[name].to_numpy()).max()) < 1e-6 * span, name
 
