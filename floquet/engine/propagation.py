@@ -86,10 +86,7 @@ def _initial_grid(system: PeriodicSystem, method: Propagator, d: FloatArray) -> 
 
 
 def propagate(
-    system: PeriodicSystem,
-    method: Propagator,
-    rtol: float,
-    max_substeps: int = 200_000,
+    system: PeriodicSystem, method: Propagator, rtol: float, max_substeps: int = 200_000
 ) -> Propagation:
     """Transition matrices of one period, each step accurate to rtol h/T of its norm in balanced coordinates.
 

@@ -11,12 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from floquet.orbits.attractors import Attractor, Motion, Survey
-from floquet.orbits.bifurcations import (
-    Bifurcation,
-    bifurcations,
-    doubling_direction,
-    with_bifurcations,
-)
+from floquet.orbits.bifurcations import Bifurcation, bifurcations, doubling_direction, with_bifurcations
 from floquet.orbits.branch import Continuation, End, Family, Limits, Path
 from floquet.orbits.long_run import LongRun, grown, long_run
 from floquet.orbits.orbit import Orbit, find_orbit, one_pass, primitive, same_motion, state_scale
@@ -182,11 +177,7 @@ class Member:
 
 
 def find_response(
-    member: Member,
-    *,
-    periods: Collection[int] = (1, 2, 3),
-    seeds: int = 20,
-    progress: Progress | None = None,
+    member: Member, *, periods: Collection[int] = (1, 2, 3), seeds: int = 20, progress: Progress | None = None
 ) -> Response:
     """Return the branches of motions of some periods over a range of speeds.
 

@@ -134,8 +134,7 @@ def fast_multipliers(
     flow = fast_monodromies(system, periods, damping_factors, gain_factors, tolerance=tolerance)
     parts = _in_slices(lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size)
     return FastMultipliers(
-        np.concatenate([part.multipliers for part in parts]),
-        np.concatenate([part.errors for part in parts]),
+        np.concatenate([part.multipliers for part in parts]), np.concatenate([part.errors for part in parts])
     )
 
 

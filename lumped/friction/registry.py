@@ -31,15 +31,7 @@ _NONE = FrictionLaw(
 LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
     {
         law.name: law
-        for law in (
-            _NONE,
-            COULOMB,
-            BENEDICT_KELLEY,
-            XU_KAHRAMAN,
-            SMOOTHED_COULOMB,
-            COMPOSITE,
-            ISO_14179,
-        )
+        for law in (_NONE, COULOMB, BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB, COMPOSITE, ISO_14179)
     }
 )
 

@@ -45,11 +45,7 @@ def contact_path(pair: GearPair) -> ContactPath:
 
 
 def friction_path_function(
-    pair: GearPair,
-    law: str | None = None,
-    interval: tuple[float, float] | None = None,
-    *,
-    warn: bool = True,
+    pair: GearPair, law: str | None = None, interval: tuple[float, float] | None = None, *, warn: bool = True
 ) -> PathFunction:
     """Signed friction coefficient mu_i(xi) of one tooth pair at nominal speed and load.
 

@@ -215,13 +215,7 @@ def machine(
         ahead=math.floor((tip_p - l_xa) / pitch),
         period=pitch / (omega_p * r_p),
         switches=switches,
-        events=event_table(
-            stiffness,
-            starts,
-            friction,
-            pitch,
-            corners=bool(flags & kn.TIP_CONTACT),
-        ),
+        events=event_table(stiffness, starts, friction, pitch, corners=bool(flags & kn.TIP_CONTACT)),
         own=own,
     )
     if supports == "springs":

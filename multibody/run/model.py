@@ -170,10 +170,7 @@ def stored(model: ExudynModel) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _add_shafts(
-    system: exu.MainSystem,
-    machine: Machine,
-    train: Train,
-    centres: tuple[tuple[float, float], ...],
+    system: exu.MainSystem, machine: Machine, train: Train, centres: tuple[tuple[float, float], ...]
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Add both shafts with gears, bearings and torques; returns the nodes of the gears, and the objects.
 
@@ -248,10 +245,7 @@ def _add_gear(
 
 
 def _force_function(
-    machine: Machine,
-    flags: int,
-    p: FloatArray,
-    budget: CallBudget,
+    machine: Machine, flags: int, p: FloatArray, budget: CallBudget
 ) -> Callable[..., list[float]]:
     """Return the user function of the contact object; it writes into its own buffers.
 

@@ -163,12 +163,7 @@ def prepare(
         )
     names = active_effects(flags)
     attributes = provenance(
-        pair,
-        fidelity=fidelity,
-        effects=names,
-        rtol=rtol,
-        friction_velocity=velocity,
-        supports=supports,
+        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, supports=supports
     )
     attributes |= mean_balance | {
         "model": "multibody",

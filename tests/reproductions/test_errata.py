@@ -8,10 +8,7 @@ from lumped.friction import mean_coefficient
 from lumped.path_of_contact import contact_path, friction_path_function
 from reproductions.he_cho_singh_2008.errata.catalogue import errata_chapter
 from reproductions.he_cho_singh_2008.errata.laws import derivative_residual
-from reproductions.he_cho_singh_2008.errata.printed_laws import (
-    law_iii_printed,
-    law_iv_printed,
-)
+from reproductions.he_cho_singh_2008.errata.printed_laws import law_iii_printed, law_iv_printed
 from reproductions.he_cho_singh_2008.errata.response import response, speed_drift
 from reproductions.he_cho_singh_2008.errata.signs import one_pair_efficiency
 from reproductions.he_cho_singh_2008.errata.structure import gear_arms, high_contact_ratio, pinion_arms

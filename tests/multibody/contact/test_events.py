@@ -6,14 +6,7 @@ import pytest
 import lumped
 from lumped import PathFunction
 from multibody.contact import kinematics as kn
-from multibody.contact.events import (
-    FIRST_TOUCH,
-    LAST_TOUCH,
-    LET_GO,
-    SWITCH,
-    event_table,
-    time_to_event,
-)
+from multibody.contact.events import FIRST_TOUCH, LAST_TOUCH, LET_GO, SWITCH, event_table, time_to_event
 from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine

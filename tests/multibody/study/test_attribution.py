@@ -8,13 +8,7 @@ import xarray as xr
 
 import lumped
 import multibody
-from multibody.run.effects import (
-    CAUSES,
-    EFFECTS,
-    active_effects,
-    default_effects,
-    effect_flags,
-)
+from multibody.run.effects import CAUSES, EFFECTS, active_effects, default_effects, effect_flags
 from multibody.study import causes
 from validation.exchange.new_pair_file import new_pair_text
 

@@ -142,12 +142,7 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
     ("given", "quantity", "words", "left"),
     [
         # Slow and light: ten times the inertia of both gears makes a ninth of the difference.
-        (
-            ("32/83", 1, 11.6, 146, 8.11),
-            "dte",
-            "the free shafts turn to and fro by 0.92 %",
-            0.01,
-        ),
+        (("32/83", 1, 11.6, 146, 8.11), "dte", "the free shafts turn to and fro by 0.92 %", 0.01),
         # 37 % of the swing of the friction force, which neither inertia nor contact explains.
         (("38/54", 1.25, 14.5, 970, 54.2), "friction_force", "friction follows the actual sliding", 0.02),
         # With contact loss: 21 % of it.

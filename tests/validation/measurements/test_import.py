@@ -134,10 +134,7 @@ def record(offset=0.0, noise=NOISE, quantity="dte", seed=1, **changes):
     values = (1.0 + offset) * wave(cycles + 0.3) + noise * np.random.default_rng(seed).normal(
         size=cycles.size
     )
-    own = {
-        "pinion_speed": repr(PAIR.operating.pinion_speed),
-        "pinion_torque": PAIR.operating.pinion_torque,
-    }
+    own = {"pinion_speed": repr(PAIR.operating.pinion_speed), "pinion_torque": PAIR.operating.pinion_torque}
     spec = MeasurementSpec.model_validate(
         {
             "name": "two waves", "source": "computed", "data": "none.csv", **(own | changes),

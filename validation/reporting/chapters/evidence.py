@@ -55,10 +55,7 @@ def write(results: Results) -> Content:
             "made_from",
             "What this report was made from.",
             {"name": "", "value": ""},
-            (
-                ("versions", str(made["versions"])),
-                ("parameters, SHA-256", str(made["parameters_sha256"])),
-            ),
+            (("versions", str(made["versions"])), ("parameters, SHA-256", str(made["parameters_sha256"]))),
         )
     )
     result = (

@@ -35,8 +35,7 @@ def write(results: Results) -> Content:
     share = load[touching] / prediction.static_force
     pressure = float((path.hertz_pressure(at) * np.sqrt(share)).max())
     bearings = _over_cycle(
-        results,
-        {name: (cycle[name].to_numpy(), "N", words) for name, words in _BEARINGS.items()},
+        results, {name: (cycle[name].to_numpy(), "N", words) for name, words in _BEARINGS.items()}
     )
     table = quantities(
         "forces",

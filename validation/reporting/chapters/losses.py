@@ -60,12 +60,7 @@ def write(results: Results) -> Content:
         ("loss of the mesh", (1.0 - prediction.efficiency) * power, "W"),
         *parts,
         ("mesh loss of ISO/TR 14179-2", iso_14179_mesh_loss(pair), "W", "for comparison"),
-        (
-            "smallest film thickness",
-            float(film.min()),
-            "m",
-            str(profile["film_thickness"].attrs["note"]),
-        ),
+        ("smallest film thickness", float(film.min()), "m", str(profile["film_thickness"].attrs["note"])),
         ("the same by another formula", float(other.min()), "m", "central, Hamrock and Dowson (1977)"),
         ("smallest film parameter", float(parameter.min()), "1", "below 1 boundary, above 4 full film"),
     )

@@ -68,8 +68,7 @@ def write(results: Results) -> Content:
         {"region": (chart["region_label"].to_numpy(), "1", "label, w: natural frequencies")},
     )
     return Content(
-        result,
-        (table, Picture("stability_chart", words, regions, lambda _: stability_figure(chart, at))),
+        result, (table, Picture("stability_chart", words, regions, lambda _: stability_figure(chart, at)))
     )
 
 

@@ -8,13 +8,7 @@ from balls import BITS, Piece, exact_multipliers  # type: ignore[import-not-foun
 from findings import Finding, finding  # type: ignore[import-not-found]
 from flint import acb, arb, arb_series, ctx
 
-from floquet import (
-    FourierSeries,
-    PeriodicMatrix,
-    PeriodicSystem,
-    PiecewisePolynomial,
-    monodromy,
-)
+from floquet import FourierSeries, PeriodicMatrix, PeriodicSystem, PiecewisePolynomial, monodromy
 
 
 def _analytic(entry: Callable[..., object]) -> Callable[[arb, arb, int], list[arb]]:
