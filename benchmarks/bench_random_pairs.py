@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import warnings
 from collections import Counter
 from collections.abc import Iterator
@@ -89,12 +90,13 @@ def compared(pair: GearPair) -> CrossCheck:
     return crosscheck(pair, cycles=6, fidelities=("exact",))
 
 
-def cause(check: CrossCheck) -> str:
-    """The effect that the cross-check names."""
+def cause(check: CrossCheck) -> tuple[str, str]:
+    """The effect that the cross-check names, and what is left without it."""
     text = cause_of_difference(check)
-    if "free shafts" in text:
-        return "free shafts"
-    return "where teeth touch" if text.startswith("No effect") else "friction"
+    if text.startswith("No effect"):
+        return "where teeth touch", ""
+    left = re.search(r"differs by (.*?)\.(?: |$)", text)
+    return "free shafts" if "free shafts" in text else "friction", left[1] if left else ""
 
 
 def main() -> None:
@@ -105,9 +107,7 @@ def main() -> None:
     given = parser.parse_args()
     warnings.simplefilter("ignore")
     verdicts: Counter[str] = Counter()
-    print(
-        "| pair | kind | m, mm | rpm | N m | quantity | differs by, % | limit, % | effect | half torque, % |"
-    )
+    print("| pair | kind | m, mm | rpm | N m | quantity | %, limit | effect | without it | half torque, % |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     for number, (kind, pair) in enumerate(drawn(given.pairs, given.seed)):
         if given.write is not None:
@@ -121,14 +121,14 @@ def main() -> None:
             continue
         word = check.verdict.word
         if check.verdict is Verdict.DIFFERS:
-            why, worst, torque = cause(check), check.worst("exact"), pair.operating.pinion_torque
+            (why, without), worst, torque = cause(check), check.worst("exact"), pair.operating.pinion_torque
             word += f": {why}"
             half = compared(pair.with_(operating__pinion_torque=0.5 * torque)).of("exact")
             left = next(a.difference for a in half if a.quantity == worst.quantity)
             rpm = pair.operating.pinion_speed * 30.0 / math.pi
             cells = f"{pair.pinion.teeth}/{pair.gear.teeth} | {kind} | {1e3 * pair.basic_rack.module:g} | "
-            cells += f"{rpm:.0f} | {torque:g} | {worst.quantity} | {100 * worst.difference:.3g} | "
-            cells += f"{100 * worst.limit:g} | {why} | {100 * left:.3g}"
+            cells += f"{rpm:.0f} | {torque:g} | {worst.quantity} | {100 * worst.difference:.3g}, "
+            cells += f"{100 * worst.limit:g} | {why} | {without} | {100 * left:.3g}"
             print(f"| {cells} |", flush=True)
         verdicts[word] += 1
     print(", ".join(f"{count} {word}" for word, count in sorted(verdicts.items())))
