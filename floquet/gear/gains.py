@@ -1,7 +1,8 @@
 """The gains by which the mesh of a gear pair acts on each coordinate, as polynomials with proven errors.
 
 The laws k, c and mu of a tooth pair are piecewise polynomials, so between two breaks of any law of any
-pair the gains are polynomials of known degree: k (normal + mu (arm_0 + arm_1 xi)) and the like.
+pair the gains are polynomials of known degree: k (normal + mu (arm_0 + arm_1 xi)) and the like. Where teeth
+differ, polynomials through computed values stand for them, in every mesh cycle between its own touches.
 
 Sources: docs/theory/proven_bounds.md, "The gains".
 """
@@ -20,6 +21,9 @@ from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
 from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import PathFunction
+from lumped.teeth.contact import Laws, tables
+from lumped.teeth.kernels import Tables
+from lumped.teeth.motion import kinks, moments, placed, static_rows
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -34,6 +38,10 @@ _SEARCH = 1e-14
 _MERGED = 1e-12
 #: Degree of the polynomials in place of the factor on stiffness and of its root.
 _FACTOR_DEGREE = 8
+#: Nodes and largest length of the steps of tables: with 9 a step has all of a law's polynomial.
+_NODES, _LARGEST_STEP = 9, 1.0 / 16.0
+#: Places of a step between which a kink is looked for, and steps of the search.
+_LOOKS, _ROUNDS = np.linspace(0.0, 1.0, 3), 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,6 +317,49 @@ class MeshGains:
         for i, offset in enumerate(self.offsets):
             total += self.k(offset + self.pitch * phases, i, segment)
         return total, self.mean + self.factor * (total - self.mean)
+
+
+def own_tables(laws: Laws) -> Tables:
+    """Tables of laws with every break that give each law to rounding between their nodes."""
+    return tables(laws, _LARGEST_STEP, 1, 0.5 - 0.5 * to_series(_NODES)[0])
+
+
+class OwnGains:
+    """Gains of ``cycles`` mesh cycles from ``first`` on, as `fit_pieces` asks for them.
+
+    They are feedback of deflection and of its rate. A phase counts mesh cycles from ``first``; ``edges`` are
+    where a law ends and where in its own cycle a pair touches or leaves, its damper is full, or its tip
+    leaves the line of action. Between them the polynomials through ``count`` values stand for the gains.
+    """
+
+    count = 12
+
+    def __init__(self, own: Tables, system: LTVSystem, fixed: bool, first: int, cycles: int) -> None:
+        self.own, self.fixed, self.first = own, fixed, first
+        self.forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
+        starts = np.add.outer(np.arange(cycles), own.edges[:-1])
+        found = np.append(starts, cycles)
+        if not fixed:
+            steps = np.arange(starts.shape[1])[:, None]
+            rows = static_rows(own, first, False, np.arange(cycles)[:, None, None], steps, _LOOKS)
+            found = np.append(found, kinks(own, first, _LOOKS, rows, 4, _ROUNDS))
+        self.edges = np.unique(found)
+
+    def __call__(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """See `PolynomialGains`."""
+        cycle = np.floor(centre)[:, None]
+        tau = centre[:, None] + half[:, None] * nodes - cycle
+        step, place = placed(self.own, tau, centre[:, None] - cycle)
+        rows = static_rows(self.own, self.first, self.fixed, cycle, step, place)
+        gains = []
+        for n in (0, 3):
+            load, apart = rows[..., n], rows[..., 14 + n // 3]
+            by = [load, load * rows[..., 9], load * rows[..., 10], rows[..., n + 1], rows[..., n + 2], apart]
+            gains.append(-np.stack(by, axis=-1) @ self.forces)
+        nothing = np.zeros((2, centre.size))
+        return np.stack(gains), nothing, nothing
 
 
 def _slips(raw: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:

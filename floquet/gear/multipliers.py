@@ -15,21 +15,22 @@ import numpy as np
 from scipy.linalg import block_diag, eigh
 
 from floquet.engine.monodromy import integral_of_trace, monodromy
-from floquet.engine.multipliers import Certificate, Spectrum, radii_with_bounds
+from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds, radii_with_bounds
 from floquet.engine.propagators.one_step import Propagator
+from floquet.engine.proven import proven_product
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
-from floquet.gear.gains import MeshGains
-from floquet.rank_one.batch import fast_multipliers
+from floquet.gear.gains import MeshGains, OwnGains, own_tables
+from floquet.rank_one.batch import FastMonodromy, fast_monodromies, fast_multipliers
 from floquet.rank_one.piecewise import fit_pieces
 from floquet.rank_one.system import Gains, RankOneSystem
-from lumped.arguments import one_of, real_number, whole_number
+from lumped.arguments import one_of, real_number
+from lumped.compiler import in_threads
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.supports import Form
 from lumped.path_of_contact.friction import friction_misfit
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.pair import GearPair
-from lumped.teeth.linear import LinearForm, linear_steps
+from lumped.teeth.contact import Laws
 from lumped.teeth.pairs import period_of
 from lumped.typing import ComplexArray, FloatArray
 
@@ -37,8 +38,8 @@ MODES = 12
 """Modes of a pair on shafts that are coupled at most; the others move each by itself."""
 _EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
 _U = 0.5 * float(np.finfo(np.float64).eps)
-_NOISE = 1e-13  # of the largest: multipliers below it are rounding of the product of all cycles
 _LARGEST = 700.0  # growth beyond the largest number, as a logarithm
+_BLOCK, _SMALLEST = 32, -250.0  # mesh cycles that are worked on together, logarithm of their product
 
 
 @dataclass(frozen=True, eq=False)
@@ -371,19 +372,17 @@ def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
 
 @dataclass(frozen=True, eq=False)
 class RevolutionMultipliers:
-    """Floquet multipliers over the period of teeth that differ; those below rounding are left out.
+    """Floquet multipliers over the period of teeth that differ; those smaller than their bound are left out.
 
     Attributes
     ----------
     multipliers : over the whole period, largest first; 0 where they are below the smallest number
     rates : |multiplier|^(1/cycles), growth of each in one mesh cycle
     rate : the largest one; above 1 the motion is unstable
-    error : bound on the error of ``rate``, see ``certificate``
-    certificate : "proven" where all mesh cycles have one map, with prescribed contact, no faults and no
-        eccentricity: the error is a bound by a theorem; "estimate" else: four times the change of the rate
-        with half the steps
+    error : bound on the error of ``rate``, proven for the polynomials of the gains of every mesh cycle
     cycles : mesh cycles of the period
     healthy_rate : that of the twin with like teeth, by the same method
+    certificate : "proven"
     """
 
     multipliers: ComplexArray
@@ -392,7 +391,7 @@ class RevolutionMultipliers:
     error: float
     cycles: int
     healthy_rate: float
-    certificate: Certificate
+    certificate: Certificate = "proven"
 
     @property
     def stable(self) -> bool:
@@ -401,63 +400,73 @@ class RevolutionMultipliers:
 
 
 def revolution_multipliers(
-    pair: AnyPair, *, steps: int | None = None, supports: Supports = "springs"
+    pair: AnyPair, rtol: float = 1e-10, *, supports: Supports = "springs"
 ) -> RevolutionMultipliers:
     """Multipliers over a revolution or hunting period of teeth that differ: docs/theory/teeth.md.
 
     Perturbations see the tangent of the contact about the own static state of every meeting pair. The maps of
     the mesh cycles are multiplied one after the other and scaled, so that a hunting period of thousands of
-    cycles neither overflows nor underflows. With own contacts the error is an estimate: a pair of teeth comes
-    into contact where its own gap closes, inside a step, and there the tangent of the contact jumps.
+    cycles neither overflows nor underflows. On shafts they have the 12 modes of `gear_pair_multipliers` that
+    count most; the others move each by itself and are left out.
 
     Parameters
     ----------
     pair : a validated gear pair
-    steps : least number of steps in a mesh cycle, 32 to 65536, the error is found with half of them; default
-        by the fastest vibration
+    rtol : wanted error of the map of a mesh cycle relative to its norm, 1e-11 to 1e-1
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``
 
     Raises
     ------
-    ParameterError : steps out of range
+    ParameterError : rtol out of range
     NumericalError : at some position no tooth pair can carry the load
     """
-    pair = load_gear_pair(pair)
+    pair, rtol = load_gear_pair(pair), real_number("rtol", rtol, 1e-11, 0.1)
     one_of("supports", supports, ("springs", "shafts"))
-    system = LTVSystem.of(pair.healthy, "mesh" if supports == "springs" else "elastic", supports=supports)
-    steps = 2 * linear_steps(system) if steps is None else whole_number("steps", steps, 32, 65536)
-    cycles = period_of(pair)
-    if LinearForm(pair, system, 1, steps, 1).alike:
-        one = gear_pair_multipliers(pair.healthy, supports=supports)
-        kept = np.isin(one.multipliers, one.feedback)
-        values, sizes = one.multipliers[kept], np.abs(one.multipliers[kept])
-        radius, error = map(float, radii_with_bounds(values, one.multiplier_errors[kept]))
-        with np.errstate(under="ignore"):
-            whole = values**cycles
-        return RevolutionMultipliers(whole, sizes, radius, error, cycles, radius, one.certificate)
-    multipliers, rates = _of_period(pair, system, cycles, steps)
-    coarse = _of_period(pair, system, cycles, steps // 2)[1]
-    return RevolutionMultipliers(
-        multipliers=multipliers,
-        rates=rates,
-        rate=float(rates[0]),
-        error=4.0 * abs(float(rates[0] - coarse[0])),
-        cycles=cycles,
-        healthy_rate=float(_of_period(pair.healthy, system, 1, steps)[1][0]),
-        certificate="estimate",
-    )
-
-
-def _of_period(pair: GearPair, system: LTVSystem, cycles: int, steps: int) -> tuple[ComplexArray, FloatArray]:
-    """Multipliers, largest first, and their rates; those that are rounding left out."""
-    product, logarithm = np.eye(2 * len(system.coordinates)), 0.0
-    for one in LinearForm(pair, system, 1, steps).cycle_maps()[..., : product.shape[0]]:
-        product = one @ product
-        size = float(np.abs(product).max())
-        product, logarithm = product / size, logarithm + np.log(size)
-    values = np.linalg.eigvals(product)
-    values = values[np.argsort(-np.abs(values), kind="stable")]
-    values = values[np.abs(values) > _NOISE * np.abs(values[0])]
+    feedback = feedback_system(GearVariation(pair.healthy, supports=supports))
+    like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
+    cycles, laws = period_of(pair), Laws(pair, every=True)
+    # Errors of the teeth force prescribed contact and do not change it.
+    alike = not laws.loaded and len(laws.faults) == 1 and not laws.eccentric()[:2, 0].any()
+    healthy = float(_of_cycles(Laws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
+    # The product of so many does not vanish, and the kernel has as many steps.
+    most = min(_SMALLEST / np.log(min(healthy, 0.99)), 4e4 / (1e3 + like.modal().omega.max() * like.period))
+    block = int(np.clip(most, 1, _BLOCK))
+    values, rates, error = _of_cycles(laws, feedback, like, 1 if alike else cycles, block, rtol)
     with np.errstate(under="ignore"):
-        rates = np.exp((np.log(np.abs(values)) + logarithm) / cycles)
-        return np.asarray(values * np.exp(min(logarithm, _LARGEST))), np.asarray(rates, dtype=np.float64)
+        whole = values**cycles if alike else values
+    return RevolutionMultipliers(whole, rates, float(rates[0]), error, cycles, healthy)
+
+
+def _of_cycles(
+    laws: Laws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
+) -> tuple[ComplexArray, FloatArray, float]:
+    """Multipliers over so many cycles, largest first, their rates, and a bound on the largest one's error."""
+    own, fixed, mean = own_tables(laws), not laws.loaded, like.mean_of(like.gains.w)
+
+    def map_of(first: int) -> FastMonodromy:
+        count = min(block, cycles - first)
+        gains = OwnGains(own, feedback.system, fixed, first, count)
+        phases, (w, wd), misfit, _ = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
+        period, fits = count * like.period, Gains(w, wd, misfit)
+        turning = None if like.gyroscopic is None else count * like.gyroscopic
+        some = replace(like, phases=phases / count, gains=fits, period=period, gyroscopic=turning, mean=mean)
+        return fast_monodromies(some, tolerance=max(1e-4 * rtol, 1e-14))
+
+    found = in_threads(map_of, range(0, cycles, block))
+    maps, errors = (np.concatenate([getattr(f, name) for f in found]) for name in ("matrices", "errors"))
+    # Powers of two scale without rounding.
+    flow, halvings = np.eye(maps.shape[1]), np.zeros(errors.size, dtype=np.int64)
+    for n, one in enumerate(maps):
+        flow = one @ flow
+        halvings[n] = np.frexp(np.abs(flow).max())[1]
+        flow = np.ldexp(flow, -halvings[n])
+    scaled = np.ldexp(maps, -halvings[:, None, None])
+    values, bounds = multipliers_with_bounds(*proven_product(scaled, np.ldexp(errors, -halvings)))
+    radius, error = map(float, radii_with_bounds(values, bounds))
+    kept = values[(np.abs(values) > bounds) | (values == values[0])]
+    logarithm, interval = float(halvings.sum()) * np.log(2.0), [max(radius - error, 0.0), radius + error]
+    with np.errstate(under="ignore", divide="ignore"):
+        rates, (low, high) = (np.exp((np.log(m) + logarithm) / cycles) for m in (np.abs(kept), interval))
+        whole = kept * np.exp(min(logarithm, _LARGEST))
+    rounding = 8.0 * _U * (2.0 + abs(np.log(high))) * high
+    return whole, rates, float(max(high - rates[0], rates[0] - low) + rounding)

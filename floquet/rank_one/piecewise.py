@@ -107,7 +107,7 @@ def fit_pieces(
         largest = np.sqrt(np.square(values).sum(axis=3)).max(axis=2)  # (G, pieces)
         if sizes is None:
             sizes = np.maximum(largest.max(axis=1), 1e-300)
-        series = np.einsum("dn,gpnm->gpdm", matrix, values)
+        series = matrix @ values
         allowed = rtol * np.maximum(1.0, _SHORT / (2.0 * half)) * sizes[:, None]
         beyond = np.sqrt(np.square(series[:, :, degree + 1 :]).sum(axis=3)).sum(axis=2)
         good = (beyond + errors <= allowed).all(axis=0)

@@ -51,6 +51,7 @@ class RankOneSystem:
         point, as where the friction coefficient goes up and down with speed; the system by itself has them
         with factor 1
     gyroscopic : (m, m) G, dimensionless, of parts that turn by fixed angles within a period; None: nothing
+    mean : (m,) mean of w whose modes are the coordinates; None: that over the phases
     """
 
     stiffness: FloatArray
@@ -62,6 +63,7 @@ class RankOneSystem:
     metric: FloatArray
     varied: tuple[Gains, ...] = ()
     gyroscopic: FloatArray | None = None
+    mean: FloatArray | None = None
 
     @property
     def parts(self) -> tuple[Gains, ...]:
@@ -81,10 +83,10 @@ class RankOneSystem:
 
     def mean_exponents(self) -> ComplexArray:
         """Exponents (2m,) [1/s] of the system with gains averaged over the period."""
-        A = self._state_matrices(self._mean(self.total.w), self._mean(self.total.wd))
+        A = self._state_matrices(self.mean_of(self.total.w), self.mean_of(self.total.wd))
         return np.asarray(np.linalg.eigvals(A), dtype=complex)
 
-    def _mean(self, poly: FloatArray) -> FloatArray:
+    def mean_of(self, poly: FloatArray) -> FloatArray:
         """Mean over the period of polynomials (P, m, d+1)."""
         powers = np.arange(poly.shape[2])
         moments = np.where(powers % 2 == 0, 1.0 / (powers + 1.0), 0.0)  # mean of u^j over [-1, 1]
@@ -92,7 +94,7 @@ class RankOneSystem:
 
     def modal(self) -> ModalForm:
         """Return the system in modal coordinates of its time average, see `ModalForm`."""
-        g, mean = self.metric, self._mean(self.total.w)
+        g, mean = self.metric, self.mean_of(self.total.w) if self.mean is None else self.mean
         k = float(g @ (mean * self.v)) / float(self.v @ self.v) if (g * mean) @ self.v > 0 else 0.0
         K = g[:, None] * self.stiffness + k * np.outer(self.v, self.v)
         if not np.abs(K - K.T).max() <= 1e-9 * np.abs(K).max():

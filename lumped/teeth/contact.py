@@ -37,10 +37,10 @@ _LEAST_GAP = 0.8
 
 
 class Laws:
-    """Laws of a pair's tooth pairs over xi, of each kind; the tables sample them."""
+    """Laws of tooth pairs over xi, of each kind, for tables; ``every`` end of a polynomial is a switch."""
 
-    def __init__(self, pair: GearPair) -> None:
-        self.pair, self.healthy = pair, pair.healthy
+    def __init__(self, pair: GearPair, every: bool = False) -> None:
+        self.pair, self.healthy, self.every = pair, pair.healthy, every
         g = self.geometry = pair.geometry
         self.flanks = (pair.flank(0), pair.flank(1))
         self.mesh = StaticMesh(self.healthy)
@@ -76,12 +76,14 @@ class Laws:
     def switches(self) -> FloatArray:
         """Positions at which a law of any kind jumps or has a kink [m]."""
         g = self.geometry
-        found = [g.L_XA, g.L_XD, g.L_XP, self.low, self.high, *self.friction.switches]
-        if self.elements is None:
-            found += [*self.mesh.law.stiffness.switches, *relief_starts(self.healthy)]
+        found = [g.L_XA, g.L_XD, g.L_XP, self.low, self.high]
+        if (e := self.elements) is None:
+            laws = [self.friction, self.mesh.law.stiffness, *self.mesh.neighbours]
+            found += [*relief_starts(self.healthy)]
         else:
-            for law in (self.elements.stiffness, self.elements.damping, self.elements.error):
-                found += [*law.switches, *law.interval]
+            laws = [self.friction, e.stiffness, e.damping, e.error]
+            found += [end for law in laws[1:] for end in law.interval]
+        found += [place for law in laws for place in (law.breaks if self.every else law.switches)]
         for of_gears in self.faults:
             for which, faults in enumerate(of_gears):
                 for fault in faults:

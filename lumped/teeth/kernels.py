@@ -30,8 +30,6 @@ FIXED, FIXED_PUSH, PUSH, LINEAR = 0, 1, 2, 3
 GAP, BY_XI, BY_DELTA, TILT, PRESSED, LOAD, TANGENT, STEP, MATRIX = range(9)
 _STEPS = 100
 _SETTLED = 1e-12
-#: Most changes of contact in a step that are looked at.
-_MOST_BREAKS = 8
 #: Change of the loads in a Newton's step, over their sum, after which no further one is needed.
 _CLOSE = 1e-8
 
@@ -346,24 +344,21 @@ def settled(
 
 
 @partial(compiled, nogil=True)
-def static_cycles(
-    start: int, cycles: int, fixed: bool, own: Tables
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Mesh of consecutive cycles about its static state; NaN where no approach carries the force.
+def static_places(start: int, fixed: bool, own: Tables, asked: FloatArray) -> FloatArray:
+    """Mesh about its static state, rows (n, 18 + 8 pairs); NaN where no approach carries the force.
 
-    Returns
-    -------
-    approach : (cycles, steps, nodes) static approach [m]
-    each : (4, pairs, cycles, steps) of every place at the first node of each step: static load [N], then the
-        load of small motions, rise delta + damper delta' + constant
-    sums : (cycles, steps, nodes, 17) of N, mu N and mu N xi by delta, by delta', and without motion; then
-        de/dtheta of both gears; then what dampers take, by delta'^2, delta' and without motion; then the
-        force of tip corners that pushes the gears apart, by delta, by delta' and without motion
+    ``asked`` (n, 3) is cycles after ``start``, step, and place in it: 0 to 1, or -1 - j for the node j.
     ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
+
+    Columns are sums of N, mu N and mu N xi by delta, by delta', and without motion; de/dtheta of both gears;
+    what dampers take, by delta'^2, delta' and without motion; the force of tip corners that pushes the gears
+    apart, by delta, by delta' and without motion; the static approach [m]. Then come, each of all pairs, what
+    changes its sign at a kink: compression that presses [m], load less that of the full damper [N], ways of
+    the contact point beyond start and end of the line [m]; then static load [N] and the load of small
+    motions, rise delta + damper delta' + constant.
     """
     steps, nodes, pairs = own.place.shape
-    approach, each = np.zeros((cycles, steps, nodes)), np.zeros((4, pairs, cycles, steps))
-    sums, row = np.zeros((cycles, steps, nodes, 17)), np.zeros(17)
+    rows = np.zeros((asked.shape[0], 18 + 8 * pairs))
     # Behind the last step the tables have room for a place between nodes.
     place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
     place[:steps], coupling[:steps] = own.place, own.coupling
@@ -371,109 +366,68 @@ def static_cycles(
     kind, here = np.zeros(pairs, np.int64), np.zeros((MATRIX + pairs, pairs))
     errors = np.zeros((pairs, 6))
     k, flat = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
-    moved, static, looks = np.zeros((steps + 1, nodes, 8)), 0.0, nodes > 1 and not fixed
-    single, share, pressing = constants[2] == 0.0 and not coupling.any(), np.ones(nodes), np.zeros((2, pairs))
-    breaks, found = np.empty((steps, _MOST_BREAKS)), np.zeros(steps, np.int64)
-    room = nodes * steps * (_MOST_BREAKS + 1)
-    where, inside = np.empty(room, np.int64), np.empty((2, room))
-    for c in range(cycles):
-        contact_of_cycle(start + c, fixed, own, kind, errors, k, flat, moved)
-        visit, visits, before = 0, steps * nodes, 0.0
-        while visit < visits:
-            at, node, more = visit // nodes, visit % nodes, visit - steps * nodes
-            if more >= 0:
-                at, node, s, x = steps, 0, where[more], inside[0, more]
-                place[at, 0], coupling[at, 0] = 0.0, 0.0
-                k[at, 0], flat[at, 0], moved[at, 0] = 0.0, 0.0, 0.0
-                for j in range(nodes):
-                    share[j] = 1.0
-                    for other in range(nodes):
-                        if other != j:
-                            share[j] *= (x - own.nodes[other]) / (own.nodes[j] - own.nodes[other])
-                    for n in range(8):
-                        moved[at, 0, n] += share[j] * moved[s, j, n]
-                    for i in range(pairs):
-                        k[at, 0, i] += share[j] * k[s, j, i]
-                        place[at, 0, i] += share[j] * place[s, j, i]
-                        for n in range(4):
-                            flat[at, 0, i, n] += share[j] * flat[s, j, i, n]
-                        for n in range(pairs):
-                            coupling[at, 0, i, n] += share[j] * coupling[s, j, i, n]
-            k_at, gap, off = k[at, node], flat[at, node], moved[at, node]
-            xi, w = place[at, node], coupling[at, node]
-            if not fixed:
-                guess = 0.0 if math.isnan(static) else static
-                static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
-            for n in range(17):
-                row[n] = 0.0
-            row[9], row[10] = off[5], off[6]
-            for i in range(pairs):
-                if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
-                    continue
-                c_i, rise, load = gap[i, 2], k_at[i], -k_at[i] * gap[i, 0]
-                closing, slope, tilt = 1.0, gap[i, 1], 0.0
-                if not fixed:
-                    part = min(here[LOAD, i] / constants[4], 1.0)
-                    c_i *= part * part * (3.0 - 2.0 * part)
-                    rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
-                    closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
-                rolling = slope * speed + off[1] / duration
-                load -= c_i * rolling
-                mu, arm = gap[i, 3], xi[i] + (0.0 if fixed else off[7])
-                for n, value in ((0, rise), (1, c_i * closing), (2, load)):
-                    row[3 * n] += value
-                    row[3 * n + 1] += mu * value
-                    row[3 * n + 2] += mu * value * arm
-                    row[14 + n] += tilt * value
-                row[11] += c_i * closing**2
-                row[12] -= 2.0 * c_i * closing * rolling
-                row[13] += c_i * rolling**2
-                if more < 0 and node == 0:
-                    each[0, i, c, at] = here[LOAD, i]
-                    each[1, i, c, at], each[2, i, c, at], each[3, i, c, at] = rise, c_i * closing, load
-            visit += 1
-            if more >= 0:
-                for j in range(nodes):
-                    for n in range(17):
-                        sums[c, s, j, n] += inside[1, more] * share[j] / own.weights[j] * row[n]
-                continue
-            approach[c, at, node] = static
-            for n in range(17):
-                sums[c, at, node, n] = row[n]
-            if not looks:
-                continue
-            tau = own.edges[at] + own.nodes[node] * (own.edges[at + 1] - own.edges[at])
-            rise = 0.0
-            for i in range(pairs):
-                rise += here[TANGENT, i] * (1.0 - here[BY_DELTA, i])
-            for i in range(pairs):  # where a pair touches or leaves, or its damper is full, between two nodes
-                left = here[PRESSED, i]
+    moved, static, now = np.zeros((steps + 1, nodes, 8)), 0.0, -1.0
+    single, share = constants[2] == 0.0 and not coupling.any(), np.ones(nodes)
+    for a in range(asked.shape[0]):
+        row, s, x = rows[a], int(asked[a, 1]), asked[a, 2]
+        if asked[a, 0] != now:
+            now = asked[a, 0]
+            contact_of_cycle(start + int(now), fixed, own, kind, errors, k, flat, moved)
+        at, node = s, int(-1.0 - x)
+        if x > -0.5:
+            at, node = steps, 0
+            place[at, 0], coupling[at, 0] = 0.0, 0.0
+            k[at, 0], flat[at, 0], moved[at, 0] = 0.0, 0.0, 0.0
+            for j in range(nodes):
+                share[j] = below = 1.0
+                for other in range(nodes):
+                    if other != j:
+                        share[j] *= x - own.nodes[other]
+                        below *= own.nodes[j] - own.nodes[other]
+                share[j] /= below
+                for n in range(8):
+                    moved[at, 0, n] += share[j] * moved[s, j, n]
+                for i in range(pairs):
+                    k[at, 0, i] += share[j] * k[s, j, i]
+                    place[at, 0, i] += share[j] * place[s, j, i]
+                    for n in range(4):
+                        flat[at, 0, i, n] += share[j] * flat[s, j, i, n]
+                    for n in range(pairs):
+                        coupling[at, 0, i, n] += share[j] * coupling[s, j, i, n]
+        k_at, gap, off = k[at, node], flat[at, node], moved[at, node]
+        xi, w = place[at, node], coupling[at, node]
+        if not fixed:
+            guess = 0.0 if math.isnan(static) else static
+            static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
+        row[9], row[10], row[17] = off[5], off[6], static
+        for i in range(pairs):
+            if k_at[i] > 0.0 and not fixed:
+                of, beyond = ends[kind[i]], 0.5 * (static + constants[1])
+                row[18 + i], row[18 + pairs + i] = here[PRESSED, i], here[LOAD, i] - constants[4]
                 for n in range(pairs):
-                    left -= w[i, n] * here[LOAD, n]
-                left *= rise  # as a force it has one slope on both sides
-                for which, value in ((0, left), (1, here[LOAD, i] - constants[4])):
-                    last, pressing[which, i] = pressing[which, i], value
-                    if visit > 1 and last * value < 0.0:
-                        change = before + (tau - before) * last / (last - value)
-                        s = at if change > own.edges[at] else at - 1
-                        if found[s] < _MOST_BREAKS:
-                            breaks[s, found[s]] = (change - own.edges[s]) / (own.edges[s + 1] - own.edges[s])
-                            found[s] += 1
-            before = tau
-            for s in range(steps if visit == steps * nodes else 0):
-                if found[s] > 0:
-                    sums[c, s] = 0.0
-                    low = 0.0
-                    for _ in range(found[s] + 1):
-                        high = 1.0
-                        for n in range(found[s]):
-                            if low < breaks[s, n] < high:
-                                high = breaks[s, n]
-                        for j in range(nodes):
-                            where[visits - visit] = s
-                            inside[0, visits - visit] = low + (high - low) * own.nodes[j]
-                            inside[1, visits - visit] = (high - low) * own.weights[j]
-                            visits += 1
-                        low = high
-                    found[s] = 0
-    return approach, each, sums
+                    row[18 + i] -= w[i, n] * here[LOAD, n]
+                row[18 + 2 * pairs + i] = of[0] - xi[i] - off[7] + beyond + of[4] * off[3]
+                row[18 + 3 * pairs + i] = xi[i] + off[7] - of[1] + beyond + of[3] * off[4]
+            if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
+                continue
+            c_i, rise, load = gap[i, 2], k_at[i], -k_at[i] * gap[i, 0]
+            closing, slope, tilt = 1.0, gap[i, 1], 0.0
+            if not fixed:
+                part = min(here[LOAD, i] / constants[4], 1.0)
+                c_i *= part * part * (3.0 - 2.0 * part)
+                rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
+                closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
+            rolling = slope * speed + off[1] / duration
+            load -= c_i * rolling
+            mu, arm = gap[i, 3], xi[i] + (0.0 if fixed else off[7])
+            for n, value in ((0, rise), (1, c_i * closing), (2, load)):
+                row[3 * n] += value
+                row[3 * n + 1] += mu * value
+                row[3 * n + 2] += mu * value * arm
+                row[14 + n] += tilt * value
+                row[18 + (5 + n) * pairs + i] = value
+            row[18 + 4 * pairs + i] = here[LOAD, i]
+            row[11] += c_i * closing**2
+            row[12] -= 2.0 * c_i * closing * rolling
+            row[13] += c_i * rolling**2
+    return rows

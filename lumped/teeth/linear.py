@@ -69,8 +69,6 @@ class LinearForm:
         free = np.ascontiguousarray(np.concatenate([p, end], axis=1).swapaxes(1, 2))
         self.steps = (which, free, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
         self.width = end.shape[2]
-        #: Whether the cycles differ in their forcing alone, and in that by the errors of their teeth.
-        self.alike = self.fixed and len(self.laws.faults) == 1 and not self.own.eccentric[:, 0].any()
         count = self.own.period if most is None else min(most, self.own.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
 

@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable
@@ -48,6 +49,8 @@ _FADED, _MOST_SETTLING = 1e-11, 20_000
 _MOST_SWING = 0.25
 #: Largest mismatch after the period, over the largest displacement, that is called periodic.
 _CLOSED = 1e-4
+#: Steps to a kink inside a step of the linear form, whose error is that of the step there.
+_FEW_ROUNDS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,16 +311,88 @@ def _settling(radius: float) -> int:
     return found
 
 
-def static_mesh(
-    own: Tables, start: int, cycles: int, fixed: bool = False
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """``kernels.static_cycles``, or an error where no approach carries the load."""
-    approach, each, sums = kernels.static_cycles(start, cycles, fixed, own)
-    if not (np.isfinite(approach).all() and np.isfinite(sums).all()):
+def static_rows(own: Tables, start: int, fixed: bool, *where: ArrayLike) -> FloatArray:
+    """``kernels.static_places`` of cycles, steps and places that go together, or an error."""
+    asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
+    flat = asked.reshape(-1, 3)
+    order = np.argsort(flat[:, 0], kind="stable")
+    found = kernels.static_places(start, fixed, own, flat[order])
+    if not np.isfinite(found).all():
         raise NumericalError(
             "At some position no tooth pair can carry the load: check stiffness and deviations."
         )
-    return approach, each, sums
+    rows = np.empty_like(found)
+    rows[order] = found
+    return rows.reshape(*asked.shape[:-1], -1)
+
+
+def static_mesh(
+    own: Tables, start: int, cycles: int, fixed: bool = False
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Mesh of consecutive cycles about its static state, by the columns of ``kernels.static_places``.
+
+    Returned are the static approach (cycles, steps, nodes) [m]; (4, pairs, cycles, steps) of every place at
+    the first node of each step, static load and load of small motions; and (cycles, steps, nodes, 17) sums,
+    which in a step in which a pair touches or leaves have the moments of what they are there.
+    """
+    steps, nodes, pairs = own.place.shape
+    at = -1.0 - np.arange(nodes)
+    rows = static_rows(own, start, fixed, np.arange(cycles)[:, None, None], np.arange(steps)[:, None], at)
+    each = rows[:, :, 0, 18 + 4 * pairs :].reshape(cycles, steps, 4, pairs).transpose(2, 3, 0, 1)
+    sums = rows[..., :17].copy()
+    if nodes > 1 and not fixed:
+        phases = kinks(own, start, own.nodes, rows, 2, _FEW_ROUNDS)
+        _match_moments(own, start, phases, sums.reshape(-1, nodes, 17))
+    return rows[..., 17], each, sums
+
+
+def kinks(own: Tables, start: int, x: FloatArray, rows: FloatArray, kinds: int, rounds: int) -> FloatArray:
+    """Phases, by mesh cycles from ``start``, at which ``kinds`` of columns of ``rows`` change their sign.
+
+    ``rows`` (cycles, steps, k, ...) are at the places ``x`` (k,) of all steps; ``rounds`` of Illinois' rule.
+    """
+    tau = (own.edges[:-1, None] + np.diff(own.edges)[:, None] * x).ravel()
+    values = rows[..., 18 : 18 + kinds * own.ahead.size].reshape(rows.shape[0], tau.size, -1)
+    cycle, look, which = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
+    ends, at = (
+        np.stack([tau[look], tau[look + 1]]),
+        np.stack([values[cycle, look, which], values[cycle, look + 1, which]]),
+    )
+    each, last = np.arange(cycle.size), np.full(cycle.size, -1)
+    for left in range(rounds if cycle.size else -1, -1, -1):
+        found = (ends[0] * at[1] - ends[1] * at[0]) / (at[1] - at[0])
+        if left == 0:
+            return np.asarray(cycle + found)
+        step, place = placed(own, found)
+        value = static_rows(own, start, False, cycle, step, place)[each, 18 + which]
+        side = np.where(np.signbit(value) == np.signbit(at[0]), 0, 1)
+        at[1 - side, each] *= np.where(side == last, 0.5, 1.0)
+        ends[side, each], at[side, each], last = found, value, side
+    return np.empty(0)
+
+
+def placed(own: Tables, tau: FloatArray, middle: FloatArray | None = None) -> tuple[IntArray, FloatArray]:
+    """Steps and places in them of phases of a cycle, those of steps that hold ``middle``."""
+    step = np.searchsorted(own.edges[1:-1], tau if middle is None else middle, side="right")
+    return step, (tau - own.edges[step]) / np.diff(own.edges)[step]
+
+
+def _match_moments(own: Tables, start: int, phases: FloatArray, sums: FloatArray) -> None:
+    """Sums (all steps, nodes, 17) of steps with kinks, by the rule on both sides: "The linear form"."""
+    cycle = np.floor(phases)
+    step, place = placed(own, phases - cycle)
+    steps, index = own.edges.size - 1, cycle * (own.edges.size - 1) + step
+    broken = np.unique(index)
+    ends = np.unique(np.concatenate([broken, broken + 1.0, index + place]))
+    of = np.floor(0.5 * (ends[:-1] + ends[1:]))
+    kept = np.isin(of, broken)
+    of, low, length = of[kept].astype(np.int64), ends[:-1][kept], np.diff(ends)[kept]
+    x = (low - of)[:, None] + length[:, None] * own.nodes
+    rows = static_rows(own, start, False, (of // steps)[:, None], (of % steps)[:, None], x)[..., :17]
+    share = np.vander(x.ravel(), own.nodes.size) @ np.linalg.inv(np.vander(own.nodes))
+    weights = length[:, None, None] * own.weights[:, None] * share.reshape(*x.shape, -1) / own.weights
+    sums[broken.astype(np.int64)] = 0.0
+    np.add.at(sums, of, weights.swapaxes(1, 2) @ rows)
 
 
 def default_samples(period: int) -> int:

@@ -108,17 +108,12 @@ def test_defective_multiplier_gets_a_root_law_bound() -> None:
     assert result.verdict == "stable"
 
 
-def test_marginal_system_is_undecided() -> None:
-    # An undamped oscillator has |multiplier| = 1 exactly; no finite computation can say which side it is on.
-    result = monodromy(PeriodicSystem(lambda t: [[0.0, 1.0], [-1.0, 0.0]], 1.0))
-    assert result.verdict == "undecided"
-    assert result.error < 1e-9
-
-
-@pytest.mark.parametrize(("damping", "expected"), [(1e-7, "stable"), (-1e-7, "unstable")])
+@pytest.mark.parametrize(("damping", "expected"), [(1e-7, "stable"), (0.0, "undecided"), (-1e-7, "unstable")])
 def test_verdict_near_the_boundary(damping: float, expected: str) -> None:
-    system = PeriodicSystem(lambda t: [[0.0, 1.0], [-1.0, -damping]], 2.0)
-    assert monodromy(system, rtol=1e-11).verdict == expected
+    # Undamped |multiplier| = 1 exactly; no finite computation can say which side it is on.
+    result = monodromy(PeriodicSystem(lambda t: [[0.0, 1.0], [-1.0, -damping]], 2.0), rtol=1e-11)
+    assert result.verdict == expected
+    assert result.error < 1e-9
 
 
 def test_transient_growth_inside_the_period_is_accounted_for() -> None:
@@ -178,8 +173,7 @@ def test_multipliers_too_small_to_be_told_apart_share_a_bound() -> None:
 
 
 def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
-    ends = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)]
-    inside = [(0.5, 0.25), (1.5, 0.25)]
+    ends, inside = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)], [(0.5, 0.25), (1.5, 0.25)]
     each = [Spectrum(np.array([radius + 0j]), np.array([error]), 1.0) for radius, error in ends + inside]
     assert [one.verdict for one in each] == ["undecided"] * 3 + ["stable", "unstable"]
     assert verdicts(*np.array(ends + inside).T).tolist() == [0, 0, 0, 1, -1]

@@ -17,8 +17,7 @@ def tongues(x, y, centres, widths):
 
 def chart(shape, centres, widths):
     """Spectral radius and verdict of every node of a chart with these tongues; cycles a unit of time, x."""
-    x = np.linspace(1.0, 9.0, shape[0])
-    y = np.linspace(0.0, 0.1, shape[1])
+    x, y = np.linspace(1.0, 9.0, shape[0]), np.linspace(0.0, 0.1, shape[1])
     radius = np.exp(tongues(x[:, None], y[None, :], centres, widths) / x[:, None])
     return x, radius, np.where(radius > 1.0, -1, 1)
 

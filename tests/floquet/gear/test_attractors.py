@@ -19,24 +19,14 @@ from lumped import ParameterError
 @pytest.fixture(scope="module")
 def pair():
     """19/41, module 2.5: chaos and beats from 20,000 to 33,130 rpm; up to 27,524 beside one stable motion."""
-    return lumped.load_gear_pair("nasa_28_28").with_(
-        {
-            "centre_distance": None,
-            "basic_rack.module": "2.5 mm",
-            "basic_rack.fillet_radius_coefficient": 0.38,
-            **{f"{gear}.face_width": "20 mm" for gear in ("pinion", "gear")},
-            **{f"{gear}.tip_relief": None for gear in ("pinion", "gear")},
-            "pinion.teeth": 19,
-            "gear.teeth": 41,
-            "mesh.backlash": "0.115 mm",
-            "mesh.contact": "prescribed",
-            "mesh.damping_ratio": 0.04,
-            "mesh.relief": "ignored",
-            "friction.law": "none",
-            "operating.pinion_torque": 80.0,
-            "operating.pinion_speed": "26000 rpm",
-        }
-    )
+    both = {f"{gear}.face_width": "20 mm" for gear in ("pinion", "gear")}
+    both |= {f"{gear}.tip_relief": None for gear in ("pinion", "gear")}
+    return lumped.load_gear_pair("nasa_28_28").with_(both | {
+        "centre_distance": None, "basic_rack.module": "2.5 mm", "basic_rack.fillet_radius_coefficient": 0.38,
+        "pinion.teeth": 19, "gear.teeth": 41, "mesh.backlash": "0.115 mm", "mesh.contact": "prescribed",
+        "mesh.damping_ratio": 0.04, "mesh.relief": "ignored", "friction.law": "none",
+        "operating.pinion_torque": 80.0, "operating.pinion_speed": "26000 rpm",
+    })  # fmt: skip
 
 
 def at(pair, rpm):

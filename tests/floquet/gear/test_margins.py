@@ -15,14 +15,16 @@ from tests.evidence.floquet.coulomb_zones import CoulombGearPair
 MU = 0.2
 
 
+def with_friction(mu: float):
+    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
+    return pair.with_(friction__law="coulomb", friction__coefficient=mu, mesh__damping_ratio=0.004)
+
+
 def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
     # On rigid bearings the pair is one damped Meissner equation (Vaishya and Singh), whose multipliers are in
     # closed form: speed and damping of the tip of the tongue at twice the natural frequency follow from them
     # by root finding. There c_i = 2 zeta k_i/omega with omega^2 = sigma k/m_e; here c_i = 2 zeta sqrt(k m_e).
-    base = load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed", mesh__relief="ignored", friction__law="coulomb", friction__coefficient=MU,
-        mesh__damping_ratio=0.004,
-    )  # fmt: skip
+    base = with_friction(MU)
     g, system = geometry(base), periodic_system(base, "mesh")
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
     omega = np.sqrt(k * g.contact_ratio / bodies(base).effective_mass)
@@ -58,13 +60,7 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed",
-        mesh__relief="ignored",
-        friction__law="coulomb",
-        friction__coefficient=0.06,
-        mesh__damping_ratio=0.004,
-    )
+    return with_friction(0.06)
 
 
 @pytest.fixture(scope="module")

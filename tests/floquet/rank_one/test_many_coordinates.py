@@ -23,15 +23,11 @@ def shafts(m: int, seed: int = 1) -> RankOneSystem:
     w = mesh[:, None] * v[:, None] + 0.1 * friction[:, None] * rng.normal(size=m)[:, None]
     turn, bearing = 0.3 * rng.normal(size=(2, m, m))
     return RankOneSystem(
-        stiffness=np.diag(omega**2),
-        damping=np.diag(0.002 * omega) + bearing @ bearing.T,
-        v=v,
-        phases=np.array([0.0, 0.3, 0.55, 1.0]),
+        stiffness=np.diag(omega**2), damping=np.diag(0.002 * omega) + bearing @ bearing.T, v=v,
+        phases=np.array([0.0, 0.3, 0.55, 1.0]), metric=np.ones(m), gyroscopic=turn - turn.T,
         gains=Gains(w, 1e-6 * (w + 0.1 * rng.normal(size=w.shape) * np.abs(w)), np.zeros((3, 2))),
         period=1e-3 if m < 10 else 4e-4,
-        metric=np.ones(m),
-        gyroscopic=turn - turn.T,
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("m", [4, 10, 20])
@@ -51,8 +47,7 @@ def test_errors_are_below_bounds_that_allow_a_verdict(m: int) -> None:
 
 def test_general_engine_and_other_speeds_agree() -> None:
     # One call over periods: the gyroscopic part goes with speed, that of the general engine too.
-    system = shafts(4)
-    periods = np.array([3e-4, 8e-4])
+    system, periods = shafts(4), np.array([3e-4, 8e-4])
     found = fast_multipliers(system, periods)
     for T, values, errors in zip(periods, found.multipliers, found.errors, strict=True):
         slow = monodromy(as_periodic_system(replace(system, period=float(T))), rtol=1e-9)
@@ -81,14 +76,8 @@ def test_equal_shafts_have_double_multipliers_within_small_bounds() -> None:
     v[4:] = w[:, 4:] = 0.0
     L, C = np.diag(system.stiffness).copy(), np.diag(np.diag(system.damping)).copy()
     L[5], C[5, 5] = L[4], C[4, 4]
-    equal = replace(
-        system,
-        v=v,
-        gains=replace(system.gains, w=w, wd=1e-6 * w),
-        stiffness=np.diag(L),
-        damping=C,
-        gyroscopic=None,
-    )
+    gains = replace(system.gains, w=w, wd=1e-6 * w)
+    equal = replace(system, v=v, gains=gains, stiffness=np.diag(L), damping=C, gyroscopic=None)
     found = fast_multipliers(equal)
     s = -0.5 * C[4, 4] + 1j * np.sqrt(L[4] - 0.25 * C[4, 4] ** 2)
     distance = np.abs(found.multipliers[0] - np.exp(s * equal.period))

@@ -45,14 +45,8 @@ def test_impossible_points_are_refused(points):
 
 
 def test_lubricant_law_feeds_the_contact():
-    pair = load_gear_pair("nasa_28_28").with_(
-        lubricant={
-            "viscosity_law": {
-                "kinematic_viscosity_40": 100.0, "kinematic_viscosity_100": 11.1, "density": 880.0,
-                "temperature": 100.0,
-            }
-        }
-    )  # fmt: skip
+    law = {"kinematic_viscosity_40": 100.0, "kinematic_viscosity_100": 11.1, "density": 880.0}
+    pair = load_gear_pair("nasa_28_28").with_(lubricant={"viscosity_law": law | {"temperature": 100.0}})
     expected = 11.1e-6 * float(oil_density(880.0, 100.0))
     assert pair.lubricant.dynamic_viscosity == pytest.approx(expected, rel=1e-12)
     assert contact_path(pair).viscosity == pytest.approx(expected, rel=1e-12)

@@ -35,16 +35,10 @@ def system_of(constant, gain, deflection, edges):
 
     ends = np.asarray(edges, dtype=float)
     return System(
-        size=size,
-        period=float(edges[-1]),
-        cycle=SimpleNamespace(edges=ends, breaks=ends, bends=ends[:0]),
-        constant=constant,
-        deflection=column,
-        torque_pinion=np.zeros(size),
-        pinion_torque=0.0,
-        gain=lambda t, segment: MeshGain(*gain(t), no_pairs(t)),
-        matrices=matrices,
-    )
+        size=size, period=float(edges[-1]), cycle=SimpleNamespace(edges=ends, breaks=ends, bends=ends[:0]),
+        constant=constant, deflection=column, torque_pinion=np.zeros(size), pinion_torque=0.0,
+        gain=lambda t, segment: MeshGain(*gain(t), no_pairs(t)), matrices=matrices,
+    )  # fmt: skip
 
 
 def mathieu(t):

@@ -179,14 +179,8 @@ class TestEccentricGears:
         ):
             rows = np.zeros((2, 6))
             rows[:, 2] = 25, 31
-            rows[which] = (
-                eps,
-                turn - 0.5,
-                rows[which, 2],
-                g.L_XY,
-                1.0 / np.tan(g.operating_pressure_angle),
-                0.0,
-            )
+            cotangent = 1.0 / np.tan(g.operating_pressure_angle)
+            rows[which] = eps, turn - 0.5, rows[which, 2], g.L_XY, cotangent, 0.0
             moved, turned = np.zeros((1, 1, 8)), np.array([[[[1.0, 0.0]] * 2]])
             turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
             kernels.eccentric_cycle(0, turned, rows, moved)
@@ -198,12 +192,9 @@ class TestEccentricGears:
 
     def test_an_eccentric_gear_makes_small_sidebands_where_a_list_of_steps_makes_large_ones(self, loaded):
         staircase = 20.0 / COS * np.cos(2.0 * np.pi * np.arange(28) / 28)
-        changes = {
-            "turning": {"pinion.mounting": {"eccentricity": 20}},
-            "steps": {"pinion.deviations": steps(staircase)},
-        }
+        turning, listed = {"pinion.mounting": {"eccentricity": 20}}, {"pinion.deviations": steps(staircase)}
         side = {}
-        for name, change in changes.items():
+        for name, change in (("turning", turning), ("steps", listed)):
             run = push_motion(loaded.with_(change), SAMPLES, steps=160)
             te = run.states[:, :6] @ run.system.structure.deflection
             orders = 2.0 * np.abs(np.fft.rfft(te)) / te.size

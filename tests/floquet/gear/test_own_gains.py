@@ -1,0 +1,106 @@
+"""Are the multipliers of teeth that differ those of other integrators, within their proven bounds?"""
+
+from dataclasses import replace
+from functools import reduce
+
+import numpy as np
+import pytest
+
+import lumped
+from floquet import gear_pair_multipliers, revolution_multipliers
+from floquet.gear import multipliers
+from floquet.gear.gains import OwnGains, own_tables
+from floquet.rank_one.piecewise import fit_pieces
+from lumped.model.periodic_system import LTVSystem
+from lumped.teeth.contact import Laws
+from lumped.teeth.linear import LinearForm, linear_steps
+
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    {"operating.pinion_speed": 1500, "friction.law": "coulomb", "friction.coefficient": 0.06}
+)
+CLASS_6 = {f"{gear}.deviations": {"tolerance_class": 6} for gear in ("pinion", "gear")}
+HUNTING = {"pinion.teeth": 19, "gear.teeth": 41, "centre_distance": None} | CLASS_6
+HUNTING |= {"pinion.tip_relief": None, "gear.tip_relief": None}
+ECCENTRIC = {"pinion.mounting": {"eccentricity": 20, "phase": 50}}
+
+
+def cracked(*teeth):
+    return {"pinion.faults": [{"kind": "crack", "tooth": tooth, "depth": 1.0} for tooth in teeth]}
+
+
+def by_gauss_steps(pair, times, rate):
+    """Rate, near ``rate``, and mean log of the determinants of the linear form, its steps so much shorter."""
+    system = LTVSystem.of(pair.healthy, "mesh")
+    maps = LinearForm(pair, system, 1, times * linear_steps(system)).cycle_maps()[..., :6]
+    largest = np.abs(np.linalg.eigvals(reduce(lambda product, one: one @ product, maps / rate))).max()
+    return rate * largest ** (1.0 / len(maps)), np.linalg.slogdet(maps)[1].mean()
+
+
+@pytest.mark.parametrize("contact", ["prescribed", "loaded"])
+@pytest.mark.parametrize("change", [CLASS_6, ECCENTRIC, cracked(3), HUNTING])
+def test_rates_are_those_of_gauss_steps_and_of_finer_polynomials(contact, change, monkeypatch):
+    pair = PAIR.with_({"mesh.contact": contact, "mesh.relief": "ignored"} | change)
+    found = revolution_multipliers(pair)
+    monkeypatch.setattr(multipliers, "_BLOCK", 4)
+    finer = revolution_multipliers(pair, 1e-11)
+    times, most, kept = (8, 1e-7, 4) if found.cycles == 28 else (2, 1e-6, 2)
+    coarse, fine = (by_gauss_steps(pair, times * n, found.rate)[0] for n in (1, 2))
+    assert 4.0 * abs(fine - coarse) < most
+    assert abs(found.rate - fine) <= found.error + 4.0 * abs(fine - coarse)
+    assert abs(found.rate - finer.rate) < 1e-3 * found.error
+    assert (found.rates.size, found.error < 1e-9) == (kept, True)
+    assert np.abs(found.multipliers[0]) == pytest.approx(found.rate**found.cycles, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("contact", ["prescribed", "loaded"])
+def test_like_teeth_have_the_multipliers_of_the_mesh_cycle_to_the_28th_power(contact):
+    pair = PAIR.with_({"mesh.contact": contact, "mesh.relief": "static"})
+    expected = gear_pair_multipliers(pair)
+    power = np.poly(expected.feedback[:2] ** 28)
+    like = {"pinion.deviations": {"index": [0.0] * 28, "first_order": "steps"}}
+    for change in (like, {"pinion.mounting": {"eccentricity": 1e-9}}):  # which makes the cycles' maps differ
+        found = revolution_multipliers(pair.with_(change))
+        assert (found.cycles, found.certificate, found.stable) == (28, "proven", True)
+        assert abs(found.rate - expected.spectral_radius) <= found.error + expected.error < 1e-9
+        assert np.poly(found.multipliers[:2]) == pytest.approx(power, rel=1e-7, abs=0.0)
+        assert found.rate == pytest.approx(found.healthy_rate, rel=1e-9)
+
+
+def test_all_multipliers_have_the_product_of_the_determinants_of_gauss_steps():
+    pair = PAIR.with_({"operating.pinion_speed": 60000, "mesh.contact": "loaded"} | cracked(3))
+    found = revolution_multipliers(pair)
+    assert found.rates.size == 6
+    assert np.log(found.rates).sum() == pytest.approx(by_gauss_steps(pair, 8, found.rate)[1], rel=1e-6)
+
+
+def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
+    pair, off, maps = PAIR.with_(cracked(3)), 1e-6, multipliers.fast_monodromies
+
+    def shrunk(*arguments, **named):
+        found = maps(*arguments, **named)
+        wrong = off * np.linalg.norm(found.matrices, axis=(1, 2))
+        return replace(found, matrices=(1.0 - off) * found.matrices, errors=found.errors + wrong)
+
+    exact = revolution_multipliers(pair).rate
+    monkeypatch.setattr(multipliers, "fast_monodromies", shrunk)
+    found = revolution_multipliers(pair)
+    moved = exact - found.rate
+    assert moved == pytest.approx(off / 28 * exact, rel=1e-3)
+    assert moved < found.error < 100.0 * moved
+
+
+def test_pieces_end_where_a_pair_touches_its_damper_is_full_or_its_tip_leaves_the_line():
+    pair = PAIR.with_({"mesh.contact": "loaded", "mesh.relief": "ignored"} | CLASS_6)
+    gains = OwnGains(own_tables(Laws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh"), False, 5, 8)
+    # Else pieces are halved around every kink, down to the tolerance: 115 of a cycle.
+    assert fit_pieces(gains, gains.edges, np.ones(3), rtol=1e-11)[0].size < 27 * 8
+
+
+def test_a_softer_tooth_moves_the_rate_by_its_share_of_the_pairs():
+    # To first order a change of one cycle in 28 moves the logarithm by 1/28 of what it does in every cycle.
+    pair = PAIR.with_({"mesh.contact": "prescribed", "mesh.relief": "ignored"})
+    both = (revolution_multipliers(pair.with_(cracked(*teeth))) for teeth in ([3], range(1, 29)))
+    one, every = (np.log(found.rate / found.healthy_rate) for found in both)
+    assert abs(every) > 1e-4
+    # What is left is of second order, in proportion to the change itself.
+    assert 28.0 * one == pytest.approx(every, rel=4.0 * abs(every))
