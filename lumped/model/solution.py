@@ -16,7 +16,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.labelling import provenance
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.powers import power_attributes
-from lumped.model.propagation import step_maps
+from lumped.model.propagation import STEP_ANGLE, step_maps
 from lumped.model.results import dataset
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
 from lumped.schema.pair import GearPair
@@ -109,11 +109,15 @@ def steady_cycle(
     supports: Supports = "springs",
     *,
     estimate_error: bool = True,
+    step_angle: float = STEP_ANGLE,
 ) -> xr.Dataset:
-    """The result of ``lumped.steady_state`` of like teeth, over one mesh cycle; the error may be left out."""
+    """The result of ``lumped.steady_state`` of like teeth, over one mesh cycle; the error may be left out.
+
+    ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
+    """
     system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     times = sample_times(system.period, samples_per_cycle)
-    solution = periodic_solution(system, times, estimate_error=estimate_error)
+    solution = periodic_solution(system, times, estimate_error=estimate_error, step_angle=step_angle)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
     attributes |= power_attributes(solution) | {
         "model": "lumped",

@@ -21,7 +21,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, made_of
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, QuantityRange, to_stated
+from lumped.fields.units import Quantity, QuantityRange, SIValue, to_si, to_stated
 from lumped.friction.base import ContactPath
 from lumped.friction.registry import law_of
 from lumped.friction.table import TABLE
@@ -246,6 +246,13 @@ class GearPair(Section, metaclass=_InOurWords):
         return GearPair.model_construct(
             **{name: getattr(self, name) for name in GearPair.model_fields} | gears | {"operating": steady}
         )
+
+    def at_speed(self, rpm: float) -> GearPair:
+        """The pair at another pinion speed [rpm] of its own range, of which nothing is checked again."""
+        speed = SIValue(to_si(rpm, "rpm"), "rad/s")
+        own = {name: getattr(self, name) for name in GearPair.model_fields}
+        own["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
+        return GearPair.model_construct(**own)
 
     if not TYPE_CHECKING:  # a checker knows the fields
 

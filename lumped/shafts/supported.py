@@ -110,6 +110,10 @@ class SupportedShaft:
     coupling: tuple[float, FloatArray]
 
 
+#: Variations of bearings and of what a shaft carries have one.
+_beam = lru_cache(maxsize=16)(beam)
+
+
 @lru_cache(maxsize=64)
 def supported_shaft(
     shaft: Shaft, disc: Disc, coupled: CoupledInertia | None, highest: float
@@ -118,10 +122,10 @@ def supported_shaft(
 
     Modes with the gear's centre and rim fixed are kept up to ``highest`` [rad/s].
     """
-    pieces = [
+    pieces = tuple(
         Piece(s.length, s.diameter, s.bore, shaft.youngs_modulus, shaft.poisson_ratio, shaft.density)
         for s in shaft.segments
-    ]
+    )
     places = [shaft.gear_position, *(b.position for b in shaft.bearings)]
     places += [] if coupled is None else [coupled.position]
     waves = sum(piece.wave_number(highest) * piece.length for piece in pieces)
@@ -133,7 +137,7 @@ def supported_shaft(
     before: SupportedShaft | None = None
     change = math.inf
     for halving in range(_HALVINGS + 1):
-        mesh = beam(pieces, places, highest, _ANGLE / 2**halving)
+        mesh = _beam(pieces, tuple(places), highest, _ANGLE / 2**halving)
         found = _on_mesh(mesh, shaft, disc, coupled, highest)
         if before is not None:
             change = _change(before, found)

@@ -283,7 +283,7 @@ class Results:
         """Amplitudes of the pinion's bearing force by mesh order over speed, linear motion."""
         self.stage("orders over speed")
         speeds = np.linspace(*self.speeds, self.effort.orders_speeds)
-        pairs = [self.pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
+        pairs = [self.pair.at_speed(float(rpm)) for rpm in speeds]
         rows = np.full((speeds.size, ORDERS), np.nan)
         for row, system in zip(rows, systems_over_speed(pairs, warn=False), strict=True):
             times = sample_times(system.period, 128)
