@@ -354,10 +354,8 @@ def kinks(own: Tables, start: int, x: FloatArray, rows: FloatArray, kinds: int, 
     tau = (own.edges[:-1, None] + np.diff(own.edges)[:, None] * x).ravel()
     values = rows[..., 18 : 18 + kinds * own.ahead.size].reshape(rows.shape[0], tau.size, -1)
     cycle, look, which = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
-    ends, at = (
-        np.stack([tau[look], tau[look + 1]]),
-        np.stack([values[cycle, look, which], values[cycle, look + 1, which]]),
-    )
+    both = np.stack([look, look + 1])
+    ends, at = tau[both], values[cycle, both, which]
     each, last = np.arange(cycle.size), np.full(cycle.size, -1)
     for left in range(rounds if cycle.size else -1, -1, -1):
         found = (ends[0] * at[1] - ends[1] * at[0]) / (at[1] - at[0])

@@ -170,8 +170,7 @@ def test_bearings_at_critical_damping_are_within_their_bound(ratio: float) -> No
     system = periodic_system(pair, "elastic")
     T = np.array([system.period])
     values, errors = OffLineOfAction.of(feedback_system(GearVariation(pair))).multipliers(T)
-    s = system.structure
-    omega = np.sqrt(s.stiffness[4] / s.mass[4])
+    omega = np.sqrt(system.structure.stiffness[4] / system.structure.mass[4])
     zeta = min(ratio, 1.0)
     root = np.emath.sqrt(zeta**2 - 1.0)
     exact = np.exp(omega * system.period * np.array([-zeta + root, -zeta - root]))
