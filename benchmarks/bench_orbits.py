@@ -52,8 +52,8 @@ def points() -> None:
         if one.sharp and one.kind != "grazing":
             print(f"n = {one.n}, {one.kind}: {one.speed_rpm:.3f} rpm, rms {1e6 * one.dte_rms:.3f} um")
     struck = floquet.response_branches(plain, SPEEDS, [1], back_side=True)
-    ends = (one for one in struck.bifurcations if one.sharp and one.kind in ("fold", "Neimark-Sacker"))
-    print("with back sides:", ", ".join(f"{one.kind} {one.speed_rpm:.0f} rpm" for one in ends))
+    ends = sorted((one.speed_rpm, one.kind) for one in struck.bifurcations if one.sharp)
+    print("with back sides:", ", ".join(f"{kind} {rpm:.0f} rpm" for rpm, kind in ends))
     print("no stable motion:", ", ".join(f"{low:.0f} to {high:.0f} rpm" for low, high in found.gaps))
     changed = relieved.with_(operating__pinion_torque=200.0)
     with_relief = floquet.response_branches(changed, SPEEDS, (1, 2), seeds=0)
