@@ -22,6 +22,7 @@ class Fault:
     new: str = ""
     on: Mapping[str, Any] = field(default_factory=dict)
     input: Mapping[str, Any] = field(default_factory=dict)
+    test: str = ""  # node of a test that sees it where no verdict does
     unseen: str = ""  # why only a measurement can tell; empty for a fault that the verdicts must see
 
 

@@ -4,8 +4,12 @@ import time
 import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from functools import lru_cache
+from io import StringIO
+
+import pytest
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.typing import FloatArray
@@ -66,6 +70,9 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
                     if thorough or not names:
                         names += [name for name in _failing(checks, pair) if name not in known]
                 caught[part] = tuple(dict.fromkeys(names))
+            if fault.test and not any(caught.values()) and _fails(fault.test):
+                file, _, name = fault.test.partition("::test_")
+                caught["tests"] = (f"{file}: {name.replace('_', ' ')}",)
     if not made:
         size = float("inf")
     return Outcome(size, quantity, caught, time.perf_counter() - started)
@@ -84,6 +91,14 @@ def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair
         yield from pairs(fault, wrong=True)
     except Exception as error:  # noqa: BLE001  (whatever stops a program with a fault is seen)
         caught["refused"] = (_line(error),)
+
+
+def _fails(test: str) -> bool:
+    """Whether a test fails as the program is now."""
+    with redirect_stdout(StringIO()):
+        code = pytest.main(["-x", "-p", "no:cacheprovider", test])
+    assert code in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED), f"{test} is no test"
+    return code == pytest.ExitCode.TESTS_FAILED
 
 
 def _failing(checks: Callable[[GearPair], list[str]], pair: GearPair) -> list[str]:
