@@ -53,7 +53,7 @@ def read_text(
     try:
         return data.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError as error:
-        why = f"It cannot be read: byte {error.start} is no {error.encoding}. Save it as UTF-8 text."
+        why = f"It cannot be read: byte {error.start} is no {error.encoding.upper()}. Save it as UTF-8 text."
         raise refuse(field, Path(path), f"a {kind} in UTF-8", why) from None
 
 
