@@ -208,7 +208,8 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
         return Verdict.BROKEN, Verdict.BROKEN.value, f"Failed: {'; '.join(broken[:3])}."
     prediction = results.prediction
     if outside := results.outside:
-        return Verdict.OUTSIDE, f"{Verdict.OUTSIDE.value}: {outside[0]}.", "; ".join(outside[1:])
+        first, *others = (flag.detail for flag in outside)
+        return Verdict.OUTSIDE, f"{Verdict.OUTSIDE.value}: {first}.", "; ".join(others)
     if reason := _hazard(results, prediction):
         return Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {reason[0]}.", reason[1]
     if prediction.contact_lost:
@@ -297,6 +298,8 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
     found: list[Action] = []
     if verdict is Verdict.BROKEN:
         return (Action("Report this failure with the parameter file", "report.json", ""),)
+    if verdict is Verdict.OUTSIDE:
+        found = [Action(flag.action.removesuffix("."), "", "") for flag in results.outside]
     if verdict is Verdict.DO_NOT_RUN:
         hazard = results.nearest_hazard
         if hazard is not None and "jump" in hazard[1]:

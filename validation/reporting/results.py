@@ -333,10 +333,10 @@ class Results:
         return model_error(self.record, self.pair, simulated, share * simulated, self.uncertainty)
 
     @cached_property
-    def outside(self) -> tuple[str, ...]:
-        """What the model does not have and this pair needs, one phrase each."""
+    def outside(self) -> tuple[Flag, ...]:
+        """What the model does not have and this pair needs."""
         skip = ("contact_loss", "stability")
-        return tuple(f.detail for f in self.flags if f.state == "violated" and f.key not in skip)
+        return tuple(f for f in self.flags if f.state == "violated" and f.key not in skip)
 
     @property
     def on_springs(self) -> str:
