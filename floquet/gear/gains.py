@@ -341,8 +341,8 @@ class OwnGains:
         found = np.append(starts, cycles)
         if not fixed:
             steps = np.arange(starts.shape[1])[:, None]
-            rows = static_rows(own, first, False, np.arange(cycles)[:, None, None], steps, _LOOKS)
-            found = np.append(found, kinks(own, first, _LOOKS, rows, 4, _ROUNDS))
+            numbers = static_rows(own, first, False, 4, np.arange(cycles)[:, None, None], steps, _LOOKS)[1]
+            found = np.append(found, kinks(own, first, _LOOKS, numbers, _ROUNDS))
         self.edges = np.unique(found)
 
     def __call__(
@@ -352,7 +352,7 @@ class OwnGains:
         cycle = np.floor(centre)[:, None]
         tau = centre[:, None] + half[:, None] * nodes - cycle
         step, place = placed(self.own, tau, centre[:, None] - cycle)
-        rows = static_rows(self.own, self.first, self.fixed, cycle, step, place)
+        rows = static_rows(self.own, self.first, self.fixed, 0, cycle, step, place)[0]
         gains = []
         for n in (0, 3):
             load, apart = rows[..., n], rows[..., 14 + n // 3]

@@ -88,10 +88,9 @@ class Supports(ABC):
 
     def bearing_forces(self, states: FloatArray) -> FloatArray:
         """Forces of the bearings on their shafts, (b, 2, k) [N], of states (k, 2m)."""
-        m = self.units.size
-        spring = np.einsum("bd,bdm,km->bdk", self.bearing_stiffness, self.bearings, states[:, :m])
-        dashpot = np.einsum("bd,bdm,km->bdk", self.bearing_dampers, self.bearings, states[:, m:])
-        return np.asarray(-(spring + dashpot), dtype=np.float64)
+        both = self.bearing_stiffness, self.bearing_dampers
+        by_state = np.concatenate([one[..., None] * self.bearings for one in both], axis=2)
+        return np.asarray(-by_state @ states.T, dtype=np.float64)
 
     def forces_by_gear(self, states: FloatArray) -> dict[str, FloatArray]:
         """Coordinate x_p to y_g -> sum of the bearing forces of this gear along it (k,) [N]."""
@@ -149,7 +148,7 @@ class Springs(Supports):
 
     def powers(self, rates: FloatArray) -> dict[str, FloatArray]:
         """What the four dampers take."""
-        return {"bearings": rates**2 @ self.structure.damping}
+        return {"bearings": np.einsum("km,m->k", rates**2, self.structure.damping)}
 
 
 class Shafts(Supports):

@@ -108,12 +108,14 @@ def corner(
 
 
 @inlined
-def eccentric_cycle(cycle: int, turned: FloatArray, eccentric: FloatArray, moved: FloatArray) -> None:
+def eccentric_steps(
+    cycle: int, low: int, high: int, turned: FloatArray, eccentric: FloatArray, moved: FloatArray
+) -> None:
     """Into ``moved``: e, de/dcycles, dL, turn of the line (A, D), de/dtheta of both gears, shift of xi.
 
-    Rows (steps, nodes, 8) of a mesh cycle; ``turned`` as in ``Tables``.
+    Rows (steps, nodes, 8) of a mesh cycle, from step ``low`` to before ``high``; ``turned`` as in ``Tables``.
     """
-    moved[:] = 0.0
+    moved[low:high] = 0.0
     for which in range(eccentric.shape[0]):
         size, cotangent, way = eccentric[which, 0], eccentric[which, 4], eccentric[which, 5]
         if size == 0.0:
@@ -122,7 +124,7 @@ def eccentric_cycle(cycle: int, turned: FloatArray, eccentric: FloatArray, moved
         # Whole turns are taken off first: a million cycles lose no digit.
         angle = turns * (cycle % eccentric[which, 2]) + eccentric[which, 1]
         start_cosine, start_sine = size * math.cos(angle), size * math.sin(angle)
-        for s in range(moved.shape[0]):
+        for s in range(low, high):
             for node in range(moved.shape[1]):
                 turn, found = turned[s, node, which], moved[s, node]
                 cosine = start_cosine * turn[0] - start_sine * turn[1]
@@ -140,8 +142,10 @@ def eccentric_cycle(cycle: int, turned: FloatArray, eccentric: FloatArray, moved
 
 
 @inlined
-def contact_of_cycle(
+def contact_of_steps(
     cycle: int,
+    low: int,
+    high: int,
     fixed: bool,
     own: Tables,
     kind: IntArray,
@@ -150,14 +154,14 @@ def contact_of_cycle(
     flat: FloatArray,
     moved: FloatArray,
 ) -> None:
-    """Contact of a mesh cycle but for what the approach changes, at shifted places but in ``fixed`` windows.
+    """Contact of steps of a mesh cycle, from ``low`` to before ``high``, but for what the approach changes.
 
-    Written are ``kind`` (pairs,), ``errors`` (pairs, 6) as in ``Tables.pinion`` and ``gear``, ``k`` (steps,
-    nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 4), gap without corners, its slope over xi, c and mu,
-    and ``moved`` (steps, nodes, 8) of ``eccentric_cycle``.
+    It is at shifted places but in ``fixed`` windows. Written are ``kind`` (pairs,), ``errors`` (pairs, 6) as
+    in ``Tables.pinion`` and ``gear``, ``k`` (steps, nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 4),
+    gap without corners, its slope over xi, c and mu, and ``moved`` (steps, nodes, 8) of ``eccentric_steps``.
     """
     steps, nodes, pairs = own.place.shape
-    eccentric_cycle(cycle, own.turned, own.eccentric, moved[:steps])
+    eccentric_steps(cycle, low, high, own.turned, own.eccentric, moved)
     for i in range(pairs):
         number = cycle - own.ahead[i]
         p, g = (own.first[0] + number) % own.pinion.shape[0], (own.first[1] + number) % own.gear.shape[0]
@@ -165,8 +169,8 @@ def contact_of_cycle(
         for n in range(3):
             errors[i, n], errors[i, 3 + n] = own.pinion[p, n], own.gear[g, n]
     edges, pitch = own.edges, own.speed * own.duration
-    step = 0
-    for s in range(steps):
+    step = low
+    for s in range(low, high):
         for node in range(nodes):
             off = moved[s, node]
             at, near, whole, way = s, node, 0, off[7]
@@ -344,21 +348,23 @@ def settled(
 
 
 @partial(compiled, nogil=True)
-def static_places(start: int, fixed: bool, own: Tables, asked: FloatArray) -> FloatArray:
-    """Mesh about its static state, rows (n, 18 + 8 pairs); NaN where no approach carries the force.
+def static_places(
+    start: int, fixed: bool, own: Tables, asked: FloatArray, kinds: int
+) -> tuple[FloatArray, FloatArray]:
+    """Mesh about its static state, sums (n, 18) and ``kinds`` of numbers of each pair, (n, kinds, pairs).
 
     ``asked`` (n, 3) is cycles after ``start``, step, and place in it: 0 to 1, or -1 - j for the node j.
     ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
 
-    Columns are sums of N, mu N and mu N xi by delta, by delta', and without motion; de/dtheta of both gears;
-    what dampers take, by delta'^2, delta' and without motion; the force of tip corners that pushes the gears
-    apart, by delta, by delta' and without motion; the static approach [m]. Then come, each of all pairs, what
-    changes its sign at a kink: compression that presses [m], load less that of the full damper [N], ways of
-    the contact point beyond start and end of the line [m]; then static load [N] and the load of small
-    motions, rise delta + damper delta' + constant.
+    Sums are of N, mu N and mu N xi by delta, by delta', and without motion; de/dtheta of both gears; what
+    dampers take, by delta'^2, delta' and without motion; the force of tip corners that pushes the gears
+    apart, by delta, by delta' and without motion; the static approach [m], NaN where none carries the force.
+    Numbers are, the first 2, 4 or all 8, what changes its sign at a kink: compression that presses [m], load
+    less that of the full damper [N], ways of the contact point beyond start and end of the line [m]; then
+    static load [N] and the load of small motions, rise delta + damper delta' + constant.
     """
     steps, nodes, pairs = own.place.shape
-    rows = np.zeros((asked.shape[0], 18 + 8 * pairs))
+    rows, numbers = np.zeros((asked.shape[0], 18)), np.zeros((asked.shape[0], kinds, pairs))
     # Behind the last step the tables have room for a place between nodes.
     place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
     place[:steps], coupling[:steps] = own.place, own.coupling
@@ -366,13 +372,14 @@ def static_places(start: int, fixed: bool, own: Tables, asked: FloatArray) -> Fl
     kind, here = np.zeros(pairs, np.int64), np.zeros((MATRIX + pairs, pairs))
     errors = np.zeros((pairs, 6))
     k, flat = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
-    moved, static, now = np.zeros((steps + 1, nodes, 8)), 0.0, -1.0
+    moved, static, now = np.zeros((steps + 1, nodes, 8)), 0.0, -1
     single, share = constants[2] == 0.0 and not coupling.any(), np.ones(nodes)
+    known = np.full(steps, -1)  # cycle whose contact a step has
     for a in range(asked.shape[0]):
-        row, s, x = rows[a], int(asked[a, 1]), asked[a, 2]
-        if asked[a, 0] != now:
-            now = asked[a, 0]
-            contact_of_cycle(start + int(now), fixed, own, kind, errors, k, flat, moved)
+        row, of_pairs, s, x = rows[a], numbers[a], int(asked[a, 1]), asked[a, 2]
+        if asked[a, 0] != now or known[s] != now:
+            now = known[s] = int(asked[a, 0])
+            contact_of_steps(start + now, s, s + 1, fixed, own, kind, errors, k, flat, moved)
         at, node = s, int(-1.0 - x)
         if x > -0.5:
             at, node = steps, 0
@@ -401,13 +408,14 @@ def static_places(start: int, fixed: bool, own: Tables, asked: FloatArray) -> Fl
             static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
         row[9], row[10], row[17] = off[5], off[6], static
         for i in range(pairs):
-            if k_at[i] > 0.0 and not fixed:
-                of, beyond = ends[kind[i]], 0.5 * (static + constants[1])
-                row[18 + i], row[18 + pairs + i] = here[PRESSED, i], here[LOAD, i] - constants[4]
+            if kinds > 0 and k_at[i] > 0.0 and not fixed:
+                of_pairs[0, i], of_pairs[1, i] = here[PRESSED, i], here[LOAD, i] - constants[4]
                 for n in range(pairs):
-                    row[18 + i] -= w[i, n] * here[LOAD, n]
-                row[18 + 2 * pairs + i] = of[0] - xi[i] - off[7] + beyond + of[4] * off[3]
-                row[18 + 3 * pairs + i] = xi[i] + off[7] - of[1] + beyond + of[3] * off[4]
+                    of_pairs[0, i] -= w[i, n] * here[LOAD, n]
+                if kinds > 2:
+                    of, beyond = ends[kind[i]], 0.5 * (static + constants[1])
+                    of_pairs[2, i] = of[0] - xi[i] - off[7] + beyond + of[4] * off[3]
+                    of_pairs[3, i] = xi[i] + off[7] - of[1] + beyond + of[3] * off[4]
             if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
                 continue
             c_i, rise, load = gap[i, 2], k_at[i], -k_at[i] * gap[i, 0]
@@ -425,9 +433,11 @@ def static_places(start: int, fixed: bool, own: Tables, asked: FloatArray) -> Fl
                 row[3 * n + 1] += mu * value
                 row[3 * n + 2] += mu * value * arm
                 row[14 + n] += tilt * value
-                row[18 + (5 + n) * pairs + i] = value
-            row[18 + 4 * pairs + i] = here[LOAD, i]
+                if kinds > 4:
+                    of_pairs[5 + n, i] = value
+            if kinds > 4:
+                of_pairs[4, i] = here[LOAD, i]
             row[11] += c_i * closing**2
             row[12] -= 2.0 * c_i * closing * rolling
             row[13] += c_i * rolling**2
-    return rows
+    return rows, numbers

@@ -19,7 +19,8 @@ from lumped.model.steady import balanced_start, periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import OwnMotion, moments, static_mesh, swinging, without_drift
+from lumped.teeth.kernels import Tables
+from lumped.teeth.motion import OwnMotion, moments, static_loads, static_mesh, swinging, without_drift
 from lumped.teeth.motion_kernels import STAGES, linear_cycles
 from lumped.teeth.pairs import ripples
 from lumped.typing import FloatArray
@@ -73,8 +74,8 @@ class LinearForm:
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
 
     def mesh(self, block: tuple[int, int]) -> FloatArray:
-        """``sums`` of ``kernels.static_cycles`` at the stages of a block, (cycles, steps, s, 17)."""
-        return static_mesh(self.own, *block, self.fixed)[2]
+        """``static_mesh`` at the stages of a block, (cycles, steps, s, 18)."""
+        return static_mesh(self.own, *block, self.fixed)
 
     def along(self, first: int, columns: FloatArray, sums: FloatArray, keeps: bool) -> tuple[FloatArray, ...]:
         """``linear_cycles`` of a block that starts at the cycle ``first``."""
@@ -95,7 +96,7 @@ class LinearForm:
         units = np.zeros((1, 2 * fed + 3, self.width))
         units[0, : 2 * fed, :n], units[0, 2 * fed :, n : n + 3] = back.T, np.eye(3)
         others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
-        nothing = np.zeros((1, self.lengths.size, STAGES, 17))
+        nothing = np.zeros((1, self.lengths.size, STAGES, 18))
         still = self.along(0, others[None], nothing, False)[0][0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
@@ -130,13 +131,10 @@ def linear_motion(
     cycles, weights = _closed(form, mesh)
     other = states_along(coarse.cycle_maps(), cycles[0], weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
-    states, powers = _inside(form, mesh, cycles, weights)
+    outer = swinging(tables(form.laws, 1.0, samples), system)
+    states, load, powers = _inside(form, outer, mesh, cycles, weights)
     time = np.arange(states.shape[0]) / samples * system.period
     states = without_drift(system, time, states, 0.0)
-    outer = swinging(tables(form.laws, 1.0, samples), system)
-    each = static_mesh(outer, 0, outer.period, form.fixed)[1][..., np.flatnonzero(outer.outputs)]
-    _, rise, damper, constant = each.reshape(4, outer.ahead.size, -1)
-    load = rise * (states[:, :m] @ dte) + damper * (states[:, m:] @ dte) + constant
     g, torque, brake = pair.geometry, system.pinion_torque + float(weights[1]), float(weights[2])
     # The first law gives what slides.
     lost = powers["tooth_dampers"] + powers["supports"] - powers["rolling"]
@@ -165,15 +163,15 @@ def _closed(form: LinearForm, mesh: dict[int, FloatArray]) -> tuple[FloatArray, 
 
 
 def _inside(
-    form: LinearForm, mesh: dict[int, FloatArray], cycles: FloatArray, weights: FloatArray
-) -> tuple[FloatArray, dict[str, float]]:
-    """States at the outputs, and mean powers that the motion inside the steps tells [W]."""
-    system, own = form.system, form.own
+    form: LinearForm, outer: Tables, mesh: dict[int, FloatArray], cycles: FloatArray, weights: FloatArray
+) -> tuple[FloatArray, FloatArray, dict[str, float]]:
+    """States and loads (pairs, k) at the outputs, and mean powers that the motion inside steps tells [W]."""
+    system, own, dte, kept = form.system, form.own, form.system.deflection, outer.outputs == 1
     m, gears, b = len(system.coordinates), system.gears, gauss_tableau(STAGES)[1]
     rates = np.vstack([gears[:2], gears[5] - gears[4]])
     g = form.pair.geometry
 
-    def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
+    def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray, FloatArray]:
         first, count = block
         sums = mesh[first]
         start = np.zeros((count, 1, form.width))
@@ -199,10 +197,13 @@ def _inside(
             float((((load * (closing - late) - corners) @ b) @ form.lengths).sum()),
             0.5 * float(lengths @ (outside[1:] + outside[:-1])),
         ]
-        return states[:, own.outputs == 1].reshape(-1, 2 * m), np.array(work)
+        at = states[:, own.outputs == 1]
+        rise, damper, constant = static_loads(outer, first, count, form.fixed)[1][1:, ..., kept]
+        carried = rise * (at[..., :m] @ dte) + damper * (at[..., m:] @ dte) + constant
+        return at.reshape(-1, 2 * m), carried.reshape(len(carried), -1), np.array(work)
 
-    outputs, work = zip(*in_threads(block_of, form.cycles), strict=True)
+    outputs, loads, work = zip(*in_threads(block_of, form.cycles), strict=True)
     duration = own.period * system.period
     dampers, moved, supports = (float(value) for value in np.sum(work, axis=0) / duration)
     powers = {"tooth_dampers": dampers, "supports": supports, "rolling": dampers - moved}
-    return np.concatenate(outputs), powers
+    return np.concatenate(outputs), np.concatenate(loads, axis=1), powers

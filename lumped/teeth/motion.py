@@ -123,10 +123,11 @@ class OwnMotion:
         place, when = np.nonzero(touches)
         place = np.clip(place - pitches[when].astype(np.int64), 0, own.ahead.size - 1)
         kind, way = own.kinds[self.teeth][touches], ((phase - own.edges[at]) * pitch)[when]
-        found = np.zeros((4, *touches.shape))
-        for n, law in enumerate((own.stiffness, own.damping, own.gap, own.friction[None])):
-            here = law[kind if n < 3 else 0, at[when], 0, place]
-            found[n, touches] = here + own.slopes[kind, at[when], 0, place, n] * way
+        index = np.ravel_multi_index((kind, at[when], place), own.stiffness[:, :, 0].shape)
+        found, slopes = np.zeros((4, *touches.shape)), own.slopes[:, :, 0].reshape(-1, 4)[index].T
+        friction = np.broadcast_to(own.friction, own.stiffness.shape)
+        for n, law in enumerate((own.stiffness, own.damping, own.gap, friction)):
+            found[n, touches] = law[:, :, 0].ravel()[index] + slopes[n] * way
         k, c, gap, mu = found
         return PairState(own.place[step, 0].T + moved, touches, k, c, mu, gap, np.zeros(gap.shape))
 
@@ -311,48 +312,53 @@ def _settling(radius: float) -> int:
     return found
 
 
-def static_rows(own: Tables, start: int, fixed: bool, *where: ArrayLike) -> FloatArray:
+def static_rows(
+    own: Tables, start: int, fixed: bool, kinds: int, *where: ArrayLike
+) -> tuple[FloatArray, FloatArray]:
     """``kernels.static_places`` of cycles, steps and places that go together, or an error."""
     asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
-    flat = asked.reshape(-1, 3)
-    order = np.argsort(flat[:, 0], kind="stable")
-    found = kernels.static_places(start, fixed, own, flat[order])
-    if not np.isfinite(found).all():
+    sums, numbers = kernels.static_places(start, fixed, own, asked.reshape(-1, 3), kinds)
+    if not np.isfinite(sums[:, 17]).all():
         raise NumericalError(
             "At some position no tooth pair can carry the load: check stiffness and deviations."
         )
-    rows = np.empty_like(found)
-    rows[order] = found
-    return rows.reshape(*asked.shape[:-1], -1)
+    shape = asked.shape[:-1]
+    return sums.reshape(*shape, 18), numbers.reshape(*shape, *numbers.shape[1:])
 
 
-def static_mesh(
-    own: Tables, start: int, cycles: int, fixed: bool = False
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Mesh of consecutive cycles about its static state, by the columns of ``kernels.static_places``.
+def static_mesh(own: Tables, start: int, cycles: int, fixed: bool = False) -> FloatArray:
+    """Sums (cycles, steps, nodes, 18) of consecutive cycles, see ``kernels.static_places``.
 
-    Returned are the static approach (cycles, steps, nodes) [m]; (4, pairs, cycles, steps) of every place at
-    the first node of each step, static load and load of small motions; and (cycles, steps, nodes, 17) sums,
-    which in a step in which a pair touches or leaves have the moments of what they are there.
+    In a step in which a pair touches or leaves they have the moments of what they are there.
     """
-    steps, nodes, pairs = own.place.shape
-    at = -1.0 - np.arange(nodes)
-    rows = static_rows(own, start, fixed, np.arange(cycles)[:, None, None], np.arange(steps)[:, None], at)
-    each = rows[:, :, 0, 18 + 4 * pairs :].reshape(cycles, steps, 4, pairs).transpose(2, 3, 0, 1)
-    sums = rows[..., :17].copy()
-    if nodes > 1 and not fixed:
-        phases = kinks(own, start, own.nodes, rows, 2, _FEW_ROUNDS)
-        _match_moments(own, start, phases, sums.reshape(-1, nodes, 17))
-    return rows[..., 17], each, sums
+    steps, nodes, _ = own.place.shape
+    where = np.arange(cycles)[:, None, None], np.arange(steps)[:, None], -1.0 - np.arange(nodes)
+    sums, numbers = static_rows(own, start, fixed, 0 if fixed else 2, *where)
+    if not fixed:
+        phases = kinks(own, start, own.nodes, numbers, _FEW_ROUNDS)
+        _match_moments(own, start, phases, sums.reshape(-1, nodes, 18))
+    return sums
 
 
-def kinks(own: Tables, start: int, x: FloatArray, rows: FloatArray, kinds: int, rounds: int) -> FloatArray:
-    """Phases, by mesh cycles from ``start``, at which ``kinds`` of columns of ``rows`` change their sign.
+def static_loads(own: Tables, start: int, cycles: int, fixed: bool = False) -> tuple[FloatArray, FloatArray]:
+    """Static approach (cycles, steps) [m] at the starts of steps, and (4, pairs, cycles, steps) of each pair.
 
-    ``rows`` (cycles, steps, k, ...) are at the places ``x`` (k,) of all steps; ``rounds`` of Illinois' rule.
+    Those are static load and load of small motions, see ``kernels.static_places``.
     """
+    where = np.arange(cycles)[:, None], np.arange(own.place.shape[0]), -1.0
+    sums, numbers = static_rows(own, start, fixed, 8, *where)
+    return sums[..., 17], numbers[..., 4:, :].transpose(2, 3, 0, 1)
+
+
+def kinks(own: Tables, start: int, x: FloatArray, numbers: FloatArray, rounds: int) -> FloatArray:
+    """Phases, by mesh cycles from ``start``, at which ``numbers`` of ``static_rows`` change their sign.
+
+    They (cycles, steps, k, kinds, pairs) are at the places ``x`` (k,) of all steps; ``rounds`` of Illinois'
+    rule.
+    """
+    kinds = numbers.shape[3]
     tau = (own.edges[:-1, None] + np.diff(own.edges)[:, None] * x).ravel()
-    values = rows[..., 18 : 18 + kinds * own.ahead.size].reshape(rows.shape[0], tau.size, -1)
+    values = numbers.reshape(numbers.shape[0], tau.size, -1)
     cycle, look, which = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
     both = np.stack([look, look + 1])
     ends, at = tau[both], values[cycle, both, which]
@@ -362,7 +368,9 @@ def kinks(own: Tables, start: int, x: FloatArray, rows: FloatArray, kinds: int, 
         if left == 0:
             return np.asarray(cycle + found)
         step, place = placed(own, found)
-        value = static_rows(own, start, False, cycle, step, place)[each, 18 + which]
+        value = static_rows(own, start, False, kinds, cycle, step, place)[1].reshape(each.size, -1)[
+            each, which
+        ]
         side = np.where(np.signbit(value) == np.signbit(at[0]), 0, 1)
         at[1 - side, each] *= np.where(side == last, 0.5, 1.0)
         ends[side, each], at[side, each], last = found, value, side
@@ -376,7 +384,7 @@ def placed(own: Tables, tau: FloatArray, middle: FloatArray | None = None) -> tu
 
 
 def _match_moments(own: Tables, start: int, phases: FloatArray, sums: FloatArray) -> None:
-    """Sums (all steps, nodes, 17) of steps with kinks, by the rule on both sides: "The linear form"."""
+    """Sums (all steps, nodes, 18) of steps with kinks, by the rule on both sides: "The linear form"."""
     cycle = np.floor(phases)
     step, place = placed(own, phases - cycle)
     steps, index = own.edges.size - 1, cycle * (own.edges.size - 1) + step
@@ -386,11 +394,12 @@ def _match_moments(own: Tables, start: int, phases: FloatArray, sums: FloatArray
     kept = np.isin(of, broken)
     of, low, length = of[kept].astype(np.int64), ends[:-1][kept], np.diff(ends)[kept]
     x = (low - of)[:, None] + length[:, None] * own.nodes
-    rows = static_rows(own, start, False, (of // steps)[:, None], (of % steps)[:, None], x)[..., :17]
+    rows = static_rows(own, start, False, 0, (of // steps)[:, None], (of % steps)[:, None], x)[0]
     share = np.vander(x.ravel(), own.nodes.size) @ np.linalg.inv(np.vander(own.nodes))
     weights = length[:, None, None] * own.weights[:, None] * share.reshape(*x.shape, -1) / own.weights
     sums[broken.astype(np.int64)] = 0.0
-    np.add.at(sums, of, weights.swapaxes(1, 2) @ rows)
+    moments = weights.swapaxes(1, 2) @ rows
+    sums[np.unique(of)] = np.add.reduceat(moments, np.unique(of, return_index=True)[1], axis=0)
 
 
 def default_samples(period: int) -> int:

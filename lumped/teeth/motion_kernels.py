@@ -22,7 +22,7 @@ from lumped.teeth.kernels import (
     MATRIX,
     TILT,
     Tables,
-    contact_of_cycle,
+    contact_of_steps,
     loads_at,
 )
 from lumped.typing import FloatArray, IntArray
@@ -79,7 +79,7 @@ def motion_cycles(
     for c in range(cycles):
         cycle = start + c
         keeps = c >= cycles - recorded
-        contact_of_cycle(cycle, not corners, own, kind, errors, k, flat, moves)
+        contact_of_steps(cycle, 0, steps, not corners, own, kind, errors, k, flat, moves)
         for s in range(steps):
             h = (edges[s + 1] - edges[s]) * own.duration
             w = coupling[s if coupling.shape[0] > 1 else 0]
@@ -190,7 +190,7 @@ def linear_cycles(
     """Gauss steps of the linear form through mesh cycles from ``first`` on, each from its own start.
 
     ``columns`` (cycles, count, 2m + forcings) are states at the starts before the weights of the forcings,
-    ``sums`` those of ``static_cycles``, ``which`` (steps,) the length of each step, a row of the next four:
+    ``sums`` those of ``static_mesh``, ``which`` (steps,) the length of each step, a row of the next four:
     ``free`` (k, 2m + forcings, STAGES + 2m) p and end of ``lumped.model.propagation.without_mesh`` side by
     side, ``by_force`` (k, s, FORCES, STAGES + 2m) its by_feedback along the directions of ``FORCES``, its
     by_p, and ``reach`` (k, s) the time to each stage [s]; ``ripple`` as in ``motion_cycles``. Returned are

@@ -13,7 +13,7 @@ from lumped.arguments import whole_number
 from lumped.labelling import labelled_dataset
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import default_samples, static_mesh
+from lumped.teeth.motion import default_samples, static_loads
 from lumped.teeth.pairs import numbers, period_of
 
 if TYPE_CHECKING:
@@ -47,8 +47,8 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     count = default_samples(period) if samples_per_cycle is None else samples_per_cycle
     count = whole_number("samples_per_cycle", count, 1, 65536)
     own = tables(laws, 1.0, count)
-    approach, each, _ = static_mesh(own, 0, period)
-    approach, loads = approach[..., 0], each[0]
+    approach, each = static_loads(own, 0, period)
+    loads = each[0]
     kept = np.flatnonzero(own.outputs)
     places = own.ahead.size
     load = loads[:, :, kept].reshape(places, -1)
