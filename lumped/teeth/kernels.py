@@ -349,9 +349,9 @@ def settled(
 
 @partial(compiled, nogil=True)
 def static_places(
-    start: int, fixed: bool, own: Tables, asked: FloatArray, kinds: int
-) -> tuple[FloatArray, FloatArray]:
-    """Mesh about its static state, sums (n, 18) and ``kinds`` of numbers of each pair, (n, kinds, pairs).
+    start: int, fixed: bool, own: Tables, asked: FloatArray, sums: FloatArray, numbers: FloatArray
+) -> None:
+    """Mesh about its static state, into ``sums`` (n, 18) and, zero before, ``numbers`` (n, kinds, pairs).
 
     ``asked`` (n, 3) is cycles after ``start``, step, and place in it: 0 to 1, or -1 - j for the node j.
     ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
@@ -359,12 +359,12 @@ def static_places(
     Sums are of N, mu N and mu N xi by delta, by delta', and without motion; de/dtheta of both gears; what
     dampers take, by delta'^2, delta' and without motion; the force of tip corners that pushes the gears
     apart, by delta, by delta' and without motion; the static approach [m], NaN where none carries the force.
-    Numbers are, the first 2, 4 or all 8, what changes its sign at a kink: compression that presses [m], load
-    less that of the full damper [N], ways of the contact point beyond start and end of the line [m]; then
-    static load [N] and the load of small motions, rise delta + damper delta' + constant.
+    Numbers of each pair are, none, the first 2, 4 or all 8, what changes its sign at a kink: compression that
+    presses [m], load less that of the full damper [N], ways of the contact point beyond start and end of the
+    line [m]; then static load [N] and the load of small motions, rise delta + damper delta' + constant.
     """
     steps, nodes, pairs = own.place.shape
-    rows, numbers = np.zeros((asked.shape[0], 18)), np.zeros((asked.shape[0], kinds, pairs))
+    kinds = numbers.shape[1]
     # Behind the last step the tables have room for a place between nodes.
     place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
     place[:steps], coupling[:steps] = own.place, own.coupling
@@ -376,7 +376,7 @@ def static_places(
     single, share = constants[2] == 0.0 and not coupling.any(), np.ones(nodes)
     known = np.full(steps, -1)  # cycle whose contact a step has
     for a in range(asked.shape[0]):
-        row, of_pairs, s, x = rows[a], numbers[a], int(asked[a, 1]), asked[a, 2]
+        row, of_pairs, s, x = sums[a], numbers[a], int(asked[a, 1]), asked[a, 2]
         if asked[a, 0] != now or known[s] != now:
             now = known[s] = int(asked[a, 0])
             contact_of_steps(start + now, s, s + 1, fixed, own, kind, errors, k, flat, moved)
@@ -406,6 +406,7 @@ def static_places(
         if not fixed:
             guess = 0.0 if math.isnan(static) else static
             static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
+        row[:] = 0.0
         row[9], row[10], row[17] = off[5], off[6], static
         for i in range(pairs):
             if kinds > 0 and k_at[i] > 0.0 and not fixed:
@@ -440,4 +441,3 @@ def static_places(
             row[11] += c_i * closing**2
             row[12] -= 2.0 * c_i * closing * rolling
             row[13] += c_i * rolling**2
-    return rows, numbers

@@ -72,10 +72,8 @@ class LinearForm:
         self.width = end.shape[2]
         count = self.own.period if most is None else min(most, self.own.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
-
-    def mesh(self, block: tuple[int, int]) -> FloatArray:
-        """``static_mesh`` at the stages of a block, (cycles, steps, s, 18)."""
-        return static_mesh(self.own, *block, self.fixed)
+        #: Of ``static_mesh`` at the stages; one large array, for the system gives many small ones slowly.
+        self.sums = np.empty((count, self.lengths.size, STAGES, 18))
 
     def along(self, first: int, columns: FloatArray, sums: FloatArray, keeps: bool) -> tuple[FloatArray, ...]:
         """``linear_cycles`` of a block that starts at the cycle ``first``."""
@@ -83,8 +81,8 @@ class LinearForm:
         ripple = ripples(self.pair)
         return linear_cycles(first, columns, keeps, sums, *self.steps, deflection, ripple, self.own)
 
-    def cycle_maps(self, kept: dict[int, FloatArray] | None = None) -> FloatArray:
-        """Affine map of each mesh cycle, (cycles, n, n + 3); ``kept`` takes ``mesh`` of each block.
+    def cycle_maps(self) -> FloatArray:
+        """Affine map of each mesh cycle, (cycles, n, n + 3); fills ``sums``.
 
         States that move no tooth, of which all cycles make the same, are followed once.
         """
@@ -100,10 +98,10 @@ class LinearForm:
         still = self.along(0, others[None], nothing, False)[0][0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
-            sums = self.mesh(block)
-            if kept is not None:
-                kept[block[0]] = sums
-            ends = self.along(block[0], np.tile(units, (block[1], 1, 1)), sums, False)[0].swapaxes(1, 2)
+            first, count = block
+            sums = self.sums[first : first + count]
+            static_mesh(self.own, first, sums, self.fixed)
+            ends = self.along(first, np.tile(units, (count, 1, 1)), sums, False)[0].swapaxes(1, 2)
             return np.concatenate([ends[..., : 2 * fed] @ to + still, ends[..., 2 * fed :]], axis=2)
 
         return np.concatenate(in_threads(maps, self.cycles))
@@ -127,12 +125,11 @@ def linear_motion(
     m, dte, relative = len(system.coordinates), system.deflection, system.supports.relative
     coarse = LinearForm(pair, system, 1, -(-steps // 2), _BLOCK)
     form = LinearForm(pair, system, samples, steps)
-    mesh: dict[int, FloatArray] = {}
-    cycles, weights = _closed(form, mesh)
+    cycles, weights = _closed(form)
     other = states_along(coarse.cycle_maps(), cycles[0], weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
     outer = swinging(tables(form.laws, 1.0, samples), system)
-    states, load, powers = _inside(form, outer, mesh, cycles, weights)
+    states, load, powers = _inside(form, outer, cycles, weights)
     time = np.arange(states.shape[0]) / samples * system.period
     states = without_drift(system, time, states, 0.0)
     g, torque, brake = pair.geometry, system.pinion_torque + float(weights[1]), float(weights[2])
@@ -148,10 +145,10 @@ def linear_motion(
     )
 
 
-def _closed(form: LinearForm, mesh: dict[int, FloatArray]) -> tuple[FloatArray, FloatArray]:
+def _closed(form: LinearForm) -> tuple[FloatArray, FloatArray]:
     """States at the starts of the cycles, (cycles + 1, n), and weights of the forcings, by the own maps."""
     system, support = form.system, form.system.supports
-    maps = form.cycle_maps(mesh)
+    maps = form.cycle_maps()
     whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
     if not np.isfinite(whole).all():
         raise NumericalError("The motion grows beyond all numbers: take smaller deviations or more damping.")
@@ -163,7 +160,7 @@ def _closed(form: LinearForm, mesh: dict[int, FloatArray]) -> tuple[FloatArray, 
 
 
 def _inside(
-    form: LinearForm, outer: Tables, mesh: dict[int, FloatArray], cycles: FloatArray, weights: FloatArray
+    form: LinearForm, outer: Tables, cycles: FloatArray, weights: FloatArray
 ) -> tuple[FloatArray, FloatArray, dict[str, float]]:
     """States and loads (pairs, k) at the outputs, and mean powers that the motion inside steps tells [W]."""
     system, own, dte, kept = form.system, form.own, form.system.deflection, outer.outputs == 1
@@ -173,7 +170,7 @@ def _inside(
 
     def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray, FloatArray]:
         first, count = block
-        sums = mesh[first]
+        sums = form.sums[first : first + count]
         start = np.zeros((count, 1, form.width))
         start[:, 0, : 2 * m], start[:, 0, 2 * m : 2 * m + weights.size] = (
             cycles[first : first + count],

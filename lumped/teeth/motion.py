@@ -313,31 +313,35 @@ def _settling(radius: float) -> int:
 
 
 def static_rows(
-    own: Tables, start: int, fixed: bool, kinds: int, *where: ArrayLike
+    own: Tables, start: int, fixed: bool, kinds: int, *where: ArrayLike, sums: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """``kernels.static_places`` of cycles, steps and places that go together, or an error."""
+    """``kernels.static_places`` of cycles, steps and places that go together, or an error.
+
+    Returned are ``sums`` (..., 18), filled where given, and numbers (..., kinds, pairs).
+    """
     asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
-    sums, numbers = kernels.static_places(start, fixed, own, asked.reshape(-1, 3), kinds)
-    if not np.isfinite(sums[:, 17]).all():
+    shape, asked = asked.shape[:-1], asked.reshape(-1, 3)
+    sums = np.empty((*shape, 18)) if sums is None else sums
+    numbers = np.zeros((len(asked), kinds, own.ahead.size))
+    kernels.static_places(start, fixed, own, asked, sums.reshape(-1, 18), numbers)
+    if not np.isfinite(sums[..., 17]).all():
         raise NumericalError(
             "At some position no tooth pair can carry the load: check stiffness and deviations."
         )
-    shape = asked.shape[:-1]
-    return sums.reshape(*shape, 18), numbers.reshape(*shape, *numbers.shape[1:])
+    return sums, numbers.reshape(*shape, *numbers.shape[1:])
 
 
-def static_mesh(own: Tables, start: int, cycles: int, fixed: bool = False) -> FloatArray:
-    """Sums (cycles, steps, nodes, 18) of consecutive cycles, see ``kernels.static_places``.
+def static_mesh(own: Tables, start: int, sums: FloatArray, fixed: bool = False) -> None:
+    """Fill ``sums`` (cycles, steps, nodes, 18) of consecutive cycles, see ``kernels.static_places``.
 
     In a step in which a pair touches or leaves they have the moments of what they are there.
     """
-    steps, nodes, _ = own.place.shape
+    cycles, steps, nodes, _ = sums.shape
     where = np.arange(cycles)[:, None, None], np.arange(steps)[:, None], -1.0 - np.arange(nodes)
-    sums, numbers = static_rows(own, start, fixed, 0 if fixed else 2, *where)
+    numbers = static_rows(own, start, fixed, 0 if fixed else 2, *where, sums=sums)[1]
     if not fixed:
         phases = kinks(own, start, own.nodes, numbers, _FEW_ROUNDS)
         _match_moments(own, start, phases, sums.reshape(-1, nodes, 18))
-    return sums
 
 
 def static_loads(own: Tables, start: int, cycles: int, fixed: bool = False) -> tuple[FloatArray, FloatArray]:
