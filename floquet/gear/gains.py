@@ -23,7 +23,8 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import PathFunction
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.kernels import Tables
-from lumped.teeth.motion import kinks, moments, placed, static_rows
+from lumped.teeth.motion import moments, placed, static_rows
+from lumped.teeth.static_kernels import static_cycles
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -340,9 +341,8 @@ class OwnGains:
         starts = np.add.outer(np.arange(cycles), own.edges[:-1])
         found = np.append(starts, cycles)
         if not fixed:
-            steps = np.arange(starts.shape[1])[:, None]
-            numbers = static_rows(own, first, False, 4, np.arange(cycles)[:, None, None], steps, _LOOKS)[1]
-            found = np.append(found, kinks(own, first, _LOOKS, numbers, _ROUNDS))
+            kinks = static_cycles(first, own, _LOOKS, 4, _ROUNDS, np.empty((*starts.shape, 0, 18)))
+            found = np.append(found, kinks)
         self.edges = np.unique(found)
 
     def __call__(

@@ -10,8 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from lumped.compiler import Compiler
 from lumped.quasi_static import kernels as quasi_static
 from lumped.quasi_static.kernels import corner_at
@@ -345,99 +343,3 @@ def settled(
             return delta
         delta = following
     return math.nan
-
-
-@partial(compiled, nogil=True)
-def static_places(
-    start: int, fixed: bool, own: Tables, asked: FloatArray, sums: FloatArray, numbers: FloatArray
-) -> None:
-    """Mesh about its static state, into ``sums`` (n, 18) and, zero before, ``numbers`` (n, kinds, pairs).
-
-    ``asked`` (n, 3) is cycles after ``start``, step, and place in it: 0 to 1, or -1 - j for the node j.
-    ``fixed`` ties the teeth in the windows of the tables, N = k (delta - e) + c (delta' - e').
-
-    Sums are of N, mu N and mu N xi by delta, by delta', and without motion; de/dtheta of both gears; what
-    dampers take, by delta'^2, delta' and without motion; the force of tip corners that pushes the gears
-    apart, by delta, by delta' and without motion; the static approach [m], NaN where none carries the force.
-    Numbers of each pair are, none, the first 2, 4 or all 8, what changes its sign at a kink: compression that
-    presses [m], load less that of the full damper [N], ways of the contact point beyond start and end of the
-    line [m]; then static load [N] and the load of small motions, rise delta + damper delta' + constant.
-    """
-    steps, nodes, pairs = own.place.shape
-    kinds = numbers.shape[1]
-    # Behind the last step the tables have room for a place between nodes.
-    place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
-    place[:steps], coupling[:steps] = own.place, own.coupling
-    ends, constants, speed, duration = own.ends, own.constants, own.speed, own.duration
-    kind, here = np.zeros(pairs, np.int64), np.zeros((MATRIX + pairs, pairs))
-    errors = np.zeros((pairs, 6))
-    k, flat = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
-    moved, static, now = np.zeros((steps + 1, nodes, 8)), 0.0, -1
-    single, share = constants[2] == 0.0 and not coupling.any(), np.ones(nodes)
-    known = np.full(steps, -1)  # cycle whose contact a step has
-    for a in range(asked.shape[0]):
-        row, of_pairs, s, x = sums[a], numbers[a], int(asked[a, 1]), asked[a, 2]
-        if asked[a, 0] != now or known[s] != now:
-            now = known[s] = int(asked[a, 0])
-            contact_of_steps(start + now, s, s + 1, fixed, own, kind, errors, k, flat, moved)
-        at, node = s, int(-1.0 - x)
-        if x > -0.5:
-            at, node = steps, 0
-            place[at, 0], coupling[at, 0] = 0.0, 0.0
-            k[at, 0], flat[at, 0], moved[at, 0] = 0.0, 0.0, 0.0
-            for j in range(nodes):
-                share[j] = below = 1.0
-                for other in range(nodes):
-                    if other != j:
-                        share[j] *= x - own.nodes[other]
-                        below *= own.nodes[j] - own.nodes[other]
-                share[j] /= below
-                for n in range(8):
-                    moved[at, 0, n] += share[j] * moved[s, j, n]
-                for i in range(pairs):
-                    k[at, 0, i] += share[j] * k[s, j, i]
-                    place[at, 0, i] += share[j] * place[s, j, i]
-                    for n in range(4):
-                        flat[at, 0, i, n] += share[j] * flat[s, j, i, n]
-                    for n in range(pairs):
-                        coupling[at, 0, i, n] += share[j] * coupling[s, j, i, n]
-        k_at, gap, off = k[at, node], flat[at, node], moved[at, node]
-        xi, w = place[at, node], coupling[at, node]
-        if not fixed:
-            guess = 0.0 if math.isnan(static) else static
-            static = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
-        row[:] = 0.0
-        row[9], row[10], row[17] = off[5], off[6], static
-        for i in range(pairs):
-            if kinds > 0 and k_at[i] > 0.0 and not fixed:
-                of_pairs[0, i], of_pairs[1, i] = here[PRESSED, i], here[LOAD, i] - constants[4]
-                for n in range(pairs):
-                    of_pairs[0, i] -= w[i, n] * here[LOAD, n]
-                if kinds > 2:
-                    of, beyond = ends[kind[i]], 0.5 * (static + constants[1])
-                    of_pairs[2, i] = of[0] - xi[i] - off[7] + beyond + of[4] * off[3]
-                    of_pairs[3, i] = xi[i] + off[7] - of[1] + beyond + of[3] * off[4]
-            if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
-                continue
-            c_i, rise, load = gap[i, 2], k_at[i], -k_at[i] * gap[i, 0]
-            closing, slope, tilt = 1.0, gap[i, 1], 0.0
-            if not fixed:
-                part = min(here[LOAD, i] / constants[4], 1.0)
-                c_i *= part * part * (3.0 - 2.0 * part)
-                rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
-                closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
-            rolling = slope * speed + off[1] / duration
-            load -= c_i * rolling
-            mu, arm = gap[i, 3], xi[i] + (0.0 if fixed else off[7])
-            for n, value in ((0, rise), (1, c_i * closing), (2, load)):
-                row[3 * n] += value
-                row[3 * n + 1] += mu * value
-                row[3 * n + 2] += mu * value * arm
-                row[14 + n] += tilt * value
-                if kinds > 4:
-                    of_pairs[5 + n, i] = value
-            if kinds > 4:
-                of_pairs[4, i] = here[LOAD, i]
-            row[11] += c_i * closing**2
-            row[12] -= 2.0 * c_i * closing * rolling
-            row[13] += c_i * rolling**2

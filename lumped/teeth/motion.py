@@ -27,6 +27,7 @@ from lumped.teeth.contact import Laws, tables
 from lumped.teeth.kernels import Tables
 from lumped.teeth.motion_kernels import motion_cycles
 from lumped.teeth.pairs import numbers, ripples
+from lumped.teeth.static_kernels import static_cycles, static_places
 from lumped.typing import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -313,97 +314,51 @@ def _settling(radius: float) -> int:
 
 
 def static_rows(
-    own: Tables, start: int, fixed: bool, kinds: int, *where: ArrayLike, sums: FloatArray | None = None
+    own: Tables, start: int, fixed: bool, kinds: int, *where: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """``kernels.static_places`` of cycles, steps and places that go together, or an error.
-
-    Returned are ``sums`` (..., 18), filled where given, and numbers (..., kinds, pairs).
-    """
+    """``static_places`` of cycles, steps and places that go together, (..., 18) and (..., kinds, pairs)."""
     asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
     shape, asked = asked.shape[:-1], asked.reshape(-1, 3)
-    sums = np.empty((*shape, 18)) if sums is None else sums
-    numbers = np.zeros((len(asked), kinds, own.ahead.size))
-    kernels.static_places(start, fixed, own, asked, sums.reshape(-1, 18), numbers)
-    if not np.isfinite(sums[..., 17]).all():
+    sums, numbers = np.empty((len(asked), 18)), np.empty((len(asked), kinds, own.ahead.size))
+    static_places(start, fixed, own, asked, sums, numbers)
+    _all_carried(sums)
+    return sums.reshape(*shape, 18), numbers.reshape(*shape, *numbers.shape[1:])
+
+
+def _all_carried(values: FloatArray) -> None:
+    """Refuse NaN."""
+    if not np.isfinite(values).all():
         raise NumericalError(
             "At some position no tooth pair can carry the load: check stiffness and deviations."
         )
-    return sums, numbers.reshape(*shape, *numbers.shape[1:])
 
 
 def static_mesh(own: Tables, start: int, sums: FloatArray, fixed: bool = False) -> None:
-    """Fill ``sums`` (cycles, steps, nodes, 18) of consecutive cycles, see ``kernels.static_places``.
-
-    In a step in which a pair touches or leaves they have the moments of what they are there.
-    """
+    """Fill ``sums`` (cycles, steps, nodes, 18) of consecutive cycles, see ``static_cycles``."""
     cycles, steps, nodes, _ = sums.shape
-    where = np.arange(cycles)[:, None, None], np.arange(steps)[:, None], -1.0 - np.arange(nodes)
-    numbers = static_rows(own, start, fixed, 0 if fixed else 2, *where, sums=sums)[1]
-    if not fixed:
-        phases = kinks(own, start, own.nodes, numbers, _FEW_ROUNDS)
-        _match_moments(own, start, phases, sums.reshape(-1, nodes, 18))
+    looks = -1.0 - np.arange(nodes, dtype=np.float64)
+    if fixed:
+        where = np.arange(cycles)[:, None, None], np.arange(steps)[:, None], looks
+        sums[:] = static_rows(own, start, True, 0, *where)[0]
+    else:
+        static_cycles(start, own, looks, 2, _FEW_ROUNDS, sums)
+        _all_carried(sums[..., 17])
 
 
 def static_loads(own: Tables, start: int, cycles: int, fixed: bool = False) -> tuple[FloatArray, FloatArray]:
     """Static approach (cycles, steps) [m] at the starts of steps, and (4, pairs, cycles, steps) of each pair.
 
-    Those are static load and load of small motions, see ``kernels.static_places``.
+    Those are static load and load of small motions, see ``static_places``.
     """
     where = np.arange(cycles)[:, None], np.arange(own.place.shape[0]), -1.0
     sums, numbers = static_rows(own, start, fixed, 8, *where)
     return sums[..., 17], numbers[..., 4:, :].transpose(2, 3, 0, 1)
 
 
-def kinks(own: Tables, start: int, x: FloatArray, numbers: FloatArray, rounds: int) -> FloatArray:
-    """Phases, by mesh cycles from ``start``, at which ``numbers`` of ``static_rows`` change their sign.
-
-    They (cycles, steps, k, kinds, pairs) are at the places ``x`` (k,) of all steps; ``rounds`` of Illinois'
-    rule.
-    """
-    kinds = numbers.shape[3]
-    tau = (own.edges[:-1, None] + np.diff(own.edges)[:, None] * x).ravel()
-    values = numbers.reshape(numbers.shape[0], tau.size, -1)
-    cycle, look, which = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
-    both = np.stack([look, look + 1])
-    ends, at = tau[both], values[cycle, both, which]
-    each, last = np.arange(cycle.size), np.full(cycle.size, -1)
-    for left in range(rounds if cycle.size else -1, -1, -1):
-        found = (ends[0] * at[1] - ends[1] * at[0]) / (at[1] - at[0])
-        if left == 0:
-            return np.asarray(cycle + found)
-        step, place = placed(own, found)
-        value = static_rows(own, start, False, kinds, cycle, step, place)[1].reshape(each.size, -1)[
-            each, which
-        ]
-        side = np.where(np.signbit(value) == np.signbit(at[0]), 0, 1)
-        at[1 - side, each] *= np.where(side == last, 0.5, 1.0)
-        ends[side, each], at[side, each], last = found, value, side
-    return np.empty(0)
-
-
 def placed(own: Tables, tau: FloatArray, middle: FloatArray | None = None) -> tuple[IntArray, FloatArray]:
     """Steps and places in them of phases of a cycle, those of steps that hold ``middle``."""
     step = np.searchsorted(own.edges[1:-1], tau if middle is None else middle, side="right")
     return step, (tau - own.edges[step]) / np.diff(own.edges)[step]
-
-
-def _match_moments(own: Tables, start: int, phases: FloatArray, sums: FloatArray) -> None:
-    """Sums (all steps, nodes, 18) of steps with kinks, by the rule on both sides: "The linear form"."""
-    cycle = np.floor(phases)
-    step, place = placed(own, phases - cycle)
-    steps, index = own.edges.size - 1, cycle * (own.edges.size - 1) + step
-    broken = np.unique(index)
-    ends = np.unique(np.concatenate([broken, broken + 1.0, index + place]))
-    of = np.floor(0.5 * (ends[:-1] + ends[1:]))
-    kept = np.isin(of, broken)
-    of, low, length = of[kept].astype(np.int64), ends[:-1][kept], np.diff(ends)[kept]
-    x = (low - of)[:, None] + length[:, None] * own.nodes
-    rows = static_rows(own, start, False, 0, (of // steps)[:, None], (of % steps)[:, None], x)[0]
-    share = np.vander(x.ravel(), own.nodes.size) @ np.linalg.inv(np.vander(own.nodes))
-    weights = length[:, None, None] * own.weights[:, None] * share.reshape(*x.shape, -1) / own.weights
-    sums[broken.astype(np.int64)] = 0.0
-    moments = weights.swapaxes(1, 2) @ rows
-    sums[np.unique(of)] = np.add.reduceat(moments, np.unique(of, return_index=True)[1], axis=0)
 
 
 def default_samples(period: int) -> int:
