@@ -341,7 +341,7 @@ class OwnGains:
         starts = np.add.outer(np.arange(cycles), own.edges[:-1])
         found = np.append(starts, cycles)
         if not fixed:
-            kinks = static_cycles(first, own, _LOOKS, 4, _ROUNDS, np.empty((*starts.shape, 0, 18)))
+            kinks = static_cycles(first, False, own, _LOOKS, 4, _ROUNDS, np.empty((*starts.shape, 0, 18)))
             found = np.append(found, kinks)
         self.edges = np.unique(found)
 

@@ -10,6 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from lumped.compiler import Compiler
 from lumped.quasi_static import kernels as quasi_static
 from lumped.quasi_static.kernels import corner_at
@@ -90,6 +92,46 @@ class Tables(NamedTuple):
     speed: float
 
 
+class Room(NamedTuple):
+    """What a kernel works in.
+
+    Attributes
+    ----------
+    place, coupling : as of ``Tables``, with a step more, in which a place between nodes is put
+    kind : (pairs,) of the pair in each place
+    errors : (pairs, 6) of its teeth, as in ``Tables.pinion`` and ``gear``
+    k : (steps + 1, nodes, pairs) stiffness [N/m]
+    flat : (steps + 1, nodes, pairs, 4) gap without corners, its slope over xi, c and mu
+    moved : (steps + 1, nodes, 8) of ``eccentric_steps``
+    here : of ``loads_at``
+    share : (nodes,) of each node in the value at the place
+    static : (1,) static approach at the last place, from which the next one is sought [m]
+    """
+
+    place: FloatArray
+    coupling: FloatArray
+    kind: IntArray
+    errors: FloatArray
+    k: FloatArray
+    flat: FloatArray
+    moved: FloatArray
+    here: FloatArray
+    share: FloatArray
+    static: FloatArray
+
+
+@compiled
+def room_of(own: Tables) -> Room:
+    """Room for a pair."""
+    steps, nodes, pairs = own.place.shape
+    place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
+    place[:steps], coupling[:steps] = own.place, own.coupling
+    contact = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
+    moved, here = np.zeros((steps + 1, nodes, 8)), np.zeros((MATRIX + pairs, pairs))
+    kind, errors = np.zeros(pairs, np.int64), np.zeros((pairs, 6))
+    return Room(place, coupling, kind, errors, *contact, moved, here, np.ones(nodes), np.zeros(1))
+
+
 @compiled
 def corner(
     beyond: float, start: float, tangent: float, flank_radius: float, tip_radius: float
@@ -140,24 +182,12 @@ def eccentric_steps(
 
 
 @inlined
-def contact_of_steps(
-    cycle: int,
-    low: int,
-    high: int,
-    fixed: bool,
-    own: Tables,
-    kind: IntArray,
-    errors: FloatArray,
-    k: FloatArray,
-    flat: FloatArray,
-    moved: FloatArray,
-) -> None:
+def contact_of_steps(cycle: int, low: int, high: int, fixed: bool, own: Tables, room: Room) -> None:
     """Contact of steps of a mesh cycle, from ``low`` to before ``high``, but for what the approach changes.
 
-    It is at shifted places but in ``fixed`` windows. Written are ``kind`` (pairs,), ``errors`` (pairs, 6) as
-    in ``Tables.pinion`` and ``gear``, ``k`` (steps, nodes, pairs) [N/m], ``flat`` (steps, nodes, pairs, 4),
-    gap without corners, its slope over xi, c and mu, and ``moved`` (steps, nodes, 8) of ``eccentric_steps``.
+    It is at shifted places but in ``fixed`` windows. Written are ``kind`` to ``moved`` of ``room``.
     """
+    kind, errors, k, flat, moved = room.kind, room.errors, room.k, room.flat, room.moved
     steps, nodes, pairs = own.place.shape
     eccentric_steps(cycle, low, high, own.turned, own.eccentric, moved)
     for i in range(pairs):
@@ -253,23 +283,13 @@ def shared(k: FloatArray, coupling: FloatArray, constants: FloatArray, here: Flo
 
 
 @inlined
-def loads_at(
-    delta: float,
-    single: bool,
-    k: FloatArray,
-    flat: FloatArray,
-    moved: FloatArray,
-    place: FloatArray,
-    coupling: FloatArray,
-    kind: IntArray,
-    ends: FloatArray,
-    constants: FloatArray,
-    here: FloatArray,
-) -> None:
-    """Gaps and elastic loads of all places at the approach ``delta``, into ``here`` (rows, pairs).
+def loads_at(delta: float, single: bool, at: int, node: int, own: Tables, room: Room) -> None:
+    """Gaps and elastic loads of all pairs at the approach ``delta``, into ``here``, at a node of a step.
 
     ``single``: linear pairs that do not move each other.
     """
+    k, flat, moved, place = room.k[at, node], room.flat[at, node], room.moved[at, node], room.place[at, node]
+    kind, ends, constants, here = room.kind, own.ends, own.constants, room.here
     longer = constants[1]
     half, length = 0.5 * (delta + longer), longer + moved[2]
     for i in range(k.size):
@@ -295,31 +315,20 @@ def loads_at(
             here[LOAD, i] = k[i] * pressed if pressed > 0.0 else 0.0
             here[TANGENT, i] = k[i] if pressed > 0.0 else 0.0
     if not single:
-        shared(k, coupling, constants, here)
+        shared(k, room.coupling[at, node], constants, here)
 
 
 @inlined
-def settled(
-    delta: float,
-    single: bool,
-    k: FloatArray,
-    flat: FloatArray,
-    moved: FloatArray,
-    place: FloatArray,
-    coupling: FloatArray,
-    kind: IntArray,
-    ends: FloatArray,
-    constants: FloatArray,
-    here: FloatArray,
-) -> float:
+def settled(delta: float, single: bool, at: int, node: int, own: Tables, room: Room) -> float:
     """Static approach near ``delta`` at which the loads make the force [m], or NaN; see ``loads_at``."""
+    k, here, constants = room.k[at, node], room.here, own.constants
     low, high, force = -math.inf, math.inf, constants[0]
     away = 1e-300
     for i in range(k.size):
         away = max(away, k[i])
     away = force / away
     for _ in range(_STEPS):
-        loads_at(delta, single, k, flat, moved, place, coupling, kind, ends, constants, here)
+        loads_at(delta, single, at, node, own, room)
         total, slope = -force, 0.0
         for i in range(k.size):
             if k[i] > 0.0:

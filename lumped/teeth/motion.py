@@ -325,9 +325,8 @@ def static_rows(
     return sums.reshape(*shape, 18), numbers.reshape(*shape, *numbers.shape[1:])
 
 
-def _all_carried(values: FloatArray) -> None:
-    """Refuse NaN."""
-    if not np.isfinite(values).all():
+def _all_carried(sums: FloatArray) -> None:
+    if not np.isfinite(sums[..., 17]).all():
         raise NumericalError(
             "At some position no tooth pair can carry the load: check stiffness and deviations."
         )
@@ -335,14 +334,9 @@ def _all_carried(values: FloatArray) -> None:
 
 def static_mesh(own: Tables, start: int, sums: FloatArray, fixed: bool = False) -> None:
     """Fill ``sums`` (cycles, steps, nodes, 18) of consecutive cycles, see ``static_cycles``."""
-    cycles, steps, nodes, _ = sums.shape
-    looks = -1.0 - np.arange(nodes, dtype=np.float64)
-    if fixed:
-        where = np.arange(cycles)[:, None, None], np.arange(steps)[:, None], looks
-        sums[:] = static_rows(own, start, True, 0, *where)[0]
-    else:
-        static_cycles(start, own, looks, 2, _FEW_ROUNDS, sums)
-        _all_carried(sums[..., 17])
+    nodes = np.arange(sums.shape[2], dtype=np.float64)
+    static_cycles(start, fixed, own, -1.0 - nodes, 2, _FEW_ROUNDS, sums)
+    _all_carried(sums)
 
 
 def static_loads(own: Tables, start: int, cycles: int, fixed: bool = False) -> tuple[FloatArray, FloatArray]:

@@ -14,20 +14,11 @@ import numpy as np
 from lumped.compiler import Compiler
 from lumped.model import kernels as gauss
 from lumped.model.kernels import solve_in_place
-from lumped.teeth.kernels import (
-    BY_DELTA,
-    BY_XI,
-    FILES,
-    LOAD,
-    MATRIX,
-    TILT,
-    Tables,
-    contact_of_steps,
-    loads_at,
-)
+from lumped.teeth import kernels as kn
+from lumped.teeth.kernels import Tables, contact_of_steps, loads_at, room_of
 from lumped.typing import FloatArray, IntArray
 
-compiled = Compiler([Path(__file__), Path(gauss.__file__), *FILES])
+compiled = Compiler([Path(__file__), Path(gauss.__file__), *kn.FILES])
 #: Directions of the forces of the mesh: N, its moments on both gears, F, F xi, tip corners; both torques.
 FORCES = 8
 #: Stages of the Gauss steps.
@@ -69,20 +60,16 @@ def motion_cycles(
     states, record = np.empty((count, 2 * m)), np.zeros((pairs, count))
     work, power = np.zeros(4), np.zeros(4)
     x, at, rate = state.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
-    place, coupling, ends = own.place, own.coupling, own.ends
     constants, speed, edges, outputs = own.constants, own.speed, own.edges, own.outputs
-    kind, normal, here = np.zeros(pairs, np.int64), np.zeros(pairs), np.zeros((MATRIX + pairs, pairs))
-    k, flat = np.zeros((steps, 3, pairs)), np.zeros((steps, 3, pairs, 4))
-    moves, errors = np.zeros((steps, 3, 8)), np.zeros((pairs, 6))
-    single = constants[2] == 0.0 and not coupling.any()
+    room, normal, single = room_of(own), np.zeros(pairs), constants[2] == 0.0 and not own.coupling.any()
+    k, flat, moves, place, here = room.k, room.flat, room.moved, room.place, room.here
     row = 0
     for c in range(cycles):
         cycle = start + c
         keeps = c >= cycles - recorded
-        contact_of_steps(cycle, 0, steps, not corners, own, kind, errors, k, flat, moves)
+        contact_of_steps(cycle, 0, steps, not corners, own, room)
         for s in range(steps):
             h = (edges[s + 1] - edges[s]) * own.duration
-            w = coupling[s if coupling.shape[0] > 1 else 0]
             for stage in range(4):
                 node = (stage + 1) // 2
                 if stage == 0:
@@ -99,7 +86,7 @@ def motion_cycles(
                 k_at, gap_at, moved, xi = k[s, node], flat[s, node], moves[s, node], place[s, node]
                 e_rate = moved[1] / own.duration
                 if corners:
-                    loads_at(delta, single, k_at, gap_at, moved, xi, w[node], kind, ends, constants, here)
+                    loads_at(delta, single, s, node, own, room)
                 sums, friction_sum, friction_arm, apart = 0.0, 0.0, 0.0, 0.0
                 power[:] = 0.0
                 v_p, v_g, v_y = sliding[0, m], sliding[1, m], 0.0
@@ -115,8 +102,8 @@ def motion_cycles(
                     arm = xi[i] + (moved[7] if corners else 0.0)
                     elastic = k_at[i] * (delta - gap_at[i, 0])
                     if corners:
-                        rise, slope, tilt = here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
-                        elastic = here[LOAD, i]
+                        rise, slope, tilt = here[kn.BY_DELTA, i], here[kn.BY_XI, i], here[kn.TILT, i]
+                        elastic = here[kn.LOAD, i]
                         if elastic <= 0.0:
                             continue
                         part = min(elastic / constants[4], 1.0)

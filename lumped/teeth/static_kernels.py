@@ -8,64 +8,16 @@ from __future__ import annotations
 import math
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from lumped.compiler import Compiler
-from lumped.teeth.kernels import (
-    BY_DELTA,
-    BY_XI,
-    FILES,
-    LOAD,
-    MATRIX,
-    PRESSED,
-    TANGENT,
-    TILT,
-    Tables,
-    contact_of_steps,
-    settled,
-)
-from lumped.typing import FloatArray, IntArray
+from lumped.teeth import kernels as kn
+from lumped.teeth.kernels import Room, Tables, contact_of_steps, room_of, settled
+from lumped.typing import FloatArray
 
-compiled = Compiler([Path(__file__), *FILES])
+compiled = Compiler([Path(__file__), *kn.FILES])
 inlined = partial(compiled, _nrt=False, forceinline=True)
-
-
-class Room(NamedTuple):
-    """What a kernel works in.
-
-    Attributes
-    ----------
-    place, coupling : as of ``Tables``, with a step more, in which a place between nodes is put
-    kind, errors, k, flat, moved : of ``contact_of_steps``, the last three with the same step more
-    here : of ``loads_at``
-    share : (nodes,) of each node in the value at the place
-    static : (1,) static approach at the last place, from which the next one is sought [m]
-    """
-
-    place: FloatArray
-    coupling: FloatArray
-    kind: IntArray
-    errors: FloatArray
-    k: FloatArray
-    flat: FloatArray
-    moved: FloatArray
-    here: FloatArray
-    share: FloatArray
-    static: FloatArray
-
-
-@compiled
-def room_of(own: Tables) -> Room:
-    """Room for a pair."""
-    steps, nodes, pairs = own.place.shape
-    place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
-    place[:steps], coupling[:steps] = own.place, own.coupling
-    contact = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
-    moved, here = np.zeros((steps + 1, nodes, 8)), np.zeros((MATRIX + pairs, pairs))
-    kind, errors = np.zeros(pairs, np.int64), np.zeros((pairs, 6))
-    return Room(place, coupling, kind, errors, *contact, moved, here, np.ones(nodes), np.zeros(1))
 
 
 @inlined
@@ -104,32 +56,37 @@ def at_place(
         at, node = own.place.shape[0], 0
         put_between(s, x, own, room)
     k_at, gap, off = room.k[at, node], room.flat[at, node], room.moved[at, node]
-    xi, w, kind, here = room.place[at, node], room.coupling[at, node], room.kind, room.here
-    ends, constants, pairs = own.ends, own.constants, k_at.size
+    xi, w, here, constants, pairs = (
+        room.place[at, node],
+        room.coupling[at, node],
+        room.here,
+        own.constants,
+        k_at.size,
+    )
     if not fixed:
         guess = 0.0 if math.isnan(room.static[0]) else room.static[0]
-        room.static[0] = settled(guess, single, k_at, gap, off, xi, w, kind, ends, constants, here)
+        room.static[0] = settled(guess, single, at, node, own, room)
     static = room.static[0]
     row[:], numbers[:] = 0.0, 0.0
     row[9], row[10], row[17] = off[5], off[6], static
     for i in range(pairs):
         if kinds > 0 and k_at[i] > 0.0 and not fixed:
-            numbers[0, i], numbers[1, i] = here[PRESSED, i], here[LOAD, i] - constants[4]
+            numbers[0, i], numbers[1, i] = here[kn.PRESSED, i], here[kn.LOAD, i] - constants[4]
             for n in range(pairs):
-                numbers[0, i] -= w[i, n] * here[LOAD, n]
+                numbers[0, i] -= w[i, n] * here[kn.LOAD, n]
             if kinds > 2:
-                of, beyond = ends[kind[i]], 0.5 * (static + constants[1])
+                of, beyond = own.ends[room.kind[i]], 0.5 * (static + constants[1])
                 numbers[2, i] = of[0] - xi[i] - off[7] + beyond + of[4] * off[3]
                 numbers[3, i] = xi[i] + off[7] - of[1] + beyond + of[3] * off[4]
-        if k_at[i] <= 0.0 or not (fixed or here[LOAD, i] > 0.0):
+        if k_at[i] <= 0.0 or not (fixed or here[kn.LOAD, i] > 0.0):
             continue
         c_i, rise, load = gap[i, 2], k_at[i], -k_at[i] * gap[i, 0]
         closing, slope, tilt = 1.0, gap[i, 1], 0.0
         if not fixed:
-            part = min(here[LOAD, i] / constants[4], 1.0)
+            part = min(here[kn.LOAD, i] / constants[4], 1.0)
             c_i *= part * part * (3.0 - 2.0 * part)
-            rise, load = here[TANGENT, i], here[LOAD, i] - here[TANGENT, i] * static
-            closing, slope, tilt = 1.0 - here[BY_DELTA, i], here[BY_XI, i], here[TILT, i]
+            rise, load = here[kn.TANGENT, i], here[kn.LOAD, i] - here[kn.TANGENT, i] * static
+            closing, slope, tilt = 1.0 - here[kn.BY_DELTA, i], here[kn.BY_XI, i], here[kn.TILT, i]
         rolling = slope * own.speed + off[1] / own.duration
         load -= c_i * rolling
         mu, arm = gap[i, 3], xi[i] + (0.0 if fixed else off[7])
@@ -141,7 +98,7 @@ def at_place(
             if kinds > 4:
                 numbers[5 + n, i] = value
         if kinds > 4:
-            numbers[4, i] = here[LOAD, i]
+            numbers[4, i] = here[kn.LOAD, i]
         row[11] += c_i * closing**2
         row[12] -= 2.0 * c_i * closing * rolling
         row[13] += c_i * rolling**2
@@ -170,15 +127,13 @@ def static_places(
         s = int(asked[a, 1])
         if asked[a, 0] != now or known[s] != now:
             now = known[s] = int(asked[a, 0])
-            contact_of_steps(
-                *(start + now, s, s + 1, fixed, own, room.kind, room.errors, room.k, room.flat, room.moved)
-            )
+            contact_of_steps(start + now, s, s + 1, fixed, own, room)
         at_place(s, asked[a, 2], fixed, single, own, room, sums[a], numbers[a])
 
 
 @partial(compiled, nogil=True)
 def static_cycles(
-    start: int, own: Tables, looks: FloatArray, kinds: int, rounds: int, sums: FloatArray
+    start: int, fixed: bool, own: Tables, looks: FloatArray, kinds: int, rounds: int, sums: FloatArray
 ) -> FloatArray:
     """Fill ``sums`` of consecutive cycles, and return the phases of their kinks, by cycles from ``start``.
 
@@ -198,12 +153,10 @@ def static_cycles(
         s, x = look // count, looks[look % count]
         tau[look] = edges[s] + (edges[s + 1] - edges[s]) * (x if x > -0.5 else own.nodes[int(-1.0 - x)])
     for c in range(cycles):
-        contact_of_steps(
-            *(start + c, 0, steps, False, own, room.kind, room.errors, room.k, room.flat, room.moved)
-        )
+        contact_of_steps(start + c, 0, steps, fixed, own, room)
         for look in range(tau.size):
             s, j = look // count, look % count
-            at_place(s, looks[j], False, single, own, room, sums[c, s, j] if fills else row, values[look])
+            at_place(s, looks[j], fixed, single, own, room, sums[c, s, j] if fills else row, values[look])
         found = 0
         for look in range(1, tau.size):
             for n in range(kinds * pairs):
@@ -220,7 +173,7 @@ def static_cycles(
                     if left == 0:
                         break
                     x = (root - edges[s]) / (edges[s + 1] - edges[s])
-                    at_place(s, x, False, single, own, room, row, numbers)
+                    at_place(s, x, fixed, single, own, room, row, numbers)
                     value = numbers[kind, i]
                     if (value < 0.0) == (at_low < 0.0):
                         at_high *= 0.5 if last == 0 else 1.0
@@ -249,7 +202,7 @@ def static_cycles(
                     at += 1
                 for node in range(nodes if high > low else 0):
                     x = low + (high - low) * own.nodes[node]
-                    at_place(s, x, False, single, own, room, row, numbers[:0])
+                    at_place(s, x, fixed, single, own, room, row, numbers[:0])
                     for j in range(nodes):
                         part = (high - low) * own.weights[node] * room.share[j] / own.weights[j]
                         for n in range(18):
