@@ -23,7 +23,7 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import PathFunction
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.kernels import Tables
-from lumped.teeth.motion import moments, placed, static_rows
+from lumped.teeth.motion import moments, static_rows
 from lumped.teeth.static_kernels import static_cycles
 from lumped.typing import FloatArray
 
@@ -339,19 +339,16 @@ class OwnGains:
         self.own, self.fixed, self.first = own, fixed, first
         self.forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
         starts = np.add.outer(np.arange(cycles), own.edges[:-1])
-        found = np.append(starts, cycles)
-        if not fixed:
-            kinks = static_cycles(first, False, own, _LOOKS, 4, _ROUNDS, np.empty((*starts.shape, 0, 18)))
-            found = np.append(found, kinks)
-        self.edges = np.unique(found)
+        kinks = static_cycles(first, fixed, own, _LOOKS, 4, _ROUNDS, np.empty((*starts.shape, 0, 18)))
+        self.edges = np.unique(np.concatenate([starts.ravel(), [cycles], kinks]))
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """See `PolynomialGains`."""
-        cycle = np.floor(centre)[:, None]
-        tau = centre[:, None] + half[:, None] * nodes - cycle
-        step, place = placed(self.own, tau, centre[:, None] - cycle)
+        cycle, ends = np.floor(centre)[:, None], self.own.edges
+        step = np.searchsorted(ends[1:-1], centre[:, None] - cycle, side="right")
+        place = (centre[:, None] + half[:, None] * nodes - cycle - ends[step]) / np.diff(ends)[step]
         rows = static_rows(self.own, self.first, self.fixed, 0, cycle, step, place)[0]
         gains = []
         for n in (0, 3):

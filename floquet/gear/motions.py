@@ -212,10 +212,7 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
     rate = integral(push)
     rate = rate - steps @ (rate + np.roll(rate, -1)) / (2.0 * steps.sum())
     halves = []
-    for z, rigid in (
-        (run.states[:, :_WHOLE], integral(rate)),
-        (run.states[:, _WHOLE:] / orbit.period, rate),
-    ):
+    for z, rigid in ((run.states[:, :_WHOLE], integral(rate)), (run.states[:, _WHOLE:] / orbit.period, rate)):
         half = z @ support.back.T
         missing = (rigid - half @ support.common_weights) / (support.common_weights @ support.common)
         halves.append(half + np.outer(missing, support.common))

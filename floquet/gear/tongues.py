@@ -359,12 +359,6 @@ class StabilityMargins:
     damping_at_speed: float | None
 
     @property
-    def speed_margin(self) -> float | None:
-        """Distance to the nearest unstable speed at the given damping [rpm]; None: the range has none."""
-        away = np.abs(np.clip(self.rpm, *self.unstable_here.T) - self.rpm)
-        return float(away.min()) if away.size else None
-
-    @property
     def critical_damping(self) -> float:
         """Mesh damping ratio above which the whole range is stable; 0 where it always is."""
         return max((t.critical_damping for t in self.tongues), default=0.0)

@@ -349,12 +349,6 @@ def static_loads(own: Tables, start: int, cycles: int, fixed: bool = False) -> t
     return sums[..., 17], numbers[..., 4:, :].transpose(2, 3, 0, 1)
 
 
-def placed(own: Tables, tau: FloatArray, middle: FloatArray | None = None) -> tuple[IntArray, FloatArray]:
-    """Steps and places in them of phases of a cycle, those of steps that hold ``middle``."""
-    step = np.searchsorted(own.edges[1:-1], tau if middle is None else middle, side="right")
-    return step, (tau - own.edges[step]) / np.diff(own.edges)[step]
-
-
 def default_samples(period: int) -> int:
     """Outputs a mesh cycle: fewer, the more cycles a period has; a power of two."""
     found: int = 2 ** int(math.log2(_ALL_SAMPLES / period))

@@ -121,11 +121,7 @@ def transmission_error(found: xr.Dataset) -> str:
 
 
 def speed_band(
-    pair: GearPair,
-    speeds_rpm: FloatArray,
-    known: xr.Dataset,
-    samples: int = 32,
-    step_angle: float = STEP,
+    pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, samples: int = 32, step_angle: float = STEP
 ) -> xr.Dataset:
     """Return 5 and 95 % of the linear peak to peak, ``low`` and ``high`` [m], over ``speed_rpm``.
 

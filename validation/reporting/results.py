@@ -393,10 +393,7 @@ class Results:
                 for jump in self.branches.jumps
             ]
             found += [
-                (
-                    min(max(self.operating_rpm, one.low_rpm), one.high_rpm),
-                    f"{one.kind} possible",
-                )
+                (min(max(self.operating_rpm, one.low_rpm), one.high_rpm), f"{one.kind} possible")
                 for one in self.branches.attractors
             ]
         return min(found, key=lambda one: abs(one[0] - self.operating_rpm), default=None)
