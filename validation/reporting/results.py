@@ -357,7 +357,7 @@ class Results:
     def _second_words(self) -> str:
         check = self.check
         if isinstance(check, Absent):
-            return f"The second program does not run here. {check.detail}"
+            return "Not checked: the second program does not run here; its chapter says why."
         if check.verdict is Verdict.NOT_CHECKED:
             return "The equations are; the second program has no motion to compare."
         if check.verdict is Verdict.FAILS:

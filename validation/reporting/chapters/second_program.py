@@ -19,7 +19,7 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     check, second = results.check, results.second
     if isinstance(check, Absent):
-        return Content(results.second_words, ())
+        return Content("The second program does not run here.", (Text(check.detail),))
     blocks: list[Block] = []
     if not isinstance(second, Absent):
         blocks.append(
