@@ -112,12 +112,7 @@ def linear_motion(
 ) -> OwnMotion:
     """Periodic motion of the linear form over the period of teeth that differ, by the maps of its cycles.
 
-    Parameters
-    ----------
-    pair : a validated gear pair
-    samples : outputs a mesh cycle
-    supports : as of ``periodic_system``
-    steps : least number of steps in a mesh cycle; by default by the fastest vibration
+    Parameters as of ``push_motion``.
     """
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)

@@ -149,10 +149,7 @@ def motion_cycles(
                 for n in range(4):
                     work[n] += weight * power[n]
                 if stage == 0 and outputs[s] == 1:
-                    for j in range(2 * m):
-                        states[row, j] = x[j]
-                    for i in range(pairs):
-                        record[i, row] = normal[i]
+                    states[row], record[:, row] = x, normal
                     row += 1
             for j in range(2 * m):
                 x[j] += h / 6.0 * (rate[0, j] + 2.0 * rate[1, j] + 2.0 * rate[2, j] + rate[3, j])
@@ -193,13 +190,10 @@ def linear_cycles(
     start, p, strength = np.empty(2 * STAGES), np.empty(STAGES), np.zeros((3, FORCES))
     fixed, matrix, inverse = np.empty(rows), np.empty((STAGES, STAGES)), np.empty((STAGES, STAGES))
     for c in range(cycles):
-        for column in range(count):
-            for row in range(wide):
-                now[column, row] = columns[c, column, row]
+        now[:] = columns[c]
         for s in range(steps):
             of = which[s]
-            for row in range(rows):
-                fixed[row] = 0.0
+            fixed[:] = 0.0
             for stage in range(STAGES):
                 at = sums[c, s, stage]
                 for part in range(3):
@@ -253,10 +247,7 @@ def linear_cycles(
                     for i in range(STAGES):
                         start[row] += by_p[of, row, i] * p[i]
                 if keeps and column == 0:
-                    for row in range(n):
-                        states[c, s, row] = x[row]
-                    for row in range(2 * STAGES):
-                        inside[c, s, row] = start[row]
+                    states[c, s], inside[c, s] = x[:n], start
                 for half in range(0, 2 * STAGES, 4):
                     f0, f1, f2, f3 = start[half], start[half + 1], start[half + 2], start[half + 3]
                     a = to[half : half + 4]
@@ -264,7 +255,5 @@ def linear_cycles(
                         found[row] += f0 * a[0, row] + f1 * a[1, row] + f2 * a[2, row] + f3 * a[3, row]
                 for row in range(n):
                     x[row] = found[STAGES + row]
-        for column in range(count):
-            for row in range(n):
-                ends[c, column, row] = now[column, row]
+        ends[c] = now[:, :n]
     return ends, states, inside

@@ -81,18 +81,14 @@ def form(pressure_angle, addendum, dedendum, fillet, pinion, gear):
 #: Tooth forms at the ends of what can mesh; found by search, contact ratio and tooth ratio asserted below.
 FORMS = {
     "contact ratio 2.999": lambda: form(14.5, 1.3011549545, 1.5511549545, 0.1, (120, 0.0), (120, 0.0)),
-    "ratio 200 to 1": lambda: form(
-        27.8515209, 0.8208178, 0.93860493, 0.05, (5, 0.31354275), (1000, 0.47291404)
-    ),
-    "ratio 1 to 200": lambda: form(
-        27.8515209, 0.8208178, 0.93860493, 0.05, (1000, 0.47291404), (5, 0.31354275)
-    ),
+    "ratio 200:1": lambda: form(27.8515209, 0.8208178, 0.93860493, 0.05, (5, 0.31354275), (1000, 0.47291404)),
+    "ratio 1:200": lambda: form(27.8515209, 0.8208178, 0.93860493, 0.05, (1000, 0.47291404), (5, 0.31354275)),
 }
 
 
 def test_the_forms_are_what_their_names_say():
     assert geometry(FORMS["contact ratio 2.999"]()).contact_ratio == pytest.approx(2.999, abs=1e-6)
-    for name, ratio in (("ratio 200 to 1", 200.0), ("ratio 1 to 200", 1 / 200)):
+    for name, ratio in (("ratio 200:1", 200.0), ("ratio 1:200", 1 / 200)):
         g = geometry(FORMS[name]())
         assert g.omega_pinion / g.omega_gear == pytest.approx(ratio, rel=1e-12)
 
@@ -133,7 +129,7 @@ MAY_REFUSE = {
     **dict.fromkeys(("viscosity 1e-9", "viscosity 1e5", "roughness 50"), ANALYSES),
     # The static load turns the gears by more than a tooth, so that no pair carries it where it touches.
     **dict.fromkeys(("pair stiffness 1e-6", "pair stiffness 1", "modulus 1e-6"), ANALYSES),
-    **dict.fromkeys(("torque 1e6", "torque 1e9", "bearings 1", "bearings 1e-6", "ratio 200 to 1"), ANALYSES),
+    **dict.fromkeys(("torque 1e6", "torque 1e9", "bearings 1", "bearings 1e-6", "ratio 200:1"), ANALYSES),
     # Or by less than the rounding of their positions.
     **dict.fromkeys(("brake 1e9", "torque 1e-9", "brake 1e-9"), BODIES),
 }

@@ -142,11 +142,8 @@ def report(
 
 def findings(results: Results) -> frozenset[str]:
     """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold"."""
-    found = {
-        "contact": results.contact_lost,
-        "stable": not results.prediction.stable,
-        "holds": bool(results.outside) or results.contact_lost or not results.prediction.stable,
-    }
+    lost, unstable = results.contact_lost or results.teeth_apart > 0, not results.prediction.stable
+    found = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
     return frozenset(name for name, there in found.items() if there)
 
 

@@ -115,6 +115,7 @@ class PageOne:
     sure: tuple[str, ...]
     remark: str
     not_modelled: str
+    of_teeth: str
     warnings: tuple[str, ...]
 
 
@@ -131,6 +132,7 @@ def page_one(results: Results) -> PageOne:
         sure=_sure(results),
         remark=_remark(results),
         not_modelled=f"{_ALIKE if results.teeth is None else _OWN} {_NOT_MODELLED}",
+        of_teeth="" if results.teeth is None else ", like teeth",
         warnings=results.warnings,
     )
 
@@ -150,7 +152,8 @@ def title(results: Results) -> str:
 def six_numbers(results: Results) -> tuple[Number, ...]:
     """The rows of the table: result, range of the samples, second program."""
     prediction, second = results.prediction, results.second
-    rows = [_row(results, key, note=_orders(results) if key == "bearing_rms" else "") for key in _ROWS]
+    notes = {"bearing_rms": _orders(results)} | _as_given(results)
+    rows = [_row(results, key, note=notes.get(key, "")) for key in _ROWS]
     if prediction.contact_lost:  # six rows: the bearing force gives way
         of_second = math.nan if isinstance(second, Absent) else second.least_force
         words = "Smallest mesh force / static", prediction.least_force, "1"
@@ -201,6 +204,16 @@ def _orders(results: Results) -> str:
     hertz = " and ".join(quantity(order * frequency, "Hz", 2) for order in loudest)
     forces = " and ".join(quantity(float(amplitude[order - 1]), "N", 2) for order in loudest)
     return f"largest orders {orders} × mesh ({hertz}): {forces}"
+
+
+def _as_given(results: Results) -> dict[str, str]:
+    """What teeth that differ make of two numbers, of which the table has those of like teeth."""
+    if (teeth := results.teeth) is None:
+        return {}
+    swing, words = quantity(float(teeth.motion.attrs["dte_peak_to_peak"]), "m", 3), "with the teeth as given"
+    load = teeth.load(teeth.motion) / teeth.static_force
+    swing = f"{words} {swing} over {teeth.period} mesh cycles"
+    return {"dte_peak_to_peak": swing, "tooth_load": f"{words} {load:.3g}"}
 
 
 def _verdict(results: Results) -> tuple[Verdict, str, str]:
@@ -257,6 +270,9 @@ def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
         )
         words = f"{rises} {_jump_words(results)} {_attractor_words(results)}"
         return f"the teeth lose contact{place}", " ".join(words.split())
+    if results.teeth_apart:
+        what = f"the teeth as given lose contact, at {results.teeth_apart} pairs of teeth that meet"
+        return what, "The numbers below are those of like teeth, which keep it."
     if not prediction.stable:
         return "the motion is unstable", "A small disturbance grows until contact is lost."
     if near:
@@ -304,6 +320,8 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
         hazard = results.nearest_hazard
         if hazard is not None and "jump" in hazard[1]:
             found.append(Action(f"Do not pass {_rpm(hazard[0])} at this torque", "", ""))
+        if results.teeth_apart:
+            found.append(Action("Take teeth of a better tolerance class, more torque or less speed", "", ""))
         found.append(
             Action(
                 "See where the pair can jump, over speed and torque",

@@ -225,6 +225,11 @@ class Results:
             return lost
         return self.second.contact_lost
 
+    @property
+    def teeth_apart(self) -> int:
+        """At how many pairs of teeth contact is lost where teeth differ."""
+        return 0 if self.teeth is None else len(self.teeth.contact_lost)
+
     @cached_property
     def loses_contact(self) -> bool:
         """Whether contact is lost at the operating point or, by the linear motion, near it."""

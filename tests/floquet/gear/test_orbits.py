@@ -88,9 +88,7 @@ def test_all_motions_at_a_speed_and_their_stability(branches):
     """Between the folds there are three motions of one cycle, the middle one unstable."""
     folds = sorted(b.speed_rpm for b in branches.bifurcations if b.kind == "fold" and b.n == 1)
     assert len(folds) == 2
-    inside, outside = (
-        [o for o in branches.at(rpm) if o.n == 1] for rpm in (np.mean(folds), folds[1] + 300.0)
-    )
+    inside, outside = ([o for o in branches.at(rpm) if o.n == 1] for rpm in (np.mean(folds), folds[1] + 300))
     assert len(inside) == 3
     assert len(outside) == 1
     assert not sorted(inside, key=lambda o: o.dte_rms)[1].stable

@@ -21,9 +21,7 @@ PAIR = load_gear_pair("nasa_28_28").with_(
 def test_without_a_ramp_it_is_the_motion_at_that_speed():
     run = run_up(PAIR, (3000, 3000), 0.02)
     known = simulate(PAIR.with_(speed=3000), 20, samples_per_cycle=32, initial="periodic")
-    assert np.abs(run["dte"][:640] - known["dte"].to_numpy()[:640]).max() < 1e-9 * np.ptp(
-        known["dte"].to_numpy()
-    )
+    assert np.abs(run["dte"][:640] - known["dte"].values[:640]).max() < 1e-9 * np.ptp(known["dte"].values)
 
 
 def difference(seconds: float) -> float:

@@ -262,18 +262,14 @@ class TestOfEveryPair:
         assert (moved - unmoved)[single] == pytest.approx(expected[single], abs=1e-12)
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
-        own = tables(
-            Laws(loaded.with_({"pinion.deviations": steps(ERRORS)})), 1.0 / 16, 1, gauss_tableau(4)[2]
-        )
+        laws = Laws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
+        own, x = tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2]), (np.arange(2000) + 0.5) / 2000
         sums = np.empty((28, *own.place.shape[:2], 18))
         static_mesh(own, 0, sums)
-        x = (np.arange(2000) + 0.5) / 2000
         at = np.arange(28)[:, None, None], np.arange(sums.shape[1])[:, None], x
         rows, numbers = static_rows(own, 0, False, 2, *at)
-        basis = np.vander(x, 4) @ np.linalg.inv(np.vander(own.nodes)) / x.size
-        wanted = basis.T @ rows
-        kinks = (numbers[:, :, 1:] * numbers[:, :, :-1] < 0.0).sum(axis=(2, 3, 4))
-        assert (kinks > 1).sum() > 30
+        wanted = (np.vander(x, 4) @ np.linalg.inv(np.vander(own.nodes)) / x.size).T @ rows
+        assert ((numbers[:, :, 1:] * numbers[:, :, :-1] < 0.0).sum(axis=(2, 3, 4)) > 1).sum() > 30
         # Up to 1.5 % of a sum is left where a tip leaves the line of action inside a step.
         wrong = np.abs(own.weights[:, None] * sums - wanted).max(axis=(0, 1, 2))
         assert (wrong <= 0.02 * np.abs(wanted).max(axis=(0, 1, 2))).all()

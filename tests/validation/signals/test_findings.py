@@ -12,7 +12,9 @@ import floquet
 import lumped
 from lumped.teeth.tolerances import flank_tolerances
 from tests.validation.commands.conftest import refused, run
+from validation.reporting.build import findings
 from validation.reporting.chapters import teeth as chapter
+from validation.reporting.page_one import Verdict, page_one
 from validation.reporting.results import QUICK, Results
 from validation.signals import indicators
 from validation.signals.findings import TeethFindings, deviations_table
@@ -61,9 +63,8 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     # A copy whose contact is lost at one time, and whose pinion alone carries more.
     lost, (motion, twin, force) = copy(found), (found.motion, found.twin, found.static_force)
     lost.__dict__.pop("contact_lost", None)
-    lost.motion = motion.assign(
-        normal_load=motion["normal_load"].where(motion["time"] != motion["time"][9], 0)
-    )
+    apart = motion["normal_load"].where(motion["time"] != motion["time"][9], 0)
+    lost.motion = motion.assign(normal_load=apart)
     lost.largest_loads = found.largest_loads.copy()
     lost.largest_loads[3, 5] = 2.0 * force
     results.__dict__["teeth"] = lost
@@ -85,9 +86,7 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     cycle = shown.sizes["turn"] // 28
     assert shown["healthy"].values[cycle:] == pytest.approx(shown["healthy"].values[:-cycle])
     assert shown["turn"].values[-1] == pytest.approx(1.0 - 1.0 / shown.sizes["turn"])
-    figures = {
-        key: blocks[f"teeth_{key}"].figure().axes[0] for key in ("turn", "loads_pinion", "orders_pinion")
-    }
+    loads, orders = (blocks[f"teeth_{key}_pinion"].figure().axes[0] for key in ("loads", "orders"))
     share = np.diag(found.largest_loads) / force  # 28/28: tooth i meets tooth i alone
     assert share.max() == pytest.approx(found.load(motion) / force)
     assert np.isfinite(found.largest_loads).sum() == 28
@@ -95,9 +94,9 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     table = blocks["teeth_deviations"]
     assert [cell.value for cell in table.rows[0][1:4]] == pytest.approx([4e-6, 2.5e-6, 0.0])
     assert list(table.columns)[1:4] == ["cumulative", "pitch", "eccentricity"]
-    assert [bar.get_height() for bar in figures["loads_pinion"].patches] == pytest.approx(share)
-    assert figures["loads_pinion"].lines[0].get_ydata()[0] == pytest.approx(found.load(twin) / force)
-    tops = [line[1, 1] for line in figures["orders_pinion"].collections[0].get_segments()]
+    assert [bar.get_height() for bar in loads.patches] == pytest.approx(share)
+    assert loads.lines[0].get_ydata()[0] == pytest.approx(found.load(twin) / force)
+    tops = [line[1, 1] for line in orders.collections[0].get_segments()]
     healthy = blocks["teeth_orders_pinion"].data["healthy"].to_numpy()
     assert healthy[28] == pytest.approx(2.0 * abs(np.fft.rfft(twin["dte"])[1]) / twin.sizes["time"])
     assert set(np.flatnonzero(healthy) % 28) == {0}
@@ -105,6 +104,12 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     assert len(tops) > 40
     assert np.isin(np.round(tops, 9), np.round(np.multiply.outer([1.0, 1e6, 1e9], amplitude), 9)).all()
     assert chapter.write(Results(PAIR.healthy, QUICK)) is None
+    first = page_one(results)
+    assert (first.verdict, "lose contact, at 1 pairs" in first.headline) == (Verdict.DO_NOT_RUN, True)
+    assert (findings(results), "class" in first.actions[0].text) == ({"contact", "holds"}, True)
+    words = "with the teeth as given"
+    assert first.numbers[0].note == f"{words} {expected[0] * 1e6:.3g}\u00a0µm over 28 mesh cycles"
+    assert first.numbers[2].note == f"{words} {expected[1]:.3g}"
 
 
 def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
