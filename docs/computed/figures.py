@@ -20,6 +20,7 @@ from floquet.gear.tongues import stability_margins
 from lumped import GearPair, Geometry
 from lumped.path_of_contact import friction_profile
 from lumped.typing import FloatArray
+from reproductions.he_cho_singh_2008.plots import mark_switches, path_marks
 from validation import report
 from validation.files.output import write_dataset
 from validation.interactive.page import render
@@ -36,10 +37,8 @@ from validation.plots.style import (
     legend,
     legend_above,
     look,
-    mark_switches,
     new_figure,
     one_panel,
-    path_marks,
     write_beside,
 )  # fmt: skip
 

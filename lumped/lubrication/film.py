@@ -145,9 +145,7 @@ def film_parameter(
     >>> round(float(film_parameter(0.312115, 0.0948642, 0.5, 0.8)), 5)
     1.28181
     """
-    roughness = checked(
-        "composite_roughness", composite_roughness, "um"
-    )  # both flanks may be given as smooth
+    roughness = checked("composite_roughness", composite_roughness, "um")  # both flanks may be smooth
     ratio = np.divide(film_length, 2.0 * np.asarray(half_width))
     return np.asarray(np.divide(film_thickness, roughness) * np.sqrt(ratio), dtype=np.float64)
 

@@ -207,9 +207,7 @@ class StaticMesh:
             place, k, relief, coupling, self.force, self.lengthening, law.softening, law.least, self.ends
         )
         if not np.isfinite(found).all():
-            raise NumericalError(
-                "At some position no tooth pair can carry the load: check stiffness and relief."
-            )
+            raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
         return np.asarray(found, dtype=np.float64)
 
     def fit_approach(self, marks: FloatArray, tolerance: float) -> None:

@@ -146,7 +146,7 @@ def _closed(form: LinearForm) -> tuple[FloatArray, FloatArray]:
     maps = form.cycle_maps()
     whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
     if not np.isfinite(whole).all():
-        raise NumericalError("The motion grows beyond all numbers: take smaller deviations or more damping.")
+        raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
     start, weights = balanced_start(system, whole[:, :n], whole[:, n : n + 3])
     # Rounding of the closing equations fades in a period, but that of the common rotation, which grows.
     moved, scale = (states_along(maps, start, weights)[-1] - start).reshape(2, n // 2), support.common_weights

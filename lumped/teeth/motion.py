@@ -172,9 +172,7 @@ def push_motion(
         push = form == kernels.PUSH
         states, load, end, work = run(pair, own, system, push, -settling, count, own.period, state, torques)
         if not np.isfinite(end).all():
-            raise NumericalError(
-                "The motion grows beyond all numbers: take smaller deviations or more damping."
-            )
+            raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
         duration = own.period * system.period
         drift = float(weights @ (end - states[0])[m:]) / duration
         if pair.operating.brake_torque == "balanced":
@@ -327,9 +325,7 @@ def static_rows(
 
 def _all_carried(sums: FloatArray) -> None:
     if not np.isfinite(sums[..., 17]).all():
-        raise NumericalError(
-            "At some position no tooth pair can carry the load: check stiffness and deviations."
-        )
+        raise NumericalError("At a position no tooth pair carries the load: check stiffness and deviations.")
 
 
 def static_mesh(own: Tables, start: int, sums: FloatArray, fixed: bool = False) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
+from lumped import Geometry
 from lumped.typing import FloatArray
 from reproductions.he_cho_singh_2008.operating_points import LAWS, SWITCH_SPEED
 from reproductions.he_cho_singh_2008.records import ErrataChapter, FigureRecord
@@ -26,7 +28,6 @@ from validation.plots.style import (
     RED,
     legend,
     legend_outside,
-    mark_switches,
     new_figure,
     scaled,
     write_beside,
@@ -43,6 +44,23 @@ _FORCES = (("normal_load", "normal load"), ("friction_force", "friction force"))
 _TWO_DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)))
 #: Colours of tooth pairs A, B, ...
 _LABELS = (BLUE, RED, GREEN, PURPLE)
+
+
+def path_marks(g: Geometry) -> dict[str, float]:
+    """Letters of the path of contact -> distance from X [mm]."""
+    marks = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
+    return {name: 1e3 * place for name, place in marks.items()}
+
+
+def mark_switches(ax: Axes, events: Mapping[str, float]) -> None:
+    """Mark events on the x axis by thin lines, letters above the axes; equal places share a label."""
+    places: dict[float, list[str]] = {}
+    for name, place in events.items():
+        key = next((known for known in places if abs(known - place) < 1e-6), place)
+        places.setdefault(key, []).append(name)
+    for place, names in places.items():
+        ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
+        write_beside(ax, ", ".join(names), (place, 1.0), (0, 2), IN_X, ha="center", va="bottom", color=GREY)
 
 
 def twin_points(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -127,19 +127,6 @@ def mesh_cycles(result: xr.Dataset, g: Geometry) -> FloatArray:
     return np.asarray((time - time[0]) / g.mesh_period, dtype=np.float64)
 
 
-def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True) -> None:
-    """Mark events on the x axis by thin lines, letters above the axes; equal places share a label."""
-    places: dict[float, list[str]] = {}
-    for name, place in events.items():
-        key = next((known for known in places if abs(known - place) < 1e-6), place)
-        places.setdefault(key, []).append(name)
-    for place, names in places.items():
-        ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
-        if not letters:
-            continue
-        write_beside(ax, ", ".join(names), (place, 1.0), (0, 2), IN_X, ha="center", va="bottom", color=GREY)
-
-
 def mark_operation(ax: Axes, place: float, words: str) -> None:
     """Red line at the operating condition, named above the axes; nothing when outside."""
     low, high = sorted(ax.get_xlim())
@@ -153,12 +140,6 @@ def write_beside(ax: Axes, words: str, place: Point, shift: Point, axes: Any = "
     """Write words beside a place, shifted by points; ``axes``: its coordinates, data, IN_X or IN_Y."""
     look = {"fontsize": 8.0} | look
     ax.annotate(words, place, xycoords=axes, xytext=shift, textcoords="offset points", **look)
-
-
-def path_marks(g: Geometry) -> dict[str, float]:
-    """Letters of the path of contact -> distance from X [mm]."""
-    marks = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
-    return {name: 1e3 * place for name, place in marks.items()}
 
 
 def save(figure: Figure, path: Path, *, new: bool = False) -> None:

@@ -7,11 +7,12 @@ binomial distribution of order statistics, David and Nagaraja, Order Statistics,
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 from scipy.stats import binom, qmc, rankdata
 
 import lumped
@@ -23,6 +24,7 @@ from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
+from lumped.teeth.pairs import period_of
 from lumped.typing import FloatArray, Progress
 from validation.prediction.inputs import Input, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, predicted
@@ -44,6 +46,8 @@ TEETH = {
     "sideband_ratio": ("1", "largest sideband of the mesh frequency in the transmission error, over it"),
 }
 _TEETH_SAMPLES = 32
+#: Samples of them beside those of like teeth, and mesh cycles of all together.
+_LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = 8, 32, 30_000
 #: Of a sample nobody asks for the error of the integration, and steps twice as long add 4e-6
 #: of a result at most (shafts of 108 states, and 570 vibrations in a cycle; none with less than 40).
 _MOTION = partial(steady_cycle, estimate_error=False)
@@ -128,18 +132,8 @@ def speed_band(
     ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
     ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
     """
-    inputs = uncertain_inputs(pair)
-    importance = np.ptp(np.nan_to_num(known["dte_peak_to_peak_swing"].to_numpy()), axis=1)
-    found = []
-    for point in _points(importance, samples, int(known.attrs["seed"])):
-        try:
-            varied = _varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])
-            found.append(_peaks(varied, speeds_rpm, step_angle))
-        except SpurcheckError:
-            continue
-    table = np.stack(found)
-    low = np.asarray(np.nanpercentile(table, PERCENTILES[0], axis=0))
-    high = np.asarray(np.nanpercentile(table, PERCENTILES[-1], axis=0))
+    table = _each_sample(pair, known, samples, lambda varied: _peaks(varied, speeds_rpm, step_angle))
+    low, high = np.nanpercentile(table, PERCENTILES[::2], axis=0)
     text = "transmission error, peak to peak"
     return labelled_dataset(
         {
@@ -147,8 +141,35 @@ def speed_band(
             "high": ("speed_rpm", high, "m", f"{text}, 95 % of the samples"),
         },
         {"speed_rpm": (np.asarray(speeds_rpm), "rpm", "pinion speed")},
-        {"samples": len(found)},
+        {"samples": len(table)},
     )
+
+
+def teeth_band(pair: GearPair, known: xr.Dataset) -> FloatArray:
+    """5 and 95 % (2, 2) of the quantities ``TEETH`` of teeth that differ; those of a class are drawn anew.
+
+    ``known`` as in `speed_band`, of the twin with like teeth. The more mesh cycles, the fewer samples.
+    """
+    samples = max(_LEAST_DRAWN, min(_MOST_DRAWN, _ALL_CYCLES // period_of(pair)))
+    table = _each_sample(pair, known, samples, _of_teeth)
+    return np.asarray(np.percentile(table, PERCENTILES[::2], axis=0))
+
+
+def _each_sample(
+    pair: GearPair, known: xr.Dataset, samples: int, run: Callable[[GearPair], ArrayLike]
+) -> FloatArray:
+    """(samples, ...) results of the pair at samples of its inputs, without those that are refused."""
+    inputs = uncertain_inputs(pair)
+    moved = np.ptp(np.nan_to_num(known["dte_peak_to_peak_swing"].to_numpy()), axis=1)
+    by_name = dict(zip(known["input"].to_numpy().tolist(), moved, strict=True))
+    importance = np.array([by_name.get(one.field, moved.max()) for one in inputs])
+    found = []
+    for point in _points(importance, samples, int(known.attrs["seed"])):
+        try:
+            found.append(run(_varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
+        except SpurcheckError:
+            continue
+    return np.array(found)
 
 
 def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:

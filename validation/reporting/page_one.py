@@ -115,7 +115,6 @@ class PageOne:
     sure: tuple[str, ...]
     remark: str
     not_modelled: str
-    of_teeth: str
     warnings: tuple[str, ...]
 
 
@@ -132,7 +131,6 @@ def page_one(results: Results) -> PageOne:
         sure=_sure(results),
         remark=_remark(results),
         not_modelled=f"{_ALIKE if results.teeth is None else _OWN} {_NOT_MODELLED}",
-        of_teeth="" if results.teeth is None else ", like teeth",
         warnings=results.warnings,
     )
 
@@ -208,12 +206,14 @@ def _orders(results: Results) -> str:
 
 def _as_given(results: Results) -> dict[str, str]:
     """What teeth that differ make of two numbers, of which the table has those of like teeth."""
-    if (teeth := results.teeth) is None:
+    teeth, band, words = results.teeth, results.teeth_band, "with the teeth as given"
+    if teeth is None:
         return {}
-    swing, words = quantity(float(teeth.motion.attrs["dte_peak_to_peak"]), "m", 3), "with the teeth as given"
+    ends = (math.nan, math.nan) if band is None else band[:, 0].tolist()
+    swing = Number("", "", float(teeth.motion.attrs["dte_peak_to_peak"]), "m", *ends)
+    within, over = swing.range and f", {swing.range},", f"over {teeth.period} mesh cycles"
     load = teeth.load(teeth.motion) / teeth.static_force
-    swing = f"{words} {swing} over {teeth.period} mesh cycles"
-    return {"dte_peak_to_peak": swing, "tooth_load": f"{words} {load:.3g}"}
+    return {"dte_peak_to_peak": f"{words} {swing.shown}{within} {over}", "tooth_load": f"{words} {load:.3g}"}
 
 
 def _verdict(results: Results) -> tuple[Verdict, str, str]:

@@ -25,7 +25,7 @@ from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from lumped.typing import IntArray, Progress
+from lumped.typing import FloatArray, IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
 from validation.cross_check.words import share
@@ -35,7 +35,7 @@ from validation.measurements.record import Measurement
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import ORDERS, Motion, Prediction, measured, mesh_orders, predicted
-from validation.prediction.uncertainty import LONG_STEP, STEP, speed_band, uncertainty
+from validation.prediction.uncertainty import LONG_STEP, STEP, speed_band, teeth_band, uncertainty
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import parameter_warnings
@@ -213,6 +213,14 @@ class Results:
         speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
         step = LONG_STEP if slow else STEP
         return speed_band(self.pair, speeds, self.uncertainty, self.effort.band_samples, step)
+
+    @cached_property
+    def teeth_band(self) -> FloatArray | None:
+        """See ``teeth_band``; None of like teeth, or without samples."""
+        if self.teeth is None or isinstance(self.uncertainty, Absent):
+            return None
+        self.stage("range of teeth that differ")
+        return teeth_band(self.given, self.uncertainty)
 
     @property
     def contact_lost(self) -> bool:

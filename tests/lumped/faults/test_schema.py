@@ -49,9 +49,7 @@ def test_files_that_are_no_deviations_are_refused(nasa, tmp_path, text):
 
 def test_a_measured_file_is_its_lists_in_the_order_of_the_teeth(nasa, tmp_path):
     rows = [f"{j + 1}, {value}, {-value}" for j, value in enumerate(INDEX)]
-    (tmp_path / "d.csv").write_text(
-        "\n".join(["# measured", "tooth, index_um, profile_slope_um", *rows[::-1]])
-    )
+    (tmp_path / "d.csv").write_text("\n".join(["# mine", "tooth, index_um, profile_slope_um", *rows[::-1]]))
     (tmp_path / "pair.toml").write_text(
         nasa.to_toml().replace("[gear]", "[pinion.deviations]\nfile = 'd.csv'\n\n[gear]")
     )

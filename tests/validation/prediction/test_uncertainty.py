@@ -16,6 +16,7 @@ from validation.prediction.uncertainty import (
     _points,
     percentile_interval,
     speed_band,
+    teeth_band,
     transmission_error,
     uncertainty,
 )
@@ -138,6 +139,9 @@ def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
     assert swings.max() < 28e-6 + 1.1 * torque.dte_peak_to_peak.values.max()
     assert ("sideband_ratio" in found, transmission_error(found)) == (True, "revolution_dte_peak_to_peak")
     assert "sideband_ratio" not in torque
+    low, high = teeth_band(pair, torque)[:, 0]
+    assert 0.8 * swings.min() < low < np.median(swings) < high < 1.2 * swings.max()
+    assert high > 1.2 * low
     for alike in (lambda: lumped.speed_sweep(pair, [1000.0]), lambda: floquet.periodic_orbit(pair)):
         with pytest.warns(lumped.LikeTeethWarning):
             alike()

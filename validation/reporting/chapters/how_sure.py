@@ -12,7 +12,6 @@ from validation.files.formatting import quantity
 from validation.measurements.model_error import ModelError
 from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
-from validation.prediction.uncertainty import TEETH, transmission_error
 from validation.reporting.blocks import Block, Cell, Content, Picture, Quantity, Table, Text
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -103,9 +102,7 @@ def _measured_table(found: ModelError) -> Table:
 
 def _ranges(found: xr.Dataset) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for name, (unit, words) in (QUANTITIES | TEETH).items():
-        if f"{name}_percentile" not in found:
-            continue
+    for name, (unit, words) in QUANTITIES.items():
         low, middle, high = found[f"{name}_percentile"].to_numpy()
         given = float(found.attrs[f"given_{name}"])
         rows.append((words, *(Quantity(float(v), unit) for v in (given, low, middle, high))))
@@ -115,7 +112,7 @@ def _ranges(found: xr.Dataset) -> Table:
 
 def inputs_table(found: xr.Dataset) -> Table:
     """Each uncertain input with its range and what it does to the transmission error, the largest first."""
-    name = transmission_error(found)
+    name = "dte_peak_to_peak"
     swing, correlation = (found[f"{name}_{one}"].to_numpy() for one in ("swing", "rank_correlation"))
     order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
     rows = tuple(
@@ -132,7 +129,7 @@ def inputs_table(found: xr.Dataset) -> Table:
     columns = {
         "field": "input",
         "spread": "range",
-        "low": f"{(QUANTITIES | TEETH)[name][1]}: smallest",
+        "low": f"{QUANTITIES[name][1]}: smallest",
         "high": "largest",
         "correlation": "rank correlation",
         "reason": "why this range",

@@ -18,21 +18,25 @@ _MOST_TURNS = 4
 def write(results: Results) -> Content | None:
     """Write the chapter; None where all teeth are alike."""
     found = results.teeth
-    return None if found is None else Content(found.sentence, (*_tables(found), *_pictures(found)))
+    if found is None:
+        return None
+    return Content(found.sentence, (*_tables(found), *_spread(results), *_pictures(found)))
+
+
+def _spread(results: Results) -> list[Block]:
+    """What a class, and every other uncertain input, leaves open."""
+    if (band := results.teeth_band) is None:
+        return []
+    swings, shares = (f"{low:.2g} to {high:.2g}" for low, high in (band * [1e6, 100.0]).T)
+    text = "With the uncertain inputs, teeth of a class drawn anew, the transmission error of the linear form"
+    return [Text(f"{text} is {swings} um and the largest sideband {shares} % of the mesh tone (5 to 95 %).")]
 
 
 def _tables(found: TeethFindings) -> list[Block]:
-    given = deviations_table(found.pair)
-    rows = tuple(
-        (
-            gear,
-            Quantity(float(given["cumulative"][number]), "m"),
-            Quantity(float(given["pitch"][number]), "m"),
-            Quantity(float(given["eccentricity"][number]), "m"),
-            int(given["tolerance_class"][number]) if given["tolerance_class"][number] < 12 else "none",
-        )
-        for number, gear in enumerate(GEARS)
-    )
+    given, lengths = deviations_table(found.pair), ("cumulative", "pitch", "eccentricity")
+    held = (int(one) if one < 12 else "none" for one in given["tolerance_class"])
+    sizes = ([Quantity(float(given[name].sel(gear=gear)), "m") for name in lengths] for gear in GEARS)
+    rows = tuple((gear, *size, one) for gear, size, one in zip(GEARS, sizes, held, strict=True))
     columns = {
         "gear": "gear",
         "cumulative": "range of the index deviations",
@@ -40,25 +44,19 @@ def _tables(found: TeethFindings) -> list[Block]:
         "eccentricity": "eccentricity",
         "tolerance_class": "class of ISO 1328-1 that holds",
     }
-    force, motion, twin, peak = found.static_force, found.motion, found.twin, "dte_peak_to_peak"
+    swing, twin = (one.attrs["dte_peak_to_peak"] for one in (found.motion, found.twin))
+    load, healthy = (found.load(one) / found.static_force for one in (found.motion, found.twin))
+    rate, of_twin = found.rates
     numbers = quantities(
         "teeth_numbers",
         "Teeth as given, with the value of like teeth in the note.",
-        *(
-            (words, value, unit, f"like teeth: {healthy:.3g}{'' if unit == '1' else ' um'}")
-            for words, value, unit, healthy in (
-                ("transmission error, peak to peak", motion.attrs[peak], "m", 1e6 * twin.attrs[peak]),
-                (
-                    "largest load on one tooth / mean",
-                    *(found.load(motion) / force, "1", found.load(twin) / force),
-                ),
-                ("growth of a perturbation in a mesh cycle", found.rates[0], "1", found.rates[1]),
-            )
-        ),
+        ("transmission error, peak to peak", swing, "m", f"like teeth: {1e6 * twin:.3g} um"),
+        ("largest load on one tooth / mean", load, "1", f"like teeth: {healthy:.3g}"),
+        ("growth of a perturbation in a mesh cycle", rate, "1", f"like teeth: {of_twin:.3g}"),
         ("meeting teeth at which contact is lost", float(len(found.contact_lost)), "1"),
     )
     return [
-        Text(f"The motion at {rpm_and_period(found)}. Contact: {motion.attrs['touch']}."),
+        Text(f"The motion at {rpm_and_period(found)}. Contact: {found.motion.attrs['touch']}."),
         Table(
             "teeth_deviations",
             "Index deviations of the teeth, and the class of ISO 1328-1 that they keep.",
