@@ -78,11 +78,12 @@ def closed_motion(
 
     unknown = np.append(start, torque)
     sizes = np.append(np.abs(unknown[:-1]).reshape(2, -1).max(axis=1).repeat(m - 1), _OF_TORQUE * torque)
-    left, found = cycle(unknown)
+    # Derivatives by steps twice as long: the motion that Newton's method then finds is the same.
+    left, about = cycle(unknown)[0], cycle(unknown, coarse)[0]
     slopes = -np.eye(unknown.size)
     for j in range(unknown.size - 1 if radius < _FADED else 0, unknown.size):
         moved = unknown + _DIFFERENCE * sizes * (np.arange(unknown.size) == j)
-        slopes[:, j] = (cycle(moved)[0] - left) / (moved[j] - unknown[j])
+        slopes[:, j] = (cycle(moved, coarse)[0] - about) / (moved[j] - unknown[j])
     for _ in range(_STEPS):
         change = np.linalg.solve(slopes, left)
         unknown = unknown - change
