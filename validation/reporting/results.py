@@ -353,8 +353,9 @@ class Results:
 
     @property
     def on_springs(self) -> str:
-        """Added to what is said of stability and jumps of a pair with shafts."""
-        return "" if self.pair.shafts is None else ", on the springs of [bearings]"
+        """Added to what is said of stability and jumps of a pair with shafts, or with teeth that differ."""
+        like = "" if self.teeth is None else ", with like teeth"
+        return like if self.pair.shafts is None else f"{like}, on the springs of [bearings]"
 
     @property
     def second_words(self) -> str:

@@ -110,6 +110,7 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     words = "with the teeth as given"
     assert first.numbers[0].note == f"{words} {expected[0] * 1e6:.3g}\u00a0µm over 28 mesh cycles"
     assert first.numbers[2].note == f"{words} {expected[1]:.3g}"
+    assert first.numbers[5].note.endswith(", with like teeth")
     results.__dict__["teeth_band"] = np.array([[1e-6, 0.02], [9e-6, 0.03]])
     assert "µm, 1.0 to 9.0\u00a0µm, over 28" in page_one(results).numbers[0].note
     spread = chapter.write(results).blocks[4].text
