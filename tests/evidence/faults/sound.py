@@ -66,9 +66,7 @@ def _varied(base: GearPair, rng: random.Random) -> GearPair:
     if rng.random() < 0.5:  # gears of other sizes, meshing without backlash but for the thinning
         shifts = {f"{gear}.profile_shift": rng.uniform(0.0, 0.3) for gear in ("pinion", "gear")}
         teeth = {f"{gear}.teeth": rng.randint(20, 60) for gear in ("pinion", "gear")}
-        lengths = {
-            f"{gear}.{what}": None for gear in ("pinion", "gear") for what in ("tip_diameter", "addendum")
-        }
+        lengths = {f"{g}.{what}": None for g in ("pinion", "gear") for what in ("tip_diameter", "addendum")}
         reliefs = {f"{gear}.tip_relief": None for gear in ("pinion", "gear")}
         fields |= {**shifts, **teeth, **lengths, **reliefs, "centre_distance": None}
     elif base.pinion.tip_relief is not None and rng.random() < 0.6:
@@ -83,7 +81,7 @@ def sound_pairs(
     """Cross-check random sound pairs and print every one that fails; 1 where there is any."""
     rows: list[dict[str, Any]] = []
     for number, pair in enumerate(drawn(count, seed, relief=relief, loaded=loaded)):
-        rows.append(_row(pair, f"{seed}/{number}"))
+        rows.append(_row(pair, f"{'relief ' * relief}{'loaded ' * loaded}{seed}/{number}"))
         if rows[-1]["verdict"] in ("fails", "not computed"):
             print(rows[-1], flush=True)
     verdicts = Counter(row["verdict"] for row in rows)
@@ -91,7 +89,8 @@ def sound_pairs(
     print(", ".join(f"{n} {name}" for name, n in sorted(verdicts.items())) + f"; {seconds:.2g} s per pair")
     if output is not None:
         known = json.loads(output.read_text(encoding="utf-8")) if output.exists() else []
-        output.write_text(json.dumps([*known, *rows], indent=1) + "\n", encoding="utf-8")
+        named = {row["name"]: row for row in [*known, *rows]}
+        output.write_text(json.dumps(list(named.values()), indent=1) + "\n", encoding="utf-8")
     return int(verdicts["fails"] > 0)
 
 
