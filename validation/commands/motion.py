@@ -217,7 +217,7 @@ def teeth(pair: opt.Pair, files: opt.DataFiles) -> None:
     with progress_bar("motion over the period of the teeth"):
         found = TeethFindings(pair)
     console = stdout()
-    console.print(f"{pair.name}, {rpm_and_period(found)}")
+    console.print(f"{pair.name}: at {rpm_and_period(found)}")
     console.print(f"contact: {found.motion.attrs['touch']}")
     given = deviations_table(pair).to_dataframe()
     columns = "gear | >index deviations | >largest step | >eccentricity | >ISO 1328-1 class"

@@ -164,4 +164,4 @@ def rpm_and_period(found: TeethFindings) -> str:
         f"{found.period / getattr(pair, gear).teeth:g} turns of the {gear}" for gear in GEARS
     )
     rpm = to_stated(pair.operating.pinion_speed, "rpm")
-    return f"{rpm:.5g} rpm; the motion repeats after {found.period} mesh cycles, {turns}"
+    return f"{rpm:.5g} rpm the motion repeats after {found.period} mesh cycles, {turns}"

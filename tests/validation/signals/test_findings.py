@@ -114,7 +114,7 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     results.__dict__["teeth_band"] = np.array([[1e-6, 0.02], [9e-6, 0.03]])
     assert "µm, 1.0 to 9.0\u00a0µm, over 28" in page_one(results).numbers[0].note
     spread = chapter.write(results).blocks[4].text
-    assert "is 1 to 9 um and the largest sideband 2 to 3 %" in spread
+    assert "is 1 to 9 µm and the largest sideband 2 to 3 %" in spread
 
 
 def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:

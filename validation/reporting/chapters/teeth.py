@@ -29,7 +29,7 @@ def _spread(results: Results) -> list[Block]:
         return []
     swings, shares = (f"{low:.2g} to {high:.2g}" for low, high in (band * [1e6, 100.0]).T)
     text = "With the uncertain inputs, teeth of a class drawn anew, the transmission error of the linear form"
-    return [Text(f"{text} is {swings} um and the largest sideband {shares} % of the mesh tone (5 to 95 %).")]
+    return [Text(f"{text} is {swings} µm and the largest sideband {shares} % of the mesh tone (5 to 95 %).")]
 
 
 def _tables(found: TeethFindings) -> list[Block]:
@@ -50,13 +50,13 @@ def _tables(found: TeethFindings) -> list[Block]:
     numbers = quantities(
         "teeth_numbers",
         "Teeth as given, with the value of like teeth in the note.",
-        ("transmission error, peak to peak", swing, "m", f"like teeth: {1e6 * twin:.3g} um"),
+        ("transmission error, peak to peak", swing, "m", f"like teeth: {1e6 * twin:.3g} µm"),
         ("largest load on one tooth / mean", load, "1", f"like teeth: {healthy:.3g}"),
         ("growth of a perturbation in a mesh cycle", rate, "1", f"like teeth: {of_twin:.3g}"),
         ("meeting teeth at which contact is lost", float(len(found.contact_lost)), "1"),
     )
     return [
-        Text(f"The motion at {rpm_and_period(found)}. Contact: {found.motion.attrs['touch']}."),
+        Text(f"At {rpm_and_period(found)}. Contact: {found.motion.attrs['touch']}."),
         Table(
             "teeth_deviations",
             "Index deviations of the teeth, and the class of ISO 1328-1 that they keep.",
