@@ -165,9 +165,7 @@ def step_maps(
         low += together
     maps = merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
-        raise NumericalError(
-            "The mesh cycle could not be integrated: check stiffness and inertia for extremes."
-        )
+        raise NumericalError("The mesh cycle cannot be integrated: check stiffness and inertia for extremes.")
     return StepMaps(grid.edges, grid.times, forcings, maps, steps if kept is None else lambda: kept)
 
 

@@ -214,9 +214,7 @@ def _estimate(s: _Samples) -> float:
     """Maximum-likelihood estimate of beta."""
     power = float(s.regressor @ s.regressor)
     if not power > 0.0:
-        raise NumericalError(
-            "The samples carry no friction (normal load or law is zero); check the alignment."
-        )
+        raise NumericalError("Samples carry no friction (normal load or law is zero); check the alignment.")
     start = float(s.regressor @ s.friction) / power
     size = float(np.std(s.friction)) / float(np.sqrt(power / s.regressor.size))
     scale = max(abs(start), size, 1e-12)

@@ -53,6 +53,9 @@ _SEEDS = 8
 _MANY = 300.0
 #: Times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
+_NO_MOTION = (
+    "The teeth as given have no settled motion ('spurcheck teeth' says why): all numbers are of like teeth."
+)
 
 
 @dataclass(frozen=True)
@@ -130,11 +133,13 @@ class Results:
 
     @cached_property
     def teeth(self) -> TeethFindings | None:
-        """What teeth that differ do; None where they are alike."""
+        """What teeth that differ do; None where they are alike, or no motion of theirs is found."""
         if self.given is self.pair:
             return None
         self.stage("teeth that differ")
-        return TeethFindings(self.given)
+        with suppress(NumericalError):
+            return TeethFindings(self.given)
+        return None
 
     @cached_property
     def linear(self) -> xr.Dataset | Absent:
@@ -322,8 +327,9 @@ class Results:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on given values that hardly can be meant."""
-        return parameter_warnings(self.pair)
+        """Sentences on given values that hardly can be meant, and on teeth that have no motion."""
+        missing = (_NO_MOTION,) if self.given is not self.pair and self.teeth is None else ()
+        return (*parameter_warnings(self.pair), *missing)
 
     @property
     def finite_elements(self) -> bool:

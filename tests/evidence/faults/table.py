@@ -53,9 +53,7 @@ def laws_that_act(rows: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], in
     found: Counter[tuple[str, str]] = Counter()
     for one in rows:
         checks = [check.removeprefix("variant: ") for names in one["caught"].values() for check in names]
-        laws = {
-            check.removeprefix("conservation: ") for check in checks if check.startswith("conservation: ")
-        }
+        laws = {one.removeprefix("conservation: ") for one in checks if one.startswith("conservation: ")}
         split = (law.rsplit(", ", 1) for law in laws)
         found.update({(_AXIS.sub("", law), model) for law, model in split})
     return dict(found)

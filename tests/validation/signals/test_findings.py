@@ -104,6 +104,8 @@ def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> 
     assert len(tops) > 40
     assert np.isin(np.round(tops, 9), np.round(np.multiply.outer([1.0, 1e6, 1e9], amplitude), 9)).all()
     assert chapter.write(Results(PAIR.healthy, QUICK)) is None
+    unstable = Results(PAIR.with_({"mesh.damping_ratio": 0.001, "operating.pinion_speed": "6350 rpm"}), QUICK)
+    assert (unstable.teeth, "of like teeth" in unstable.warnings[-1]) == (None, True)
     first = page_one(results)
     assert (first.verdict, "lose contact, at 1 pairs" in first.headline) == (Verdict.DO_NOT_RUN, True)
     assert (findings(results), "class" in first.actions[0].text) == ({"contact", "holds"}, True)
