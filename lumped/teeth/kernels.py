@@ -93,7 +93,7 @@ class Tables(NamedTuple):
 
 
 class Room(NamedTuple):
-    """What a kernel works in.
+    """Arrays that a kernel works in.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ class Room(NamedTuple):
 
 @compiled
 def room_of(own: Tables) -> Room:
-    """Room for a pair."""
+    """Arrays for a pair."""
     steps, nodes, pairs = own.place.shape
     place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
     place[:steps], coupling[:steps] = own.place, own.coupling

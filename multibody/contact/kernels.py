@@ -38,9 +38,9 @@ from multibody.contact.kinematics import (
     move_moments,
     off_axis,
     overlap_rate,
-    own_pair,
     ripple_torques,
     sliding_velocity,
+    tooth_pair,
 )
 
 
@@ -97,7 +97,7 @@ def contact_forces(
             rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
             xi = 0.5 * (rho_p - rho_g + p[kn.L_XY])
             if p[kn.OWN] > 0.0 and side == 0:
-                own_teeth = own_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
+                own_teeth = tooth_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
             late, tip_p, tip_g = own_teeth.error, own_teeth.tip_p, own_teeth.tip_g
             more_p, more_g = own_teeth.relief_p, own_teeth.relief_g
             error, error_slope = relief_at(p, xi, more_p, more_g)

@@ -426,7 +426,7 @@ class OwnPair(NamedTuple):
 
 
 @compiled
-def own_pair(
+def tooth_pair(
     own: FloatArray, p: FloatArray, turned_p: float, turned_g: float, arms: FloatArray, xi: float
 ) -> OwnPair:
     """The pair with flanks at the distances ``arms`` from X and Y, in contact at xi [m].

@@ -7,7 +7,7 @@ import lumped
 import multibody
 from lumped.teeth.contact import Laws
 from multibody.contact import kinematics as kn
-from multibody.contact.kinematics import own_pair
+from multibody.contact.kinematics import tooth_pair
 from multibody.contact.machine import machine
 
 ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
@@ -66,7 +66,7 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
         (k0, _, gap0), (k, _, gap) = (laws.of_kind(kind, xi) for kind in (0, 1))
 
         def found(x, p=p, at=2 * g.base_pitch):  # two pairs later these teeth are in contact
-            return own_pair(p[int(p[kn.OWN]) :], p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
+            return tooth_pair(p[int(p[kn.OWN]) :], p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
 
         pairs = [found(x) for x in xi]
         scale = max((1.0 / k - 1.0 / k0).max(), 1e-12)
