@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.unlike_pairs import UNLIKE, unlike_pair
+
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
@@ -72,6 +74,12 @@ def pytest_collection_modifyitems(items):
     first, second, short = ([item for item in ordered if rank(item)[0] == part] for part in range(3))
     cut = max(0, len(items) // 2 - len(first))
     items[:] = first + short[:cut] + second + short[cut:]
+
+
+@pytest.fixture(scope="session", params=UNLIKE)
+def unlike(request):
+    """Each of the six unlike pairs in turn. A test of one of them calls ``unlike_pair`` with its name."""
+    return unlike_pair(request.param)
 
 
 def _shown(axis: Axis) -> list[str]:

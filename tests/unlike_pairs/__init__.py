@@ -1,0 +1,22 @@
+"""Six gear pairs that are unlike each other and unlike the presets: what tests of physics run on.
+
+Each file is named after what is unlike in it. No two numbers of a kind are equal in a file, and no value of
+one pair is that of another where it could be avoided: teeth, rack, shifts, widths, material, bearings,
+stiffness model, friction law, oil, contact. A fault that equal gears or a 20-degree rack hide shows on them.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+from lumped import GearPair, load_gear_pair
+
+#: Names of the pairs, which are the names of their files.
+UNLIKE = tuple(sorted(path.stem for path in Path(__file__).parent.glob("*.toml")))
+
+
+@cache
+def unlike_pair(name: str) -> GearPair:
+    """Return the pair of this name; equal arguments give the same object, so that it is read once."""
+    return load_gear_pair(Path(__file__).with_name(f"{name}.toml"))
