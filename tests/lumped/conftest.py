@@ -9,6 +9,7 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.fields.units import Quantity
+from tests.unlike_pairs import unlike_pair
 
 
 def _quantities(model, prefix=""):
@@ -30,38 +31,37 @@ def nasa():
     return load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
 
 
-@pytest.fixture(scope="session")
-def coulomb_pair(nasa):
-    """The default pair with law I and a round coefficient."""
-    return nasa.with_(friction__law="coulomb", friction__coefficient=0.05)
+def as_published(name, **changes):
+    """One of the unlike pairs in the form of the literature: like teeth without relief, prescribed contact."""
+    published = {"mesh.contact": "prescribed", "mesh.relief": "ignored", "shafts": None}
+    return unlike_pair(name).healthy.with_(published | changes)
 
 
 @pytest.fixture(scope="session")
-def unequal(nasa):
-    """25/31 on the same centre distance with different inertias, masses and bearings everywhere."""
-    return nasa.with_(
-        {
-            "pinion.teeth": 25, "gear.teeth": 31, "pinion.mass": 0.25, "gear.mass": 0.41,
-            "pinion.inertia": 2.1e-4, "gear.inertia": 4.9e-4, "bearings.pinion.loa_stiffness": 0.8e8,
-            "bearings.pinion.oloa_stiffness": 1.3e8, "bearings.gear.loa_stiffness": 1.1e8,
-            "bearings.gear.oloa_stiffness": 0.6e8, "bearings.gear.loa_damping_ratio": 0.03,
-            "bearings.pinion.oloa_damping_ratio": 0.07, "friction.law": "coulomb",
-            "friction.coefficient": 0.08, "mesh.stiffness": {"model": "parabolic"},
-        }
-    )  # fmt: skip
+def published(unlike):
+    """Each unlike pair in the form of the literature, with its own stiffness model and law of friction."""
+    return as_published(unlike.name)
 
 
 @pytest.fixture(scope="session")
-def high_contact(nasa):
-    """Contact ratio between 2 and 3: long addenda on many teeth."""
-    return nasa.with_(
-        {
-            "pinion.teeth": 50, "gear.teeth": 50, "centre_distance": None,
-            "basic_rack.addendum_coefficient": 1.35, "basic_rack.dedendum_coefficient": 1.6,
-            "basic_rack.fillet_radius_coefficient": 0.25, "friction.law": "coulomb",
-            "friction.coefficient": 0.05,
-        }
-    )  # fmt: skip
+def coulomb_pair():
+    """43 teeth drive 22, law I with a round coefficient."""
+    return as_published("larger_gear_drives_contact_lost", friction={"law": "coulomb", "coefficient": 0.05})
+
+
+@pytest.fixture(scope="session")
+def unequal():
+    """23/38 from a 25-degree rack: no two numbers of pinion and gear are alike."""
+    return as_published(
+        "rack_25_degrees_always_pushing",
+        **{"friction": {"law": "coulomb", "coefficient": 0.08}, "mesh.stiffness": {"model": "parabolic"}},
+    )
+
+
+@pytest.fixture(scope="session")
+def high_contact():
+    """46/61 with a contact ratio of 2.28 on springs, law I."""
+    return as_published("contact_ratio_2_3_on_shafts", friction={"law": "coulomb", "coefficient": 0.05})
 
 
 @pytest.fixture(scope="session")

@@ -7,14 +7,17 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from lumped import geometry, load_gear_pair, preset_names, steady_state
+from lumped import geometry, load_gear_pair, steady_state
 from lumped.errors import ParameterError
 from lumped.losses import iso_14179_mesh_loss, iso_14179_of, loss_factor, ohlendorf_of, quasi_static_losses
 from lumped.path_of_contact import pair_stiffness
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 
 def coulomb(name, mu, **changes):
-    return load_gear_pair(name).with_(
+    pair = unlike_pair(name).healthy if name in UNLIKE else load_gear_pair(name)
+    return pair.with_(
+        shafts=None,
         mesh__contact="prescribed",
         mesh__relief="ignored",
         friction__law="coulomb",
@@ -24,7 +27,7 @@ def coulomb(name, mu, **changes):
 
 
 #: Pairs with contact ratios below 2, for which closed forms are known.
-UP_TO_TWO_PAIRS = [name for name in preset_names() if load_gear_pair(name).geometry.contact_ratio < 2.0]
+UP_TO_TWO_PAIRS = [name for name in UNLIKE if unlike_pair(name).geometry.contact_ratio < 2.0]
 
 
 def efficiency_of_constant_friction(pair, mu):
@@ -46,10 +49,10 @@ def efficiency_of_constant_friction(pair, mu):
 
 
 @pytest.mark.parametrize("name", UP_TO_TWO_PAIRS)
-@pytest.mark.parametrize("mu", [0.02, 0.05, 0.1])
+@pytest.mark.parametrize("mu", [0.02, 0.1])
 def test_efficiency_of_constant_friction_in_closed_form(name, mu):
-    result = quasi_static_losses(coulomb(name, mu), sharing="uniform")
-    exact = efficiency_of_constant_friction(load_gear_pair(name).with_(mesh__contact="prescribed"), mu)
+    pair = coulomb(name, mu)
+    result, exact = quasi_static_losses(pair, sharing="uniform"), efficiency_of_constant_friction(pair, mu)
     # rounding of the closed form, differences of 1e-16 over mu^2 and the loss: below 1e-10
     assert 1 - result.mesh_efficiency == pytest.approx(1 - exact, rel=1e-10)
 
@@ -62,18 +65,19 @@ def test_no_friction_no_loss():
         loss_factor(pair, "equal")
 
 
-def test_slow_dynamic_solution_is_quasi_static():
+@pytest.mark.parametrize("name", ["rack_25_degrees_always_pushing", "larger_gear_drives_contact_lost"])
+def test_slow_dynamic_solution_is_quasi_static(name):
     # Far below resonance the loads are quasi-static. The dynamic model holds both torques constant and lets
     # inertia take their small mismatch, quasi-statics lets T_g follow: a relative difference of order mu.
     differences = []
     for mu in (0.02, 0.01):
-        pair = coulomb("nasa_28_28", mu, operating__pinion_speed=200)
+        pair = coulomb(name, mu, operating__pinion_speed=25)
         dynamic = steady_state(pair, samples_per_cycle=8).attrs["mesh_efficiency"]
         static = quasi_static_losses(pair).mesh_efficiency
         differences.append((1 - dynamic) / (1 - static) - 1)
     assert abs(differences[0]) < 0.05 * 0.02
-    # proportional to mu; the remainder of vibration after tooth entry is a per cent of the difference
-    assert differences[0] / differences[1] == pytest.approx(2.0, rel=0.02)
+    # proportional to mu; the remainder of vibration after tooth entry is some 0.2 % of the difference at 25 rpm
+    assert differences[0] / differences[1] == pytest.approx(2.0, rel=0.01)
 
 
 def test_iso_mean_coefficient_on_fzg_c():
@@ -124,26 +128,16 @@ def brute_force(pair, relative=lambda xi: 1.0):
     return whole / g.base_pitch / (g.omega_pinion * g.base_radius_pinion)
 
 
-@pytest.fixture(scope="module")
-def high_contact_ratio():
-    # A tall tooth: contact ratio above 2, where the closed form does not apply
-    pair = load_gear_pair("kahraman_blankenship_50_50").with_(
-        mesh__contact="prescribed",
-        pinion__addendum=4.2, gear__addendum=4.2, basic_rack__dedendum_coefficient=1.6,
-        basic_rack__fillet_radius_coefficient=0.2,
-    )  # fmt: skip
-    assert geometry(pair).contact_ratio > 2.0
-    return pair
+def test_loss_factor_is_its_definition_also_above_a_contact_ratio_of_two(published):
+    # exact against adaptive quadrature at 1e-12; the closed form is for contact ratios up to 2
+    assert loss_factor(published) == pytest.approx(brute_force(published), rel=1e-10)
+    closed_form_holds = geometry(published).contact_ratio < 2.0
+    assert (abs(ohlendorf_of(published) / loss_factor(published) - 1) < 1e-9) == closed_form_holds
 
 
-def test_contact_ratio_above_two(high_contact_ratio):
-    # exact against adaptive quadrature at 1e-12
-    assert loss_factor(high_contact_ratio) == pytest.approx(brute_force(high_contact_ratio), rel=1e-10)
-    assert abs(ohlendorf_of(high_contact_ratio) / loss_factor(high_contact_ratio) - 1) > 0.05
-
-
-def test_sharing_by_stiffness():
-    pair = load_gear_pair("fzg_c").with_(mesh__relief="ignored", mesh__stiffness={"model": "parabolic"})
+@pytest.mark.parametrize("name", ["contact_ratio_1_1_large_shifts", "contact_ratio_2_3_on_shafts"])
+def test_sharing_by_stiffness(name):
+    pair = coulomb(name, 0.05, mesh__stiffness={"model": "parabolic"})
     curve, end = pair_stiffness(pair), math.nextafter(geometry(pair).L_XD, 0.0)
     expected = brute_force(pair, lambda xi: float(curve(min(xi, end))))
     # the load share is a ratio of polynomials: eight Gauss nodes a stretch leave about 1e-10

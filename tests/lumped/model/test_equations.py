@@ -17,21 +17,15 @@ SEED = 20080614
 ROUNDING = 1e-11
 
 
-@pytest.fixture(scope="module", params=["nasa", "unequal", "high_contact", "with_error"])
-def case(request, nasa, unequal):
-    """A pair, its mesh cycle and its absolute system, the last one with an unloaded tooth error."""
-    if request.param == "with_error":
-        pair = unequal
-        cycle = mesh_cycle(pair)
-        low, high = cycle.elements.stiffness.interval
-        error = PathFunction.fit(lambda xi: 5e-6 * np.sin(300.0 * (xi - low)), [low, high], tolerance=1e-18)
-        cycle = replace(cycle, elements=replace(cycle.elements, error=error))
-    else:
-        pair = request.getfixturevalue(request.param)
-        cycle = mesh_cycle(pair)
-    return SimpleNamespace(
-        pair=pair, cycle=cycle, system=periodic_system(pair, "full", cycle=cycle), g=geometry(pair)
-    )
+@pytest.fixture(scope="module")
+def case(published):
+    """A pair, its mesh cycle and its absolute system, with an unloaded tooth error."""
+    cycle = mesh_cycle(published)
+    low, high = cycle.elements.stiffness.interval
+    error = PathFunction.fit(lambda xi: 5e-6 * np.sin(300.0 * (xi - low)), [low, high], tolerance=1e-18)
+    cycle = replace(cycle, elements=replace(cycle.elements, error=error))
+    system = periodic_system(published, "full", cycle=cycle)
+    return SimpleNamespace(pair=published, cycle=cycle, system=system, g=geometry(published))
 
 
 def random_states(count):
@@ -95,62 +89,65 @@ def test_rigid_rotation_is_a_jordan_chain(case):
         assert np.abs((a @ w - v) / (np.abs(a) @ np.abs(w) + 1.0)).max() < 1e-14
 
 
-def test_static_deflection_is_an_equilibrium(unequal):
+def test_static_deflection_is_an_equilibrium(published):
     """Without friction and with the mean stiffness for all times, every acceleration vanishes."""
-    g, system = geometry(unequal), periodic_system(unequal, "full")
+    g, system = geometry(published), periodic_system(published, "full")
     k, s = system.cycle.mean_stiffness, system.structure
     state = static_deflection(system)
     load = k * (s.deflection @ state[:6])
-    torque = unequal.operating.pinion_torque
+    torque = published.operating.pinion_torque
     assert load == pytest.approx(torque / g.base_radius_pinion, rel=1e-13)
     external = np.array([torque, -torque * g.base_radius_gear / g.base_radius_pinion, 0, 0, 0, 0])
     residual = external + s.normal * load - s.stiffness * state[:6]
     assert np.abs(residual).max() < 1e-12 * load
     assert np.all(state[6:] == 0.0)
-    b = bodies(unequal)
+    b = bodies(published)
     assert b.inertia_pinion * state[0] / g.base_radius_pinion == pytest.approx(
         -b.inertia_gear * state[1] / g.base_radius_gear, rel=1e-12
     )
 
 
 @pytest.mark.parametrize("number", [0, 3, 8, "1", None])
-def test_only_repaired_equations_have_a_printed_sign(nasa, number):
+def test_only_repaired_equations_have_a_printed_sign(unequal, number):
     with pytest.raises(ParameterError, match="as_printed"):
-        structure(nasa, (number,))
+        structure(unequal, (number,))
 
 
-def test_unknown_form_is_refused(nasa):
+def test_unknown_form_is_refused(unequal):
     with pytest.raises(ParameterError, match="full, elastic, mesh"):
-        periodic_system(nasa, "modal")
+        periodic_system(unequal, "modal")
 
 
 @pytest.mark.parametrize(("number", "axis"), [(7, (2, 3)), (9, (4, 5))])
-def test_per_unit_load_the_forces_on_both_bodies_sum_to_zero_and_as_printed_to_two(nasa, number, axis):
+def test_per_unit_load_the_forces_on_both_bodies_sum_to_zero_and_as_printed_to_two(unequal, number, axis):
     for printed, residual in (((), 0.0), ((number,), 2.0)):
-        s = structure(nasa, printed)
+        s = structure(unequal, printed)
         force = s.normal if number == 7 else s.friction(np.array(20e-3))
         assert abs(force[axis[0]] + force[axis[1]]) == residual
 
 
-def test_printed_signs_change_only_their_own_rows(nasa):
-    repaired = periodic_system(nasa, "full")
+def test_printed_signs_change_only_their_own_rows(published):
+    repaired = periodic_system(published, "full")
     t = 0.3 * repaired.period
     for number, row in {1: 6, 2: 7, 7: 9, 9: 11}.items():
-        difference = periodic_system(nasa, "full", as_printed=(number,)).A(t) - repaired.A(t)
+        difference = periodic_system(published, "full", as_printed=(number,)).A(t) - repaired.A(t)
         assert set(np.flatnonzero(np.abs(difference).max(axis=1))) == {row}
 
 
-def test_disc_by_integration(nasa):
-    b = bodies(nasa.with_(pinion__bore=30))
-    r, width, rho = 44.45e-3, 6.35e-3, 7850.0
-    mass, _ = quad(lambda s: rho * 2 * math.pi * s * width, 15e-3, r)
-    inertia, _ = quad(lambda s: rho * 2 * math.pi * s**3 * width, 15e-3, r)
-    assert b.mass_pinion == pytest.approx(mass, rel=1e-12)  # quadrature of a polynomial
-    assert b.inertia_pinion == pytest.approx(inertia, rel=1e-12)
+@pytest.mark.parametrize("name", ["pinion", "gear"])
+def test_disc_by_integration(unlike, name):
+    """Discs of the reference circles, each with its own bore, width and density."""
+    b, gear = bodies(unlike), getattr(unlike, name)
+    radius = 0.5 * unlike.basic_rack.module * gear.teeth
+    per_radius = gear.density * 2 * math.pi * gear.face_width
+    mass, _ = quad(lambda r: per_radius * r, 0.5 * gear.bore, radius)
+    inertia, _ = quad(lambda r: per_radius * r**3, 0.5 * gear.bore, radius)
+    assert getattr(b, f"mass_{name}") == pytest.approx(mass, rel=1e-12)  # quadrature of a polynomial
+    assert getattr(b, f"inertia_{name}") == pytest.approx(inertia, rel=1e-12)
 
 
-def test_given_values_win_one_by_one(nasa):
-    b = bodies(nasa.with_(pinion__mass=0.5, gear__inertia=1e-3))
-    disc = bodies(nasa)
+def test_given_values_win_one_by_one(unequal):
+    b = bodies(unequal.with_(pinion__mass=0.5, gear__inertia=1e-3))
+    disc = bodies(unequal)
     assert (b.mass_pinion, b.inertia_gear) == (0.5, 1e-3)
     assert (b.mass_gear, b.inertia_pinion) == (disc.mass_gear, disc.inertia_pinion)

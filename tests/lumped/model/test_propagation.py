@@ -106,8 +106,8 @@ def test_a_jump_at_an_edge_costs_no_order():
 
 
 class TestSteps:
-    def test_switches_outputs_and_short_pieces_end_steps(self, nasa):
-        system = periodic_system(nasa, "full")
+    def test_switches_outputs_and_short_pieces_end_steps(self, published):
+        system = periodic_system(published, "full")
         outputs = np.linspace(0.0, system.period, 37, endpoint=False)
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
         off = np.abs(edges[:, None] - outputs).min(axis=0)
@@ -121,16 +121,16 @@ class TestSteps:
         assert np.all(np.minimum(pieces[:-1], pieces[1:])[passed] >= 0.5 * step[passed])
 
     @pytest.mark.parametrize("off", [-1e-14, -1e-15, 1e-15, 1e-14])
-    def test_outputs_beside_a_switch_do_not_move_it(self, nasa, off):
-        system = periodic_system(nasa, "full")
+    def test_outputs_beside_a_switch_do_not_move_it(self, published, off):
+        system = periodic_system(published, "full")
         outputs = system.cycle.switch_times + off * system.period
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
         assert set(system.cycle.edges) <= set(edges)
         # No step as short as a rounding is left between the two.
         assert np.diff(edges).min() > 1e-13 * system.period
 
-    def test_no_step_exceeds_the_angle(self, nasa):
-        system = periodic_system(nasa.with_(operating__pinion_speed=300), "full")
+    def test_no_step_exceeds_the_angle(self, published):
+        system = periodic_system(published.with_(operating__pinion_speed=300), "full")
         edges = step_maps(system, np.zeros((12, 0)), step_angle=0.3).edges
         assert np.diff(edges).max() * fastest_frequency(system) <= 0.3 * (1 + 1e-9)
 

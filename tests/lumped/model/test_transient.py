@@ -19,6 +19,7 @@ from lumped import (
 from lumped.model.equations import COORDINATES
 from lumped.model.solution import static_deflection
 from lumped.model.steady import periodic_cycle, sample_times
+from tests.unlike_pairs import unlike_pair
 
 STATES = (*COORDINATES, *(f"{n}_dot" for n in COORDINATES))
 
@@ -27,11 +28,11 @@ def states(run):
     return np.stack([run[name].to_numpy() for name in STATES], axis=1)
 
 
-@pytest.mark.parametrize("samples", [8, 37, 100])
-def test_every_sample_is_filled_whatever_the_grid(unequal, samples):
+@pytest.mark.parametrize("samples", [8, 37])
+def test_every_sample_is_filled_whatever_the_grid(published, samples):
     """Samples of a coarse run are those of a fine one: none is skipped, doubled or shifted at a switch."""
-    fine = simulate(unequal, 2, samples_per_cycle=10 * samples)
-    coarse = simulate(unequal, 2, samples_per_cycle=samples)
+    fine = simulate(published, 2, samples_per_cycle=10 * samples)
+    coarse = simulate(published, 2, samples_per_cycle=samples)
     a, b = states(fine)[::10], states(coarse)
     assert np.isfinite(b).all()
     # Same solution, other output points: dense output has the accuracy of the steps.
@@ -61,10 +62,10 @@ def test_samples_at_the_very_bits_of_the_switches(coulomb_pair, monkeypatch):
     assert np.all(np.abs(between - before)[:, :6] <= 3 * fastest * steps[:, None] + 1e-12)
 
 
-@pytest.mark.parametrize("name", ["coulomb_pair", "unequal"])
-def test_an_adaptive_method_between_the_switches_finds_the_same(name, request):
+@pytest.mark.parametrize("name", ["larger_gear_drives_contact_lost", "contact_ratio_2_3_on_shafts"])
+def test_an_adaptive_method_between_the_switches_finds_the_same(name):
     """scipy's DOP853 on x' = A(t) x + b(t), started anew at every switch, is of another family."""
-    pair = request.getfixturevalue(name)
+    pair = unlike_pair(name).with_(shafts=None)  # where a pair touches follows from the load
     run = simulate(pair, 2, samples_per_cycle=16)
     system = periodic_system(pair, "full")
     state, scale = states(run)[0], np.abs(states(run)).max(axis=0)
@@ -83,19 +84,19 @@ def test_an_adaptive_method_between_the_switches_finds_the_same(name, request):
     assert (np.abs(states(run)[-1] - state) / scale).max() < 1e-7
 
 
-def test_static_start(unequal):
-    run = simulate(unequal, 1, samples_per_cycle=8)
+def test_static_start(published):
+    run = simulate(published, 1, samples_per_cycle=8)
     start = states(run)[0]
-    np.testing.assert_array_equal(start, static_deflection(periodic_system(unequal, "full")))
+    np.testing.assert_array_equal(start, static_deflection(periodic_system(published, "full")))
     assert np.all(start[6:] == 0.0)
-    g = geometry(unequal)
-    k = mesh_cycle(unequal).mean_stiffness
-    assert float(run["dte"][0]) * k == pytest.approx(56.5 / g.base_radius_pinion, rel=1e-12)
+    k = mesh_cycle(published).mean_stiffness
+    force = published.operating.pinion_torque / published.geometry.base_radius_pinion
+    assert float(run["dte"][0]) * k == pytest.approx(force, rel=1e-12)
 
 
-def test_static_start_carries_the_given_brake(nasa):
+def test_static_start_carries_the_given_brake(published):
     """With a brake torque given, the mean load is the brake's, not the one of the nominal pinion torque."""
-    pair = nasa.with_(operating__brake_torque=20.0, friction__law="none")
+    pair = published.with_(operating__brake_torque=20.0, friction__law="none")
     run = simulate(pair, 1, samples_per_cycle=8)
     g, k = geometry(pair), mesh_cycle(pair).mean_stiffness
     assert float(run["dte"][0]) * k == pytest.approx(20.0 / g.base_radius_gear, rel=1e-9)

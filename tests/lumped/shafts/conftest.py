@@ -28,7 +28,7 @@ def _on_short_shafts(pair):
     for name in GEARS:
         mass, inertia = getattr(b, f"mass_{name}"), getattr(b, f"inertia_{name}")
         changes |= {f"{name}.mass": mass - own, f"{name}.inertia": inertia - 0.5 * own * 0.02**2}
-        springs, bearing = getattr(pair.bearings, name), {"position": 10, "tilt_stiffness": 1e7}
+        springs, bearing = getattr(pair.bearings, name), {"position": 10, "tilt_stiffness": 1e9}
         for d in ("loa", "oloa"):
             stiffness, ratio = getattr(springs, f"{d}_stiffness"), getattr(springs, f"{d}_damping_ratio")
             bearing |= {f"{d}_stiffness": stiffness, f"{d}_damping": 2 * ratio * math.sqrt(stiffness * mass)}

@@ -146,7 +146,11 @@ def test_condensed_gears_feel_their_shafts(shafted, frequency):
 
 
 def test_a_gear_tilts_as_a_disc_of_its_mass_inertia_and_width(shafted):
-    assert discs(shafted)[0].tilting == pytest.approx(0.5 * 2.1e-4 + 0.25 * 6.35e-3**2 / 12, rel=1e-12)
+    # J/2 + m b^2/12 of the pinion: a disc of the reference circle with its bore, 18 mm wide.
+    outer, inner, width = 0.5 * 69e-3, 11e-3, 18e-3
+    mass = 7850 * math.pi * (outer**2 - inner**2) * width
+    inertia = 0.5 * mass * (outer**2 + inner**2)
+    assert discs(shafted)[0].tilting == pytest.approx(0.5 * inertia + mass * width**2 / 12, rel=1e-12)
 
 
 def test_no_spring_above_a_resonance(shafted):

@@ -17,11 +17,11 @@ def steps(values, **more):
 
 @pytest.mark.parametrize(("changes", "cycles"), [
     ({}, 1),
-    ({"pinion.mounting": {"eccentricity": 1}}, 25),
-    ({"gear.deviations": {"tolerance_class": 5}}, 31),
-    ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, 31),
+    ({"pinion.mounting": {"eccentricity": 1}}, 23),
+    ({"gear.deviations": {"tolerance_class": 5}}, 38),
+    ({"operating.torque_ripple": [{"shaft": "gear", "order": 1, "amplitude": 1}]}, 38),
     ({"gear.mounting": {"eccentricity": 1}, "pinion.faults": [{"kind": "crack", "tooth": 1, "depth": 0.1}]},
-     775),
+     874),
 ])  # fmt: skip
 def test_period_is_a_revolution_or_the_hunting_period(unequal, changes, cycles):
     assert revolution(unequal.with_(changes)) == cycles
@@ -29,7 +29,7 @@ def test_period_is_a_revolution_or_the_hunting_period(unequal, changes, cycles):
 
 def test_every_pair_of_coprime_teeth_meets_and_28_of_784_of_like_numbers(nasa, unequal):
     both = {f"{gear}.deviations": {"tolerance_class": 6} for gear in ("pinion", "gear")}
-    for pair, met in ((unequal.with_(both), 775), (nasa.with_(both), 28)):
+    for pair, met in ((unequal.with_(both), 874), (nasa.with_(both), 28)):
         found = meeting_teeth(pair)
         assert len({*zip(found.pinion_tooth.values, found.gear_tooth.values, strict=True)}) == met
         assert (found.pinion_tooth[0], found.gear_tooth[0]) == (1, 1)
