@@ -189,7 +189,9 @@ def test_bad_input_is_refused():
 
 def relieved(**changes):
     pair = unlike_pair("heavily_relieved_under_load")
-    return pair.with_({"mesh.contact": "prescribed", "mesh.relief": "static", "friction.law": "none", **changes})
+    return pair.with_(
+        {"mesh.contact": "prescribed", "mesh.relief": "static", "friction.law": "none", **changes}
+    )
 
 
 def test_elements_carry_the_error_and_the_loaded_contact():

@@ -14,6 +14,7 @@ from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.linear import linear_motion
 from lumped.teeth.motion import push_motion, static_loads, static_mesh, static_rows
+from tests.unlike_pairs import unlike_pair
 
 COS = np.cos(np.radians(20.0))
 ERRORS = np.random.default_rng(5).normal(size=28) * 5.0
@@ -129,38 +130,62 @@ def test_like_teeth_move_as_the_loaded_form_says(loaded, dte):
     )
 
 
-ECCENTRIC = {
-    "pinion.deviations": steps(ERRORS),
-    "pinion.mounting": {"eccentricity": 11, "phase": 40},
-    "gear.mounting": {"eccentricity": 20},
+#: Pairs whose teeth differ: on both gears, first harmonics as eccentricities; with tip relief and a crack; on
+#: the gear that is driven by the larger one. Contact is kept, or no motion would have the period.
+OWN = {
+    "unlike_teeth_finite_elements": {},
+    "heavily_relieved_under_load": {
+        "pinion.deviations": {"tolerance_class": 6, "seed": 2, "first_order": "steps"},
+        "pinion.mounting": {"eccentricity": 11, "phase": 40},
+        "pinion.faults": [{"kind": "crack", "tooth": 3, "depth": 2.0}],
+    },
+    "larger_gear_drives_contact_lost": {
+        "gear.deviations": {"tolerance_class": 5, "seed": 7},
+        "mesh.damping_ratio": 0.05,
+        "operating.pinion_speed": 2500,
+    },
 }
 
 
-def test_first_law_holds_over_a_revolution_with_the_moment_of_eccentric_gears(loaded):
-    pair = loaded.with_(ECCENTRIC)
+@pytest.mark.parametrize("name", OWN)
+def test_first_law_holds_over_the_period_with_the_moment_of_eccentric_gears(name):
+    pair = unlike_pair(name).with_(OWN[name])
     pushed = lumped.steady_state(pair, samples_per_cycle=8)
     g, found = pair.geometry, pushed.attrs
-    driving, braking = 56.5 * g.omega_pinion, found["brake_torque"] * g.omega_gear
+    driving, braking = pair.operating.pinion_torque * g.omega_pinion, found["brake_torque"] * g.omega_gear
     lost = found["power_sliding"] + found["power_tooth_dampers"] + found["power_bearings"]
-    assert driving - braking - lost == pytest.approx(0.0, abs=1e-8 * driving)
+    # Steps of the default length leave 2e-5 of the loss where tips jump in and out under heavy relief.
+    assert driving - braking == pytest.approx(lost, rel=1e-4)
+
+
+def test_linear_form_has_the_losses_of_the_unilateral_motion_where_every_pair_pushes():
+    pair = unlike_pair("unlike_teeth_finite_elements")
+    pushed = lumped.steady_state(pair, samples_per_cycle=8)
     # The linear form integrates dampers and supports, and has sliding from the first law; the moments of the
     # eccentric gears turn both.
     tied = lumped.steady_state(pair, samples_per_cycle=8, touch="linear")
     for name, near in (("brake_torque", 1e-5), ("power_sliding", 1e-3), ("power_bearings", 0.02)):
-        assert tied.attrs[name] == pytest.approx(found[name], rel=near), name
+        assert tied.attrs[name] == pytest.approx(pushed.attrs[name], rel=near), name
     assert np.ptp(tied.theta_p.values) == pytest.approx(np.ptp(pushed.theta_p.values), rel=0.01)
 
 
-def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(loaded):
-    pair = loaded.with_({"pinion.deviations": steps(ERRORS), "mesh.first_teeth": [3, 1]})
+@pytest.mark.parametrize("name", OWN)
+def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(name):
+    first = {} if "mounting" in str(OWN[name]) else {"mesh.first_teeth": [3, 1]}
+    pair = unlike_pair(name).with_(OWN[name] | first)
+    period, cycles = lumped.revolution(pair), 150
     steady = lumped.steady_state(pair, samples_per_cycle=8)
-    for initial, left in (("periodic", 0), ("static", 2 * 28)):
-        run = lumped.simulate(pair, 60, samples_per_cycle=8, initial=initial)
-        assert (run.sizes["time"], run.attrs["teeth"]) == (60 * 8 + 1, "as given")
-        for name, close in (("dte", 1e-11), ("normal_load", 1e-3), ("pinion_tooth", 0.5)):
-            expected = np.take(steady[name].values, np.arange(481) % (28 * 8), axis=-1)
-            off = np.abs(run[name].values - expected)[..., left * 8 :]
-            assert off.max() < close, (initial, name)
+    size, force = np.ptp(steady.dte.values), pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    for initial, left in (("periodic", 0), ("static", 100)):
+        run = lumped.simulate(pair, cycles, samples_per_cycle=8, initial=initial)
+        assert (run.sizes["time"], run.attrs["teeth"]) == (cycles * 8 + 1, "as given")
+        tooth = (
+            "gear_tooth" if period == pair.gear.teeth else "pinion_tooth"
+        )  # the other one has no such period
+        for variable, close in (("dte", 1e-5 * size), ("normal_load", 1e-6 * force), (tooth, 0.5)):
+            expected = np.take(steady[variable].values, np.arange(cycles * 8 + 1) % (period * 8), axis=-1)
+            off = np.abs(run[variable].values - expected)[..., left * 8 :]
+            assert off.max() < close, (initial, variable)
 
 
 class TestEccentricGears:

@@ -38,14 +38,16 @@ def test_every_pair_of_coprime_teeth_meets_and_28_of_784_of_like_numbers(nasa, u
     assert later.gear_tooth.values.tolist() == [3, 4]
 
 
-def test_a_flank_further_along_the_count_comes_late_on_the_pinion_and_early_on_the_gear(nasa):
+def test_a_flank_further_along_the_count_comes_late_on_the_pinion_and_early_on_the_gear(unequal):
+    along, behind = LIST[:23], [round(2.0 * math.cos(1.3 * j), 3) for j in range(38)]
     # Numbered against the count the list is reversed with its sign.
-    against = steps([-LIST[-j % 28] for j in range(28)], counted="against")
-    found = tooth_gaps(nasa.with_({"pinion.deviations": against, "gear.deviations": steps(LIST)}))
-    expected = np.cos(np.radians(20.0)) * np.array(LIST) * 1e-6
-    assert found.pinion_error.values == pytest.approx(expected, rel=1e-14)
-    assert found.gear_error.values == pytest.approx(-expected, rel=1e-14)
-    assert np.diag(found.gap.values) == pytest.approx(0.0, abs=1e-21)
+    against = steps([-along[-j % 23] for j in range(23)], counted="against")
+    found = tooth_gaps(unequal.with_({"pinion.deviations": against, "gear.deviations": steps(behind)}))
+    # Along the line of action, by the rack's angle: a pitch deviation F turns the flank by F cos(alpha)/r_b.
+    late, early = (np.cos(np.radians(25.0)) * np.array(values) * 1e-6 for values in (along, behind))
+    assert found.pinion_error.values == pytest.approx(late, rel=1e-14)
+    assert found.gear_error.values == pytest.approx(-early, rel=1e-14)
+    assert found.gap.values == pytest.approx(late[:, None] - early, abs=1e-20)
 
 
 @pytest.mark.parametrize("which", ["pinion", "gear"])
