@@ -32,7 +32,7 @@ def nasa():
 
 
 def as_published(name, **changes):
-    """One of the unlike pairs in the form of the literature: like teeth without relief, prescribed contact."""
+    """One of the unlike pairs as the literature models it: like teeth without relief, prescribed contact."""
     published = {"mesh.contact": "prescribed", "mesh.relief": "ignored", "shafts": None}
     return unlike_pair(name).healthy.with_(published | changes)
 
