@@ -23,7 +23,7 @@ from floquet.orbits.response import Member, Response
 from floquet.orbits.system import Run
 from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
-from lumped.labelling import Variable
+from lumped.labelling import Variable, provenance
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem
@@ -170,7 +170,8 @@ class GearOrbit:
         values = response(system, time, states, run.loads[:, :drive].T)
         values["contact"] = (values["normal_load"] > 0.0).astype(float)
         back: Variable = ("time", run.loads[:, drive:].sum(axis=1), "N", "normal load on the back sides")
-        attributes = {
+        attributes = provenance(self.pair, samples_per_cycle=samples_per_cycle) | {
+            "model": "lumped",
             "speed_rpm": self.speed_rpm,
             "n": self.n,
             "stable": int(self.stable),

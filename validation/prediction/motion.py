@@ -24,6 +24,7 @@ import lumped
 from floquet.gear.motions import GearOrbit
 from floquet.gear.unilateral import contact_cycle
 from lumped.errors import NumericalError
+from lumped.labelling import provenance
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import cycle_peak_to_peak
@@ -231,7 +232,9 @@ def by_momentary_load(orbit: GearOrbit, samples: int = _SAMPLES) -> xr.Dataset |
         return None
     size = cycle_peak_to_peak(found, "dte")
     low, high = orbit.dte_range
-    return found if abs(size - (high - low)) < _NEAR * (high - low) else None
+    if abs(size - (high - low)) > _NEAR * (high - low):
+        return None
+    return found.assign_attrs(provenance(pair, samples_per_cycle=samples))
 
 
 def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:
