@@ -1,8 +1,8 @@
 """Which gear pairs do the tests use? A census of the pairs whose physics is computed, as a plugin of pytest.
 
 ``python -m pytest -n 0 -p tests.meta.census tests/lumped ...`` prints the table at its end. A use is a test
-and a pair, whatever its operating point, of which the test computes stiffness, friction, masses or contact. What
-is cached from an earlier test, or computed by a fixture of several tests, counts for the first of them.
+and a pair, whatever its operating point, of which the test computes stiffness, friction, masses or contact.
+What is cached from an earlier test, or computed by a fixture of several tests, counts for the first of them.
 """
 
 from __future__ import annotations
