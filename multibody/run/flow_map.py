@@ -27,6 +27,7 @@ from multibody.contact.machine import Machine, Supports
 from multibody.run.integration import Segment, keep_inside
 from multibody.run.linear_motion import bordered, state_scale
 from multibody.run.model import build, from_lumped_state, to_lumped_state
+from multibody.run.powers import Powers, work
 from multibody.run.setup import Fidelity, Setup, prepare
 from multibody.run.simulation import record
 
@@ -227,9 +228,10 @@ def steady_state(
 
     Returns
     -------
-    xarray.Dataset as of ``multibody.simulate`` over these cycles; the attributes ``brake_torque`` and
-    ``mesh_efficiency`` are those that hold the mean speed of this model, ``closure`` the relative mismatch
-    after the cycles
+    xarray.Dataset as of ``multibody.simulate`` over these cycles; the attribute ``brake_torque`` holds the
+    mean speed of this model, ``power_sliding``, ``power_tooth_dampers``, ``power_bearings`` and on shafts
+    ``power_shafts`` are its mean losses [W], ``mesh_efficiency`` one less all losses over the input,
+    ``power_energy_residual`` what no torque balances [W], ``closure`` the relative mismatch after the cycles
 
     Raises
     ------
@@ -248,13 +250,27 @@ def cycles_of(orbit: Orbit, samples_per_cycle: int, cycles: int = 1) -> xr.Datas
     q, v = _unpacked(orbit.machine, orbit.state)
     setup = replace(orbit.flow.setup, q=q, v=v)
     run, _, _ = record(setup, cycles, samples_per_cycle, run=orbit.flow.again)
-    m, p = orbit.machine, orbit.machine.parameters
-    run.attrs |= {
-        "brake_torque": m.torque_gear,
-        "mesh_efficiency": m.torque_gear * p[kn.OMEGA_G] / (m.torque_pinion * p[kn.OMEGA_P]),
+    mean = mean_powers(orbit, cycles)
+    places = ("sliding", "tooth_dampers", "bearings", *(() if orbit.machine.train is None else ("shafts",)))
+    run.attrs |= {f"power_{place}": float(getattr(mean, place)) for place in places} | {
+        "power_energy_residual": float(mean.energy_residual),
+        "brake_torque": orbit.machine.torque_gear,
+        "mesh_efficiency": float(1.0 - mean.lost / mean.driving),
         "closure": orbit.closure,
     }
     return run.isel(time=slice(None, -1))
+
+
+def mean_powers(orbit: Orbit, cycles: int) -> Powers:
+    """Mean powers of an orbit over its mesh cycles [W], by the segments of its run."""
+    totals = np.zeros(len(Powers._fields))
+
+    def visit(_: int, segment: Segment) -> None:
+        totals[:] += work(orbit.flow.setup.model, segment)
+
+    edges = orbit.flow.setup.edges(cycles)
+    orbit.flow.again(edges, visit)
+    return Powers(*(totals / (edges[-1] - edges[0])))
 
 
 class Flow:

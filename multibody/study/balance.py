@@ -1,7 +1,6 @@
 """Power balance of a multibody run: where the driving work goes.
 
-It is computed from contact records (loads, sliding and closing velocities), not from the forces that moved
-the bodies, so a wrong wrench, sign or lever shows up as a residual.
+Its powers are those of ``multibody.run.powers``, which do not read the forces that moved the bodies.
 
 Sources: docs/theory/multibody.md, "Overlap, wrench and contact point"; the power balance of rigid bodies.
 """
@@ -24,12 +23,12 @@ from lumped.typing import BoolArray, FloatArray
 from multibody.contact import kinematics as kn
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
+from multibody.run.powers import Powers, rotor_speeds, work
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 #: A step over less than the first share of the mesh cycle leads across an event. So does one over less than
 #: the second in which the number of contacts changes, where contact begins with a load: a jump that was not
 #: predicted, as where soft bearings move it far or friction sticks, shrinks the step.
@@ -113,7 +112,7 @@ def motion_balance(pair: GearPair, motion: xr.Dataset, rtol: float = 1e-8) -> Po
 
 def balance_of(setup: Setup, cycles: int) -> PowerBalance:
     """Power balance of a model that is ready to run, over mesh cycles."""
-    work, stored, jumps = np.zeros(6), [0.0], [0.0]
+    totals, stored, jumps = np.zeros(len(Powers._fields)), [0.0], [0.0]
 
     def energy(segment: Segment, t: FloatArray) -> FloatArray:
         _, contacts, counts = contact_state(setup.model, t, *segment.at(t))
@@ -132,10 +131,7 @@ def balance_of(setup: Setup, cycles: int) -> PowerBalance:
         return np.asarray(across, dtype=np.bool_)
 
     def visit(number: int, segment: Segment) -> None:
-        steps = np.diff(segment.times)[:, None]
-        t = (segment.times[:-1, None] + 0.5 * steps * (1.0 + _NODES)).ravel()
-        powers = _powers(setup.model, t, *segment.at(t))
-        work[:] += (0.5 * steps * _WEIGHTS).ravel() @ powers
+        totals[:] += work(setup.model, segment)
         hair = _HAIR * setup.machine.period
         across = np.flatnonzero(leads_across(segment))
         first_of, last_of = np.diff(across, prepend=-2) > 1, np.diff(across, append=segment.times.size) > 1
@@ -150,47 +146,24 @@ def balance_of(setup: Setup, cycles: int) -> PowerBalance:
     edges = setup.edges(cycles)
     start = _stored(setup.model, setup.q, setup.v)
     q, v = setup.run(edges, visit)
-    driving, braking, bearings, friction, damping, energy_residual = (float(w) for w in work)
+    done = Powers(*totals)
     return PowerBalance(
-        driving=driving,
-        braking=braking,
+        driving=float(done.driving),
+        braking=float(done.braking),
         kinetic=_stored(setup.model, q, v) - start,
-        bearings=bearings,
-        friction=friction,
-        mesh_damping=damping,
+        bearings=float(done.bearings),
+        friction=float(done.sliding),
+        mesh_damping=float(done.tooth_dampers),
         mesh_elastic=stored[-1] - stored[1],
         mesh_jump=sum(jumps),
-        energy_residual=energy_residual,
+        energy_residual=float(done.energy_residual),
     )
-
-
-def _speeds(model: ExudynModel, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Actual speeds of pinion and gear in their running senses [rad/s]."""
-    p = model.machine.parameters
-    return p[kn.OMEGA_P] - v[..., 2], p[kn.OMEGA_G] + v[..., 5]
 
 
 def _stored(model: ExudynModel, q: FloatArray, v: FloatArray) -> float:
     """Kinetic energy and elastic energy of the bearings [J]."""
     m = model.machine
-    omega_p, omega_g = _speeds(model, v)
+    omega_p, omega_g = rotor_speeds(m, v)
     kinetic = m.mass[0] * (v[0] ** 2 + v[1] ** 2) + m.mass[1] * (v[3] ** 2 + v[4] ** 2)
     kinetic += float(m.inertia[0] * omega_p**2 + m.inertia[1] * omega_g**2)
     return float(0.5 * (kinetic + m.bearing_stiffness.ravel() @ q[[0, 1, 3, 4]] ** 2))
-
-
-def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Driving, braking, bearings, friction, mesh damping, energy residual at n states, (n, 6) [W]."""
-    m = model.machine
-    omega_p, omega_g = _speeds(model, v)
-    powers = np.zeros((t.size, 6))
-    powers[:, 0], powers[:, 1] = (m.torques(t, q) * np.stack([omega_p, omega_g], axis=1)).T
-    powers[:, 2] = v[:, [0, 1, 3, 4]] ** 2 @ m.bearing_damping.ravel()
-    _, contacts, counts = contact_state(model, t, q, v)
-    contacts[np.arange(contacts.shape[1]) >= counts[:, None]] = 0.0
-    c = np.moveaxis(contacts, -1, 0)
-    powers[:, 3] = (c[kn.FRICTION_FORCE] * c[kn.SLIDE]).sum(axis=1)
-    powers[:, 4] = ((c[kn.LOAD] - c[kn.ELASTIC]) * c[kn.OVERLAP_RATE]).sum(axis=1)
-    if not model.flags & kn.PATH_WORK:
-        powers[:, 5] = (c[kn.PATH] * c[kn.PATH_RATE]).sum(axis=1)
-    return powers

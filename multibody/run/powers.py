@@ -1,0 +1,95 @@
+"""Powers of a multibody motion at instants, and the work of a step: where the driving work goes.
+
+They are computed from contact records (loads, sliding and closing velocities), not from the forces that moved
+the bodies, so a wrong wrench, sign or lever shows up in the power balance.
+
+Sources: docs/theory/multibody.md, "Overlap, wrench and contact point"; the power balance of rigid bodies.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lumped.typing import FloatArray
+from multibody.contact import kinematics as kn
+from multibody.contact.machine import Machine
+from multibody.run.integration import Segment
+from multibody.run.model import ExudynModel, contact_state
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+class Powers(NamedTuple):
+    """Powers at n instants (n,) [W], or their integrals over time [J], or their means [W].
+
+    Attributes
+    ----------
+    driving, braking : of the driving torque, and taken by the brake
+    sliding : taken by sliding friction between the teeth
+    tooth_dampers : taken by the damping of the teeth
+    bearings : taken by the dampers of the bearings
+    shafts : taken by the damping of the shafts and couplings
+    energy_residual : power on the teeth that goes into no energy, because the contact force has no part along
+        the path of contact; zero with the effect ``path_work``
+    """
+
+    driving: FloatArray
+    braking: FloatArray
+    sliding: FloatArray
+    tooth_dampers: FloatArray
+    bearings: FloatArray
+    shafts: FloatArray
+    energy_residual: FloatArray
+
+    @property
+    def lost(self) -> FloatArray:
+        """All losses together."""
+        return self.sliding + self.tooth_dampers + self.bearings + self.shafts
+
+
+def rotor_speeds(machine: Machine, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Actual speeds [rad/s] of the driving and the braked rotor in their running senses, rates (n, size)."""
+    p = machine.parameters
+    turning = v[..., [2, 5]] if machine.train is None else v @ machine.train.torques.T
+    return p[kn.OMEGA_P] - turning[..., 0], p[kn.OMEGA_G] + turning[..., 1]
+
+
+def powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> Powers:
+    """Powers at n states: times (n,) [s], coordinates and rates (n, size)."""
+    machine, none = model.machine, np.zeros(t.size)
+    torques = machine.torques(t, q)
+    driven, braked = rotor_speeds(machine, v)
+    bearings, shafts = _support_powers(machine, v)
+    _, contacts, counts = contact_state(model, t, q, v)
+    contacts[np.arange(contacts.shape[1]) >= counts[:, None]] = 0.0
+    c = np.moveaxis(contacts, -1, 0)
+    return Powers(
+        driving=torques[:, 0] * driven,
+        braking=torques[:, 1] * braked,
+        sliding=(c[kn.FRICTION_FORCE] * c[kn.SLIDE]).sum(axis=1),
+        tooth_dampers=((c[kn.LOAD] - c[kn.ELASTIC]) * c[kn.OVERLAP_RATE]).sum(axis=1),
+        bearings=bearings,
+        shafts=shafts,
+        energy_residual=none if model.flags & kn.PATH_WORK else (c[kn.PATH] * c[kn.PATH_RATE]).sum(axis=1),
+    )
+
+
+def _support_powers(machine: Machine, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What the dampers of the bearings, and those of shafts and couplings take at n states (n,) [W]."""
+    train = machine.train
+    if train is None:
+        return v[:, [0, 1, 3, 4]] ** 2 @ machine.bearing_damping.ravel(), np.zeros(len(v))
+    damping = np.concatenate([shaft.bearing_damping for shaft in train.shafts])
+    bearings = np.einsum("kd,kdn->n", damping, (train.bearings @ v.T) ** 2)
+    # Gyroscopic terms, which are antisymmetric, take no power.
+    return bearings, np.einsum("ni,ij,nj->n", v, train.damping, v) - bearings
+
+
+def work(model: ExudynModel, segment: Segment) -> Powers:
+    """Integrals of the powers over a segment [J], by four-point Gauss quadrature in each of its steps."""
+    steps = np.diff(segment.times)[:, None]
+    t = (segment.times[:-1, None] + 0.5 * steps * (1.0 + _NODES)).ravel()
+    weights = (0.5 * steps * _WEIGHTS).ravel()
+    return Powers(*(weights @ power for power in powers(model, t, *segment.at(t))))
