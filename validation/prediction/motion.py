@@ -10,7 +10,8 @@ Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Predictio
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -69,7 +70,7 @@ class Prediction:
     peak_to_peak : of the transmission error, between samples too [m]
     stable : whether the motion returns after a small disturbance
     mesh_cycles : after which the motion repeats
-    efficiency : share of the driving power that reaches the brake [-]
+    losses : place of ``PLACES`` -> mean power that is lost there [W]; empty where the motion is not periodic
     """
 
     pair: GearPair
@@ -78,7 +79,7 @@ class Prediction:
     peak_to_peak: float
     stable: bool
     mesh_cycles: int
-    efficiency: float
+    losses: Mapping[str, float]
 
     @property
     def transmission_error(self) -> xr.DataArray:
@@ -94,6 +95,21 @@ class Prediction:
     def mesh_force(self) -> FloatArray:
         """Total normal load of all tooth pairs at the times of ``cycle`` [N]."""
         return np.asarray(self.cycle["normal_load"].sum("pair").to_numpy(), dtype=np.float64)
+
+    @property
+    def input_power(self) -> float:
+        """Driving power, T_p Omega_p [W]."""
+        return self.pair.operating.pinion_torque * self.pair.geometry.omega_pinion
+
+    @property
+    def loss(self) -> float:
+        """Mean power that all places lose together [W]; NaN where the motion is not periodic."""
+        return sum(self.losses.values()) if self.losses else math.nan
+
+    @property
+    def efficiency(self) -> float:
+        """Share of the driving power that is not lost [-], 1 - loss / input."""
+        return 1.0 - self.loss / self.input_power
 
     @property
     def dynamic_factor(self) -> float:
@@ -153,6 +169,13 @@ def mesh_orders(values: FloatArray, mesh_cycles: int = 1) -> FloatArray:
     return np.asarray(found[mesh_cycles::mesh_cycles][:ORDERS], dtype=np.float64)
 
 
+#: Where power is lost -> its plain name.
+PLACES = {
+    "sliding": "sliding",
+    "tooth_dampers": "tooth damping",
+    "bearings": "bearing damping",
+    "shafts": "damping of shafts and couplings",
+}
 #: Result -> its unit and plain name.
 QUANTITIES = {
     "dte_peak_to_peak": ("m", "transmission error, peak to peak"),
@@ -258,9 +281,6 @@ def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:
 
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
     """Return the numbers of any motion over one mesh cycle at even times, as of the multibody model."""
-    sliding = -float(cycle["friction_power"].sum("pair").mean())
-    attributes = cycle.attrs
-    lost = sum(float(attributes[key]) for key in attributes if key in _LOSSES) or sliding
     return Prediction(
         pair=pair,
         motion=motion,
@@ -268,7 +288,7 @@ def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
         peak_to_peak=cycle_peak_to_peak(cycle, "dte"),
         stable=True,
         mesh_cycles=1,
-        efficiency=_efficiency(pair, lost),
+        losses=losses_of(cycle),
     )
 
 
@@ -281,16 +301,15 @@ def _of_cycle(pair: GearPair, cycle: xr.Dataset) -> Prediction:
         peak_to_peak=float(attributes["dte_peak_to_peak"]),
         stable=float(attributes["spectral_radius"]) <= 1.0,
         mesh_cycles=1,
-        efficiency=_efficiency(pair, sum(attributes[key] for key in attributes if key in _LOSSES)),
+        losses=losses_of(cycle),
     )
 
 
-#: Attributes of ``lumped.steady_state`` that are mean losses [W].
-_LOSSES = ("power_sliding", "power_tooth_dampers", "power_bearings", "power_shafts")
-
-
-def _efficiency(pair: GearPair, lost: float) -> float:
-    return 1.0 - lost / (pair.operating.pinion_torque * pair.geometry.omega_pinion)
+def losses_of(motion: xr.Dataset) -> dict[str, float]:
+    """Return the mean losses by place [W] that a periodic motion of either model carries as ``power_*``."""
+    return {
+        place: float(motion.attrs[f"power_{place}"]) for place in PLACES if f"power_{place}" in motion.attrs
+    }
 
 
 def _of_orbit(orbit: GearOrbit, motion: Motion) -> Prediction:
@@ -303,17 +322,25 @@ def _of_orbit(orbit: GearOrbit, motion: Motion) -> Prediction:
         peak_to_peak=high - low,
         stable=orbit.stable,
         mesh_cycles=orbit.n,
-        efficiency=_efficiency(pair, _lost(pair, cycle)),
+        losses=_losses(pair, cycle),
     )
 
 
-def _lost(pair: GearPair, motion: xr.Dataset) -> float:
-    """Mean power that sliding, tooth dampers and bearings take from a motion with unilateral contact [W]."""
+def _losses(pair: GearPair, motion: xr.Dataset) -> dict[str, float]:
+    """Mean losses by place [W] of a motion with unilateral contact.
+
+    Where the damper would make a compressed pair pull, the load is zero, and the damper takes what the
+    elastic force gives: the power (N - N_e) (delta' - e') is positive (docs/theory/contact_energy.md).
+    """
     mesh = contact_cycle(pair)
     at = mesh.sample(np.mod(motion["time"].to_numpy(), mesh.period))
     load, closing = motion["normal_load"].to_numpy(), motion["dte_dot"].to_numpy() - at.error_rate
-    damper = np.where(load > 0.0, load - at.stiffness * (motion["dte"].to_numpy() - at.error), 0.0)
+    elastic = at.stiffness * (motion["dte"].to_numpy() - at.error)
+    damper = np.where(elastic > 0.0, load - elastic, 0.0)
     rates = np.stack([motion[f"{name}_dot"].to_numpy() for name in COORDINATES])
     bearings = LTVSystem.of(pair, "full").structure.damping @ rates**2
-    sliding = -motion["friction_power"].sum("pair").to_numpy()
-    return float(np.mean(sliding + bearings + (damper * closing).sum(axis=0)))
+    return {
+        "sliding": -float(motion["friction_power"].sum("pair").mean()),
+        "tooth_dampers": float((damper * closing).sum(axis=0).mean()),
+        "bearings": float(bearings.mean()),
+    }

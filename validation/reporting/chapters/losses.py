@@ -10,10 +10,10 @@ from lumped import LawRangeWarning
 from lumped.friction.registry import law_of
 from lumped.labelling import labelled_dataset
 from lumped.losses import iso_14179_mesh_loss, losses_of_laws
-from lumped.outcomes import Absent
 from lumped.path_of_contact import contact_path, friction_profile
 from validation.files.formatting import number, quantity
 from validation.plots.axes import losses_figure
+from validation.prediction.motion import PLACES
 from validation.reporting.blocks import Block, Content, Picture, Text, quantities
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -22,7 +22,7 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, prediction = results.pair, results.prediction
-    power = pair.operating.pinion_torque * pair.operating.pinion_speed
+    power = prediction.input_power
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # laws are compared outside their ranges too
         laws, profile, path = losses_of_laws(pair), friction_profile(pair), contact_path(pair)
@@ -39,25 +39,12 @@ def write(results: Results) -> Content:
     places = np.linspace(path.L_XA, path.L_XD, 201)
     film, other = path.film_thickness(places), path.film_thickness(places, "hamrock_dowson")
     parameter = profile["film_parameter"].to_numpy()
-    linear = results.linear
-    parts = (
-        []
-        if isinstance(linear, Absent)
-        else [
-            (words, float(linear.attrs[name]), "W")
-            for name, words in (
-                ("power_sliding", "sliding"),
-                ("power_tooth_dampers", "tooth damping"),
-                ("power_bearings", "bearing damping"),
-            )
-            if name in linear.attrs
-        ]
-    )
+    parts = [(PLACES[place], lost, "W", "") for place, lost in prediction.losses.items()]
     table = quantities(
         "losses",
         "Losses at the operating point.",
         ("input power", power, "W"),
-        ("loss of the mesh", (1.0 - prediction.efficiency) * power, "W"),
+        ("loss, all places", prediction.loss, "W", "of the motion of page 1; the sum of the next rows"),
         *parts,
         ("mesh loss of ISO/TR 14179-2", iso_14179_mesh_loss(pair), "W", "for comparison"),
         ("smallest film thickness", float(film.min()), "m", str(profile["film_thickness"].attrs["note"])),
@@ -78,7 +65,7 @@ def write(results: Results) -> Content:
     if outside:
         blocks.append(Text("The friction law is used outside its range:", tuple(outside)))
     result = (
-        f"The mesh loses {quantity((1.0 - prediction.efficiency) * power, 'W', 2)} of "
+        f"The pair loses {quantity(prediction.loss, 'W', 2)} of "
         f"{quantity(power, 'W', 3)}; the friction laws differ from {number(loss.min(), 2)} to "
         f"{number(loss.max(), 2)} %."
     )
