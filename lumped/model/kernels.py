@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.typing import FloatArray, IntArray
-
-compiled = Compiler([Path(__file__)])
 
 
 @compiled

@@ -6,14 +6,11 @@ Sources: docs/theory/contact_energy.md, "Energy of one pair", "Tip corner".
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
-
-compiled = Compiler([Path(__file__)])
 
 #: Newton's steps for the load of a pair, of which six are the most needed, and for the approach.
 _LOAD_STEPS, _APPROACH_STEPS = 20, 200

@@ -6,21 +6,16 @@ Sources: docs/theory/teeth.md, "Statics".
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
-from lumped.quasi_static import kernels as quasi_static
+from lumped.compiler import compiled
 from lumped.quasi_static.kernels import corner_at
 from lumped.typing import FloatArray, IntArray
 
-FILES = [Path(__file__), Path(quasi_static.__file__)]
-compiled = Compiler(FILES)
 #: Of functions that allocate nothing: counting references would take most of their time.
-inlined = partial(compiled, _nrt=False, forceinline=True)
+inlined = compiled(_nrt=False, forceinline=True)
 
 #: Forms of the contact: fixed windows, linear; the same, unilateral; own gaps and corners, unilateral; the
 #: linear form about the own static state.

@@ -6,19 +6,15 @@ Sources: docs/theory/teeth.md, "Motion", "The linear form".
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 
 import numpy as np
 
-from lumped.compiler import Compiler
-from lumped.model import kernels as gauss
+from lumped.compiler import compiled
 from lumped.model.kernels import solve_in_place
 from lumped.teeth import kernels as kn
 from lumped.teeth.kernels import Tables, contact_of_steps, loads_at, room_of
 from lumped.typing import FloatArray, IntArray
 
-compiled = Compiler([Path(__file__), Path(gauss.__file__), *kn.FILES])
 #: Directions of the forces of the mesh: N, its moments on both gears, F, F xi, tip corners; both torques.
 FORCES = 8
 #: Stages of the Gauss steps.
@@ -156,7 +152,7 @@ def motion_cycles(
     return states, record, x, work
 
 
-@partial(compiled, nogil=True)
+@compiled(nogil=True)
 def linear_cycles(
     first: int,
     columns: FloatArray,

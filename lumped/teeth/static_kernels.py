@@ -6,18 +6,15 @@ Sources: docs/theory/teeth.md, "Statics", "The linear form".
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.teeth import kernels as kn
 from lumped.teeth.kernels import Room, Tables, contact_of_steps, room_of, settled
 from lumped.typing import FloatArray
 
-compiled = Compiler([Path(__file__), *kn.FILES])
-inlined = partial(compiled, _nrt=False, forceinline=True)
+inlined = compiled(_nrt=False, forceinline=True)
 
 
 @inlined
@@ -104,7 +101,7 @@ def at_place(
         row[13] += c_i * rolling**2
 
 
-@partial(compiled, nogil=True)
+@compiled(nogil=True)
 def static_places(
     start: int, fixed: bool, own: Tables, asked: FloatArray, sums: FloatArray, numbers: FloatArray
 ) -> None:
@@ -131,7 +128,7 @@ def static_places(
         at_place(s, asked[a, 2], fixed, single, own, room, sums[a], numbers[a])
 
 
-@partial(compiled, nogil=True)
+@compiled(nogil=True)
 def static_cycles(
     start: int, fixed: bool, own: Tables, looks: FloatArray, kinds: int, rounds: int, sums: FloatArray
 ) -> FloatArray:
