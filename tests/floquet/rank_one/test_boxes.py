@@ -15,6 +15,7 @@ from floquet.rank_one.boxes import FlowPolynomial, bounded_entries, decided, pro
 from floquet.rank_one.kernel_input import packed
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
+from tests.evidence.floquet.extended import state_matrix
 from tests.evidence.floquet.reference_systems import mathieu_many, mathieu_system, meissner_trace
 
 DEPTH = 0.5
@@ -198,7 +199,7 @@ def lines_in_its_logarithm(signs):
 @pytest.mark.parametrize("law", [powers_of_the_period, lines_in_its_logarithm])
 @pytest.mark.parametrize("gyroscopic", [False, True])
 def test_bounds_belong_to_the_motion_not_to_how_its_signs_are_written(law, gyroscopic) -> None:
-    """A gain and its factor with the other sign, v and all gains with it, other axes: the bounds are the same.
+    """A gain and its factor with the other sign, v and all gains with it, other axes change no bound.
 
     Over so wide a patch that the error of its polynomial is not that of its nodes.
     """
@@ -326,8 +327,9 @@ def test_the_change_over_a_patch_is_no_more_than_that_of_one_large_gain(kind) ->
     gain = {name: 1e4 * one if name == kind else one for name in ("w", "wd", "varied w", "varied wd")}
     system = RankOneSystem(
         stiffness=np.ones((1, 1)), damping=np.ones((1, 1)), v=np.ones(1), phases=np.array([0.0, 1.0]),
-        gains=Gains(gain["w"], gain["wd"], small), varied=(Gains(gain["varied w"], gain["varied wd"], small),),
-        period=1.0, metric=np.ones(1), mean=np.ones(1),
+        gains=Gains(gain["w"], gain["wd"], small),
+        varied=(Gains(gain["varied w"], gain["varied wd"], small),), period=1.0,
+        metric=np.ones(1), mean=np.ones(1),
     )  # fmt: skip
     T, zeta = np.array([3.4, 3.6]) if "varied" in kind else np.array([2.0, 5.0]), np.array([0.1, 1.1])
     along, up, change = change_over(system, lambda T: T[:, None] ** 0.7, T, zeta)
@@ -356,3 +358,96 @@ def test_the_error_of_a_patch_is_that_of_the_theorem() -> None:
             best = min(best, kappa * d + np.log(4.0 * kappa / (r - 1.0)) + (1 - nodes) * np.log(r))
         total += lebesgue * np.exp(best)
     assert size.error(T, zeta) == pytest.approx(total, rel=1e-8, abs=0.0)
+
+
+def test_the_slow_period_is_that_of_its_formula() -> None:
+    """Sum ln|L' L^-1| over - sum mu share, of three constant frozen systems of two coordinates.
+
+    Over intervals of damping and of a factor mu is the largest of those of the corners.
+    """
+    w = np.array([[2.2, -1.3], [1.9, -1.6], [2.4, -1.2]])[:, :, None]
+    extra = np.array([[0.1, 0.05], [-0.1, 0.02], [0.03, -0.08]])[:, :, None]
+    system = RankOneSystem(
+        stiffness=np.diag([3.0, 5.0]), damping=np.diag([0.9, 0.7]), v=np.array([1.0, -0.7]), period=1.0,
+        phases=np.array([0.0, 0.2, 0.7, 1.0]), gains=Gains(w, 0.3 * w, np.zeros((3, 2))),
+        varied=(Gains(extra, 0.5 * extra, np.zeros((3, 2))),), metric=np.ones(2), mean=np.array([2.0, -1.4]),
+    )  # fmt: skip
+    form, zeta, factors = system.modal(), np.array([0.5, 0.8]), np.array([[-0.7], [1.1]])
+    places = (system.phases[1:] + system.phases[:-1]) / 2
+
+    def frozen(z, g):
+        return [energy_rates(form, system.phases, p, 1.0, z, [1.0, g]) for p in places]
+
+    V = [np.linalg.eig(A)[1] for A in frozen(zeta.mean(), factors.mean())]
+    corners = [frozen(z, g) for z in zeta for g in factors.ravel()]
+    rate = 0.0
+    for k, share in enumerate(np.diff(system.phases)):
+        turned = [np.linalg.solve(V[k], A[k] @ V[k]) for A in corners]
+        rate += share * max(np.linalg.eigvalsh(0.5 * (B + B.conj().T))[-1] for B in turned)
+    steps = sum(np.log(np.linalg.norm(np.linalg.solve(V[(k + 1) % 3], V[k]), 2)) for k in range(3))
+    # The bound itself is raised by 1e-9 for its rounding.
+    assert 1.0 <= slow_period(system, zeta, factors) / (steps / -rate) < 1.0 + 3e-9
+
+
+def test_gains_stay_as_near_to_the_middles_of_their_cells_as_is_said() -> None:
+    """Polynomials of alternating signs; of a line all that is said is attained."""
+    rng = np.random.default_rng(9)
+    poly = rng.normal(size=(2, 3, 2, 6)) * 0.7 ** np.arange(6)
+    poly[1, :, :, 2:] = 0.0
+    cells = np.array([-0.75, -0.25, 0.25, 0.75])
+    value, spread = (x.reshape(2, 3, 4, 2) for x in boxes._around(poly, cells))
+    places = cells[:, None] + 0.25 * np.linspace(-1.0, 1.0, 41)
+    powers = places[..., None] ** np.arange(6)
+    far = np.abs(np.einsum("qpmj,cuj->qpcmu", poly, powers) - value[..., None]).max(axis=-1)
+    assert (far <= spread * (1.0 + 1e-12)).all()
+    assert spread.sum() < 1.2 * far.sum()
+    assert spread[1] == pytest.approx(far[1], rel=1e-12)
+
+
+def test_errors_of_the_gains_make_slow_variation_slower() -> None:
+    """With as much less damping as is declared, everywhere or in a pulse at a break, longer T are unstable.
+
+    Meissner's equation of frequencies 5 and 3 times 17^-1/2: both halves turn by odd quarters at T = pi
+    17^1/2, where the gain is ln(5/3), all that the bound allows for.
+    """
+    system, _ = meissner()
+    w, zeta, e, width = np.array([25.0, 9.0])[:, None, None] / 17.0, np.full(2, 0.0396), 0.05, 1e-3
+    gains = replace(system.gains, w=w)
+
+    def slow(given):
+        return slow_period(replace(system, gains=given), zeta, np.empty((2, 0)))
+
+    def longest(given, phases=system.phases):
+        T = np.pi * np.sqrt(17.0) + np.linspace(-0.5, 1.0, 3000)
+        found = fast_multipliers(replace(system, gains=given, phases=phases), T, zeta[0]).multipliers
+        return T[np.abs(found).max(axis=1) > 1.0].max()
+
+    pulse = np.array([0.0, e / width, 0.0])[:, None, None]
+    thinner = Gains(w[[0, 0, 1]], gains.wd[[0, 0, 1]] - pulse, np.zeros((3, 2)))
+    edges = np.array([[0.0, 0.0], [0.0, e], [0.0, 0.0]])
+    for bound, exact in (
+        (slow(replace(gains, fit_errors=np.array([[0.0, e]] * 2))), longest(replace(gains, wd=gains.wd - e))),
+        (slow(replace(gains, edge_errors=edges)), longest(thinner, np.array([0.0, 0.5 - width, 0.5, 1.0]))),
+    ):
+        assert slow(gains) * 1.0002 < exact <= bound
+        # Damping acts on one of two states, so half of it counts; the condition of the frozen ones is 2 to 3,
+        # and the tongue ends before the bound of its gain does.
+        assert bound - slow(gains) < 16.0 * (exact - slow(gains))
+
+
+def test_errors_of_the_nodes_are_in_that_of_the_polynomial() -> None:
+    """All gains are off by what is declared, so all of the polynomial is off by what its nodes are."""
+    system, _ = meissner()
+    T, zeta, e = np.array([3.0, 3.2]), np.array([0.01, 0.05]), 1e-6
+    declared = replace(system, gains=replace(system.gains, fit_errors=np.full((2, 2), e)))
+    off = replace(system, gains=replace(system.gains, w=system.gains.w + e, wd=system.gains.wd - e))
+    patch = FlowPolynomial.of(declared, packed(declared), T, zeta, no_factors)
+    middle = np.einsum("abij,a,b->ij", patch.coefficients, np.cos(np.pi / 2 * np.arange(24)),
+                       np.cos(np.pi / 2 * np.arange(16)))  # fmt: skip
+    S = np.linalg.solve(state_matrix(declared.modal()), state_matrix(off.modal()))
+    M = S @ fast_monodromies(off, [3.1], 0.03).matrices[0] @ np.linalg.inv(S)
+    distance = np.linalg.norm(M - middle, 2)
+    # The constants of Lebesgue are 3.02^2, and the bound of a node is up to ten times its error.
+    assert distance <= patch.error < 10.0 * 9.2 * distance
+    hopeless = replace(system, gains=replace(system.gains, fit_errors=np.full((2, 2), 1.0)))
+    assert FlowPolynomial.of(hopeless, packed(hopeless), T, zeta, no_factors).growth == np.inf
