@@ -344,8 +344,8 @@ def bounded_entries(
     # Y is the inverse of V but for q.
     q = (np.abs(np.eye(n) - Y @ V) + 4.0 * (n + 4.0) * _U * reach).sum(axis=2)
     worst = np.minimum(q.max(axis=1), 0.5)
-    off = off + (q / (1.0 - worst)[:, None])[:, :, None] * f.max(axis=1)[:, None, :]
-    f += off
+    turned = (q / (1.0 - worst)[:, None])[:, :, None] * f.max(axis=1)[:, None, :]
+    f, off = f + turned, off + turned
     own = np.einsum("kJKii->kiJK", N)
     (X, to_X), (Z, to_Z) = to_series(2 * J - 1), to_series(2 * K - 1)
     square = to_X @ np.abs(chebvander(X, J - 1) @ own @ chebvander(Z, K - 1).T) ** 2 @ to_Z.T

@@ -1,0 +1,106 @@
+"""Matrices and eigenvalues as balls, for bounds that are judged entry by entry.
+
+Floating point numbers are taken as exact. Written without any code of the package under test but for what
+describes the problem.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from flint import acb, acb_mat, arb, arb_mat, arb_poly, ctx
+
+from floquet import RankOneSystem
+from tests.floquet.engine.judge.balls import Piece, monodromy, polynomial
+
+BITS = 256
+"""Of all numbers here: 77 digits."""
+
+
+def balls(values: np.ndarray) -> acb_mat:
+    """Complex or real floating point numbers (n, m), exactly."""
+    ctx.prec = BITS
+    return acb_mat([[acb(arb(float(x.real)), arb(float(x.imag))) for x in row] for row in np.asarray(values)])
+
+
+def real_balls(values: np.ndarray) -> arb_mat:
+    """Real floating point numbers (n, m), exactly."""
+    ctx.prec = BITS
+    return arb_mat([[arb(float(x)) for x in row] for row in np.asarray(values)])
+
+
+def least(x: arb | acb) -> float:
+    """The modulus of a ball from below, rounded down."""
+    return float(np.nextafter(float(abs(x).lower()), -np.inf))
+
+
+def most(x: arb | acb) -> float:
+    """The modulus of a ball from above, rounded up."""
+    return float(np.nextafter(float(abs(x).upper()), np.inf))
+
+
+def least_moduli(matrix: acb_mat | arb_mat) -> np.ndarray:
+    """Moduli of the entries from below."""
+    return np.array([[least(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())])
+
+
+def most_moduli(matrix: acb_mat | arb_mat) -> np.ndarray:
+    """Moduli of the entries from above."""
+    return np.array([[most(matrix[i, j]) for j in range(matrix.ncols())] for i in range(matrix.nrows())])
+
+
+def least_norm(matrix: acb_mat | arb_mat) -> float:
+    """The Frobenius norm from below."""
+    return float(np.linalg.norm(least_moduli(matrix))) * (1.0 - 1e-14)  # rounding of the norm
+
+
+def disks(matrix: acb_mat | arb_mat) -> list[tuple[complex, float]]:
+    """Middle and radius of a disk about each eigenvalue."""
+    found = acb_mat(matrix).eig(multiple=True)
+    middles = [complex(value.mid()) for value in found]
+    return [
+        (middle, float((value - acb(middle)).abs_upper()))
+        for value, middle in zip(found, middles, strict=True)
+    ]
+
+
+def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: Sequence[float]) -> arb_mat:
+    """The monodromy matrix in the energy coordinates of ``system.modal()``: S^-1 Phi(T, 0) S.
+
+    Every number of the system is exact, and so are its shapes and frequencies, which only name coordinates.
+    """
+    ctx.prec = BITS
+    m, T, form = system.v.size, arb(period), system.modal()
+    rate = arb(2 ** round(float(np.log2(form.omega.max()))))  # of both halves of the state alike
+    G = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
+    pieces = []
+    for i in range(system.phases.size - 1):
+        low, high = arb(float(system.phases[i])), arb(float(system.phases[i + 1]))
+        u = arb_poly([-(low + high) / (high - low), 2 / ((high - low) * T)])  # of the time
+        entries = [(r, m + r, polynomial(arb_poly([rate]))) for r in range(m)]
+        for r in range(m):
+            own = [
+                sum(
+                    (
+                        arb_poly([arb(float(x)) for x in poly[i, r]]) * arb(float(g))
+                        for g, poly in zip(gains, polys, strict=True)
+                    ),
+                    arb_poly([0]),
+                )
+                for polys in ([p.w for p in system.parts], [p.wd for p in system.parts])
+            ]
+            for c in range(m):
+                v = arb(float(system.v[c]))
+                still, moving = arb(float(system.stiffness[r, c])), arb(float(system.damping[r, c]))
+                moving += arb(float(G[r, c])) / T
+                spring = own[0](u) * v + still
+                damper = own[1](u) * v * arb(float(zeta)) + moving
+                entries.append((m + r, c, polynomial(spring * (-1 / rate))))
+                entries.append((m + r, m + c, polynomial(damper * arb(-1))))
+        pieces.append(Piece(low * T, (high - low) * T, entries))
+    shapes = real_balls(form.shapes)
+    S = arb_mat(2 * m, 2 * m)
+    for r in range(m):
+        for c in range(m):
+            S[r, c] = shapes[r, c] / arb(float(form.omega[c]))
+            S[m + r, m + c] = shapes[r, c] / rate
+    return S.inv() * monodromy(pieces, 2 * m, BITS) * S
