@@ -8,7 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 from lumped import GearPair
+from lumped.typing import FloatArray
 from tests.guards.guard import MATE
 
 
@@ -93,3 +96,45 @@ class ByHand:
     def roll(self, length: float) -> float:
         """Roll angle of a place on the own flank [deg]."""
         return math.degrees(length / self.r_b)
+
+
+class Contact:
+    """The nominal contact of a pair over the path of contact by equations (11) to (21), in SI.
+
+    ``xi``: distances from X [m]; default the 201 positions inside A to D at which ranges are judged.
+    """
+
+    def __init__(self, pair: GearPair, xi: FloatArray | None = None) -> None:
+        hand, steel = ByHand(pair, "pinion"), (pair.pinion, pair.gear)
+        self.start, self.end = 1e-3 * hand.start_length, 1e-3 * hand.tip_length
+        line, self.pitch = 1e-3 * hand.line, 1e-3 * hand.r_b * math.tan(hand.operating_angle)
+        self.xi = np.linspace(self.start, self.end, 203)[1:-1] if xi is None else xi
+        self.width = min(pair.pinion.face_width, pair.gear.face_width)
+        omega = float(pair.operating.pinion_speed)
+        self.flanks = omega * self.xi, omega * hand.z / hand.mate.z * (line - self.xi)
+        self.sliding = np.abs(self.flanks[0] - self.flanks[1])
+        self.entraining = self.flanks[0] + self.flanks[1]
+        self.pitch_line = omega * 1e-3 * hand.r_b / math.cos(hand.operating_angle)
+        self.unit_load = pair.operating.pinion_torque / (1e-3 * hand.r_b) / self.width
+        self.radius = self.xi * (line - self.xi) / line
+        self.modulus = 2.0 / sum((1.0 - one.poisson_ratio**2) / one.youngs_modulus for one in steel)
+        self.pressure = np.sqrt(self.unit_load * self.modulus / (2.0 * math.pi * self.radius))
+        self.half_width = np.sqrt(8.0 * self.unit_load * self.radius / (math.pi * self.modulus))
+        self.viscosity = float(pair.lubricant.dynamic_viscosity)
+        self.roughness = 0.5 * (pair.pinion.roughness + pair.gear.roughness)
+        # Of mPa s and mm^2/N to SI.
+        k, s = pair.lubricant.pressure_viscosity_k, pair.lubricant.pressure_viscosity_s
+        self.pressure_viscosity = 1e-6 * k * (1e3 * self.viscosity) ** s
+        material = self.pressure_viscosity * self.modulus
+        speed = self.viscosity * self.entraining / (2.0 * self.modulus * self.radius)
+        load = self.unit_load / (self.modulus * self.radius)
+        self.film = 3.06 * material**0.56 * speed**0.69 * load**-0.10 * self.radius
+        both = math.hypot(pair.pinion.roughness, pair.gear.roughness)
+        self.composite = pair.friction.composite_roughness or both
+        cut_off = pair.friction.film_length / (2.0 * self.half_width)
+        self.film_parameter = self.film / self.composite * np.sqrt(cut_off)
+
+    @property
+    def friction_number(self) -> FloatArray:
+        """29700 w/(eta v_s v_e^2) of law II, with w in N/mm and eta in mPa s: the factor is 29.7e-3 in SI."""
+        return 29700.0 * 1e-6 * self.unit_load / (self.viscosity * self.sliding * self.entraining**2)

@@ -1,0 +1,5 @@
+"""Do the guards of lumped/friction act just outside their limits, and not just inside? The table is tests/guards."""
+
+from tests.guards import guards_of
+
+test_guard = guards_of("lumped/friction")
