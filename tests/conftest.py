@@ -88,7 +88,9 @@ class FolderWithExamples(pytest.Dir):
         yield from super().collect()
         tested = ROOT / self.path.relative_to(TESTS)
         for file in sorted(tested.rglob("*.py")):
-            own = any((TESTS / one.relative_to(ROOT)).is_dir() for one in file.parents if tested in one.parents)
+            own = any(
+                (TESTS / one.relative_to(ROOT)).is_dir() for one in file.parents if tested in one.parents
+            )
             if not own and ">>> " in file.read_text(encoding="utf-8"):
                 yield DoctestModule.from_parent(self, path=file)
 

@@ -11,8 +11,8 @@ fits       ranges in which published fits hold
 doubts     values that hardly can be meant, assumptions of the model
 ========== ==================================================================================================
 
-``tests/<package>/<folder>/test_guards.py`` runs the rows of ``<package>/<folder>``; ``tests/meta/test_guards.py``
-looks for guards without a row.
+``tests/<package>/<folder>/test_guards.py`` runs the rows of ``<package>/<folder>``, and
+``tests/meta/test_guards.py`` looks for guards without a row.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Lengths of a gear pair from the numbers of its file alone, in mm and degrees, as the limits are derived from.
+"""Lengths and contact of a gear pair from the numbers of its file alone, of which limits are made.
 
-Sources: ISO 21771. Nothing here calls the program's geometry.
+Sources: ISO 21771; equations (11) to (21) of docs/theory. Nothing here calls the program's geometry.
 """
 
 from __future__ import annotations
@@ -39,7 +39,9 @@ class ByHand:
         self.z, self.x = own.teeth, own.profile_shift
         self.r = 0.5 * self.m * self.z
         self.r_b = self.r * math.cos(self.alpha)
-        addendum = self.m * (rack.addendum_coefficient + self.x) if own.addendum is None else 1e3 * own.addendum
+        addendum = (
+            self.m * (rack.addendum_coefficient + self.x) if own.addendum is None else 1e3 * own.addendum
+        )
         self.r_a = self.r + addendum if own.tip_diameter is None else 0.5e3 * own.tip_diameter
         self.r_f = self.r - self.m * (self.dedendum - self.x)
         self.base_pitch = math.pi * self.m * math.cos(self.alpha)

@@ -102,7 +102,10 @@ DECLARED: dict[str, tuple[str, str]] = {
     "mesh.damping_ratio": (">= 0 and <= 1", _DAMPING),
     "mesh.backlash": (">= 0 mm", _NONE),
     "lubricant.viscosity": (">= 1e-09 mPa*s and <= 100000 mPa*s", "from a gas to grease"),
-    "lubricant.viscosity_law.viscosity_index": (">= 0 and <= 400", "ASTM D2270: 0 and more; best oils near 400"),
+    "lubricant.viscosity_law.viscosity_index": (
+        ">= 0 and <= 400",
+        "ASTM D2270: 0 and more; best oils near 400",
+    ),
     "lubricant.viscosity_law.kinematic_viscosity_40": (
         ">= 2 mm**2/s and <= 20000 mm**2/s",
         "Walther's law with the constant 0.7 holds from 2 mm^2/s on (ASTM D341)",

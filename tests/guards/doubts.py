@@ -29,7 +29,8 @@ def _size(field: str, why: str, says: str, **limits: float) -> Iterator[Guard]:
         sets = f"{field.rpartition('.')[0]}"
         relief = sets.endswith("relief")
         yield Guard(_WHERE, "doubt", RELIEVED, why, **{end: limit}, sets=field, judge=doubt, says=says,
-                    beside=True, after={sets: {"amount": 3.0, "start_roll_angle": 25.0}} if relief else {})  # fmt: skip
+                    beside=True, after={sets: {"amount": 3.0,
+                    "start_roll_angle": 25.0}} if relief else {})  # fmt: skip
 
 
 def _epsilon(pair: GearPair) -> float:
@@ -98,7 +99,9 @@ def _springs(line: str) -> Callable[[GearPair, str, float], Changes]:
             f"bearings.{name}.{one}_stiffness": float(getattr(getattr(static, name), f"{one}_stiffness"))
             for name in ("pinion", "gear") for one in ("loa", "oloa")
         }  # fmt: skip
-        return every | {f"bearings.{gear}.{line}_stiffness": factor * every[f"bearings.{gear}.{line}_stiffness"]}
+        return every | {
+            f"bearings.{gear}.{line}_stiffness": factor * every[f"bearings.{gear}.{line}_stiffness"]
+        }
 
     return sets
 
@@ -119,16 +122,22 @@ def _both(share: float) -> Callable[[GearPair, str], float]:
 
 _STEEL = "{gear}.youngs_modulus = "
 DOUBTS = (
-    *_size("bearings.{gear}.loa_stiffness", "softer than any gear shaft", "{gear}.loa_stiffness = ", least=2e6),
-    *_size("bearings.{gear}.oloa_stiffness", "softer than any gear shaft", "{gear}.oloa_stiffness = ", least=2e6),
+    *_size("bearings.{gear}.loa_stiffness", "softer than any gear shaft", "{gear}.loa_stiffness = ",
+           least=2e6),
+    *_size("bearings.{gear}.oloa_stiffness", "softer than any gear shaft", "{gear}.oloa_stiffness = ",
+           least=2e6),
     *_size("{gear}.youngs_modulus", "plastics 1 GPa, hard metal 650 GPa", _STEEL, least=0.5, most=800.0),
-    *_size("{gear}.roughness", "polished 0.02 um, cast 12.5 um", "{gear}.roughness = ", least=0.01, most=12.5),
-    *_size("{gear}.tip_relief.amount", "half a micrometre can be made", "{gear}.tip_relief.amount", least=0.5),
-    *_size("{gear}.root_relief.amount", "half a micrometre can be made", "{gear}.root_relief.amount", least=0.5),
+    *_size("{gear}.roughness", "polished 0.02 um, cast 12.5 um", "{gear}.roughness = ", least=0.01,
+           most=12.5),
+    *_size("{gear}.tip_relief.amount", "half a micrometre can be made", "{gear}.tip_relief.amount",
+           least=0.5),
+    *_size("{gear}.root_relief.amount", "half a micrometre can be made", "{gear}.root_relief.amount",
+           least=0.5),
     *(Guard(_WHERE, "doubt", base, "gears are 5 to 40 modules wide", **{end: _width(modules)}, judge=doubt,
             sets="{gear}.face_width", says="{gear}.face_width = ", beside=True)
       for base in (RACK_25, FAST) for end, modules in (("least", 0.5), ("most", 100.0))),
-    Guard(_WHERE, "doubt", RACK_25, "ISO 76:2006: bearing steel is indented for good at 4.2 GPa", most=_pressing,
+    Guard(_WHERE, "doubt", RACK_25, "ISO 76:2006: bearing steel is indented for good at 4.2 GPa",
+          most=_pressing,
           sets="operating.pinion_torque", judge=doubt, says="presses the flanks", beside=True),
     *(Guard(_WHERE, "doubt", base, "a tenth of the module is beyond any tooth", most=_torque_that_gives(0.1),
             sets="operating.pinion_torque", after=_KNOWN, judge=doubt, says="more than a tenth of the module",
@@ -143,20 +152,24 @@ DOUBTS = (
           says="does a point part thousands?", beside=True),
     Guard(_WHERE, "doubt", SMALL, "24 may be turns a second", least=120.0, sets="operating.pinion_speed",
           judge=doubt, says="Turns a second meant?", after=_KNOWN),
-    Guard(_WHERE, "doubt", RELIEVED, "pitch lines of gears in use move faster than 0.5 m/s", least=_rpm_of(0.5),
+    Guard(_WHERE, "doubt", RELIEVED, "pitch lines of gears in use move faster than 0.5 m/s",
+          least=_rpm_of(0.5),
           sets="operating.pinion_speed", judge=doubt, says="Turns a second meant?", after=_KNOWN),
-    *(Guard(_WHERE, "doubt", base, "pitch lines of gears in use move slower than 200 m/s", most=_rpm_of(200.0),
-            sets="operating.pinion_speed", judge=doubt, says="faster than any gears") for base in (FAST, RACK_25)),
+    *(Guard(_WHERE, "doubt", base, "pitch lines of gears in use move slower than 200 m/s",
+            most=_rpm_of(200.0),
+            sets="operating.pinion_speed", judge=doubt, says="faster than any gears") for base in (FAST,
+            RACK_25)),
     *(Guard(_WHERE, "doubt", base, "variances add: +- 5 % of the root sum of squares", **{end: _both(share)},
             sets="friction.composite_roughness", judge=doubt, says="not the root sum")
       for base in (FAST, RACK_25) for end, share in (("least", 0.95), ("most", 1.05))),
-    *(Guard(_WHERE, "doubt", RACK_25, "a cycle of 1000 oscillations takes minutes", **{end: limit}, sets=field,
+    *(Guard(_WHERE, "doubt", RACK_25, "a cycle of 1000 oscillations takes minutes", **{end: limit},
+            sets=field,
             after=_SLOW, judge=doubt, says="The fastest mode swings")
       for end, limit, field in (("most", _stiff_off, "bearings.{gear}.oloa_stiffness"),
                                 ("most", _stiff_along, "bearings.{gear}.loa_stiffness"),
                                 ("least", _light, "{gear}.inertia"))),
     *(Guard(_WHERE, "doubt", LONG, "twice another stiffness is another machine", **{end: factor}, judge=doubt,
-            sets=_springs(line), says=f"the {{gear}} has")
+            sets=_springs(line), says="the {gear} has")
       for line in ("loa", "oloa") for end, factor in (("least", 0.5), ("most", 2.0))),
 )  # fmt: skip
 
@@ -202,12 +215,14 @@ def _rough(pair: GearPair, gear: str) -> float:
 
 _FLAGS = "validation/validity/flags.py"
 FLAGGED = (
-    *(Guard(_FLAGS, "film_parameter", base, "boundary lubrication below the first threshold of law V", most=_rough,
+    *(Guard(_FLAGS, "film_parameter", base, "boundary lubrication below the first threshold of law V",
+            most=_rough,
             sets="{gear}.roughness", after={"friction.law": law}, judge=film_flag)
       for base, law in ((LONG, "xu_kahraman"), (FAST, "benedict_kelley"), (FAST, "iso_14179"))),
     Choice(_FLAGS, "film_parameter", LONG, "law V changes its law itself",
            {"{gear}.roughness": 9.0}, {"{gear}.roughness": 9.0, "friction.law": "coulomb"}, judge=film_flag),
-    Guard(_FLAGS, "friction_law_range", RACK_25, "ISO/TR 14179-2: 150 N/mm and more", sets="operating.pinion_torque",
+    Guard(_FLAGS, "friction_law_range", RACK_25, "ISO/TR 14179-2: 150 N/mm and more",
+          sets="operating.pinion_torque",
           least=torque_of_unit_load(150.0), after={"friction.law": "iso_14179"}, judge=law_flag),
     Guard(_FLAGS, "stiffness_range", FAST, "finite elements: root radius over bore radius 2 and more",
           most=of(lambda h: h.r_f), sets="{gear}.bore", judge=stiffness_flag, says="rim of the {gear}"),
@@ -259,9 +274,9 @@ class Level:
         if self.warned != self.good:
             tried |= {self.good * high: "warning", self.warned * low: "warning"}
         found = {value: self.flag(value) for value in tried}
-        return [f"{v!r}: {found[v].state}, not {state}" for v, state in tried.items() if found[v].state != state] + [
-            f"{v!r}: {one.action!r}" for v, one in found.items() if bool(one.action) == (one.state == "ok")
-        ]
+        return [
+            f"{v!r}: {found[v].state}, not {state}" for v, state in tried.items() if found[v].state != state
+        ] + [f"{v!r}: {one.action!r}" for v, one in found.items() if bool(one.action) == (one.state == "ok")]
 
 
 #: Of motions that are made up: the pair tells the scale.
@@ -288,7 +303,9 @@ def _pulled(share: float) -> flags.Flag:
     hand = ByHand(_PAIR, "pinion")
     static = _PAIR.operating.pinion_torque / (1e-3 * hand.r_b)
     loads = [[static, -0.5 * share * static], [static, -0.5 * share * static]]
-    motion = _motion(normal_load=loads, contact=[[1.0, 1.0]] * 2, position=[[1e-3 * hand.start_length] * 2] * 2)
+    motion = _motion(
+        normal_load=loads, contact=[[1.0, 1.0]] * 2, position=[[1e-3 * hand.start_length] * 2] * 2
+    )
     return flags.contact_loss(_PAIR, _PAIR.geometry, motion)
 
 
@@ -305,10 +322,11 @@ def _given(**attributes: float) -> xr.Dataset:
 
 
 LEVELS = (
-    Level("sliding_reversal", 0.02, 0.05, _reversed_at, "chosen: of a base pitch, beside which friction at P is weak"),
+    Level("sliding_reversal", 0.02, 0.05, _reversed_at, "chosen: of a base pitch"),
     Level("contact_loss", 1e-4, 1e-4, _pulled, "of the static load: teeth that touch without load"),
     Level("speed_drift", 1e-3, 1e-2, _drifting, "chosen: of the nominal speed"),
-    Level("solution_error", 1e-6, 1e-4, lambda error: flags.solution_error(_given(error_estimate=error, closure=0.0)),
+    Level("solution_error", 1e-6, 1e-4,
+          lambda error: flags.solution_error(_given(error_estimate=error, closure=0.0)),
           "chosen: of the transmission error, far below differences that are discussed"),
     Level("torque_balance", 1e-9, 0.05,
           lambda excess: flags.torque_balance(_PAIR, _given(

@@ -74,7 +74,8 @@ _IN = "ISO 6336-1 tooth stiffness: "
 _RECTANGULAR = {"mesh.stiffness": {"model": "rectangular"}, "operating.pinion_torque": 100.0}
 _MANY = {"pinion.teeth": 60, "gear.teeth": 75}
 STIFFNESS = (
-    Guard(_ISO, _IN + "profile shift sum x1 + x2", SMALL, "ISO 6336-1: x1 + x2 >= -0.5", least=-0.5, sets=_sum,
+    Guard(_ISO, _IN + "profile shift sum x1 + x2", SMALL, "ISO 6336-1: x1 + x2 >= -0.5", least=-0.5,
+          sets=_sum,
           after=_MANY, judge=stiffness_range, beside=True),
     Guard(_ISO, _IN + "profile shift sum x1 + x2", SMALL, "ISO 6336-1: x1 + x2 <= 2", most=2.0, sets=_sum,
           after=_MANY, judge=stiffness_range, beside=True),
@@ -89,7 +90,8 @@ STIFFNESS = (
             judge=stiffness_range)
       for base in (RACK_25, FAST) for end, load in (("least", 100.0), ("most", 1600.0))),
     # A bore of the root radius is half the root diameter; each model has its own list of ranges.
-    *(Guard(_FOUNDATION, "rim of the {gear}: root radius over bore radius", base, "finite elements: 2 and more",
+    *(Guard(_FOUNDATION, "rim of the {gear}: root radius over bore radius", base,
+            "finite elements: 2 and more",
             most=of(lambda h: h.r_f), sets="{gear}.bore", judge=stiffness_range)
       for base in (RACK_25, SMALL, FAST, UNLIKE_TEETH)),
     *(Guard(_FOUNDATION, "fillet foundation of the {gear}: half tooth angle on the root circle", LONG, why,
@@ -116,7 +118,7 @@ def _scaled(quantity: Callable[[Contact], float], limit: float, power: float, fi
 
 
 def _mean_of_law_ii(pair: GearPair, gear: str) -> float:
-    """Own Ra [um] with which the mean of law II is 0.1: 0.0127 * 1.13/(1.13 - S) log10(number), 0 to its cap."""
+    """Own Ra [um] for a mean of 0.1 of law II, 0.0127 * 1.13/(1.13 - S) log10(number) from 0 to its cap."""
     level, cap = 0.0127 * 1.13 * np.log10(Contact(pair).friction_number), pair.friction.maximum
     mean = root_of(lambda s: float(np.clip(level / (1.13 - s), 0.0, cap).mean()) - 0.1, 0.0, 1.1)
     return 2.0 * mean - 1e6 * float(getattr(pair, MATE[gear]).roughness)
@@ -139,7 +141,8 @@ _BK = {"judge": law_range, "after": _law("benedict_kelley")}
 _AT = {"friction.law": "table", "friction.table": {"points": [0, 9, 18, 50], "coefficient": [0.05] * 4,
                                                    "speed": 1300.0, "unit_load": 310.0}}  # fmt: skip
 FRICTION = (
-    *(Guard(_II, "roughness", base, "AGMA 925-A03 holds the factor at 3: S <= 0.75 um", sets="{gear}.roughness",
+    *(Guard(_II, "roughness", base, "AGMA 925-A03 holds the factor at 3: S <= 0.75 um",
+            sets="{gear}.roughness",
             most=lambda pair, gear: 1.5 - 1e6 * getattr(pair, MATE[gear]).roughness, beside=True, **_BK)
       for base in (RACK_25, LONG)),
     Guard(_II, "friction_number", LONG, "log10 of it is negative below 1", beside=True, sets=_TORQUE, **_BK,
@@ -157,15 +160,18 @@ FRICTION = (
           most=_scaled(lambda c: 0.5 * float(c.entraining.max()), 20.0, 1.0, "pinion_speed")),
     Guard(_III, "mean_coefficient", SMALL, "means of lubricated gears are below 0.1", sets=_SPEED, **_XU,
           least=_scaled(_mean_of_law_iii, 0.1, -0.100601, "pinion_speed")),
-    *(Guard(_ISO_LAW, "unit_load", base, "ISO/TR 14179-2: 150 N/mm and more", least=torque_of_unit_load(150.0),
+    *(Guard(_ISO_LAW, "unit_load", base, "ISO/TR 14179-2: 150 N/mm and more",
+            least=torque_of_unit_load(150.0),
             sets=_TORQUE, judge=law_range, after=_law("iso_14179")) for base in (RACK_25, FAST)),
-    *(Guard(_ISO_LAW, "pitch_line_velocity", base, "ISO/TR 14179-2: up to 50 m/s", sets=_SPEED, judge=law_range,
+    *(Guard(_ISO_LAW, "pitch_line_velocity", base, "ISO/TR 14179-2: up to 50 m/s", sets=_SPEED,
+            judge=law_range,
             most=_scaled(lambda c: c.pitch_line, 50.0, 1.0, "pinion_speed"),
             after={"friction.law": "iso_14179", "operating.pinion_torque": 170.0})
       for base in (SMALL, FAST)),
     *(Guard(_TABLE, "pinion_speed", RELIEVED, "mu of a table by speed: +- 5 %", **{end: value}, sets=_SPEED,
             after=_AT, judge=law_range, beside=True) for end, value in (("least", 1235.0), ("most", 1365.0))),
-    *(Guard(_TABLE, "unit_load", RELIEVED, "mu of a table by load: +- 5 %", **{end: torque_of_unit_load(load)},
+    *(Guard(_TABLE, "unit_load", RELIEVED, "mu of a table by load: +- 5 %",
+            **{end: torque_of_unit_load(load)},
             sets=_TORQUE, after=_AT, judge=law_range, beside=True)
       for end, load in (("least", 294.5), ("most", 325.5))),
 )  # fmt: skip

@@ -108,7 +108,11 @@ class Guard:
     def gears(self) -> tuple[str, ...]:
         """Gears for which it is tried; one that no text names is tried once."""
         texts = (self.names, self.says, *(self.after), self.sets if isinstance(self.sets, str) else "")
-        return GEARS if any("{gear}" in t or "{mate}" in t for t in texts) or callable(self.sets) else ("pinion",)
+        return (
+            GEARS
+            if any("{gear}" in t or "{mate}" in t for t in texts) or callable(self.sets)
+            else ("pinion",)
+        )
 
     @property
     def title(self) -> str:

@@ -14,7 +14,11 @@ from lumped.faults.crack import root_section
 from tests.guards.by_hand import ByHand, inv, root_of
 from tests.guards.guard import MATE, Changes, Choice, Guard, curve, friction, relief
 
-SMALL, LONG, RELIEVED = "contact_ratio_1_1_large_shifts", "contact_ratio_2_3_on_shafts", "heavily_relieved_under_load"
+SMALL, LONG, RELIEVED = (
+    "contact_ratio_1_1_large_shifts",
+    "contact_ratio_2_3_on_shafts",
+    "heavily_relieved_under_load",
+)
 FAST, RACK_25, UNLIKE_TEETH = (
     "larger_gear_drives_contact_lost", "rack_25_degrees_always_pushing", "unlike_teeth_finite_elements",
 )  # fmt: skip
@@ -86,10 +90,12 @@ GEOMETRY = (
     Guard(_GEOMETRY, "contact_ratio", LONG, "up to three pairs of teeth are in the model: epsilon <= 3",
           most=of(lambda h: h.tip_diameter(3.0 * h.base_pitch + h.line - h.mate.tip_length)),
           sets="{gear}.tip_diameter", after=_MANY, says="1 to 3"),
-    *(Guard(_GEOMETRY, "{gear}.tip_diameter", base, "no contact beyond the mate's tangent point: interference",
+    *(Guard(_GEOMETRY, "{gear}.tip_diameter", base,
+            "no contact beyond the mate's tangent point: interference",
             most=of(lambda h: h.tip_diameter(h.line)), says="involute interference", beside=True)
       for base in (SMALL, FAST)),
-    Guard(_GEOMETRY, "{gear}.profile_shift", RACK_25, "contact ends above the rack's fillet; 1e-9 m is rounding",
+    Guard(_GEOMETRY, "{gear}.profile_shift", RACK_25,
+          "contact ends above the rack's fillet; 1e-9 m is rounding",
           most=of(lambda h: h.mate.tip_diameter(h.line - h.form_length)), near=1e-8,
           sets="{mate}.tip_diameter", says="undercut or fillet", beside=True),
     Guard(_GEOMETRY, "{gear}.tip_diameter", RELIEVED, "clearance to the mate's root, a - r_a - r_f >= 0",
@@ -100,7 +106,7 @@ GEOMETRY = (
           after={"basic_rack.dedendum_coefficient": 1.9, "basic_rack.fillet_radius_coefficient": 0.1}),
     Guard(_GEOMETRY, "{gear}.bore", UNLIKE_TEETH, "a gear has a rim: d_f = m (z - 2 h_f + 2 x) (ISO 21771)",
           most=of(lambda h: 2.0 * h.r_f), says="< root diameter"),
-    Guard(_GEOMETRY, "centre_distance", RACK_25, "no overlap of teeth beyond 1e-4 m, the rounding of drawings",
+    Guard(_GEOMETRY, "centre_distance", RACK_25, "teeth overlap by 1e-4 m at most, as drawings are rounded",
           least=of(_wedged_centre), says="normal backlash >= 0"),
     Guard(_GEOMETRY, "centre_distance", FAST, "the same, by the shift of one gear",
           most=of(_wedged_shift), sets="{gear}.profile_shift", says="normal backlash >= 0",
@@ -157,7 +163,11 @@ def _one_segment(long: bool) -> Callable[[GearPair, str, float], Changes]:
         length = ratio * diameter
         on_it = {"gear_position": 0.5 * length, "bearings": [_bearing(0.0), _bearing(length)]}
         own = on_it | {"segments": [{"length": length, "diameter": diameter}]}
-        return {"shafts.motor": None, "shafts.load": None, **{f"shafts.{gear}.{k}": v for k, v in own.items()}}
+        return {
+            "shafts.motor": None,
+            "shafts.load": None,
+            **{f"shafts.{gear}.{k}": v for k, v in own.items()},
+        }
 
     return sets
 
@@ -170,17 +180,22 @@ SCHEMA = (
     Guard(_PAIR, "{gear}.inertia", RACK_25, "1e-4 of the solid disc: less is a unit error",
           least=lambda pair, gear: 1e-4 * _disc_inertia(pair, gear)),
     Guard(_PAIR, "mesh.first_teeth", SMALL, "teeth are counted from 1 to z", most=_teeth, whole=True,
-          sets=lambda pair, gear, tooth: {"mesh.first_teeth": [tooth, 1] if gear == "pinion" else [1, tooth]}),
-    Guard(_GEAR, "basic_rack.dedendum_coefficient", RACK_25, "the rack's tooth has a tip: h_f <= pi/4 cot(alpha)",
+          sets=lambda pair, gear, tooth: {"mesh.first_teeth": [tooth, 1] if gear == "pinion" else [1,
+          tooth]}),
+    Guard(_GEAR, "basic_rack.dedendum_coefficient", RACK_25,
+          "the rack's tooth has a tip: h_f <= pi/4 cot(alpha)",
           most=lambda pair, gear: 0.25 * math.pi / math.tan(pair.basic_rack.pressure_angle),
           sets=lambda pair, gear, value: {"basic_rack.dedendum_coefficient": value, gear + ".bore": 0.0},
           after={"basic_rack.fillet_radius_coefficient": 0.0}, beside=True, says="pointed above their tips"),
     Guard(_GEAR, "basic_rack.fillet_radius_coefficient", RACK_25,
           "full tip radius: rho (1 - sin(alpha))/cos(alpha) fills half the rack's tip",
-          most=lambda pair, gear: _room(pair) / math.tan(0.25 * math.pi - 0.5 * pair.basic_rack.pressure_angle)),
+          most=lambda pair,
+          gear: _room(pair) / math.tan(0.25 * math.pi - 0.5 * pair.basic_rack.pressure_angle)),
     Guard(_GEAR, "{gear}.faults.0.tooth", FAST, "teeth are counted from 1 to z", most=_teeth, whole=True,
-          sets=lambda pair, gear, tooth: {f"{gear}.faults": [{"kind": "crack", "tooth": tooth, "depth": 0.1}]}),
-    *(Guard(_TEETH, f"{{gear}}.deviations.{field}", RELIEVED, "one value a tooth", **{end: _teeth}, whole=True,
+          sets=lambda pair, gear, tooth: {f"{gear}.faults": [{"kind": "crack", "tooth": tooth,
+          "depth": 0.1}]}),
+    *(Guard(_TEETH, f"{{gear}}.deviations.{field}", RELIEVED, "one value a tooth", **{end: _teeth},
+            whole=True,
             sets=_values(field))
       for field in ("index", "profile_slope", "tip_relief") for end in ("least", "most")),
     Guard(_SHAFTS, "shafts.{gear}.gear_position", LONG, "on the shaft, up to the rounding of lengths",
@@ -190,7 +205,8 @@ SCHEMA = (
     *(Guard(_SHAFTS, f"shafts.{end}.position", LONG, "on the shaft of its own gear",
             most=lambda pair, _, own=own: _length(pair, own) * (1.0 + 1e-9), near=1e-10)
       for end, own in (("motor", "pinion"), ("load", "gear"))),
-    Guard(_SHAFTS, "shafts.{gear}.segments.0.bore", LONG, "a wall of a hundredth of the diameter keeps its form",
+    Guard(_SHAFTS, "shafts.{gear}.segments.0.bore", LONG,
+          "a wall of a hundredth of the diameter keeps its form",
           most=lambda pair, gear: 0.98e3 * getattr(pair.shafts, gear).segments[0].diameter),
     Guard(_SHAFTS, "shafts.{gear}.segments", LONG, "a thousand times as long as thick is a rope",
           most=1000.0, sets=_one_segment(long=True)),
@@ -202,8 +218,10 @@ SCHEMA = (
            {"shafts.{gear}.bearings": [_bearing(50.0)]},
            {"shafts.{gear}.bearings": [_bearing(50.0, tilt_stiffness=1e-3)]}, says="two bearings"),
     Choice(_GEAR, "{gear}.tip_diameter", FAST, "one tip",
-           {"{gear}": {"teeth": 33, "face_width": 15, "roughness": 0.4, "addendum": 2.0, "tip_diameter": 70.0}},
-           {"{gear}": {"teeth": 33, "face_width": 15, "roughness": 0.4, "tip_diameter": 70.0}}, says="either addendum or tip_diameter"),
+           {"{gear}": {"teeth": 33, "face_width": 15, "roughness": 0.4, "addendum": 2.0,
+           "tip_diameter": 70.0}},
+           {"{gear}": {"teeth": 33, "face_width": 15, "roughness": 0.4, "tip_diameter": 70.0}},
+           says="either addendum or tip_diameter"),
     Choice(_GEAR, "{gear}.mounting.eccentricity", UNLIKE_TEETH, "the first harmonic of the deviations is one",
            {"{gear}.mounting": {"eccentricity": 1e-6}},
            {"{gear}.mounting": {"eccentricity": 1e-6}, "{gear}.deviations.first_order": "steps"},
@@ -229,7 +247,8 @@ SCHEMA = (
       for law in ({}, {"iso_vg": 90}, {"iso_vg": 100, "kinematic_viscosity_40": 100.0},
                   {"kinematic_viscosity_40": 100.0}, {"kinematic_viscosity_100": 10.0})),
     Choice(_CONTACT, "friction.table", RACK_25, "the law 'table' has one", {"friction.law": "table"},
-           {"friction.law": "table", "friction.table": {"points": [0, 9, 18, 50], "coefficient": [0.05] * 4}}),
+           {"friction.law": "table", "friction.table": {"points": [0, 9, 18, 50],
+           "coefficient": [0.05] * 4}}),
     *(Choice(_CONTACT, "friction.thresholds", RELIEVED, "regimes follow each other over the film parameter",
              {"friction.thresholds": wrong}, {"friction.thresholds": right})
       for wrong, right in (([0.0, 4.0, 10.0], [1e-9, 4.0, 10.0]), ([4.0, 4.0, 10.0], [4.0, 4.0 + 1e-9, 10.0]),
@@ -253,7 +272,7 @@ def _fault(**values: Any) -> Callable[[GearPair, str, float], Changes]:
 
 
 def _root(pair: GearPair, gear: str) -> float:
-    """Thickness of the root where the fillet is at 30 degrees [mm]; test_compliance judges ``root_section``."""
+    """Thickness of the root where the fillet is at 30 degrees [mm], which test_compliance judges."""
     return 2e3 * root_section(pair.wheels[0 if gear == "pinion" else 1].tooth)[1]
 
 
@@ -273,7 +292,8 @@ FAULTS = (
           least=18.0, sets=_fault(kind="spall", tooth=7, start_roll_angle=18, end_roll_angle=None)),
     Guard("lumped/faults/chip.py", "{gear}.faults.0.roll_angle", FAST, "an edge on the flank: below the tip",
           most=of(lambda h: h.roll(h.tip_length)), sets=_fault(kind="chip", tooth=7, roll_angle=None)),
-    Guard("lumped/faults/chip.py", "{gear}.faults.0.roll_angle", FAST, "an edge on the flank: above its start",
+    Guard("lumped/faults/chip.py", "{gear}.faults.0.roll_angle", FAST,
+          "an edge on the flank: above its start",
           least=of(lambda h: h.roll(h.start_length)), sets=_fault(kind="chip", tooth=7, roll_angle=None)),
 )  # fmt: skip
 
@@ -366,7 +386,8 @@ def _one_mu(pair: GearPair, gear: str, value: float) -> Changes:
 
 _TABLES = "lumped/fields/tables.py"
 STIFFNESS = (
-    *(Guard("lumped/stiffness/base.py", _RAMP, base, "two ramps fit into the path of contact", most=_half_path,
+    *(Guard("lumped/stiffness/base.py", _RAMP, base, "two ramps fit into the path of contact",
+            most=_half_path,
             sets=_ramp(model, **more), judge=curve)
       for base, model, more in ((RACK_25, "parabolic", {}), (FAST, "energy", {}), (SMALL, "table", _TOTAL))),
     *(Guard("lumped/stiffness/base.py", _RAMP, base, "positions have digits enough on the ramp",

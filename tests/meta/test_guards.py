@@ -25,7 +25,7 @@ FIELD = {"refuse": 0, "FieldProblem": 0, "off_shaft": 1, "uncovered": 3}
 ELSEWHERE = {
     "lumped/fields/refusals.py": "words of pydantic's errors: tests/lumped/schema/test_refusals",
     "lumped/fields/text_file.py": "files: tests/lumped/schema/test_refusals, tests/hardening",
-    "lumped/fields/section.py": "assignment and control characters: tests/lumped/schema/test_pair, tests/hardening",
+    "lumped/fields/section.py": "assignment: tests/lumped/schema/test_pair; control characters: tests/hardening",
     "lumped/schema/changes.py": "short names: tests/lumped/schema/test_pair",
     "lumped/schema/files.py": "files and presets: tests/lumped/schema/test_refusals",
     "lumped/schema/own_laws.py": "functions and arrays of the user: tests/lumped/schema/test_own_laws",
@@ -33,13 +33,19 @@ ELSEWHERE = {
 #: The same of single names: (file, last part of the name) -> the test.
 NAMES_ELSEWHERE = {
     ("lumped/schema/pair.py", "pair"): "a call with a position: tests/lumped/schema/test_pair",
-    ("lumped/schema/pair.py", "centre_distance"): "of other teeth, named first: tests/lumped/schema/test_refusals",
+    (
+        "lumped/schema/pair.py",
+        "centre_distance",
+    ): "of other teeth, named first: tests/lumped/schema/test_refusals",
     ("lumped/schema/pair.py", "format"): "of a later release: tests/lumped/schema/test_pair",
     ("lumped/schema/teeth.py", "file"): "malformed files: tests/lumped/faults/test_schema",
     ("lumped/fields/tables.py", "file"): "malformed files: tests/lumped/stiffness/test_models",
     ("lumped/stiffness/finite_elements.py", "support"): "tests/lumped/path_of_contact/test_plane_compliance",
     ("lumped/friction/benedict_kelley.py", "maximum"): "an argument: tests/lumped/friction/test_laws",
-    ("lumped/friction/registry.py", "table"): "the law without its table: the row of lumped/schema/contact.py",
+    (
+        "lumped/friction/registry.py",
+        "table",
+    ): "the law without its table: the row of lumped/schema/contact.py",
     ("lumped/friction/table.py", "points"): "rows of lumped/fields/tables.py, tests/lumped/fields",
     ("lumped/fields/units.py", "unit"): "a unit of another kind: tests/lumped/fields/test_units",
 }
@@ -97,7 +103,9 @@ def test_every_number_of_a_parameter_file_has_its_range() -> None:
 
 def test_every_stated_range_is_the_one_of_the_table() -> None:
     """The same limits, units and names; and each has a row on a pair, but one that no pair can reach."""
-    stated = {(law, r) for law, record in LAWS.items() for r in record.ranges if r.stated and not record.parts}
+    stated = {
+        (law, r) for law, record in LAWS.items() for r in record.ranges if r.stated and not record.parts
+    }
     stated |= {("iso6336", r) for r in iso6336.RANGES}
     stated |= {("foundation", r) for r in (foundation.HALF_ANGLE, foundation.BODY_RATIO)}
     found = {(where, r.quantity): (r.unit, r.low, r.high) for where, r in stated}
@@ -108,7 +116,7 @@ def test_every_stated_range_is_the_one_of_the_table() -> None:
 
 def test_every_flag_has_a_row() -> None:
     rows = {row.names for row in GUARDS if row.where == "validation/validity/flags.py"}
-    # Stability has a verdict of its own, see tests/floquet; its flag: tests/validation/validity/test_validity.
+    # Stability has a verdict of its own, see tests/floquet; its flag is in validity/test_validity.
     assert set(flags._ABOUT) - rows == {"stability"}
 
 
@@ -121,6 +129,10 @@ def test_every_doubt_has_a_row() -> None:
         if isinstance(one, ast.FunctionDef) and one.name not in ("_sizes", "_squared_frequencies")
     }
     words = {row.says for row in GUARDS if row.where == "validation/validity/plausibility.py"}
-    of_sizes = {says for says in words if any(says.rstrip(" =") in size.format("{gear}") for size in plausibility._SIZES)}
+    of_sizes = {
+        says
+        for says in words
+        if any(says.rstrip(" =") in size.format("{gear}") for size in plausibility._SIZES)
+    }
     assert len(of_sizes) == len(plausibility._SIZES)
     assert len(words - of_sizes) == sum(sentences.values())

@@ -47,7 +47,7 @@ def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, which, gear):
 
 @pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
 def test_a_pit_narrows_the_contact_of_both_materials(unlike, which, gear):
-    """The compliance 2/pi sum((1 - nu^2)/E) over the width b, less that over b - w, between its roll angles."""
+    """2/pi sum((1 - nu^2)/E) over the width b - w in the place of b, between its roll angles."""
     flank, hand = unlike.flank(which), ByHand(unlike, gear)
     width = min(unlike.pinion.face_width, unlike.gear.face_width)
     low, high = hand.roll(0.3 * hand.tip_length), hand.roll(0.6 * hand.tip_length)

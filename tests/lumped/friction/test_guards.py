@@ -1,4 +1,4 @@
-"""Do the guards of lumped/friction act just outside their limits, and not just inside? The table is tests/guards."""
+"""Do guards of lumped/friction act just outside their limits, not just inside? Table: tests/guards."""
 
 from tests.guards import guards_of
 

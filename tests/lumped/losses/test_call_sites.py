@@ -1,4 +1,4 @@
-"""Does each loss formula get the right gear and unit? On pairs with unlike gears, derived from their files."""
+"""Does each loss formula get the right gear and unit? On pairs with unlike gears, from their files."""
 
 import math
 
@@ -38,7 +38,8 @@ def test_iso_loss_is_power_times_coefficient_times_loss_factor(name):
     pair = unlike_pair(name)
     pitch = Contact(pair, np.array([Contact(pair).pitch]))
     mu = iso_14179_mean_coefficient(
-        1e-3 * pitch.unit_load, pitch.entraining, 1e3 * pitch.radius, 1e3 * pitch.viscosity, 1e6 * pitch.roughness
-    )
+        1e-3 * pitch.unit_load, pitch.entraining, 1e3 * pitch.radius, 1e3 * pitch.viscosity,
+        1e6 * pitch.roughness,
+    )  # fmt: skip
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     assert iso_14179_mesh_loss(pair) == pytest.approx(power * mu[0] * by_hand(pair), rel=1e-9)

@@ -32,7 +32,7 @@ def by_hand(pair):
 
 
 def test_below_the_resonance():
-    """23/38: without relief B_k = 1; K_v = N (0.32 B_p + 0.34 B_f + 0.23 B_k) + 1 for a contact ratio up to 2."""
+    """23/38: K_v = N (0.32 B_p + 0.34 B_f + 0.23 B_k) + 1, contact ratio up to 2; B_k = 1 without relief."""
     pair = unlike_pair("rack_25_degrees_always_pushing")
     n, b_p, b_f, load = by_hand(pair)
     assert load >= 100.0

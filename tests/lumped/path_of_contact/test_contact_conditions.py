@@ -1,4 +1,4 @@
-"""Does the contact of a pair get the right argument, gear and unit of each formula? On pairs with unlike gears.
+"""Is each formula of the contact called with the right argument, gear and unit? On pairs with unlike gears.
 
 The formulas themselves have their numbers in their docstrings. What they are called with is derived here from
 the numbers of the file, in SI (``tests.guards.by_hand``).
@@ -11,7 +11,12 @@ import pytest
 
 from lumped.friction import benedict_kelley, xu_kahraman
 from lumped.friction.iso_14179 import iso_14179_mean_coefficient
-from lumped.path_of_contact import contact_path, friction_path_function, friction_profile, law_range_violations
+from lumped.path_of_contact import (
+    contact_path,
+    friction_path_function,
+    friction_profile,
+    law_range_violations,
+)
 from tests.guards.by_hand import Contact
 from tests.unlike_pairs import unlike_pair
 
@@ -87,8 +92,9 @@ def test_law_three_is_called_with_its_units(unlike):
 def test_the_iso_law_is_called_with_its_units(unlike):
     pitch = Contact(unlike, np.array([Contact(unlike).pitch]))
     magnitude = iso_14179_mean_coefficient(
-        1e-3 * pitch.unit_load, pitch.entraining, 1e3 * pitch.radius, 1e3 * pitch.viscosity, 1e6 * pitch.roughness
-    )
+        1e-3 * pitch.unit_load, pitch.entraining, 1e3 * pitch.radius, 1e3 * pitch.viscosity,
+        1e6 * pitch.roughness,
+    )  # fmt: skip
     mu = friction_path_function(unlike, "iso_14179", warn=False)(pitch.xi + np.array([-1e-4, 1e-4]))
     np.testing.assert_allclose(mu, [-magnitude[0], magnitude[0]], rtol=ROUNDING)
 
