@@ -9,6 +9,7 @@ declared   ranges of the numbers of a parameter file
 refused    what cannot exist: limits that follow from several numbers of a pair
 fits       ranges in which published fits hold
 doubts     values that hardly can be meant, assumptions of the model
+verdicts   page 1 of the report
 ========== ==================================================================================================
 
 ``tests/<package>/<folder>/test_guards.py`` runs the rows of ``<package>/<folder>``, and
@@ -17,42 +18,60 @@ doubts     values that hardly can be meant, assumptions of the model
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib
+from collections.abc import Callable, Iterator
+from typing import Protocol
 
 import pytest
 
-from tests.guards.declared import DECLARED, WHOLE, numbers, whole_numbers
-from tests.guards.doubts import DOUBTED, Level
-from tests.guards.fits import FITS, RANGES
-from tests.guards.guard import GEARS, Choice, Guard
-from tests.guards.refused import REFUSED
-
-#: Every row but those of ``declared``, which have a table of their own.
-GUARDS: tuple[Guard | Choice | Level, ...] = (*REFUSED, *FITS, *DOUBTED)
-
-__all__ = ["DECLARED", "GUARDS", "RANGES", "WHOLE", "declared_fields", "guards_of"]
+#: Folder whose guards a module of this table has, and its rows there. Modules are imported where they are run.
+_TABLES = {
+    "refused": ("lumped", "REFUSED"),
+    "fits": ("lumped", "FITS"),
+    "doubts": ("validation/validity", "DOUBTED"),
+    "verdicts": ("validation/reporting", "TURNS"),
+}
 
 
-def guards_of(folder: str) -> Callable[[Guard | Choice | Level], None]:
+class Row(Protocol):
+    """What rows of every kind have."""
+
+    @property
+    def where(self) -> str:
+        """The file that has the guard."""
+
+    @property
+    def names(self) -> str:
+        """The field, range, flag or sentence by which it acts."""
+
+    @property
+    def title(self) -> str:
+        """Name of the row in the list of tests."""
+
+    @property
+    def source(self) -> str:
+        """Where the limit comes from."""
+
+    def complaints(self) -> list[str]:
+        """What the program does otherwise than the row says; empty where it is right."""
+
+
+def rows(folder: str = "") -> Iterator[Row]:
+    """Rows of a folder; default all rows but those of ``declared``, which has a list of fields."""
+    for module, (place, name) in _TABLES.items():
+        if folder.startswith(place) or not folder:
+            table = getattr(importlib.import_module(f"tests.guards.{module}"), name)
+            yield from (row for row in table if not folder or row.where.rpartition("/")[0] == folder)
+
+
+def guards_of(folder: str) -> Callable[[Row], None]:
     """The test of the rows of one folder of a package."""
-    rows = [row for row in GUARDS if row.where.rpartition("/")[0] == folder]
-    assert rows, f"no guard is in {folder}"
+    own = list(rows(folder))
+    assert own, f"no guard is in {folder}"
 
-    @pytest.mark.parametrize("guard", rows, ids=[row.title for row in rows])
-    def test(guard: Guard | Choice | Level) -> None:
+    @pytest.mark.parametrize("guard", own, ids=[row.title for row in own])
+    def test(guard: Row) -> None:
         complaints = guard.complaints()
         assert not complaints, f"{guard.names}, {guard.source}:\n" + "\n".join(complaints)
 
     return test
-
-
-def declared_fields() -> dict[str, Callable[[], list[str]]]:
-    """Field of a parameter file -> its complaints about values around each of its limits."""
-    rows: dict[str, Callable[[], list[str]]] = {}
-    for pattern, (text, _) in DECLARED.items():
-        for path in {pattern.format(gear=gear): None for gear in GEARS}:
-            rows[path] = lambda path=path, text=text: list(numbers(path, text))
-    for pattern, (low, high, _) in WHOLE.items():
-        for path in {pattern.format(gear=gear): None for gear in GEARS}:
-            rows[path] = lambda path=path, low=low, high=high: list(whole_numbers(path, low, high))
-    return rows

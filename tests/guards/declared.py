@@ -5,12 +5,13 @@ from __future__ import annotations
 import copy
 import operator
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, get_args, get_origin
 
 from lumped import GearPair, ParameterError, load_gear_pair
 from lumped.fields.refusals import models_in
 from lumped.fields.units import Quantity
+from tests.guards.guard import GEARS
 from tests.unlike_pairs import unlike_pair
 
 _LENGTH = "a length that exists"
@@ -219,6 +220,18 @@ def whole_numbers(path: str, low: int, high: int) -> Iterator[str]:
         found = refused(path, value)
         if bool(found) == (low <= value <= high):
             yield f"{path} = {value}: {'refused' if found else 'taken'}, allowed {low} to {high}"
+
+
+def complaints() -> dict[str, Callable[[], list[str]]]:
+    """Field of a parameter file -> its complaints about values around each of its limits."""
+    every: dict[str, Callable[[], list[str]]] = {}
+    for pattern, (text, _) in DECLARED.items():
+        for path in {pattern.format(gear=gear): None for gear in GEARS}:
+            every[path] = lambda path=path, text=text: list(numbers(path, text))
+    for pattern, (low, high, _) in WHOLE.items():
+        for path in {pattern.format(gear=gear): None for gear in GEARS}:
+            every[path] = lambda path=path, low=low, high=high: list(whole_numbers(path, low, high))
+    return every
 
 
 def fields(model: Any = GearPair, prefix: str = "") -> Iterator[tuple[str, Any]]:

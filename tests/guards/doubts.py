@@ -12,10 +12,17 @@ import xarray as xr
 from lumped import GearPair, condensed_bearings
 from tests.guards.by_hand import ByHand, Contact
 from tests.guards.fits import torque_of_unit_load
-from tests.guards.guard import MATE, Acts, Changes, Choice, Guard, doubt
+from tests.guards.guard import MATE, Acts, Changes, Choice, Guard
 from tests.guards.refused import FAST, LONG, RACK_25, RELIEVED, SMALL, of
 from tests.unlike_pairs import unlike_pair
 from validation.validity import flags
+from validation.validity.plausibility import parameter_warnings
+
+
+def doubt(pair: GearPair, changes: Changes) -> Acts:
+    """Sentences about values that hardly can be meant."""
+    return [("doubt", text) for text in parameter_warnings(pair.with_(dict(changes)))]
+
 
 _WHERE = "validation/validity/plausibility.py"
 #: A mesh whose mean stiffness is known: 3e8 N/m a pair, as many pairs as the contact ratio says.

@@ -9,8 +9,9 @@ import numpy as np
 
 from lumped import GearPair
 from lumped.friction import xu_kahraman
+from lumped.typing import FloatArray
 from tests.guards.by_hand import ByHand, Contact, root_of
-from tests.guards.guard import MATE, Changes, Guard, law_range, stiffness_range
+from tests.guards.guard import MATE, Changes, Guard, friction, law_range, stiffness_range
 from tests.guards.refused import FAST, LONG, RACK_25, RELIEVED, SMALL, UNLIKE_TEETH, of
 
 _ISO, _FOUNDATION = "lumped/stiffness/iso6336.py", "lumped/stiffness/foundation.py"
@@ -124,11 +125,19 @@ def _mean_of_law_ii(pair: GearPair, gear: str) -> float:
     return 2.0 * mean - 1e6 * float(getattr(pair, MATE[gear]).roughness)
 
 
-def _mean_of_law_iii(c: Contact) -> float:
-    """Mean of law III, whose arguments are in GPa, m/s (half the sum), mPa s, um and m."""
-    mu = xu_kahraman(1e-9 * c.pressure, 2.0 * c.sliding / c.entraining, 0.5 * c.entraining, 1e3 * c.viscosity,
-                     1e6 * c.roughness, c.radius)  # fmt: skip
-    return float(mu.mean())
+def _of_law_iii(c: Contact) -> FloatArray:
+    """Law III, whose arguments are in GPa, m/s (half the sum), mPa s, um and m."""
+    return xu_kahraman(
+        1e-9 * c.pressure, 2.0 * c.sliding / c.entraining, 0.5 * c.entraining, 1e3 * c.viscosity,
+        1e6 * c.roughness, c.radius,
+    )  # fmt: skip
+
+
+def _too_rough(pair: GearPair, gear: str) -> float:
+    """Own Ra [um] with which law III reaches mu = 1 on the path: it goes with exp(0.620305 exp(S))."""
+    largest, mean = _of_law_iii(Contact(pair)).max(), 0.5e6 * (pair.pinion.roughness + pair.gear.roughness)
+    roughness = math.log(math.exp(mean) - math.log(largest) / 0.620305)
+    return 2.0 * roughness - 1e6 * float(getattr(pair, MATE[gear]).roughness)
 
 
 def _law(name: str) -> Changes:
@@ -159,7 +168,10 @@ FRICTION = (
     Guard(_III, "mean_rolling_velocity", FAST, "Xu 2005: up to 20 m/s", sets=_SPEED, **_XU,
           most=_scaled(lambda c: 0.5 * float(c.entraining.max()), 20.0, 1.0, "pinion_speed")),
     Guard(_III, "mean_coefficient", SMALL, "means of lubricated gears are below 0.1", sets=_SPEED, **_XU,
-          least=_scaled(_mean_of_law_iii, 0.1, -0.100601, "pinion_speed")),
+          least=_scaled(lambda c: float(_of_law_iii(c).mean()), 0.1, -0.100601, "pinion_speed")),
+    *(Guard("lumped/path_of_contact/friction.py", "friction.law", base, "not above the normal load",
+            most=_too_rough, sets="{gear}.roughness", after=_law("xu_kahraman"), judge=friction)
+      for base in (SMALL, FAST)),
     *(Guard(_ISO_LAW, "unit_load", base, "ISO/TR 14179-2: 150 N/mm and more",
             least=torque_of_unit_load(150.0),
             sets=_TORQUE, judge=law_range, after=_law("iso_14179")) for base in (RACK_25, FAST)),

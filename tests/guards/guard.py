@@ -12,7 +12,6 @@ from lumped.path_of_contact import law_range_violations
 from lumped.path_of_contact.friction import friction_path_function
 from lumped.quasi_static.tooth_error import relief_starts
 from tests.unlike_pairs import unlike_pair
-from validation.validity.plausibility import parameter_warnings
 
 #: What acts on a pair with changes: the name under which it does, and its words.
 Acts = list[tuple[str, str]]
@@ -61,11 +60,6 @@ def stiffness_range(pair: GearPair, changes: Changes) -> Acts:
     """What leaves the ranges of the stiffness model's fits: of which part, and which quantity."""
     changed = pair.with_(dict(changes))
     return [(f"{v.law}: {v.range.quantity}", str(v)) for v in changed.mesh.stiffness.violations(changed)]
-
-
-def doubt(pair: GearPair, changes: Changes) -> Acts:
-    """Sentences about values that hardly can be meant."""
-    return [("doubt", text) for text in parameter_warnings(pair.with_(dict(changes)))]
 
 
 @dataclass(frozen=True)
@@ -118,7 +112,8 @@ class Guard:
     def title(self) -> str:
         """Name of the row in the list of tests."""
         way = "least" if self.most is None else "most"
-        return f"{self.names.replace(' ', '_')}-{way}"
+        name = self.says if self.names == "doubt" else self.names
+        return f"{name.strip(' =').replace(' ', '_')}-{way}"
 
     def pair(self, gear: str) -> GearPair:
         """The pair before its value is set."""

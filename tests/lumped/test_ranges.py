@@ -1,11 +1,14 @@
 """Is a quantity outside a stated range just beyond its limit, and inside just before it and at it?"""
 
+import math
+
 import pytest
 
+from lumped.errors import ParameterError
 from lumped.friction import LAWS
-from lumped.ranges import range_violations
+from lumped.ranges import checked, range_violations
 from lumped.stiffness import foundation, iso6336
-from tests.guards import RANGES
+from tests.guards.fits import RANGES
 
 EVERY = [*iso6336.RANGES, foundation.HALF_ANGLE, foundation.BODY_RATIO]
 EVERY += [one for law in LAWS.values() for one in law.ranges]
@@ -23,3 +26,12 @@ def test_both_ends(law, quantity):
             assert range_violations("law", (limits,), {quantity: [end, end - out * step]}) == ()
             (found,) = range_violations("law", (limits,), {quantity: [end, end + out * step]})
             assert found.share == 0.5
+
+
+def test_what_no_law_can_take():
+    least = math.nextafter(0.0, 1.0)
+    assert checked("v", [least, 1.0], "m/s").tolist() == [least, 1.0]
+    assert checked("v", [0.0, 1.0], "m/s", allow_zero=True).tolist() == [0.0, 1.0]
+    for value, allow_zero in ((0.0, False), (-least, True), (math.inf, True), (math.nan, True)):
+        with pytest.raises(ParameterError, match="m/s"):
+            checked("v", [1.0, value], "m/s", allow_zero=allow_zero)

@@ -10,22 +10,24 @@ import pytest
 import lumped
 from lumped.friction import LAWS
 from lumped.stiffness import foundation, iso6336
-from tests.guards import DECLARED, GUARDS, RANGES, WHOLE
-from tests.guards.declared import fields
+from tests.guards import rows
+from tests.guards.declared import DECLARED, WHOLE, fields
+from tests.guards.fits import RANGES
 from tests.guards.guard import GEARS
 from validation.validity import flags, plausibility
 
 ROOT = Path(lumped.__file__).parents[1]
+GUARDS = tuple(rows())
 #: Folders whose refusals must have rows.
 FOLDERS = ("lumped/schema", "lumped/gear_geometry", "lumped/faults", "lumped/stiffness", "lumped/fields",
-           "lumped/friction", "lumped/quasi_static")  # fmt: skip
+           "lumped/friction", "lumped/quasi_static", "lumped/path_of_contact")  # fmt: skip
 #: Function that refuses -> place of the field among its arguments.
 FIELD = {"refuse": 0, "FieldProblem": 0, "off_shaft": 1, "uncovered": 3}
 #: What is refused without a limit, by file -> names and the test that has them.
 ELSEWHERE = {
     "lumped/fields/refusals.py": "words of pydantic's errors: tests/lumped/schema/test_refusals",
     "lumped/fields/text_file.py": "files: tests/lumped/schema/test_refusals, tests/hardening",
-    "lumped/fields/section.py": "assignment: tests/lumped/schema/test_pair; control characters: tests/hardening",
+    "lumped/fields/section.py": "assignment: tests/lumped/schema/test_pair; characters: tests/hardening",
     "lumped/schema/changes.py": "short names: tests/lumped/schema/test_pair",
     "lumped/schema/files.py": "files and presets: tests/lumped/schema/test_refusals",
     "lumped/schema/own_laws.py": "functions and arrays of the user: tests/lumped/schema/test_own_laws",
@@ -81,10 +83,10 @@ def test_every_refusal_has_a_row(folder: str) -> None:
     missing = []
     for path in sorted((ROOT / folder).glob("*.py")):
         file = path.relative_to(ROOT).as_posix()
-        rows = Counter(leaf(row.names) for row in GUARDS if row.where == file)
+        known = Counter(leaf(row.names) for row in GUARDS if row.where == file)
         for name, places in refusals(path).items():
-            if rows[name] < places and file not in ELSEWHERE and (file, name) not in NAMES_ELSEWHERE:
-                missing.append(f"{file}: {name}, {places} places, {rows[name]} rows")
+            if known[name] < places and file not in ELSEWHERE and (file, name) not in NAMES_ELSEWHERE:
+                missing.append(f"{file}: {name}, {places} places, {known[name]} rows")
     assert missing == []
 
 
@@ -97,8 +99,8 @@ def test_the_lists_of_exceptions_name_what_exists() -> None:
 
 
 def test_every_number_of_a_parameter_file_has_its_range() -> None:
-    rows = {pattern.format(gear=gear) for pattern in (*DECLARED, *WHOLE) for gear in GEARS}
-    assert {path for path, _ in fields()} == rows
+    known = {pattern.format(gear=gear) for pattern in (*DECLARED, *WHOLE) for gear in GEARS}
+    assert {path for path, _ in fields()} == known
 
 
 def test_every_stated_range_is_the_one_of_the_table() -> None:
@@ -110,14 +112,14 @@ def test_every_stated_range_is_the_one_of_the_table() -> None:
     stated |= {("foundation", r) for r in (foundation.HALF_ANGLE, foundation.BODY_RATIO)}
     found = {(where, r.quantity): (r.unit, r.low, r.high) for where, r in stated}
     assert found == RANGES
-    rows = {(Path(row.where).stem, row.names.rpartition(": ")[2]) for row in GUARDS}
-    assert set(RANGES) - rows == {("xu_kahraman", "slide_to_roll")}  # both flanks roll the same way
+    known = {(Path(row.where).stem, row.names.rpartition(": ")[2]) for row in GUARDS}
+    assert set(RANGES) - known == {("xu_kahraman", "slide_to_roll")}  # both flanks roll the same way
 
 
 def test_every_flag_has_a_row() -> None:
-    rows = {row.names for row in GUARDS if row.where == "validation/validity/flags.py"}
+    known = {row.names for row in GUARDS if row.where == "validation/validity/flags.py"}
     # Stability has a verdict of its own, see tests/floquet; its flag is in validity/test_validity.
-    assert set(flags._ABOUT) - rows == {"stability"}
+    assert set(flags._ABOUT) - known == {"stability"}
 
 
 def test_every_doubt_has_a_row() -> None:
