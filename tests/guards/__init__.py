@@ -24,7 +24,7 @@ from typing import Protocol
 
 import pytest
 
-#: Folder whose guards a module of this table has, and its rows there. Modules are imported where they are run.
+#: Folder whose guards a module of this table has, and its rows there. They are imported where they run.
 _TABLES = {
     "refused": ("lumped", "REFUSED"),
     "fits": ("lumped", "FITS"),

@@ -38,7 +38,7 @@ def test_ends_of_ranges():
 
 
 def test_just_inside_and_just_outside_of_each_end():
-    """The next floats on either side of 1 and 2, which both belong to the range; with ``above`` 1 does not."""
+    """The next floats beside 1 and 2, which both belong to the range; with ``above`` 1 does not."""
     below, over, short, beyond = (math.nextafter(end, to) for end in (1.0, 2.0) for to in (0.0, 3.0))
     for reads in (real_number, real_numbers):
         for taken in (1.0, over, short, 2.0):
