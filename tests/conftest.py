@@ -1,4 +1,4 @@
-"""The order of the tests; and whatever test saves a figure, its axes carry labels, with units for numbers."""
+"""The order of the tests, the examples of docstrings beside them, and labels with units on every figure."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from _pytest.doctest import DoctestModule
 
 from tests.unlike_pairs import UNLIKE, unlike_pair
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
+TESTS = Path(__file__).parent
+ROOT = TESTS.parent
 #: What takes long, as two workers begin: the first half and the second. Each compiles other kernels, which
 #: the other one finds compiled later; short tests come last, for they leave nobody waiting for one long test.
 LONG = (
@@ -62,11 +65,10 @@ def pytest_collection_modifyitems(items):
     """Put ``LONG`` at the beginning of both halves of the tests: a worker gets one half, and takes from the
     end of the other's when it is done.
     """
-    root = Path(__file__).parent
     ranks = {name: (half, place) for half, names in enumerate(LONG) for place, name in enumerate(names)}
 
     def rank(item):
-        folder = item.path.relative_to(root).parent
+        folder = item.getparent(pytest.Dir).path.relative_to(TESTS)
         names = (str(Path(*folder.parts[:depth])) for depth in range(len(folder.parts), 0, -1))
         return next((ranks[name] for name in names if name in ranks), (2, 0))
 
@@ -74,6 +76,30 @@ def pytest_collection_modifyitems(items):
     first, second, short = ([item for item in ordered if rank(item)[0] == part] for part in range(3))
     cut = max(0, len(items) // 2 - len(first))
     items[:] = first + short[:cut] + second + short[cut:]
+
+
+class FolderWithExamples(pytest.Dir):
+    """A folder of tests, with the examples (``>>>``) of the folder that it tests behind its own files.
+
+    Folders below that one are left to the folders of tests that they have.
+    """
+
+    def collect(self):
+        yield from super().collect()
+        tested = ROOT / self.path.relative_to(TESTS)
+        for file in sorted(tested.rglob("*.py")):
+            own = any(
+                (TESTS / one.relative_to(ROOT)).is_dir() for one in file.parents if tested in one.parents
+            )
+            if not own and ">>> " in file.read_text(encoding="utf-8"):
+                yield DoctestModule.from_parent(self, path=file)
+
+
+def pytest_collect_directory(path, parent):
+    """Give each folder of tests, ``tests/<package>/<folder>``, the examples of ``<package>/<folder>``."""
+    if path.is_relative_to(TESTS) and path != TESTS and (ROOT / path.relative_to(TESTS)).is_dir():
+        return FolderWithExamples.from_parent(parent, path=path)
+    return None
 
 
 @pytest.fixture(scope="session", params=UNLIKE)

@@ -15,16 +15,8 @@ LOOSE = {
     "validation": {"stop_signals", "cli"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.
-QUESTIONS = {
-    "meta",
-    "packaging",
-    "docs",
-    "examples",
-    "hardening",
-    "evidence",
-    "reproductions",
-    "unlike_pairs",
-}
+QUESTIONS = {"meta", "packaging", "docs", "examples", "hardening", "evidence", "reproductions",
+             "unlike_pairs", "guards"}  # fmt: skip
 #: Lines of a file, docstrings and blank lines included: 400 lines of code at most.
 LONGEST = {"library": 550, "tests": 550}
 

@@ -1,9 +1,13 @@
 """Do cracks soften a tooth as plane finite elements say? Spall and chip: multibody/contact/test_own_teeth."""
 
+import math
+
 import numpy as np
 import pytest
 
 from lumped.faults.crack import Crack, root_section
+from lumped.faults.spall import Spall
+from tests.guards.by_hand import ByHand
 
 #: Depth [mm] -> E b times the extra compliance under a load at D, plane finite elements with split nodes,
 #: crack square to the centre line, and the edge crack's ratio to it (specification of teeth that differ,
@@ -23,3 +27,32 @@ def test_edge_crack_beside_finite_elements(nasa, depth):
     assert at_p < 0.5 * at_d  # of the square of the arm
     short, shorter = (Crack(tooth=1, depth=d).compliance(flank, flank.tip) for d in (2e-3, 1e-3))
     assert short / shorter == pytest.approx(4.0, rel=0.01)
+
+
+@pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
+def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, which, gear):
+    """24/(E b t^2) S(x) l^2: strip of thickness t under the moment of the load, x = depth sin(angle)/t."""
+    own, flank = getattr(unlike, gear), unlike.flank(which)
+    u, half = root_section(flank.wheel.tooth)
+    place = np.array([0.9 * flank.tip])
+    at_u, at_h, _, angle = flank.wheel.tooth.involute_points(place)
+    arm = np.cos(angle) * (at_u - u) - np.sin(angle) * at_h
+    x = 0.6e-3 * math.sin(math.radians(50.0)) / (2.0 * half)
+    strip = (x / (1.0 - x)) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)  # Tada
+    width = min(unlike.pinion.face_width, unlike.gear.face_width)
+    expected = 24.0 / (own.youngs_modulus * width * (2.0 * half) ** 2) * strip * arm**2
+    found = Crack(tooth=1, depth=0.6, angle=50).compliance(flank, place)
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
+def test_a_pit_narrows_the_contact_of_both_materials(unlike, which, gear):
+    """2/pi sum((1 - nu^2)/E) over the width b - w in the place of b, between its roll angles."""
+    flank, hand = unlike.flank(which), ByHand(unlike, gear)
+    width = min(unlike.pinion.face_width, unlike.gear.face_width)
+    low, high = hand.roll(0.3 * hand.tip_length), hand.roll(0.6 * hand.tip_length)
+    pit = Spall(tooth=1, start_roll_angle=low, end_roll_angle=high, width=250.0 * width)  # mm: a quarter
+    places = 1e-3 * hand.tip_length * np.array([0.299, 0.301, 0.599, 0.601])
+    plane = sum((1.0 - one.poisson_ratio**2) / one.youngs_modulus for one in (unlike.pinion, unlike.gear))
+    more = 2.0 / math.pi * plane * (1.0 / (0.75 * width) - 1.0 / width)
+    np.testing.assert_allclose(pit.compliance(flank, places), [0.0, more, more, 0.0], rtol=1e-12)

@@ -30,14 +30,6 @@ def test_a_film_on_smooth_flanks_is_refused():
         film_parameter(0.3, 0.1, 0.0)
 
 
-def test_pair_takes_both_roughnesses_unless_one_is_given():
-    pair = load_gear_pair("fzg_c").with_(pinion__roughness=0.3, gear__roughness=0.4)
-    assert contact_path(pair).composite_roughness == pytest.approx(0.5e-6, rel=1e-14)
-    assert contact_path(pair).roughness == pytest.approx(0.35e-6, rel=1e-14)
-    given = pair.with_(friction__composite_roughness=0.2)
-    assert contact_path(given).composite_roughness == pytest.approx(0.2e-6, rel=1e-14)
-
-
 @pytest.mark.parametrize("points", [(100, 40, 11, 40), (11, 40, 100, 100), (100, 40, 100, 100)])
 def test_impossible_points_are_refused(points):
     with pytest.raises(ParameterError, match="less viscous at the higher one"):
@@ -50,17 +42,6 @@ def test_lubricant_law_feeds_the_contact():
     expected = 11.1e-6 * float(oil_density(880.0, 100.0))
     assert pair.lubricant.dynamic_viscosity == pytest.approx(expected, rel=1e-12)
     assert contact_path(pair).viscosity == pytest.approx(expected, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    "law",
-    [{"iso_vg": 90}, {"iso_vg": 100, "kinematic_viscosity_40": 100.0}, {"kinematic_viscosity_40": 100.0}],
-)
-def test_half_a_description_of_an_oil_is_refused(law):
-    with pytest.raises(ParameterError, match="iso_vg"):
-        load_gear_pair("nasa_28_28").with_(
-            {"lubricant.viscosity": None, "lubricant.viscosity_law": {**law, "temperature": 60.0}}
-        )
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,8 @@ from scipy.optimize import minimize_scalar
 
 from lumped import ParameterError, geometry, load_gear_pair
 from lumped.quasi_static.tooth_error import corner_gap, error_function, relief_error
+from tests.guards.by_hand import ByHand, Contact
+from tests.unlike_pairs import unlike_pair
 
 UNEQUAL = {"centre_distance": None, "gear.teeth": 40, "gear.tip_relief": None, "pinion.tip_relief": None}
 
@@ -93,3 +95,18 @@ def test_the_gap_is_the_turn_that_brings_the_corner_onto_the_flank(end, beyond):
     # The flank turned forward by gap/r passes through that corner; one turned by 1 % more does not.
     assert nearest(gap) < 1e-4 * gap
     assert nearest(1.01 * gap) == pytest.approx(0.01 * gap, rel=0.05)
+
+
+@pytest.mark.parametrize("name", ["heavily_relieved_under_load", "unlike_teeth_finite_elements"])
+def test_the_reliefs_of_both_gears_over_their_own_roll_angles(name):
+    """C s or C s^2, s from the start of the relief to the own tip; the gear's roll angle grows towards A."""
+    pair = unlike_pair(name)
+    xi = Contact(pair).xi
+    expected = np.zeros(xi.size)
+    for gear in ("pinion", "gear"):
+        own, hand = getattr(pair, gear).tip_relief, ByHand(pair, gear)
+        length = 1e3 * xi if gear == "pinion" else hand.line - 1e3 * xi
+        start, end = math.degrees(own.start_roll_angle), hand.roll(hand.tip_length)
+        share = np.maximum((np.degrees(length / hand.r_b) - start) / (end - start), 0.0)
+        expected += own.amount * share ** {"linear": 1, "parabolic": 2}[own.shape]
+    np.testing.assert_allclose(relief_error(pair, xi), expected, rtol=1e-9, atol=1e-18)

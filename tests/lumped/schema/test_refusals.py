@@ -87,18 +87,6 @@ class TestEveryQuantity:
         wrong = "1 A" if quantity.unit == "1" else "1 ampere"
         problem(complete(path, wrong), path, value="1 a" if quantity.unit != "1" else "1 A")
 
-    def test_bounds_are_kept(self, quantity_field, complete):
-        path, quantity = quantity_field
-        for bound, beyond in (
-            (quantity.above, quantity.above),
-            (quantity.below, quantity.below),
-            (quantity.at_least, None if quantity.at_least is None else quantity.at_least - 1e-3),
-            (quantity.at_most, None if quantity.at_most is None else quantity.at_most * 1.001),
-        ):
-            if bound is not None:
-                problem(complete(path, beyond), path, allowed=quantity.allowed)
-        assert quantity.above is not None or quantity.at_least is not None
-
     def test_its_name_is_checked(self, quantity_field, complete):
         path, _ = quantity_field
         data = complete(path, 1.0)
@@ -112,15 +100,15 @@ class TestEveryQuantity:
         assert named[0].action == f"Did you mean '{leaf}'?"
 
 
-@pytest.mark.parametrize("value", [0, -5.0, "balancd", True, math.nan, "3 m", [1]])
-def test_brake_torque_is_balanced_or_positive(edited, value):
+@pytest.mark.parametrize("value", ["balancd", True, math.nan, "3 m", [1]])
+def test_brake_torque_is_balanced_or_a_torque(edited, value):
     one = problem(edited("operating.brake_torque", value), "operating.brake_torque")
     assert "balanced" in one.allowed + one.action
 
 
 class TestOtherFields:
-    @pytest.mark.parametrize("value", [4, 1001, 0, -28, 28.0, 28.5, "28", True, None, math.nan])
-    def test_teeth(self, edited, value):
+    @pytest.mark.parametrize("value", [28.0, 28.5, "28", True, None, math.nan])
+    def test_teeth_that_are_no_whole_number(self, edited, value):
         one = problem(edited("pinion.teeth", value), "pinion.teeth", allowed="5")
         assert ("without a point" in one.action) == isinstance(value, float)
 
@@ -152,11 +140,10 @@ class TestOtherFields:
         assert "Did you mean 'peak'" not in one.action
 
     @pytest.mark.parametrize(("path", "values", "texts"), [
-        ("operating.pinion_speed", [0, -0.0, -1000, "0 rpm", "-3 rad/s"],
+        ("operating.pinion_speed", [-0.0, "0 rpm", "-3 rad/s"],
          {"allowed": "> 0 rpm", "action": "drive"}),
-        ("friction.thresholds", [[1.0, 4.0], [1.0, 4.0, 10.0, 11.0], 3.0, "many", [], {"a": 1}, [4, 1, 10],
-         [1, 1, 10], [0, 4, 10], [-1, 4, 10], [True, 4, 10], ["1", 4, 10], [1.0, 4.0, math.inf],
-         [math.nan, 4.0, 10.0]], {"allowed": "three increasing"}),
+        ("friction.thresholds", [3.0, "many", [], {"a": 1}, ["1", 4, 10], [math.nan, 4.0, 10.0]],
+         {"allowed": "three increasing"}),
         ("name", [3, "", None, "x" * 81, ["a"]], {}),
         *((section, [3, None, "text", [1, 2]], {"allowed": "table"})
           for section in ("pinion", "bearings.gear", "mesh", "mesh.stiffness", "friction")),
@@ -175,17 +162,6 @@ class TestOtherFields:
             load_gear_pair(data)
         assert {p.field for p in caught.value.problems} == {"pinion.face_width", "gear.teeth", "surprise"}
         assert "3 problems" in str(caught.value)
-
-
-class TestAlternatives:
-    def test_addendum_and_tip_diameter(self, edited):
-        data = edited("pinion.addendum", 3.0)
-        data["pinion"]["tip_diameter"] = 95.0
-        problem(data, "pinion.tip_diameter", allowed="either")
-
-    def test_viscosity_and_law(self, edited):
-        problem(edited("lubricant.viscosity_law", LAW), "lubricant.viscosity", value="both")
-        problem(edited("lubricant.viscosity", ...), "lubricant.viscosity", value="neither")
 
 
 class TestFiles:
@@ -228,44 +204,9 @@ def test_a_source_of_a_field_that_does_not_exist_is_refused(nasa, path, suggesti
     problem(data, f"sources.{path or '(empty)'}", value="unknown key", action=suggestion)
 
 
-#: Changes of the default pair (None: without the field), field that is named, and texts of its refusal.
+#: Changes of the default pair (None: without the field), field that is named, and numbers of its refusal. The
+#: model page has the base diameter, 2 * 41.7693 mm; the limits themselves are in tests/guards.
 IMPOSSIBLE = [
-    # Spread until the tip circles no longer overlap one base pitch on the line of action.
-    ({"centre_distance": 92.0}, "contact_ratio", {"allowed": "1 to 3", "action": "centre distance"}),
-    (
-        {
-            "basic_rack.addendum_coefficient": 2.0, "basic_rack.dedendum_coefficient": 2.2,
-            "basic_rack.pressure_angle": 14.5, "basic_rack.fillet_radius_coefficient": 0.1,
-            "centre_distance": None,
-            "pinion.teeth": 150, "gear.teeth": 150, "pinion.tip_relief": None, "gear.tip_relief": None,
-        },
-        "contact_ratio",
-        {"value": "4.50", "allowed": "1 to 3"},
-    ),
-    # Standard gears at 20 deg are undercut below z = 2/sin^2(alpha) = 17.1 teeth.
-    *(
-        (
-            {"pinion.teeth": 13, "gear.teeth": 13, "centre_distance": None},
-            f"{gear}.profile_shift",
-            {"value": "diameter", "allowed": "form circle", "action": "undercut"},
-        )
-        for gear in ("pinion", "gear")
-    ),
-    # A 10-tooth pinion under a large standard gear: the gear's tip passes the tangent point X.
-    (
-        {"pinion.teeth": 10, "gear.teeth": 100, "centre_distance": None},
-        "gear.tip_diameter",
-        {"action": "interference"},
-    ),
-    ({"basic_rack.dedendum_coefficient": 0.95}, "pinion.tip_diameter", {"action": "root"}),
-    (
-        {
-            "pinion.addendum": 5.6, "basic_rack.dedendum_coefficient": 2.0,
-            "basic_rack.fillet_radius_coefficient": 0.05,
-        },
-        "pinion.tip_diameter",
-        {"allowed": "tip thickness", "action": "pointed"},
-    ),
     ({"pinion.tip_diameter": 83.0}, "pinion.tip_diameter", {"allowed": "83.5387"}),
     ({"centre_distance": 80.0}, "centre_distance", {"allowed": "> 83.5387 mm"}),
     (
@@ -273,32 +214,17 @@ IMPOSSIBLE = [
         "centre_distance",
         {"allowed": "backlash >= 0", "action": "set it to 89.2134 mm"},
     ),
-    (
-        {"pinion.profile_shift": -1.5, "gear.profile_shift": -1.5, "centre_distance": None},
-        "pinion.profile_shift",
-        {"allowed": "sum >"},
-    ),
-    ({"gear.bore": 82.0}, "gear.bore", {"allowed": "root diameter"}),
     # Full tip radius of the rack: (pi/4 - h tan a) cos a/(1 - sin a) = 0.3179 at 25 deg and h = 1.25.
     (
         {"basic_rack.pressure_angle": 25.0},
         "basic_rack.fillet_radius_coefficient",
         {"allowed": "<= 0.3179"},
     ),
-    # pi/4 / tan(30 deg) = 1.3603
-    (
-        {
-            "basic_rack.pressure_angle": 30.0, "basic_rack.dedendum_coefficient": 1.4,
-            "basic_rack.fillet_radius_coefficient": 0.0,
-        },
-        "basic_rack.dedendum_coefficient",
-        {"allowed": "<= 1.36"},
-    ),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("changes", "field", "texts"), IMPOSSIBLE)
-def test_geometry_that_cannot_exist(nasa, changes, field, texts):
+def test_what_cannot_exist_is_refused_with_its_limit(nasa, changes, field, texts):
     data = copy.deepcopy(nasa.to_mapping())
     for path, value in changes.items():
         *parents, leaf = path.split(".")
@@ -325,15 +251,7 @@ def pair(nasa, shaft_tables):
 
 
 @pytest.mark.parametrize(("changes", "field", "allowed"), [
-    ({"shafts.pinion.gear_position": 271}, "shafts.pinion.gear_position", "from 0 to 270.3 mm"),
-    ({"shafts.gear.bearings.0.position": 151}, "shafts.gear.bearings.0.position", "from 0 to 150 mm"),
-    ({"shafts.motor.position": 271}, "shafts.motor.position", "from 0 to 270.3 mm"),
-    ({"shafts.load.position": 151}, "shafts.load.position", "from 0 to 150 mm"),
-    ({"shafts.pinion.segments.1.bore": 28.3}, "shafts.pinion.segments.1.bore", "a wall of 1%"),
     ({"shafts.pinion.bearings": []}, "shafts.pinion.bearings", "at least 1 item"),
-    ({"shafts.gear.bearings.0.tilt_stiffness": 0}, "shafts.gear.bearings", "two bearings at least"),
-    ({"shafts.pinion.bearings.1.position": 30.1}, "shafts.pinion.bearings", "two bearings at least"),
-    ({"shafts.gear.segments.0.diameter": 0.1}, "shafts.gear.segments", "length over diameter"),
     ({"shafts.pinion": None}, "shafts.pinion", "the pinion's shaft"),
     ({"shafts.pinion.segments": 30}, "shafts.pinion.segments", "a list of tables"),
     ({"shafts.pinion.segments": [30]}, "shafts.pinion.segments.0", "a table of keys and values"),

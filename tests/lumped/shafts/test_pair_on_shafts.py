@@ -145,14 +145,6 @@ def test_condensed_gears_feel_their_shafts(shafted, frequency):
     assert pair.pinion.mass == pytest.approx(-slope, rel=1e-3)
 
 
-def test_a_gear_tilts_as_a_disc_of_its_mass_inertia_and_width(shafted):
-    # J/2 + m b^2/12 of the pinion: a disc of the reference circle with its bore, 18 mm wide.
-    outer, inner, width = 0.5 * 69e-3, 11e-3, 18e-3
-    mass = 7850 * math.pi * (outer**2 - inner**2) * width
-    inertia = 0.5 * mass * (outer**2 + inner**2)
-    assert discs(shafted)[0].tilting == pytest.approx(0.5 * inertia + mass * width**2 / 12, rel=1e-12)
-
-
 def test_no_spring_above_a_resonance(shafted):
     with pytest.raises(ParameterError, match="pinion's shaft resists like a spring"):
         condensed_bearings(shafted, 700.0)
@@ -179,3 +171,16 @@ def test_modes_of_the_pair(unequal, shafted, on_short_shafts):
     assert {"torsion", "tooth mesh"} < set(names)
     assert any("bending" in name for name in names)
     assert (elastic.damping_ratio > 0.005).all()
+
+
+def test_each_gear_is_a_disc_of_its_own_on_its_shaft(unlike):
+    """J/2 + m b^2/12 against tilting, with the whole face width; its body twists on the shaft."""
+    b = bodies(unlike)
+    own = (
+        (unlike.pinion, b.mass_pinion, b.inertia_pinion),
+        (unlike.gear, b.mass_gear, b.inertia_gear),
+    )
+    for which, (gear, mass, inertia) in enumerate(own):
+        found = discs(unlike)[which]
+        assert (found.mass, found.inertia) == (mass, inertia)
+        assert found.tilting == pytest.approx(0.5 * inertia + mass * gear.face_width**2 / 12.0, rel=1e-12)

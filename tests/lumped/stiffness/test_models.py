@@ -86,24 +86,12 @@ def test_ramp_rises_from_zero_and_is_smooth(ramp):
     assert k(LOW + ramp / 2) == pytest.approx(plain(LOW + ramp / 2) / 4, rel=1e-11)
 
 
-def test_too_long_a_ramp_is_refused():
-    pair = with_model(model="parabolic", ramp_length=9.0)
-    with pytest.raises(ParameterError, match="ramp_length") as refusal:
-        pair_stiffness(pair)
-    problem = refusal.value.problems[0]
-    assert problem.value == "9 mm"
-    # Half of the path of contact of the 28/28 pair: (22.8793 - 7.5263)/2 mm.
-    assert "7.6765 mm" in problem.allowed
-
-
 @pytest.mark.parametrize("model", ["parabolic", "energy"])
-def test_a_ramp_too_short_to_resolve_is_refused(model):
+def test_the_shortest_ramp_is_all_but_a_jump(model):
     def stiffness(ramp):
         pair = with_model(model=model, ramp_length=ramp)
         return pair_stiffness(pair)
 
-    with pytest.raises(ParameterError, match="Write 0 for a jump"):
-        stiffness(1.5e-3)
     shortest, jump = stiffness(1.6e-3), stiffness(0.0)
     middle = np.linspace(LOW + 2e-6, HIGH - 2e-6, 50)
     np.testing.assert_allclose(shortest(middle), jump(middle), rtol=1e-10)
@@ -299,30 +287,3 @@ def test_wrong_files_are_refused(tmp_path, text, match):
         read_columns(write(tmp_path, text).name, tmp_path, STIFFNESS)
     with pytest.raises(ParameterError, match="CSV file that exists"):
         read_columns("none.csv", tmp_path, STIFFNESS)
-
-
-def test_wrong_numbers_are_refused():
-    good = {"axis": "phase", "points": [0.0, 0.5, 1.0, 1.746], "stiffness": [1e8] * 4}
-    for change, match in (
-        ({"points": [0.0, 1.0, 0.5, 1.746]}, "increasing"),
-        ({"stiffness": [1e8, -1e8, 1e8, 1e8]}, "-1e\\+08 N/m"),
-        ({"stiffness": [1e8, 1e15, 1e8, 1e8]}, "1e\\+15 N/m"),
-        ({"stiffness": [1e8] * 5}, "one per point"),
-    ):
-        with pytest.raises(ParameterError, match=match):
-            pair_with(**{**good, **change})
-
-
-def test_tables_that_do_not_cover_the_path_are_refused():
-    short = pair_with(axis="phase", points=[0.0, 0.2, 0.4, 0.6, 0.8], stiffness=[1e8] * 5)
-    with pytest.raises(ParameterError, match="A to D"):
-        pair_stiffness(short)
-    sparse = pair_with(kind="total", axis="phase", points=[0.0, 0.1, 0.2, 0.3], stiffness=[1e8] * 4)
-    with pytest.raises(ParameterError, match="gap"):
-        pair_stiffness(sparse)
-    points = np.arange(20) / 10.0
-    other = pair_with(
-        kind="total", axis="phase", points=points.tolist(), stiffness=(1e8 * (1 + points)).tolist()
-    )
-    with pytest.raises(ParameterError, match="one base pitch"):
-        pair_stiffness(other)

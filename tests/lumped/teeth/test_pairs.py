@@ -7,6 +7,7 @@ import pytest
 
 from lumped import ParameterError, flank_tolerances, meeting_teeth, revolution, tooth_gaps
 from lumped.teeth.tolerances import drawn_index
+from tests.unlike_pairs import unlike_pair
 
 LIST = [round(math.sin(3.0 * j) + 0.1 * j, 3) for j in range(28)]
 
@@ -77,3 +78,13 @@ def test_tolerances_are_those_of_the_standard_and_a_draw_meets_one(nasa):
         assert (drawn_index(28, 3.175e-3, 6, seed) == index).all()
     with pytest.raises(ParameterError, match="1 to 11"):
         flank_tolerances(28, 3.175e-3, 12)
+
+
+def test_each_gear_is_drawn_with_its_own_class_seed_teeth_and_rack():
+    """20 teeth of class 6, seed 11, and 30 teeth of class 7, seed 5; cos(22.5 deg) along the line of action."""
+    steps_kept = {f"{gear}.deviations.first_order": "steps" for gear in ("pinion", "gear")}
+    found = tooth_gaps(unlike_pair("unlike_teeth_finite_elements").with_(steps_kept))
+    across = math.cos(math.radians(22.5))
+    pinion, gear = drawn_index(20, 3.5e-3, 6, 11), drawn_index(30, 3.5e-3, 7, 5)
+    np.testing.assert_allclose(found.pinion_error, across * pinion, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(found.gear_error, -across * gear, rtol=1e-9, atol=1e-15)

@@ -1,0 +1,52 @@
+"""K_v of ISO 6336-1:2006, method B, by hand on two pairs with unlike gears."""
+
+import math
+
+import pytest
+
+from lumped.model.dynamic_factor import iso_dynamic_factor
+from lumped.stiffness.iso6336 import pair_single_stiffness
+from tests.guards.by_hand import ByHand, Contact
+from tests.unlike_pairs import unlike_pair
+
+
+def by_hand(pair):
+    """N = n/n_E and B_p, B_f, B_k of clause 6.5, in N, mm, um; tolerances of ISO 1328-1:2013, class 6."""
+    pinion, gear = ByHand(pair, "pinion"), ByHand(pair, "gear")
+    width, ratio = 1e3 * Contact(pair).width, (pinion.tip_length - pinion.start_length) / pinion.base_pitch
+    single = pair_single_stiffness(pair)  # tests/lumped/stiffness/test_call_sites
+    inertia = []
+    for hand in (pinion, gear):
+        own, radius = getattr(pair, hand.gear), 1e-3 * hand.r
+        mass = own.density * math.pi * (radius**2 - 0.25 * own.bore**2) * own.face_width
+        inertia.append(0.5 * mass * (radius**2 + 0.25 * own.bore**2) / (1e-3 * hand.r_b) ** 2)
+    reduced = inertia[0] * inertia[1] / sum(inertia) / width  # kg/mm
+    resonance = 30000.0 / (math.pi * pinion.z) * math.sqrt(single * (0.75 * ratio + 0.25) / reduced)
+    n = pair.operating.pinion_speed * 30.0 / math.pi / resonance
+    load = 1e3 * pair.operating.pinion_torque / pinion.r / width
+    larger = 2.0 * max(pinion.r, gear.r)
+    pitch = (0.001 * larger + 0.4 * pinion.m + 5.0) * math.sqrt(2.0) * math.cos(pinion.alpha)
+    profile = (0.55 * pinion.m + 5.0) * math.sqrt(2.0)
+    b_p, b_f = (single * 0.925 * deviation / load for deviation in (pitch, profile))
+    return n, b_p, b_f, load
+
+
+def test_below_the_resonance():
+    """23/38: K_v = N (0.32 B_p + 0.34 B_f + 0.23 B_k) + 1, contact ratio up to 2; B_k = 1 without relief."""
+    pair = unlike_pair("rack_25_degrees_always_pushing")
+    n, b_p, b_f, load = by_hand(pair)
+    assert load >= 100.0
+    assert n <= 0.85
+    found = iso_dynamic_factor(pair)
+    assert (found.zone, found.resonance_ratio) == ("subcritical", pytest.approx(n, rel=1e-9))
+    assert found.factor == pytest.approx(n * (0.32 * b_p + 0.34 * b_f + 0.23) + 1.0, rel=1e-9)
+
+
+def test_at_the_resonance_the_larger_gear_may_drive():
+    """43 teeth drive 22, at N = 1: K_v = 0.32 B_p + 0.34 B_f + 0.90 B_k + 1, and f_p of the 43 teeth."""
+    slow = unlike_pair("larger_gear_drives_contact_lost")
+    n, b_p, b_f, _ = by_hand(slow)
+    pair = slow.with_(speed=slow.operating.pinion_speed.to("rpm") / n)
+    found = iso_dynamic_factor(pair)
+    assert (found.zone, found.resonance_ratio) == ("main resonance", pytest.approx(1.0, rel=1e-9))
+    assert found.factor == pytest.approx(0.32 * b_p + 0.34 * b_f + 0.90 + 1.0, rel=1e-9)

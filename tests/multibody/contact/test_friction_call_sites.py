@@ -1,0 +1,25 @@
+"""Does each law of the multibody model get the right oil, load, material and gear, on pairs of unlike gears?"""
+
+import numpy as np
+import pytest
+
+from lumped.path_of_contact import friction_path_function
+from multibody.contact import kinematics as kn
+from multibody.contact.friction import nominal_friction
+from multibody.contact.machine import machine
+
+#: Error of the lumped model's polynomials; tests/lumped/path_of_contact pins them on the same pairs by hand.
+FIT = 1e-9
+
+
+@pytest.mark.parametrize(
+    "law", ["benedict_kelley", "xu_kahraman", "iso_14179", "composite", "smoothed_coulomb"]
+)
+def test_nominal_friction_is_the_lumped_models(unlike, law):
+    """Law V reads the film thickness, and with it k and s of the oil; I and IV the mean of law II."""
+    # Between A and D contact is the same in both forms; a constant stiffness is made at once.
+    pair = unlike.with_(law=law, stiffness="rectangular", mesh__contact="prescribed", mesh__relief="ignored")
+    p, mu = machine(pair).parameters, friction_path_function(pair, warn=False)
+    xi = np.linspace(p[kn.L_XA], p[kn.L_XD], 23)[1:-1]
+    found = [nominal_friction(p, float(one)) for one in xi]
+    np.testing.assert_allclose(found, mu(xi), rtol=0.0, atol=FIT)
