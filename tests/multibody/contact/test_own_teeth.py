@@ -2,13 +2,17 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import lumped
 import multibody
 from lumped.teeth.contact import Laws
 from multibody.contact import kinematics as kn
+from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import tooth_pair
 from multibody.contact.machine import machine
+from multibody.run.effects import effect_flags
+from tests.unlike_pairs import unlike_pair
 
 ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
 OWN = {
@@ -81,3 +85,42 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
 def test_what_it_does_not_have_is_refused(pair):
     with pytest.raises(lumped.ParameterError, match="fidelity"):
         multibody.simulate(pair.with_(OWN), 1, fidelity="linear")
+
+
+#: A displacement of 1 um along the reference circle of a 25-degree rack: so much along the line of action.
+MOVED = 1e-6 * np.cos(np.radians(25.0))
+
+
+@pytest.mark.parametrize(("gear", "lag"), [("pinion", MOVED), ("gear", -MOVED)])
+def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, lag):
+    """Teeth are counted as they come into mesh, so the count runs against the rotation, on both gears.
+
+    The pinion pushes with the front of its teeth. One that lies further along the count stands back: the
+    pinion turns on by the displacement before it pushes, and the gear lags. The gear is pushed at the back of
+    its teeth. One that lies further along the count stands closer to the pinion, and the gear leads.
+    """
+    pair, flags = unlike_pair("rack_25_degrees_always_pushing"), effect_flags(None, "loaded")
+
+    def approach(moved, cycle):
+        """How far the pinion is turned against its running sense, at rest, until the teeth carry 5 kN [m]."""
+        index = [0.0] * getattr(pair, gear).teeth
+        index[2] = moved
+        displaced = pair.with_({f"{gear}.deviations": {"index": index, "first_order": "steps"}})
+        numbers = machine(displaced, flags)
+        contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
+        radius = numbers.parameters[kn.RADIUS_P]
+
+        def load(delta):
+            state = np.zeros((3, 6))
+            state[0, 2] = -delta / radius
+            # Tooth 3 comes to A after two mesh cycles; from 0.7 to 0.95 of a cycle one pair carries alone.
+            t = (cycle + 0.8) * numbers.period
+            count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
+            assert np.count_nonzero(contacts[:count, kn.LOAD]) <= 1
+            return contacts[:count, kn.LOAD].sum() - 5e3
+
+        return brentq(load, 1e-5, 4e-5, xtol=1e-16)
+
+    assert approach(1.0, 2) - approach(0.0, 2) == pytest.approx(lag, rel=1e-6)
+    assert approach(1.0, 1) == approach(0.0, 1)
+    assert approach(1.0, 3) == approach(0.0, 3)
