@@ -14,31 +14,26 @@ from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
 from tests.unlike_pairs import unlike_pair
 
-ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
-OWN = {
-    "pinion.deviations": {"index": ERRORS, "profile_slope": ERRORS[::-1], "first_order": "steps"},
-    "gear.deviations": {"index": ERRORS[::-1], "profile_slope": ERRORS, "first_order": "steps"},
-    "pinion.mounting": {"eccentricity": 4, "phase": 70},
-    "gear.mounting": {"eccentricity": 6},
-}
+CRACK = {"kind": "crack", "tooth": 3, "depth": 1.5}
 
 
 @pytest.fixture(scope="module")
 def pair():
-    changes = {"mesh.contact": "loaded", "mesh.relief": "ignored", "operating.pinion_torque": 14.0}
-    changes |= {"operating.pinion_speed": 1450, "friction.law": "coulomb", "friction.coefficient": 0.0}
-    return lumped.load_gear_pair("nasa_28_28").with_(changes)
+    return unlike_pair("rack_25_degrees_always_pushing")
 
 
-CRACK = {"kind": "crack", "tooth": 3, "depth": 1.5}
-
-
-def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples(pair):
-    changes = {"gear.mounting": {"eccentricity": 40}, "friction.coefficient": 0.05}
+def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples():
+    """Every kind of difference between teeth at once, on the pair that has classes of deviations already."""
+    changes = {"pinion.mounting": {"eccentricity": 4, "phase": 70}, "gear.mounting": {"eccentricity": 40}}
     changes |= {f"{gear}.faults": [CRACK] for gear in ("pinion", "gear")}
-    changes["pinion.deviations"] = OWN["pinion.deviations"] | {"tip_relief": [3.0] * 14 + [0.0] * 14}
+    slopes = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(20)]
+    changes["pinion.deviations"] = {
+        "index": slopes[::-1], "profile_slope": slopes, "tip_relief": [3.0] * 10 + [0.0] * 10,
+        "first_order": "steps",
+    }  # fmt: skip
+    changes["gear.deviations"] = {"tolerance_class": 7, "seed": 5, "first_order": "steps"}
     ripples = [{"shaft": gear, "order": 5, "amplitude": 2, "phase": 30} for gear in ("pinion", "gear")]
-    pair = pair.with_(OWN | changes | {"operating.torque_ripple": ripples})
+    pair = unlike_pair("unlike_teeth_finite_elements").with_(changes | {"operating.torque_ripple": ripples})
     balance = multibody.power_balance(pair, cycles=4, initial="periodic")
     assert abs(balance.residual) < 1e-8 * balance.driving
     # A ripple at the actual angle of its shaft does the work A/n sin(n theta + phase).
@@ -82,9 +77,9 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
             assert [o.slope for o in pairs] == pytest.approx(slopes, rel=1e-5)
 
 
-def test_what_it_does_not_have_is_refused(pair):
+def test_what_it_does_not_have_is_refused():
     with pytest.raises(lumped.ParameterError, match="fidelity"):
-        multibody.simulate(pair.with_(OWN), 1, fidelity="linear")
+        multibody.simulate(unlike_pair("unlike_teeth_finite_elements"), 1, fidelity="linear")
 
 
 #: A displacement of 1 um along the reference circle of a 25-degree rack: so much along the line of action.
