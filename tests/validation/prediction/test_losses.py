@@ -1,4 +1,4 @@
-"""Are the losses of a prediction those of its own motion: by the power balance of a second model, by parts?"""
+"""Are the losses of a prediction those of its own motion: by the balance of a second model, and by parts?"""
 
 import numpy as np
 import pytest
@@ -9,7 +9,6 @@ from tests.unlike_pairs import UNLIKE, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.motion import Motion, measured, predicted
 
-LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pair(name)]
 RECTANGULAR = {"mesh.stiffness": {"model": "rectangular"}}
 
 
@@ -54,13 +53,13 @@ def test_dampers_and_bearings_take_what_the_power_balance_of_the_exact_motion_le
     assert rest == pytest.approx(expected["tooth dampers"] + expected["bearings"], rel=0.03)
 
 
-@pytest.mark.parametrize("name", LIKE_TEETH)
+@pytest.mark.parametrize("name", ["contact_ratio_2_3_on_shafts", "heavily_relieved_under_load"])
 @pytest.mark.xfail(
     strict=True,
     reason="the efficiency of a multibody motion is that of sliding alone: dampers and bearings are left out",
 )
 def test_the_efficiency_of_a_multibody_motion_is_that_of_its_own_power_balance(name):
-    """On springs; without the loss of dampers and bearings it is 0.7 to 8 % of the loss too high."""
+    """On springs; without the loss of dampers and bearings 4 and 8 % of the loss are missing."""
     pair = unlike_pair(name)
     found = measured(pair, multibody.steady_state(pair), Motion.SECOND)
     # The quadrature of sliding over samples leaves some 1e-4 where friction jumps.
@@ -68,7 +67,7 @@ def test_the_efficiency_of_a_multibody_motion_is_that_of_its_own_power_balance(n
 
 
 def test_losses_of_the_motion_with_unilateral_contact_are_those_of_the_linear_one_where_they_agree():
-    """At a third of the speed of the first resonance no pair pulls; both are one motion to 2 % of the loss."""
+    """Far below the first resonance no pair pulls: both are one motion to 2 % of the loss."""
     pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
         {"mesh.contact": "loaded", "operating.pinion_speed": 700.0}
     )
