@@ -15,6 +15,7 @@ from multibody.contact.elements import GRADUAL, elastic_load, shared_loads, stor
 from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
+from tests.unlike_pairs import unlike_pair
 
 ALL = effect_flags(None, "loaded")
 #: Neither friction nor dampers, so that all forces come from the energy.
@@ -23,28 +24,29 @@ BARE = {
     "mesh.damping_ratio": 0.0,
     "mesh.contact": "loaded",
 }
-UNEQUAL = {"pinion.teeth": 23, "gear.teeth": 41, "centre_distance": None}
 
 
-def bare(stiffness, **changes):
-    return lumped.load_gear_pair("nasa_28_28").with_(
-        {"mesh.relief": "ignored", **BARE, "mesh.stiffness": stiffness} | changes
-    )
+def bare(name, **changes):
+    return unlike_pair(name).with_(BARE | changes)
 
 
+#: Every stiffness model, Hertz's contact with and without its law, relief, and teeth that differ.
 PAIRS = {
-    "Hertz": bare({"model": "energy"}),
-    "linear": bare({"model": "energy", "hertz": "linear"}),
-    "relief": bare({"model": "energy"}, **{"mesh.relief": "static", "gear.tip_relief.shape": "parabolic"}),
-    "rectangular": bare({"model": "rectangular"}),
-    "parabolic, unequal": bare({"model": "parabolic"}, **UNEQUAL),
+    "Hertz": bare("larger_gear_drives_contact_lost"),
+    "linear": bare(
+        "contact_ratio_2_3_on_shafts", **{"mesh.stiffness": {"model": "energy", "hertz": "linear"}}
+    ),
+    "relief": bare("heavily_relieved_under_load", **{"gear.tip_relief.shape": "parabolic"}),
+    "rectangular": bare("rack_25_degrees_always_pushing"),
+    "parabolic": bare("contact_ratio_1_1_large_shifts"),
+    "unlike teeth": bare("unlike_teeth_finite_elements"),
 }
 
-#: Smooth where contact begins and ends.
-RAMP = {"model": "parabolic", "ramp_length": 3.0}
 #: Every law on the driving flanks, one on the back sides.
-FLANKS = [*((name, kn.DRIVE) for name in PAIRS), ("parabolic, unequal", kn.COAST)]
-BACKLASH = PAIRS["Hertz"].mesh.backlash
+FLANKS = [*((name, kn.DRIVE) for name in PAIRS), ("parabolic", kn.COAST)]
+#: States, at least, in which a corner carries. Relief of 14 to 40 um holds corners back from flanks that are
+#: pressed by 5 to 30 um.
+WITH_CORNERS = dict.fromkeys(PAIRS, 11) | {"relief": 0, "unlike teeth": 1}
 
 
 def contact(numbers, t, q, v=None, flags=ALL):
@@ -57,7 +59,7 @@ def contact(numbers, t, q, v=None, flags=ALL):
 def states(numbers, number, flank=kn.DRIVE):
     """Times and states with the flanks pressed by 5 to 30 um and the centres off by some um."""
     rng, p = np.random.default_rng(4), numbers.parameters
-    turned = 0.0 if flank == kn.DRIVE else BACKLASH
+    turned = 0.0 if flank == kn.DRIVE else PAIRS["parabolic"].geometry.normal_backlash
     for _ in range(number):
         q = rng.uniform(-3e-6, 3e-6, 6)
         q[[2, 5]] = -flank * (turned + rng.uniform(5e-6, 3e-5)) / p[kn.RADIUS_P], 0.0
@@ -85,7 +87,7 @@ def test_the_wrench_is_minus_the_gradient_of_the_energy(name, flank):
     # Central differences: a curvature of some 1/um over 2 nm, and kinks (first touch, ends of the path).
     assert np.quantile(worst, 0.9) < 1e-6
     assert max(worst) < 3e-4
-    assert beyond > 15 or name == "relief"  # corners were among them
+    assert beyond >= WITH_CORNERS[name]
     assert set(pressing) == {flank}
 
 
@@ -99,13 +101,13 @@ def test_action_is_reaction_in_force_and_moment(name, flank):
         gx, gy = p[kn.CENTRE_GX] + q[3], p[kn.CENTRE_GY] + q[4]
         moment = w[2] + w[5] + px * w[1] - py * w[0] + gx * w[4] - gy * w[3]
         scale = found[:, kn.LOAD].sum()
-        assert np.abs(w[:2] + w[3:5]).max() < 1e-13 * scale
-        assert abs(moment) < 1e-12 * scale * p[kn.RADIUS_P]
+        assert np.abs(w[:2] + w[3:5]).max() <= 1e-13 * scale  # 0 where deviations keep the teeth apart
+        assert abs(moment) <= 1e-12 * scale * p[kn.RADIUS_P]
 
 
 @pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
 def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond):
-    pair = PAIRS["parabolic, unequal"]
+    pair = PAIRS["parabolic"]
     p, g = machine(pair).parameters, lumped.geometry(pair)
     arguments = p[kn.TIP_G], p[kn.L_XY], p[kn.RADIUS_G], p[kn.RADIUS_P]
     gap, slope, by_length = kn.corner_gap(beyond, *arguments)
@@ -117,15 +119,16 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
     assert slope == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
     assert by_length == pytest.approx((longer[0] - longer[1]) / (2 * h), rel=1e-4, abs=1e-10)
     # The corner is cut from the mate's involute: the leading term of the gap is half its curvature there.
+    # The next one is its share by the radius of curvature of the mate, the smaller of both, or less.
     leading = (tip / radii[0]) ** 2 * (1.0 / tip + 1.0 / (length - tip)) * beyond**2 / 2
-    assert gap == pytest.approx(leading, rel=60 * beyond)
+    assert gap == pytest.approx(leading, rel=beyond / (length - tip))
 
 
 @pytest.mark.parametrize("which", ["pinion", "gear"])
 @pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
 def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(which, beyond):
     """Whatever the corner does, the flank it touches has its normal on its own base circle."""
-    p = machine(PAIRS["parabolic, unequal"]).parameters
+    p = machine(PAIRS["parabolic"]).parameters
     radii, tips, length = p[[kn.RADIUS_P, kn.RADIUS_G]], p[[kn.TIP_P, kn.TIP_G]], p[kn.L_XY] + 1e-5
     own = 0 if which == "pinion" else 1
     rho = np.full(2, length - tips[own] - beyond)
@@ -187,7 +190,7 @@ def test_a_damper_takes_from_the_bodies_what_its_own_compression_does_on_it(name
             assert found[:, kn.OVERLAP_RATE] == pytest.approx(rate, rel=1e-5, abs=1e-5)
         xi = found[found[:, kn.LOAD] > 0.0, kn.XI]
         beyond += np.any((xi < p[kn.L_XA]) | (xi > p[kn.L_XD]))
-    assert beyond > 10 or name == "relief"
+    assert beyond >= WITH_CORNERS[name]
 
 
 @pytest.mark.parametrize("share", [1e-4, 0.01, 0.3, 1.0, 5.0])
@@ -218,7 +221,7 @@ def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
 
 def test_the_stiffness_of_the_table_holds_at_the_mean_load():
     """The torque over the base radius of the pinion; the logarithm is cut off a thousandth below."""
-    pair = bare({"model": "energy"}, **UNEQUAL)
+    pair = PAIRS["Hertz"]
     numbers, q = machine(pair, ALL), np.zeros(6)
     load = pair.operating.pinion_torque / numbers.parameters[kn.RADIUS_P]
     for _ in range(5):
@@ -233,7 +236,10 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
     dv/v = F (delta - mean)/(2 m_r v^2) with m_r = J_p/r_bp^2 + J_g/r_bg^2. Without path work no normal load
     changes the momentum J_p omega_p/r_bp + J_g omega_g/r_bg. Stiffness grows from zero: no corners touch.
     """
-    pair = bare(RAMP, **{"operating.pinion_speed": 300.0, "mesh.damping_ratio": 0.2})
+    ramp = {"mesh.stiffness": {"model": "parabolic", "ramp_length": 3.0}}
+    # The formula is of first order in dv/v, which is 0.7 % here; with four times the torque it is 3 % off.
+    slow = {"operating.pinion_speed": 300.0, "operating.pinion_torque": 60.0, "mesh.damping_ratio": 0.2}
+    pair = bare("rack_25_degrees_always_pushing", **ramp, **slow)
     numbers, mesh = machine(pair), StaticMesh(pair)
     p, radii = numbers.parameters, numbers.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
     speed, mass = p[kn.OMEGA_P] * radii[0], (numbers.inertia / radii**2).sum()

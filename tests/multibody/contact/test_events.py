@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import lumped
 from lumped import PathFunction
 from multibody.contact import kinematics as kn
 from multibody.contact.events import FIRST_TOUCH, LAST_TOUCH, LET_GO, SWITCH, event_table, time_to_event
@@ -11,13 +10,14 @@ from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
+from tests.unlike_pairs import unlike_pair
 
-JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
-    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
-)
-UNEQUAL = JUMPS.with_(
-    gear__teeth=41, pinion__profile_shift=0.2, gear__profile_shift=0.1, centre_distance="110.5 mm"
-)
+
+def jumps(name):
+    """Stiffness and the sign of friction jump; at one speed, so that one size of vibrations fits all."""
+    changes = {"mesh.relief": "ignored", "friction.law": "coulomb", "friction.coefficient": 0.05}
+    changes |= {"operating.pinion_speed": 6000.0}
+    return unlike_pair(name).with_(changes)
 
 
 def contacts(numbers, flags, t, q, v):
@@ -27,17 +27,20 @@ def contacts(numbers, flags, t, q, v):
     return count, tuple(np.sign(records[:count, kn.MU]))
 
 
-@pytest.mark.parametrize("pair", [JUMPS, UNEQUAL], ids=["equal", "unequal"])
-@pytest.mark.parametrize(
-    "effects", [None, {"entry_shift": False}, {"sliding_velocity": False}, {"rotation_phase": False}]
-)
-def test_the_force_jumps_where_it_was_foreseen_and_not_before(pair, effects, rng):
+@pytest.mark.parametrize(("name", "effects"), [
+    ("contact_ratio_1_1_large_shifts", None),
+    ("contact_ratio_2_3_on_shafts", None),
+    ("larger_gear_drives_contact_lost", {"entry_shift": False}),
+    ("rack_25_degrees_always_pushing", {"sliding_velocity": False}),
+    ("heavily_relieved_under_load", {"rotation_phase": False}),
+], ids=str)  # fmt: skip
+def test_the_force_jumps_where_it_was_foreseen_and_not_before(name, effects, rng):
     """Along the Taylor continuation of random vibrations, evaluated by the force core itself."""
-    numbers = machine(pair)
+    numbers = machine(jumps(name))
     flags = effect_flags(effects) & ~kn.BACK_SIDE
     period, p = numbers.period, numbers.parameters
     seen = set()
-    for t in rng.uniform(0.0, 3.0, size=60) * period:
+    for t in rng.uniform(0.0, 3.0, size=120) * period:
         q, v, a = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.02, rng.normal(size=6) * 200.0
         q[[2, 5]] = -2e-5 / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])  # pressed by some 40 um
         v[[2, 5]], a[[2, 5]] = v[[2, 5]] * 10, a[[2, 5]] * 10
@@ -57,27 +60,34 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(pair, effects, rng
     assert seen == {-1, 0, 1}  # a pair left, sliding turned, a pair entered
 
 
-@pytest.mark.parametrize("stiffness", ["rectangular", "energy"])
-def test_corners_touch_and_let_go_where_it_was_foreseen(stiffness):
-    """Also where neighbours share the body; the damper lets go with the corner still pressed."""
-    loaded = JUMPS.with_(mesh__contact="loaded", mesh__stiffness={"model": stiffness})
+@pytest.mark.parametrize(
+    ("name", "pairs"), [("rack_25_degrees_always_pushing", 1), ("contact_ratio_2_3_on_shafts", 2)]
+)
+def test_corners_touch_and_let_go_where_it_was_foreseen(name, pairs):
+    """Also where neighbours share the body; the damper lets go with the corner still pressed.
+
+    There the force only bends. Places are corrected twice by what neighbours move: 5e-6 of a cycle is left.
+    """
+    loaded = jumps(name)
     flags = effect_flags(None, "loaded")
     numbers = machine(loaded, flags)
     p, table, period = numbers.parameters, numbers.table, numbers.period
-    q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, 1.0])
-    q[2] = -2e-5 / p[kn.RADIUS_P]
+    # The gears roll on each other, a little slower than nominal: their approach stays. It is so large that
+    # the corner goes fast enough for its damper to let go.
+    q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, p[kn.RADIUS_P] / p[kn.RADIUS_G]])
+    q[2] = -3e-5 / p[kn.RADIUS_P]
 
     def around(kind):
         events = numbers.events[numbers.events[:, 0] == kind]
         wait, _ = time_to_event(0.0, q, v, np.zeros(6), p, flags, table, events, np.inf)
-        for tau in (wait - 2e-6 * period, wait + 2e-6 * period):
+        for tau in (wait - 1e-5 * period, wait + 1e-5 * period):
             records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
             state = np.array([q + tau * v, v, np.zeros(6)])
             count = contact_forces(tau, state, p, flags, table, records)
             yield count, records[:count, kn.LOAD].min(), records[:count, kn.ELASTIC].min()
 
-    assert [count for count, *_ in around(FIRST_TOUCH)] == [1, 2]
-    assert [count for count, *_ in around(LAST_TOUCH)] == [2, 1]
+    assert [count for count, *_ in around(FIRST_TOUCH)] == [pairs, pairs + 1]
+    assert [count for count, *_ in around(LAST_TOUCH)] == [pairs + 1, pairs]
     (_, before, _), (_, after, elastic) = around(LET_GO)
     assert before > 0.0 == after
     assert elastic > 1.0

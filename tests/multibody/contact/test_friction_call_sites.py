@@ -1,4 +1,4 @@
-"""Does each law of the multibody model get the right oil, load, material and gear, on pairs of unlike gears?"""
+"""Does each law of the multibody model get the right oil, load, material and gear?"""
 
 import numpy as np
 import pytest

@@ -2,39 +2,38 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import lumped
 import multibody
 from lumped.teeth.contact import Laws
 from multibody.contact import kinematics as kn
+from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import tooth_pair
 from multibody.contact.machine import machine
-
-ERRORS = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(28)]
-OWN = {
-    "pinion.deviations": {"index": ERRORS, "profile_slope": ERRORS[::-1], "first_order": "steps"},
-    "gear.deviations": {"index": ERRORS[::-1], "profile_slope": ERRORS, "first_order": "steps"},
-    "pinion.mounting": {"eccentricity": 4, "phase": 70},
-    "gear.mounting": {"eccentricity": 6},
-}
-
-
-@pytest.fixture(scope="module")
-def pair():
-    changes = {"mesh.contact": "loaded", "mesh.relief": "ignored", "operating.pinion_torque": 14.0}
-    changes |= {"operating.pinion_speed": 1450, "friction.law": "coulomb", "friction.coefficient": 0.0}
-    return lumped.load_gear_pair("nasa_28_28").with_(changes)
-
+from multibody.run.effects import effect_flags
+from tests.unlike_pairs import unlike_pair
 
 CRACK = {"kind": "crack", "tooth": 3, "depth": 1.5}
 
 
-def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples(pair):
-    changes = {"gear.mounting": {"eccentricity": 40}, "friction.coefficient": 0.05}
+@pytest.fixture(scope="module")
+def pair():
+    return unlike_pair("rack_25_degrees_always_pushing")
+
+
+def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples():
+    """Every kind of difference between teeth at once, on the pair that has classes of deviations already."""
+    changes = {"pinion.mounting": {"eccentricity": 4, "phase": 70}, "gear.mounting": {"eccentricity": 40}}
     changes |= {f"{gear}.faults": [CRACK] for gear in ("pinion", "gear")}
-    changes["pinion.deviations"] = OWN["pinion.deviations"] | {"tip_relief": [3.0] * 14 + [0.0] * 14}
+    slopes = [round(1.5 * np.sin(2.1 * j) + 0.9 * np.cos(5.3 * j), 3) for j in range(20)]
+    changes["pinion.deviations"] = {
+        "index": slopes[::-1], "profile_slope": slopes, "tip_relief": [3.0] * 10 + [0.0] * 10,
+        "first_order": "steps",
+    }  # fmt: skip
+    changes["gear.deviations"] = {"tolerance_class": 7, "seed": 5, "first_order": "steps"}
     ripples = [{"shaft": gear, "order": 5, "amplitude": 2, "phase": 30} for gear in ("pinion", "gear")]
-    pair = pair.with_(OWN | changes | {"operating.torque_ripple": ripples})
+    pair = unlike_pair("unlike_teeth_finite_elements").with_(changes | {"operating.torque_ripple": ripples})
     balance = multibody.power_balance(pair, cycles=4, initial="periodic")
     assert abs(balance.residual) < 1e-8 * balance.driving
     # A ripple at the actual angle of its shaft does the work A/n sin(n theta + phase).
@@ -78,6 +77,45 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
             assert [o.slope for o in pairs] == pytest.approx(slopes, rel=1e-5)
 
 
-def test_what_it_does_not_have_is_refused(pair):
+def test_what_it_does_not_have_is_refused():
     with pytest.raises(lumped.ParameterError, match="fidelity"):
-        multibody.simulate(pair.with_(OWN), 1, fidelity="linear")
+        multibody.simulate(unlike_pair("unlike_teeth_finite_elements"), 1, fidelity="linear")
+
+
+#: A displacement of 1 um along the reference circle of a 25-degree rack: so much along the line of action.
+MOVED = 1e-6 * np.cos(np.radians(25.0))
+
+
+@pytest.mark.parametrize(("gear", "lag"), [("pinion", MOVED), ("gear", -MOVED)])
+def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, lag):
+    """Teeth are counted as they come into mesh, so the count runs against the rotation, on both gears.
+
+    The pinion pushes with the front of its teeth. One that lies further along the count stands back: the
+    pinion turns on by the displacement before it pushes, and the gear lags. The gear is pushed at the back of
+    its teeth. One that lies further along the count stands closer to the pinion, and the gear leads.
+    """
+    pair, flags = unlike_pair("rack_25_degrees_always_pushing"), effect_flags(None, "loaded")
+
+    def approach(moved, cycle):
+        """How far the pinion is turned against its running sense, at rest, until the teeth carry 5 kN [m]."""
+        index = [0.0] * getattr(pair, gear).teeth
+        index[2] = moved
+        displaced = pair.with_({f"{gear}.deviations": {"index": index, "first_order": "steps"}})
+        numbers = machine(displaced, flags)
+        contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
+        radius = numbers.parameters[kn.RADIUS_P]
+
+        def load(delta):
+            state = np.zeros((3, 6))
+            state[0, 2] = -delta / radius
+            # Tooth 3 comes to A after two mesh cycles; from 0.7 to 0.95 of a cycle one pair carries alone.
+            t = (cycle + 0.8) * numbers.period
+            count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
+            assert np.count_nonzero(contacts[:count, kn.LOAD]) <= 1
+            return contacts[:count, kn.LOAD].sum() - 5e3
+
+        return brentq(load, 1e-5, 4e-5, xtol=1e-16)
+
+    assert approach(1.0, 2) - approach(0.0, 2) == pytest.approx(lag, rel=1e-6)
+    assert approach(1.0, 1) == approach(0.0, 1)
+    assert approach(1.0, 3) == approach(0.0, 3)

@@ -5,6 +5,7 @@ import pytest
 
 import lumped
 from lumped.errors import ParameterError
+from tests.unlike_pairs import unlike_pair
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
@@ -104,7 +105,7 @@ def test_the_factor_scales_the_stiffness_and_what_follows_from_it():
     from lumped.path_of_contact import pair_stiffness
     from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 
-    pair = PAIR.with_({"mesh.stiffness": {"model": "energy"}})
+    pair = unlike_pair("larger_gear_drives_contact_lost")
     twice = pair.with_({"mesh.stiffness_factor": 2.0})
     xi = np.linspace(pair.geometry.L_XA, pair.geometry.L_XD, 7)[1:-1]
     np.testing.assert_allclose(pair_stiffness(twice)(xi), 2.0 * pair_stiffness(pair)(xi), rtol=1e-14)
