@@ -31,6 +31,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
         faults,
         figures,
         interface,
+        mutants,
         paper,
         schema,
         verification,
@@ -41,6 +42,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
         for module in (
             verification,
             faults,
+            mutants,
             agreement,
             errata,
             paper,

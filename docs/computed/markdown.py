@@ -14,6 +14,10 @@ _GREEK = re.compile(rf"(?<![\w`])(?:{_NAMES})(?![a-zA-Z0-9`])")
 Cell = str | float | int | bool | None
 
 
+class Code(str):
+    """A cell that is shown as code."""
+
+
 class CheckFailed(RuntimeError):
     """A number that the site is about to show is outside its limit."""
 
@@ -26,6 +30,8 @@ def text(cell: Cell) -> str:
         return number(cell, 3)
     if cell is None:
         return "–"
+    if isinstance(cell, Code):
+        return f"`` {' '.join(cell.split())} ``".replace("|", "\\|")
     return " ".join(str(cell).split()).replace("|", "\\|").replace("*", "\\*").replace("<", "&lt;")
 
 

@@ -11,6 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
 
 from computed.faults import faults
 from computed.markdown import CheckFailed, must_pass, table
+from computed.mutants import mutants
 from computed.schema import parameters
 from docutils import nodes
 from extensions.docstrings import rewritten
@@ -38,6 +39,16 @@ def test_the_table_of_faults_says_which_check_saw_one():
     shown = faults([row(FAULTS["speed_unit"], outcome)])
     # The cross-check does not use it.
     assert "| 90 % | speed |  |  | tests: frequencies |" in shown
+
+
+def test_the_table_of_mutants_gives_the_share_and_survivors_first():
+    row = {"file": "lumped/a.py", "line": 3, "before": "y = a | b", "after": "y = a", "seconds": 4.6}
+    rows = [row | {"verdict": word, "by": by} for word, by in (("killed", "test_a"), ("survived", ""))]
+    shown = mutants({"seed": 1, "mutants": rows})
+    assert "Seed 1: 50 % of the decided mutants are killed." in shown
+    assert "| lumped | 1 | 1 | 0 | 0 | 50 % |" in shown
+    assert "| `` lumped/a.py:3 `` | `` y = a \\| b `` | `` y = a `` | test_a | 5 |" in shown
+    assert shown.index("## Survived") < shown.index("## Killed")
 
 
 def test_fields_of_a_docstring():
