@@ -168,7 +168,9 @@ def crosscheck(
         check = run(pair, cycles=cycles, samples_per_cycle=samples, limit=share, progress=tell)
     if as_json:
         agreements = [asdict(one) | {"within": one.within} for one in check.agreements]
-        print_json({"verdict": check.verdict.word, "failures": check.failures, "agreements": agreements})
+        loss = None if check.loss is None else asdict(check.loss) | {"within": check.loss.within}
+        found = {"failures": check.failures, "agreements": agreements, "loss": loss}
+        print_json({"verdict": check.verdict.word, **found})
     else:
         _print(check)
     files.write(check.lumped, lambda: _figure(check))
@@ -180,13 +182,21 @@ def _print(check: CrossCheck) -> None:
 
     from validation.cross_check.conservation import worst_of_each
     from validation.cross_check.verdict import Verdict
-    from validation.cross_check.words import MEASURES, NAMES, cause_of_difference, failed_checks
+    from validation.cross_check.words import (
+        LOSS,
+        MEASURES,
+        NAMES,
+        cause_of_difference,
+        failed_checks,
+        loss_difference,
+    )
     from validation.cross_check.words import whole_difference as whole
 
     console, name, verdict = stdout(), check.pair.name, check.verdict
+    loss = [] if check.loss is None else [(LOSS, check.loss.judgement)]
     judged: dict[str, list[tuple[str, Judgement]]] = {
         "same equations": [(NAMES[a.quantity], a.judgement) for a in check.of("linear")],
-        "exact contact": [(NAMES[a.quantity], a.judgement) for a in check.of("exact")],
+        "exact contact": [(NAMES[a.quantity], a.judgement) for a in check.of("exact")] + loss,
         "conservation": [(one.check, one) for one in worst_of_each(check.conservation)],
     }
     if (variant := check.variant) is not None:
@@ -205,8 +215,8 @@ def _print(check: CrossCheck) -> None:
     if verdict is Verdict.FAILS:
         console.print(f"{failed_checks(check)}.")
     elif verdict is not Verdict.NOT_CHECKED:
-        cause = cause_of_difference(check) if verdict is Verdict.DIFFERS else ""
-        console.print(f"{whole(check)} {cause}".rstrip())
+        cause = "" if all(a.within for a in check.of("exact")) else cause_of_difference(check)
+        console.print(" ".join(text for text in (whole(check), loss_difference(check), cause) if text))
 
 
 def _figure(check: CrossCheck) -> Figure:

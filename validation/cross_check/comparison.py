@@ -22,6 +22,7 @@ from lumped.typing import Progress
 from multibody.contact.machine import machine
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES, Agreement, Fidelity, agreement
 from validation.cross_check.conservation import conservation, lumped_motion
+from validation.cross_check.losses import LossAgreement, loss_agreement, sliding_agreement
 from validation.cross_check.motions import (
     CONTACT_LOSS,
     integration_tolerances,
@@ -32,7 +33,7 @@ from validation.cross_check.motions import (
 from validation.cross_check.own_teeth import both_motions
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit_of
-from validation.prediction.motion import by_momentary_load
+from validation.prediction.motion import by_momentary_load, losses, losses_of
 
 #: Cycles at the end of a run that are compared where the exact model has no periodic motion.
 _COMPARED_CYCLES = 4
@@ -58,6 +59,7 @@ class CrossCheck:
     powers : model -> power of ``power_balance.POWERS`` and "driving" -> mean over the mesh cycle [W]
     orbit : the lumped motion with loss of contact that is compared; None where teeth push all the time, or
         where no stable one of one mesh cycle is found
+    loss : power that both motions lose at "exact"; None where the multibody motion does not repeat
     pulling : why a motion is compared in which teeth pull; empty where it is not
     variant : the same of a variation of the pair in which nothing is symmetric; None where it was not asked
         for, or where no variation is sound
@@ -71,6 +73,7 @@ class CrossCheck:
     conservation: tuple[Judgement, ...]
     powers: Mapping[str, Mapping[str, float]]
     orbit: GearOrbit | None = None
+    loss: LossAgreement | None = None
     pulling: str = ""
     variant: CrossCheck | None = None
 
@@ -94,7 +97,8 @@ class CrossCheck:
             return Verdict.FAILS
         if not (self.periodic and self.of("exact")):
             return Verdict.NOT_CHECKED
-        return Verdict.AGREES if all(a.within for a in self.of("exact")) else Verdict.DIFFERS
+        motions = all(a.within for a in self.of("exact"))
+        return Verdict.AGREES if motions and (self.loss is None or self.loss.within) else Verdict.DIFFERS
 
     @property
     def agrees(self) -> bool:
@@ -126,7 +130,8 @@ def crosscheck(
     the whole history is compared; any difference beyond integration error is a fault of the program. At
     "exact" the model's own periodic motion is compared, with the brake torque that balances its own losses:
     under the lumped one it would drift, and the phase with it. The largest difference over the peak to peak
-    of the lumped motion is the answer; beyond its limit the lumped model is not accurate enough. Where the
+    of the lumped motion is the answer, and the difference of the power that both lose; beyond its limit the
+    lumped model is not accurate enough. Where the
     lumped motion is unstable, or the exact model has no periodic motion near it, the end of a run from the
     lumped motion is shown and not judged. Where the linear motion needs teeth that pull, the lumped motion is
     the one with unilateral contact (``floquet.periodic_orbit``), and so are the equations of "linear";
@@ -204,6 +209,7 @@ def _with_own_teeth(found: CrossCheck, pair: GearPair, samples: int, limit: floa
         multibody={**found.multibody, "exact": exact},
         periodic=True,
         orbit=None,
+        loss=sliding_agreement(reference, exact),
         pulling="",
     )
 
@@ -234,11 +240,12 @@ def _compared(
         reference = lumped.simulate(
             pair, cycles, samples_per_cycle=samples, initial="periodic", progress=part(0)
         )
-        best = reference
+        best, lost = reference, losses_of(reference)
     else:
         stable, reference = True, repeated(orbit.sampled(samples), cycles)
         momentary = by_momentary_load(orbit, samples)
         best = reference if momentary is None else repeated(momentary, cycles)
+        lost = losses(pair, orbit.sampled(samples)) if momentary is None else losses_of(momentary)
     cycle = reference.isel(time=slice(-samples - 1, -1))
     rtol = integration_tolerances({name: cycle[name].to_numpy() for name in QUANTITIES})
     results: dict[Fidelity, xr.Dataset] = {}
@@ -283,5 +290,6 @@ def _compared(
         conservation=checks,
         powers=powers,
         orbit=orbit,
+        loss=None if exact is None else loss_agreement(lost, exact),
         pulling=pulling,
     )

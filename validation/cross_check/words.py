@@ -23,6 +23,8 @@ NAMES = {
     "normal_load": "normal load",
     "friction_force": "friction force",
 }
+#: Name of the power lost, beside these.
+LOSS = "power lost"
 
 #: What differences from the exact model are measured by, for readers.
 MEASURES = (
@@ -73,6 +75,20 @@ def same_equations(check: CrossCheck) -> str:
     return (
         f"With the same equations the multibody model {verb}: {NAMES[worst.quantity]} to "
         f"{number(worst.difference, 2)} of its peak to peak, limit {number(worst.limit, 2)}."
+    )
+
+
+def loss_difference(check: CrossCheck) -> str:
+    """How much power the multibody model loses beside the lumped one; empty where that is not known."""
+    loss = check.loss
+    if loss is None:
+        return ""
+    own, other = (quantity(value, "W", 3) for value in (loss.total, loss.total_multibody))
+    place = "by sliding " if set(loss.lumped) == {"sliding"} else ""
+    verb = "agrees" if loss.within else "does not agree"
+    return (
+        f"It loses {other} {place}beside {own}, which {verb}: {share(loss.difference)}, limit "
+        f"{percent(loss.limit)}."
     )
 
 

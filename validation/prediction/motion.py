@@ -322,11 +322,11 @@ def _of_orbit(orbit: GearOrbit, motion: Motion) -> Prediction:
         peak_to_peak=high - low,
         stable=orbit.stable,
         mesh_cycles=orbit.n,
-        losses=_losses(pair, cycle),
+        losses=losses(pair, cycle),
     )
 
 
-def _losses(pair: GearPair, motion: xr.Dataset) -> dict[str, float]:
+def losses(pair: GearPair, motion: xr.Dataset) -> dict[str, float]:
     """Mean losses by place [W] of a motion with unilateral contact.
 
     Where the damper would make a compressed pair pull, the load is zero, and the damper takes what the

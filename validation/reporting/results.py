@@ -28,7 +28,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
-from validation.cross_check.words import share
+from validation.cross_check.words import loss_difference, share
 from validation.files.formatting import quantity
 from validation.measurements.model_error import ModelError, model_error
 from validation.measurements.record import Measurement
@@ -386,6 +386,8 @@ class Results:
         apart = f"{max(100.0 * worst.difference, 0.01):.2g} %"
         if check.verdict is Verdict.AGREES:
             return f"Yes: a second program agrees to {apart}."
+        if all(a.within for a in check.of("exact")):
+            return f"Yes, but of the second program, whose motion agrees to {apart}: {loss_difference(check)}"
         own = check.worst("exact")
         swings = (quantity(v, own.unit, 3) for v in (own.peak_to_peak_multibody, own.peak_to_peak))
         rest = "" if own is worst else f", the transmission error by {apart}"

@@ -8,9 +8,11 @@ import xarray as xr
 from lumped.labelling import labelled_dataset
 from lumped.outcomes import Absent
 from validation.cross_check.conservation import worst_of_each
-from validation.cross_check.words import MEASURES
+from validation.cross_check.losses import LossAgreement
+from validation.cross_check.words import MEASURES, percent
 from validation.plots.prediction import overlay_figure
-from validation.reporting.blocks import Badge, Block, Content, Picture, Text, table_of
+from validation.prediction.motion import PLACES
+from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -45,6 +47,8 @@ def write(results: Results) -> Content:
             MEASURES,
         )
     )
+    if check.loss is not None:
+        blocks.append(_losses(check.loss))
     blocks.append(
         table_of(
             "conservation",
@@ -61,6 +65,23 @@ def write(results: Results) -> Content:
     if isinstance(second, Absent):
         blocks.append(Text(str(second)))
     return Content(results.second_words, tuple(blocks))
+
+
+def _losses(loss: LossAgreement) -> Table:
+    """Mean losses of both programs, place by place."""
+    both = [*((PLACES[p], loss.lumped[p], loss.multibody.get(p, 0.0)) for p in loss.lumped)]
+    both.append(("all places", loss.total, loss.total_multibody))
+    return table_of(
+        "losses_of_both",
+        f"Power lost in both programs. Their sums differ by {percent(loss.difference)}, limit "
+        f"{percent(loss.limit)}: {'they agree' if loss.within else 'they do not agree'}.",
+        both,
+        {
+            "place": ("place", lambda row: row[0]),
+            "lumped": ("lumped model", lambda row: Quantity(row[1], "W")),
+            "second": ("second program", lambda row: Quantity(row[2], "W")),
+        },
+    )
 
 
 _FIDELITY = {"linear": "same equations", "exact": "exact contact, finite motions"}

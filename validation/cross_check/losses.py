@@ -1,0 +1,80 @@
+"""Does the multibody model lose the power that the lumped model loses?
+
+Sources: docs/theory/multibody.md, "The verdict".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import xarray as xr
+
+from validation.cross_check.verdict import Judgement
+from validation.prediction.motion import losses_of
+
+#: Largest difference of the losses over the loss of the lumped motion that agrees.
+LOSS_LIMIT = 0.05
+_REASON = (
+    "power lost at all places together, over that of the lumped motion; finite motions change it by up to "
+    "2 %, published coefficients of friction differ by more"
+)
+
+
+@dataclass(frozen=True)
+class LossAgreement:
+    """Mean powers that are lost in both motions.
+
+    Attributes
+    ----------
+    lumped, multibody : place of ``validation.prediction.motion.PLACES`` -> mean power lost there [W]
+    limit : largest ``difference`` that agrees
+    """
+
+    lumped: Mapping[str, float]
+    multibody: Mapping[str, float]
+    limit: float = LOSS_LIMIT
+
+    @property
+    def total(self) -> float:
+        """Power that the lumped motion loses [W]."""
+        return sum(self.lumped.values())
+
+    @property
+    def total_multibody(self) -> float:
+        """Power that the multibody motion loses [W]."""
+        return sum(self.multibody.values())
+
+    @property
+    def difference(self) -> float:
+        """Difference of both totals over that of the lumped motion; infinite where only one model loses."""
+        apart = abs(self.total_multibody - self.total)
+        return apart / self.total if self.total > 0.0 else (math.inf if apart > 0.0 else 0.0)
+
+    @property
+    def within(self) -> bool:
+        """Whether the difference is within its limit; one that is not a number is not."""
+        return self.difference <= self.limit
+
+    @property
+    def judgement(self) -> Judgement:
+        """The difference against its limit."""
+        return Judgement("exact: loss", self.difference, self.limit, _REASON)
+
+
+def loss_agreement(lumped: Mapping[str, float], multibody: xr.Dataset) -> LossAgreement | None:
+    """Compare the losses of a lumped motion with those that a periodic multibody motion carries.
+
+    None where the multibody motion is a run, which carries none.
+    """
+    found = losses_of(multibody)
+    return LossAgreement(dict(lumped), found) if found else None
+
+
+def sliding_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement:
+    """Compare what sliding takes over the same times, where a run of teeth that differ does not repeat."""
+    own, other = (
+        {"sliding": -float(run["friction_power"].sum("pair").mean())} for run in (lumped, multibody)
+    )
+    return LossAgreement(own, other)
