@@ -169,7 +169,7 @@ class Court:
             "MUTANT_TEST_SECONDS": str(self.limits.test),
             "MPLBACKEND": "Agg",
         }  # fmt: skip
-        options = ["-x", "-n", "0", "-p", "mutant_clock", "-p", "no:cacheprovider", "--tb", "no"]
+        options = ["-x", "-p", "mutant_clock", "-p", "no:cacheprovider", "--tb", "no"]
         before = _spent()
         process = subprocess.Popen(
             [sys.executable, "-m", "pytest", *options, *arguments], cwd=self.copy, env=environment,
