@@ -125,12 +125,9 @@ class Court:
     def _verdict(self, run: _Run, tests: list[str]) -> tuple[str, str]:
         """Verdict of one run: survived where every test passes that the time allows."""
         if failed := run.of("failed"):
-            passes, _ = self.sound(failed[0])
-            return (
-                ("killed", failed[0])
-                if passes
-                else ("undecided", f"{failed[0]} fails without the change too")
-            )
+            if self.sound(failed[0])[0]:
+                return "killed", failed[0]
+            return "undecided", f"{failed[0]} fails without the change too"
         if run.at:
             return self._ended_inside(run)
         if run.code == 0 or run.of("over"):
@@ -143,11 +140,9 @@ class Court:
         """The process ended inside a test: by a limit, or for itself."""
         passes, seconds = self.sound(run.at)
         if run.code not in (-signal.SIGXCPU, -signal.SIGKILL):
-            return (
-                ("killed", f"{run.at} (the process ends)")
-                if passes
-                else ("undecided", f"{run.at} ends the process")
-            )
+            if passes:
+                return "killed", f"{run.at} (the process ends)"
+            return "undecided", f"{run.at} ends the process without the change too"
         if passes and seconds < self.limits.test / 3.0:
             return "killed", f"{run.at} (time-out; {seconds:.0f} s without the change)"
         return "undecided", f"time-out in {run.at}, which takes {seconds:.0f} s without the change"
@@ -174,7 +169,7 @@ class Court:
             "MUTANT_TEST_SECONDS": str(self.limits.test),
             "MPLBACKEND": "Agg",
         }  # fmt: skip
-        options = ["-x", "-n", "0", "-p", "mutant_clock", "-p", "no:cacheprovider", "--tb", "no"]
+        options = ["-x", "-p", "mutant_clock", "-p", "no:cacheprovider", "--tb", "no"]
         before = _spent()
         process = subprocess.Popen(
             [sys.executable, "-m", "pytest", *options, *arguments], cwd=self.copy, env=environment,

@@ -83,8 +83,9 @@ def test_a_change_that_is_the_same_program_is_none():
 def test_the_draw_follows_seed_and_weights_and_is_of_files_that_compute():
     drawn = draw(ROOT, 60, 1)
     assert len({one.key for one in drawn}) == 60
-    file = drawn[0].file
-    assert draw(ROOT, 9, 1, file) == draw(ROOT, 9, 1, file) != draw(ROOT, 9, 2, file)
+    file = "lumped/gear_geometry/geometry.py"
+    first, again, other = ([one.key for one in draw(ROOT, 9, seed, file)] for seed in (1, 1, 2))
+    assert first == again != other
     assert Counter(one.file.partition("/")[0] for one in drawn) == WEIGHTS
     assert {one.file for one in drawn} <= set(files(ROOT))
     assert not any("reporting" in file or "commands" in file for file in files(ROOT))
@@ -116,8 +117,9 @@ def test_count():
 
 
 @pytest.fixture
-def tree(tmp_path):
+def tree(tmp_path, monkeypatch):
     """A small program: a line whose sign a test sees, one that no test runs, and a loop."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # it needs none, and they take most of the time
     contents = {
         "pyproject.toml": "[tool.pytest.ini_options]\naddopts = '--import-mode=importlib'\n",
         "lumped/gears/mass.py": MASS,
@@ -140,15 +142,20 @@ def test_an_edit_of_one_line_leaves_the_others_drawn(tree):
     file = "lumped/gears/mass.py"
     before = {one.key: one for one in draw(tree, 9, 5, file)}
     assert {one.before for one in before.values()} == {"return a + b", "return a * b"}
-    (tree / file).write_text("# A line more." + MASS.replace("a * b", "a * b * 3"))
+    (tree / file).write_text(MASS.replace("a * b", "a * b * 3"))
     after = {one.key: one for one in draw(tree, 9, 5, file)}
     (same,) = before.keys() & after.keys()
     assert (before[same].before, before[same].after) == ("return a + b", after[same].after)
-    (tree / file).write_text("\n\n" + MASS)
-    moved = {one.key: one for one in draw(tree, 9, 5, file)}
-    assert {key: (one.line, one.after) for key, one in moved.items()} == {
-        key: (one.line + 2, one.after) for key, one in before.items()
-    }
+
+
+def test_lines_that_move_keep_their_change(tree):
+    def changes():
+        drawn = (one for seed in range(20) for one in draw(tree, 9, seed, "lumped/gears/mass.py"))
+        return [(one.key, one.line, one.after) for one in drawn]
+
+    before = changes()
+    (tree / "lumped/gears/mass.py").write_text("\n\n" + MASS)
+    assert changes() == [(key, line + 2, after) for key, line, after in before]
 
 
 def test_the_judge_says_killed_survived_and_time_out(tree, tmp_path_factory):
@@ -194,6 +201,30 @@ def test_a_module_that_cannot_be_imported_is_seen(tree, tmp_path_factory):
     assert (judged.verdict, judged.by, judged.tests) == ("killed", "tests/lumped/gears/test_gears.py", 0)
 
 
+def test_a_change_that_ends_the_process_is_seen_in_the_test_that_ran(tree, tmp_path_factory):
+    (tree / "lumped/gears/mass.py").write_text(
+        MASS + "\nimport os\n\ndef leave(n):\n    if n > 5:\n        os.abort()\n"
+    )
+    test = "\nfrom lumped.gears.mass import leave\n\ndef test_leave():\n    leave(5)\n"
+    (tree / "tests/lumped/gears/test_gears.py").write_text(TESTS + test)
+    court = Court(tree, tmp_path_factory.mktemp("court"))
+    judged = court.judge(mutant(tree, "lumped/gears/mass.py", "if n > 5:", "strictness changed"))
+    test = "tests/lumped/gears/test_gears.py::test_leave (the process ends)"
+    assert (judged.verdict, judged.by, judged.tests) == ("killed", test, 3)
+
+
+def test_files_judge_in_the_order_of_nearness(tree, tmp_path_factory):
+    """The conftest of a tree may have another order, and more than one file sees the change."""
+    far = "import lumped.gears.far\n\ndef test_far():\n    assert lumped.gears.far.total(1, 1) == 2\n"
+    (tree / "lumped/gears/far.py").write_text("from lumped.gears.mass import total\n")
+    (tree / "tests/lumped/gears/test_far.py").write_text(far)
+    order = "def pytest_collection_modifyitems(items):\n    items.sort(key=lambda item: item.name)\n"
+    (tree / "conftest.py").write_text(order)
+    court = Court(tree, tmp_path_factory.mktemp("court"))
+    judged = court.judge(mutant(tree, "lumped/gears/mass.py", "return a + b", "+, - exchanged"))
+    assert judged.by == "tests/lumped/gears/test_gears.py::test_total"
+
+
 def test_time_that_ends_before_the_folder_does_decides_nothing(tree, tmp_path_factory):
     court = Court(tree, tmp_path_factory.mktemp("court"), Limits(total=0.01))
     judged = court.judge(mutant(tree, "lumped/gears/mass.py", "return a * b", "*, / exchanged"))
@@ -231,6 +262,21 @@ def test_a_run_that_was_stopped_goes_on(tree, tmp_path, capsys):
     assert "[1/2]" not in said
     assert again["mutants"][0]["by"] == "stored"
     assert again["mutants"][1]["after"] == whole["mutants"][1]["after"]
+
+
+def test_again_judges_only_what_was_not_killed(tree, tmp_path, capsys):
+    command = ["--tree", str(tree), "--only", "lumped/gears/mass.py", "--count", "2"]
+    rows = []
+    for one, verdict in zip(draw(tree, 2, 1, "lumped/gears/mass.py"), ("killed", "survived"), strict=True):
+        rows.append(
+            {"key": one.key, "file": one.file, "line": one.line, "before": one.before, "after": one.after}
+        )
+        rows[-1] |= {"verdict": verdict, "by": "stored", "tests": 1, "seconds": 1.0}
+    (tmp_path / "before.json").write_text(json.dumps({"mutants": rows}))
+    main([*command, "--again", str(tmp_path / "before.json"), "-o", str(tmp_path / "after.json")])
+    after = {one["key"]: one["by"] for one in json.loads((tmp_path / "after.json").read_text())["mutants"]}
+    assert after[rows[0]["key"]] == "stored"
+    assert after[rows[1]["key"]] != "stored"
 
 
 def test_a_part_of_another_run_is_begun_anew(tmp_path):
