@@ -95,10 +95,11 @@ def fit_pieces(
     starts: list[FloatArray] = []
     fits: list[FloatArray] = []
     misfits: list[FloatArray] = []
-    centre, half = 0.5 * (edges[:-1] + edges[1:]), 0.5 * np.diff(edges)
-    segment = np.arange(centre.size)
+    low, high = edges[:-1], edges[1:]
+    segment = np.arange(low.size)
     sizes: FloatArray | None = None
     for depth in range(_MAX_HALVINGS + 1):
+        centre, half = 0.5 * (low + high), 0.5 * (high - low)
         values, errors, fixed = gains(centre, half, segment, nodes)
         values = values * root
         if not np.isfinite(values).all():
@@ -122,30 +123,22 @@ def fit_pieces(
             _drop_powers(fitted, errors, 0.03 * allowed[:, good])
             fits.append(_to_powers(fitted, errors))
             misfits.append(errors.T)
-            starts.append(centre[good] - half[good])
-        rest, quarter, owner = centre[~good], 0.5 * half[~good], segment[~good]
-        if rest.size == 0:
+            starts.append(low[good])
+        if good.all():
             break
-        centre = np.concatenate([rest - quarter, rest + quarter])
-        half = np.concatenate([quarter, quarter])
-        segment = np.concatenate([owner, owner])
+        low, high = (
+            np.concatenate(ends) for ends in ((low[~good], centre[~good]), (centre[~good], high[~good]))
+        )
+        segment = np.tile(segment[~good], 2)
     start = np.concatenate(starts)
     order = np.argsort(start)
-    # Start points are exact only for the segments' own ends; others differ by rounding, which the second
-    # kind of error allows for.
+    # The ends of segments are exact, also of one that is a unit in the last place wide.
     phases = np.append(start[order], edges[-1])
-    at = _nearest(phases, edges)
-    phases[at] = edges
+    at = np.searchsorted(phases, edges)
     power = np.concatenate(fits, axis=1)[:, order]
     polynomials = [trimmed(p) / root[:, None] for p in power]
     # 1 + 1e-12: rounding of the sums that make the bounds.
     return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12), at
-
-
-def _nearest(phases: FloatArray, edges: FloatArray) -> npt.NDArray[np.intp]:
-    """Index of the phase nearest to each edge; both increasing."""
-    after = np.clip(np.searchsorted(phases, edges), 1, phases.size - 1)
-    return np.asarray(np.where(edges - phases[after - 1] < phases[after] - edges, after - 1, after))
 
 
 def _padded(series: FloatArray, degree: int) -> FloatArray:

@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 from floquet import (
     FourierSeries,
     PeriodicMatrix,
     PeriodicSystem,
     PiecewisePolynomial,
-    from_second_order,
     monodromy,
 )
 from floquet.engine.proven import proven_product
@@ -52,22 +50,6 @@ def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
     assert proven.liouville_residual < 1e-11
 
 
-@pytest.mark.parametrize("degree", [2, 6, 14])
-def test_errors_of_the_polynomials_of_a_formula_hold(degree: int) -> None:
-    rng = np.random.default_rng(degree)
-    rows = rng.normal(size=(2, 5))
-    formula = FourierSeries(2.0, 0.3, rng.normal(size=3).tolist(), [1.0]) * PiecewisePolynomial(
-        [0.0, 1.0, 2.0], rows
-    ) + FourierSeries(2.0, 1.0, [0.5])
-    start, length = np.array([0.1, 1.2]), np.array([0.3, 0.15])
-    series, errors = formula.taylor(start, length, degree)
-    s = np.linspace(0.0, 1.0, 50)
-    exact = formula(start[:, None] + length[:, None] * s)
-    error = np.abs((s[:, None] ** np.arange(degree + 1)) @ series.T - exact.T).max(axis=0)
-    assert (error <= errors + 1e-14).all()
-    assert (error > 1e-3 * errors).all() or degree == 14
-
-
 def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() -> None:
     # x'' + 3.43 (1 + cos t) x = 0: at t = T/2 nothing balances the 1.
     wave = FourierSeries(2.0 * np.pi, 3.43, [3.43])
@@ -104,44 +86,6 @@ def test_what_cannot_be_proven_is_refused() -> None:
         PeriodicMatrix([[0.0, 1.0]])
     with pytest.raises(ParameterError, match="coefficients"):
         PiecewisePolynomial([0.0, 1.0, 2.0], [[1.0]])
-
-
-def pulsed(start: float, width: float, impulse: float):
-    """x'' + 0.02 x' + (9 + impulse/width from start on) x = 0 of period 1, and its exact radius."""
-    end = start + width
-    width = end - start  # as rounded
-    rows = [[0.0], [impulse / width], [0.0]]
-    stiffness = PeriodicMatrix(9.0, (PiecewisePolynomial([0.0, start, end, 1.0], rows), 1.0))
-    free = np.array([[0.0, 1.0], [-9.0, -0.02]])
-    inside = np.array([[0.0, width], [-9.0 * width - impulse, -0.02 * width]])
-    matrix = expm(free * (1.0 - end)) @ expm(inside) @ expm(free * start)
-    return from_second_order([[1.0]], [[0.02]], stiffness, 1.0), np.abs(np.linalg.eigvals(matrix)).max()
-
-
-@pytest.mark.parametrize("place", [0.5, 0.618, 0.75, 0.9])
-@pytest.mark.parametrize("odd", [False, True])
-@pytest.mark.parametrize("units", [1, 2, 3])
-def test_no_piece_is_lost_whatever_its_width(place: float, odd: bool, units: int) -> None:
-    """The middle of a piece one unit in the last place wide with an odd start rounds to its end."""
-    start = np.nextafter(place, 1.0) if odd else place
-    end = start
-    for _ in range(units):
-        end = np.nextafter(end, 1.0)
-    system, exact = pulsed(start, end - start, 4.0)
-    result = monodromy(system)
-    assert result.certificate == "proven"
-    assert abs(result.spectral_radius - exact) <= result.error
-    assert result.error < 1e-11
-
-
-@pytest.mark.parametrize("width", [1e-3, 1e-5, 1e-7, 1e-9])
-@pytest.mark.parametrize("impulse", [0.5, 4.0, 20.0])
-def test_narrow_spikes_are_proven(width: float, impulse: float) -> None:
-    """Coordinates are balanced by the mean of |A| over time, in which a spike counts as its impulse does."""
-    system, exact = pulsed(0.3, width, impulse)
-    result = monodromy(system, 1e-10)
-    assert result.certificate == "proven"
-    assert abs(result.spectral_radius - exact) <= result.error
 
 
 def test_a_tolerance_between_two_that_are_met_is_met() -> None:

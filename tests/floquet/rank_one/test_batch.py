@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import linear_sum_assignment
+
+pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 
 from floquet import (
     RankOneSystem,
@@ -12,7 +13,6 @@ from floquet import (
     fast_multipliers,
     gear_block,
     gear_pair_multipliers,
-    monodromy,
     scan,
     stability_chart,
 )
@@ -22,7 +22,7 @@ from floquet.rank_one.batch import _quick, multipliers_of
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
-from tests.evidence.floquet.extended import as_periodic_system, state_matrix
+from tests.floquet.engine.judge.enclosures import energy_monodromy, least_norm, real_balls
 
 
 def random_system(rng: np.random.Generator) -> RankOneSystem:
@@ -43,21 +43,14 @@ def random_system(rng: np.random.Generator) -> RankOneSystem:
     )  # fmt: skip
 
 
-def in_energy_coordinates(system: RankOneSystem, matrix: np.ndarray) -> np.ndarray:
-    S = state_matrix(system.modal())
-    return np.linalg.solve(S, matrix @ S)
-
-
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-13])
-def test_kernel_error_is_below_its_bound_on_random_systems(tolerance: float) -> None:
+def test_kernel_error_is_below_its_bound_on_random_systems() -> None:
     rng = np.random.default_rng(2024)
-    for _ in range(40):
+    for _ in range(12):
         system = random_system(rng)
-        fast = fast_monodromies(system, tolerance=tolerance)
-        slow = monodromy(as_periodic_system(system), rtol=1e-11)
-        exact = in_energy_coordinates(system, slow.matrix)
-        # The reference is itself uncertain by 1e-11 of its norm, times the change of coordinates (below 100).
-        assert np.linalg.norm(fast.matrices[0] - exact) <= fast.errors[0] + 1e-9 * np.linalg.norm(exact)
+        exact = energy_monodromy(system, system.period, 1.0, [1.0])
+        for tolerance in (1e-2, 1e-4, 1e-7, 1e-13):
+            fast = fast_monodromies(system, tolerance=tolerance)
+            assert least_norm(exact - real_balls(fast.matrices[0])) <= fast.errors[0]
 
 
 @pytest.mark.parametrize("axes", [
@@ -80,39 +73,6 @@ def test_charts_of_both_routes_agree(law: str, axes: dict[str, list[float]]) -> 
     assert (difference <= fast.error + slow.error).all()
     assert fast.error.max() < 1e-8  # rtol = 1e-10 over up to 100 rad per cycle, times the conditioning
     assert (fast.verdict == slow.verdict).all()
-
-
-def near_defective(rng: np.random.Generator, gap: float) -> np.ndarray:
-    """6 x 6 with two eigenvalues this far apart that nearly share an eigenvector, as at a tongue's edge."""
-    core = np.diag(rng.uniform(-0.9, 0.9, 6))
-    core[:2, :2] = [[0.8, 1.0], [0.0, 0.8 + gap]]
-    Q = np.linalg.qr(rng.normal(size=(6, 6)))[0]
-    return np.asarray(Q @ core @ Q.T)
-
-
-@pytest.mark.parametrize("gap", [1e-2, 1e-4, 3e-5])
-def test_every_disk_holds_as_many_eigenvalues_as_it_says(gap: float) -> None:
-    # Overlapping disks are widened around all that hang together: then each computed eigenvalue can be
-    # matched with an exact one in its own disk, one to one, which nearest distances alone would not show.
-    rng = np.random.default_rng(17)
-    overlapping = 0
-    for _ in range(200):
-        M = near_defective(rng, gap)
-        delta = float(10.0 ** rng.uniform(-12, -7))
-        values, radii, safe = _quick(M[None], np.array([delta]))
-        if not safe[0]:
-            continue
-        E = rng.normal(size=(6, 6))
-        # The direction that moves the pair most, and a random one.
-        left, _, right = np.linalg.svd(M - 0.8 * np.eye(6))
-        E = np.outer(left[:, -1], right[-1]) if rng.random() < 0.5 else E / np.linalg.norm(E, 2)
-        exact = np.linalg.eigvals(M + delta * E)
-        distance = np.abs(values[0][:, None] - exact[None, :])
-        rows, columns = linear_sum_assignment(np.where(distance <= radii[0][:, None], 0.0, 1.0))
-        assert (distance[rows, columns] <= radii[0]).all()
-        pairs = np.abs(values[0][:, None] - values[0]) <= radii[0][:, None] + radii[0]
-        overlapping += int(pairs.sum() > 6)
-    assert overlapping > 5 or gap > 1e-3
 
 
 def test_multipliers_do_not_feel_with_which_others_they_are_computed() -> None:

@@ -6,13 +6,28 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+pytest.importorskip("flint", reason="needs python-flint (extra: test)")
+
+from flint import arb_mat
+
 from floquet import RankOneSystem, fast_monodromies
 from floquet.rank_one.batch import _quick
+from floquet.rank_one.kernels.eigenvalue_bounds import _gershgorin
 from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, powers_of_radii
-from floquet.rank_one.kernels.product import divide
+from floquet.rank_one.kernels.product import BLOCKS, carry, divide
 from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import Gains
 from tests.evidence.floquet.extended import state_matrix
+from tests.floquet.engine.judge.balls import worst_ratio
+from tests.floquet.engine.judge.enclosures import (
+    balls,
+    disks,
+    energy_monodromy,
+    least_norm,
+    nearly_defective,
+    real_balls,
+    worst_errors,
+)
 
 
 def test_too_many_terms_are_said() -> None:
@@ -122,3 +137,149 @@ def test_nearly_defective_eigenvalues_are_left_to_the_careful_bound() -> None:
         M = np.diag([0.5, 0.5 + gap, -0.3])
         M[0, 1] = 1.0
         assert spectrum(M)[2] == trusted
+
+
+def ratios(M: np.ndarray, delta: float) -> tuple[float, float, bool]:
+    """Largest error over the bound and least one that is called safe; whether disks overlap."""
+    values, radii, safe = (part[0] for part in _quick(M[None], np.array([delta])))
+    if not safe:
+        return 0.0, False, False
+    found = [worst_ratio(values, radii, disks(balls(M) + balls(E)))[0] for E in worst_errors(M, delta)]
+    apart = np.abs(values[:, None] - values) > radii[:, None] + radii
+    return max(found), True, int((~apart).sum()) > 6
+
+
+def test_disks_hold_the_worst_errors_until_they_are_called_unsafe() -> None:
+    """Of three multipliers whose eigenvectors nearly are parallel; their condition is 10 2^(2 power).
+
+    Above 1e6 they are called unsafe. Disks that overlap are widened around all that hang together, so that
+    each holds as many as it says.
+    """
+    whole, overlapping = {}, 0
+    for power in (2, 4, 6, 8, 12):
+        for delta in (1e-14, 1e-9, 1e-7, 1e-5):
+            whole[power, delta], safe, overlap = ratios(nearly_defective(power), delta)
+            assert whole[power, delta] <= 1.0
+            assert safe == (power <= 8)
+            overlapping += overlap
+    assert overlapping >= 3
+    # Above the rounding of the residuals, 1e-12, the worst error moves one of them by all of its radius.
+    assert min(whole[power, delta] for power in (2, 4) for delta in (1e-9, 1e-7)) > 0.95
+
+
+@pytest.mark.parametrize("signs", [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)])
+def test_a_scaled_disk_holds_what_its_coupling_moves(signs: tuple[float, float]) -> None:
+    """Of 2 x 2 with entries of modulus f the first moves by f_11 + f_12 f_21/gap, at most by twice that."""
+    values, rows, radii = np.array([0.5 + 0j, 0.75]), np.empty(2), np.empty(2)
+    f = np.array([[1e-6, 1e-2], [2e-2, 1e-6]])
+    _gershgorin(values, f, rows, radii)
+    F = signs[0] * f * [[1.0, signs[1]], [signs[1], 1.0]]
+    moved = min(abs(disk[0] - 0.5) for disk in disks(balls(np.diag(values) + F)))
+    assert moved <= radii[0] < 2.0 * (1e-6 + 2e-4 / 0.25) * (1.0 + 1e-9)
+    assert moved > 0.45 * radii[0] or signs[0] * signs[1] > 0.0
+
+
+def test_the_product_keeps_terms_of_second_order_and_of_blocks() -> None:
+    """Scalars, where nothing is lost: the bound is the difference of the products with errors and without."""
+    for sizes, e in ((np.ones(40), 0.05), (np.repeat([3.0, 0.2, 2.0], 13), 0.01), (np.full(7, -1.5), 0.1)):
+        count = sizes.size
+        steps = np.zeros((count, 1, LANES))
+        steps[:, 0, 0] = sizes
+        flow, work = np.zeros((1, LANES)), np.zeros((2 * BLOCKS + 1, 1, LANES))
+        before, table = np.empty(count), np.zeros((5, BLOCKS))
+        bound = carry(steps, np.full(count, e), np.abs(sizes), count, flow, before, work, table)
+        exact = np.prod(np.abs(sizes) + e) - np.prod(np.abs(sizes))
+        assert flow[0, 0] == pytest.approx(np.prod(sizes), rel=1e-14)
+        assert exact * (1.0 - 1e-12) <= bound <= 1.001 * exact
+
+
+def driven(c: float, wd: float = 0.0, errors: float = 0.0, edges: tuple[float, float] = (0.0, 0.0)):
+    """x'' + (wd - c) x' + 1e-3 x = 0 over T = 1, with errors of wd declared: what bounds say is nearly so."""
+    zero = np.zeros((1, 1, 1))
+    edge_errors = np.array([[0.0, edge] for edge in edges])
+    return RankOneSystem(
+        stiffness=np.array([[1e-3]]), damping=np.array([[-c]]), v=np.ones(1), phases=np.array([0.0, 1.0]),
+        gains=Gains(zero, zero + wd, np.array([[0.0, errors]]), edge_errors), period=1.0, metric=np.ones(1),
+    )  # fmt: skip
+
+
+def exact_matrix(system: RankOneSystem) -> arb_mat:
+    """Its monodromy matrix in balls."""
+    return energy_monodromy(system, system.period, 1.0, np.ones(len(system.parts)))
+
+
+def error_of(
+    system: RankOneSystem, exact: arb_mat, tolerance: float = 1e-13, zeta: float = 1.0
+) -> tuple[float, float]:
+    """Error of the monodromy matrix against balls, and its bound."""
+    found = fast_monodromies(system, [system.period], zeta, tolerance=tolerance)
+    return least_norm(exact - real_balls(found.matrices[0])), found.errors[0]
+
+
+@pytest.mark.parametrize("c", [-4.0, 2.0, 4.0, 8.0])
+def test_the_tail_of_the_series_is_in_the_bound(c: float) -> None:
+    """|A| is c and the flow is exp(c): but for Stirling's root and the tolerance the majorant is attained.
+
+    Damped, the flow from the middle back to the start grows, and the bound with it, but not its error.
+    """
+    system, exact = driven(c), exact_matrix(driven(c))
+    found = [np.divide(*error_of(system, exact, tolerance)) for tolerance in np.geomspace(1e-1, 1e-5, 13)]
+    assert max(found) <= 1.0
+    assert max(found) > (0.03 if c > 0.0 else 5e-4)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_errors_of_a_gain_of_either_sign_are_in_the_bound_and_hardly_more(sign: float) -> None:
+    """Everywhere, as much as is declared; the norm of the bound is that of two states, sqrt(2)."""
+    e, c = 1e-6, 4.0
+    error, bound = error_of(driven(c, errors=e), exact_matrix(driven(c, sign * e)))
+    assert error <= bound < 1.5 * error
+    # At an end alone, as a pulse that is as wide as a thousandth of the period.
+    for place, edges in ((0, (e, 0.0)), (1, (0.0, e))):
+        phases = np.array([0.0, 1e-3, 1.0] if place == 0 else [0.0, 0.999, 1.0])
+        wd = np.zeros((2, 1, 1))
+        wd[place] = sign * e / 1e-3
+        pulse = replace(driven(c), phases=phases, gains=Gains(np.zeros((2, 1, 1)), wd, np.zeros((2, 2))))
+        error, bound = error_of(driven(c, edges=edges), exact_matrix(pulse))
+        assert error <= bound < 1.5 * error
+
+
+@pytest.mark.parametrize("wd", ["proportional", "not proportional"])
+@pytest.mark.parametrize("w", [-3.0, 3.0])
+def test_signed_gains_of_high_degree_are_inside_their_bounds(w: float, wd: str) -> None:
+    """One gain on two pieces, alternating and growing within each, at tolerances that leave the tail."""
+    powers = w * np.array([[[1.0, -0.5, 2.0, -3.0]], [[-2.0, 1.0, -1.0, 4.0]]])
+    rates = -0.4 * powers if wd == "proportional" else np.array([[[0.3, -2.0]], [[-1.0, 2.5]]])
+    system = RankOneSystem(
+        stiffness=np.array([[7.0]]), damping=np.array([[0.1]]), v=np.array([-1.0]), period=2.0,
+        phases=np.array([0.0, 0.4, 1.0]), gains=Gains(powers, rates, np.zeros((2, 2))), metric=np.ones(1),
+        mean=np.array([-1.0]),
+    )  # fmt: skip
+    twin = replace(system, gains=replace(system.gains, wd=-rates))
+    exact = exact_matrix(system)
+    for tolerance in (1e-2, 1e-4, 1e-13):
+        error, bound = error_of(system, exact, tolerance)
+        assert error <= bound
+        assert bound == pytest.approx(error_of(twin, exact, tolerance, zeta=-1.0)[1], rel=1e-12)
+
+
+UP = float(np.nextafter(0.7, 1.0))
+
+
+@pytest.mark.parametrize("phases", [
+    [0.0, 0.5, np.nextafter(0.5, 1.0), 1.0], [0.0, UP, np.nextafter(UP, 1.0), 1.0], [0.0, 2.0**-60, 0.4, 1.0],
+    [0.0, 0.4, np.nextafter(1.0, 0.0), 1.0],
+], ids=["even", "odd", "first", "last"])  # fmt: skip
+@pytest.mark.parametrize("impulse", [-4.0, 4.0, 40.0])
+def test_a_pulse_of_one_ulp_is_in_the_bound(phases: list[float], impulse: float) -> None:
+    """In the stiffness and in the damping, between pieces of other gains: its ends are exact."""
+    phases = np.array(phases)
+    pulse = int(np.argmin(np.diff(phases)))
+    w, wd = np.array([1.0, 2.0, 3.0])[:, None, None], np.array([0.2, 0.3, -0.1])[:, None, None]
+    w[pulse], wd[pulse] = np.array([1.0, 0.25]) * impulse / np.diff(phases)[pulse]
+    system = RankOneSystem(
+        stiffness=np.array([[5.0]]), damping=np.array([[0.1]]), v=np.ones(1), phases=phases, period=1.3,
+        gains=Gains(w, wd, np.zeros((3, 2))), metric=np.ones(1), mean=np.array([2.0]),
+    )  # fmt: skip
+    error, bound = error_of(system, exact_matrix(system))
+    assert error <= bound < 1e-7

@@ -11,7 +11,7 @@ pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 from flint import arb, arb_mat
 
 from floquet.rank_one.boxes import FlowPolynomial, bounded_entries, decided
-from tests.floquet.engine.judge.enclosures import balls, least_moduli, real_balls
+from tests.floquet.engine.judge.enclosures import balls, least_moduli, nearly_defective, real_balls
 
 #: Boxes of a patch as (x, y) whose middles are those of the patch: all of it, parts, no width, two ulps wide.
 CENTRAL = np.array([
@@ -28,24 +28,6 @@ SHARES = np.array([[a, b] for a in (0.0, 0.5, 1.0) for b in (0.0, 0.5, 1.0)] + [
 #: Rounding that every box allows for per unit of reach and of the coefficients: (64 24^2 + 32 (6 + 8)) 2^-53
 #: times the coefficients before and after restriction, see `bounded_entries`.
 ALLOWED = 2.0 * (64 * 24**2 + 32 * 14) * 2.0**-53
-
-
-def nearly_defective(power: int) -> np.ndarray:
-    """(6, 6) with multipliers 7/8, 7/8 + e, 7/8 + 2 e, e = 2^-power, that share an eigenvector but for e.
-
-    In a basis of whole numbers, so that no entry is rounded; the others are 3/8 and 1/4 +- i/4. The condition
-    of the eigenvectors is some 10/e^2. Rows of their computed inverse that belong to the other multipliers
-    are as wrong as the three that are nearly parallel: by the inverse itself it does not show.
-    """
-    e = 2.0**-power
-    core = np.diag([0.875, 0.875 + e, 0.875 + 2.0 * e, 0.375, 0.25, 0.25])
-    core += np.diag([1.0, 1.0, 0.0, 0.0, 0.25], 1) - np.diag([0.0, 0.0, 0.0, 0.0, 0.25], -1)
-    rng = np.random.default_rng(3)
-    upper, lower = (np.eye(6) + np.triu(rng.integers(-1, 2, (6, 6)), 1) for _ in range(2))
-    basis = upper @ lower.T
-    inverse = np.rint(np.linalg.inv(basis))
-    assert (basis @ inverse == np.eye(6)).all()
-    return basis @ core @ inverse
 
 
 def patch_of(terms: dict[tuple[int, int], np.ndarray], error: float = 0.0) -> FlowPolynomial:

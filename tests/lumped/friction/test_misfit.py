@@ -3,6 +3,7 @@
 The laws are written once more, by interval arithmetic of 77 digits.
 """
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,10 +13,9 @@ pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 
 from flint import arb, arb_poly, ctx
 
-from lumped import load_gear_pair
 from lumped.friction import LAWS
 from lumped.friction.base import FrictionLaw, fit_signed
-from lumped.friction.misfit import Ellipses, fit_misfit
+from lumped.friction.misfit import Ellipses, entraining, fit_misfit
 from lumped.path_function import PathFunction
 from tests.unlike_pairs import unlike_pair
 
@@ -159,6 +159,7 @@ def test_ellipses_come_half_as_near_as_their_piece():
     """Sampled on their boundary: to a real point exactly half as near, to a complex one at most half."""
     low, high = np.array([1.0, -0.3]), np.array([2.0, 0.1])
     w = np.exp(2j * np.pi * np.arange(20000) / 20000)
+    assert Ellipses.clear_of(low, high, [2.0]).ratio[0] == 1.0
     for point in (2.05, 0.8, 3.0, 0.6 + 0.02j, 2.2 + 0.3j, 1.5 + 0.1j, -0.1 + 0.01j):
         around = Ellipses.clear_of(low, high, [point])
         for k, r in enumerate(around.ratio):
@@ -174,19 +175,29 @@ def test_ellipses_come_half_as_near_as_their_piece():
             assert around.reach[k] == pytest.approx(np.abs(boundary - around.centre[k]).max(), rel=1e-12)
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0], ids=["approach", "recess"])
 @pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "smoothed_coulomb"])
-def test_the_law_is_at_most_its_bound_in_the_ellipse(law):
-    """By the law written for complex positions, on the boundary, where an analytic function is largest."""
-    pair = load_gear_pair("fzg_c")
-    path, settings, record = pair.nominal_contact, pair.friction, LAWS[law]
-    ends = path.L_XP + (path.L_XD - path.L_XP) * np.geomspace(0.02, 1.0, 8)
-    ratio, most = record.analytic(ends[:-1], ends[1:], path, settings)
-    for low, high, r, size in zip(ends[:-1], ends[1:], ratio, most, strict=True):
-        w = r * np.exp(2j * np.pi * np.arange(100) / 100)
-        z = 0.5 * (low + high) + 0.25 * (high - low) * (w + 1.0 / w)
-        assert np.abs(law_of(law, z, path, settings)).max() <= size
-        assert size < 100.0 * record.signed(np.array([high]), path, settings)[0]
-    assert Ellipses.clear_of(np.array([1.0]), np.array([2.0]), [1.0]).ratio == 1.0
+def test_the_law_is_at_most_its_bound_in_the_ellipse(unlike, law, side):
+    """By the law written for complex positions, on the boundary, where an analytic function is largest.
+
+    Also of thick oil under high load, where the exponential of law III falls with its shear. The bound counts
+    4 times 2.3^-64 = 3e-23 of it: it may be rough, so that a term of it more or less is not always seen here.
+    """
+    settings, record = unlike.friction, LAWS[law]
+    for path in (unlike.nominal_contact, replace(unlike.nominal_contact, viscosity=0.5, unit_load=2e6)):
+        reach = path.L_XD - path.L_XP if side > 0.0 else path.L_XP - path.L_XA
+        ends = np.sort(path.L_XP + side * reach * np.geomspace(0.02, 0.9, 8))
+        ratio, most = record.analytic(ends[:-1], ends[1:], path, settings)
+        around = Ellipses(0.5 * (ends[:-1] + ends[1:]), 0.5 * np.diff(ends), ratio)
+        w = ratio[:, None] * np.exp(2j * np.pi * np.arange(100) / 100)
+        z = around.centre[:, None] + 0.5 * around.half[:, None] * (w + 1.0 / w)
+        held = np.abs(law_of(law, around.centre, path, settings, side)) > settings.maximum
+        inside = np.abs(law_of(law, z, path, settings, side)).max(axis=1) <= most
+        assert (inside | (held & (law == "benedict_kelley"))).all()
+        slow, fast = entraining(around, path)
+        speed = path.omega_pinion * z + path.omega_gear * (path.L_XY - z)
+        assert (np.abs(speed).max(axis=1) <= fast * (1.0 + 1e-12)).all()
+        assert (np.abs(speed).min(axis=1) >= slow * (1.0 - 1e-12)).all()
 
 
 def law_of(law, z, path, settings, side=1.0, functions=np):

@@ -63,6 +63,34 @@ def disks(matrix: acb_mat | arb_mat) -> list[tuple[complex, float]]:
     ]
 
 
+def nearly_defective(power: int) -> np.ndarray:
+    """(6, 6) with multipliers 7/8, 7/8 + e, 7/8 + 2 e, e = 2^-power, that share an eigenvector but for e.
+
+    In a basis of whole numbers, so that no entry is rounded; the others are 3/8 and 1/4 +- i/4. The condition
+    of the eigenvectors is some 10/e^2. Rows of their computed inverse that belong to the other multipliers
+    are as wrong as the three that are nearly parallel: by the inverse itself it does not show.
+    """
+    e = 2.0**-power
+    core = np.diag([0.875, 0.875 + e, 0.875 + 2.0 * e, 0.375, 0.25, 0.25])
+    core += np.diag([1.0, 1.0, 0.0, 0.0, 0.25], 1) - np.diag([0.0, 0.0, 0.0, 0.0, 0.25], -1)
+    rng = np.random.default_rng(3)
+    upper, lower = (np.eye(6) + np.triu(rng.integers(-1, 2, (6, 6)), 1) for _ in range(2))
+    basis = upper @ lower.T
+    inverse = np.rint(np.linalg.inv(basis))
+    assert (basis @ inverse == np.eye(6)).all()
+    return basis @ core @ inverse
+
+
+def worst_errors(M: np.ndarray, delta: float) -> list[np.ndarray]:
+    """Errors (n, n) of this norm that move one eigenvalue each as far as they can, to first order."""
+    vectors = np.linalg.eig(M)[1]
+    found = []
+    for row, column in zip(np.linalg.inv(vectors), vectors.T, strict=True):
+        E = np.outer(row.conj(), column.conj())
+        found.append(delta * (1.0 - 1e-14) / np.linalg.norm(E) * E)
+    return found
+
+
 def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: Sequence[float]) -> arb_mat:
     """The monodromy matrix in the energy coordinates of ``system.modal()``: S^-1 Phi(T, 0) S.
 

@@ -1,0 +1,107 @@
+"""Do the bounds on the gains of the mesh hold for what they allow for: friction, varied stiffness, breaks?
+
+Each piece is looked at between and at its ends; where the worst is attained a bound is hardly more than it.
+"""
+
+import numpy as np
+import pytest
+
+from floquet.gear.axes import GearVariation
+from floquet.gear.gains import MeshGains, _slips
+from floquet.gear.multipliers import feedback_system
+from tests.unlike_pairs import unlike_pair
+
+PAIRS = (
+    "rack_25_degrees_always_pushing",
+    "larger_gear_drives_contact_lost",
+    "contact_ratio_1_1_large_shifts",
+)
+NODES = np.concatenate([[-1.0, 1.0], np.cos(np.pi * (np.arange(40) + 0.5) / 40)])
+
+
+def mesh_of(name: str, factor: float = 1.0, error: float = 0.0, levels: tuple[float, ...] = ()) -> MeshGains:
+    """The gains of an unlike pair under prescribed contact, its friction wrong by so much at most."""
+    pair = unlike_pair(name).with_(
+        {"mesh.contact": "prescribed", "mesh.damping_ratio": 0.03, "mesh.stiffness": {"model": "parabolic"}}
+    )
+    feedback = feedback_system(GearVariation(pair))
+    misfit = np.full(feedback.misfit.shape, error)
+    return MeshGains(feedback.system, feedback.metric, misfit, factor, levels)
+
+
+def whole_segments(mesh: MeshGains) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Middles, half lengths and numbers of all segments."""
+    return 0.5 * (mesh.edges[1:] + mesh.edges[:-1]), 0.5 * np.diff(mesh.edges), np.arange(mesh.edges.size - 1)
+
+
+@pytest.mark.parametrize("levels", [(), (0.05, 0.01)])
+@pytest.mark.parametrize("name", PAIRS)
+def test_an_error_of_friction_is_in_the_bound(name: str, levels: tuple[float, ...]) -> None:
+    """mu of each tooth pair off by e, with the signs that add up: sum of k e |arm| in the metric."""
+    e = 1e-3
+    mesh, sure = mesh_of(name, error=e, levels=levels), mesh_of(name, levels=levels)
+    centre, half, segment = whole_segments(mesh)
+    told = mesh(centre, half, segment, NODES)[2] - sure(centre, half, segment, NODES)[2]
+    part = 2 if levels else 0  # of the gains by mu
+    phases = centre[:, None] + half[:, None] * NODES
+    for j, law in enumerate((mesh.k, mesh.c)):
+        worst = np.zeros(phases.shape)
+        for i, offset in enumerate(mesh.offsets):
+            xi = offset + mesh.pitch * phases
+            arm = mesh.arm[0] + xi[..., None] * mesh.arm[1]
+            worst += np.abs(law(xi, i, segment)) * e * np.sqrt(np.square(arm) @ mesh.metric)
+        worst = worst.max(axis=1)
+        assert (worst <= told[part + j] * (1.0 + 1e-9)).all()
+        # Laws count by the sum of the moduli of their terms, arms at the farthest place and by their parts.
+        assert (told[part + j] < 25.0 * worst).all()
+
+
+@pytest.mark.parametrize("least", [0.9, 0.1, 0.01])
+@pytest.mark.parametrize("name", PAIRS)
+def test_polynomials_in_place_of_a_varied_stiffness_are_as_near_as_is_said(name: str, least: float) -> None:
+    """k_i (mean + factor (k - mean))/k, and c_i by its root, of degree 8 over whole segments.
+
+    With a factor that leaves so much of the mean where the stiffness is least: near 0 the root is steep.
+    """
+    plain = mesh_of(name)
+    centre, half, segment = whole_segments(plain)
+    total = sum(
+        plain.k(offset + plain.pitch * (centre[:, None] + half[:, None] * NODES), i, segment)
+        for i, offset in enumerate(plain.offsets)
+    )
+    factor = (1.0 - least) * plain.mean / (plain.mean - total.min())
+    mesh = mesh_of(name, factor)
+    f = (mesh.mean + factor * (total - mesh.mean)) / total
+    values, errors, fixed = mesh(centre, half, segment, NODES)
+    given, _, _ = plain(centre, half, segment, NODES)
+    loose = []
+    for j, exact in enumerate((f, np.sqrt(f))):
+        off = np.sqrt(np.square(values[j] - exact[..., None] * given[j]) @ mesh.metric).max(axis=1)
+        assert (off <= errors[j] + fixed[j]).all()
+        loose += [errors[j, k] / off[k] for k in range(off.size) if off[k] > 1000.0 * fixed[j, k]]
+    # A residual by the sum of the moduli of its terms, over the least stiffness or the least root.
+    assert all(ratio < 3.0 for ratio in loose)
+    assert loose or least > 0.01
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_moved_break_changes_the_gain_by_no_more_than_is_said(name: str) -> None:
+    """For as long as a break is off the gain is that of the neighbour: the jump times the slip."""
+    mesh = mesh_of(name)
+    centre, half, segment = whole_segments(mesh)
+    ends = mesh(centre, half, segment, np.array([-1.0, 1.0]))[0]
+    assert (mesh.slips > 0.0).all()
+    for j in (0, 1):
+        jump = np.roll(ends[j, :, 1], 1, axis=0) - ends[j, :, 0]
+        size = np.sqrt(np.square(jump) @ mesh.metric)
+        told = mesh.jumps[j] / mesh.slips
+        assert (size <= told[:-1]).all()
+        assert told[-1] == told[0]  # of both ends of the period
+
+
+def test_each_break_is_within_the_slip_of_its_edge() -> None:
+    """Several breaks for one edge: the farthest counts, and those of 0 count at the end of the period too."""
+    edges = np.array([0.0, 0.25, 0.5, 1.0])
+    raw = np.array([3e-13, 0.25 - 1e-13, 0.25 + 4e-13, 0.25, np.nextafter(0.5, 1.0), 1.0 - 2e-13])
+    found = _slips(raw, edges, 1e-16)
+    assert found - 1e-16 == pytest.approx([3e-13, 4e-13, 2.0**-53, 3e-13], rel=1e-3)
