@@ -79,7 +79,7 @@ def test_tolerances_are_those_of_the_standard_and_a_draw_meets_one(nasa):
 
 
 def test_each_gear_is_drawn_with_its_own_class_seed_teeth_and_rack():
-    """20 teeth of class 6, seed 11, and 30 teeth of class 7, seed 5; cos(22.5 deg) along the line of action."""
+    """20 teeth of class 6, seed 11; 30 of class 7, seed 5; cos(22.5 deg) along the line of action."""
     steps_kept = {f"{gear}.deviations.first_order": "steps" for gear in ("pinion", "gear")}
     found = tooth_gaps(unlike_pair("unlike_teeth_finite_elements").with_(steps_kept))
     across = math.cos(math.radians(22.5))
