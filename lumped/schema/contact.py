@@ -6,6 +6,7 @@ import math
 import warnings
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from lumped.errors import refuse
@@ -98,6 +99,11 @@ class ViscosityLaw(Section):
             raise refuse("iso_vg", self.iso_vg, allowed, "Give one of the two descriptions.")
         if self.iso_vg is not None:
             midpoint(self.iso_vg)
+        with np.errstate(over="ignore"):
+            viscosity = self.dynamic_viscosity  # refuses an oil that thickens with heat, or is too thin
+        if not math.isfinite(viscosity):
+            allowed = "a temperature at which Walther's law gives a viscosity"
+            raise refuse("temperature", f"{self.temperature - ZERO_CELSIUS:g} degC", allowed, "Raise it.")
         return self
 
     @property

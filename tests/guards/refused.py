@@ -11,6 +11,7 @@ import numpy as np
 
 from lumped import GearPair
 from lumped.faults.crack import root_section
+from lumped.lubrication.viscosity import viscosity_index
 from tests.guards.by_hand import ByHand, inv, root_of
 from tests.guards.guard import MATE, Changes, Choice, Guard, curve, friction, relief
 
@@ -425,6 +426,39 @@ STIFFNESS = (
 )  # fmt: skip
 
 
+# ---- lubrication ------------------------------------------------------------------------------------------
+
+_VISCOSITY = "lumped/lubrication/viscosity.py"
+
+
+def _oil(**values: Any) -> Callable[[GearPair, str, float], Changes]:
+    """An oil in which one value, None here, is set."""
+    return lambda pair, gear, value: {
+        "lubricant": {"viscosity_law": {key: value if one is None else one for key, one in values.items()}}
+    }
+
+
+def _stiff_as_rock(pair: GearPair, gear: str) -> float:
+    """Temperature [degC] below which 10^10^(A - B log10 T), through 20000 and 1 mm^2/s, is no float."""
+    level = [math.log10(math.log10(nu + 0.7)) for nu in (20000.0, 1.0)]
+    slope = (level[0] - level[1]) / math.log10(373.15 / 313.15)
+    largest = math.log10(math.log10(sys.float_info.max))
+    return float(313.15 * 10.0 ** ((level[0] - largest) / slope) - 273.15)
+
+
+LUBRICATION = (
+    Guard(_CONTACT, "lubricant.viscosity_law.temperature", RACK_25, "a viscosity is a number",
+          least=_stiff_as_rock,
+          sets=_oil(kinematic_viscosity_40=2e4, kinematic_viscosity_100=1.0, temperature=None)),
+    Guard(_VISCOSITY, "lubricant.viscosity_law.kinematic_viscosity", RACK_25, "an oil is thinner at 100 degC",
+          most=32.0, sets=_oil(kinematic_viscosity_40=32.0, kinematic_viscosity_100=None, temperature=60.0)),
+    Guard(_VISCOSITY, "lubricant.viscosity_law.viscosity_index", RACK_25,
+          "ASTM D2270 begins at 2 mm^2/s at 100 degC; test_film judges ``viscosity_index``",
+          least=lambda pair, gear: viscosity_index(4.6, 2.0),
+          sets=_oil(iso_vg=5, viscosity_index=None, temperature=60.0)),
+)  # fmt: skip
+
+
 # ---- friction ---------------------------------------------------------------------------------------------
 
 FRICTION = (
@@ -434,4 +468,4 @@ FRICTION = (
           sets="{gear}.roughness", judge=friction, says="mean Ra of both gears"),
 )  # fmt: skip
 
-REFUSED = (*GEOMETRY, *SCHEMA, *FAULTS, *RELIEF, *STIFFNESS, *FRICTION)
+REFUSED = (*GEOMETRY, *SCHEMA, *FAULTS, *RELIEF, *STIFFNESS, *LUBRICATION, *FRICTION)

@@ -6,7 +6,7 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from lumped.lubrication.film import film_parameter, regime
+from lumped.lubrication.film import film_parameter, film_thickness, regime
 from lumped.lubrication.viscosity import (
     ISO_VG_MIDPOINT,
     grade_viscosity,
@@ -23,6 +23,17 @@ from lumped.path_of_contact import contact_path
 def test_regime_refuses_thresholds_out_of_order(thresholds):
     with pytest.raises(ParameterError, match="three increasing positive film parameters"):
         regime(2.0, thresholds)
+
+
+@pytest.mark.parametrize(("formula", "power"), [("dowson_toyoda", 0.56), ("hamrock_dowson", 0.53)])
+def test_a_film_goes_with_the_pressure_viscosity_of_its_oil(formula, power):
+    """k = 0.009, s = 0.17 against k = 0.0125, s = 0.151 at 33 mPa s: G is proportional to k 33^s."""
+    first, second = (
+        film_thickness(100, 8, 33, 10, 2e5, pressure_viscosity_k=k, pressure_viscosity_s=s, formula=formula)
+        for k, s in ((0.009, 0.17), (0.0125, 0.151))
+    )
+    alpha = 0.009 / 0.0125 * 33.0 ** (0.17 - 0.151)
+    assert first / second == pytest.approx(alpha**power, rel=1e-12)
 
 
 def test_a_film_on_smooth_flanks_is_refused():

@@ -77,10 +77,10 @@ def node_at(data, parents):
 
 
 class TestEveryQuantity:
-    @pytest.mark.parametrize("value", [math.nan, True, [1.0], "plenty", "9" * 100_000])
-    def test_what_is_no_number_is_refused(self, quantity_field, complete, value):
+    def test_what_is_no_number_is_refused(self, quantity_field, complete):
         path, _ = quantity_field
-        problem(complete(path, value), path)
+        for value in (math.nan, True, [1.0], "plenty", "9" * 100_000):
+            problem(complete(path, value), path)
 
     def test_wrong_dimension_is_refused(self, quantity_field, complete):
         path, quantity = quantity_field

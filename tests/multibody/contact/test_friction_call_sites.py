@@ -1,4 +1,4 @@
-"""Does each law of the multibody model get the right oil, load, material and gear?"""
+"""Does each law of the multibody model get the right oil, load and material? On pairs with unlike gears."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
 from multibody.contact.machine import machine
 
-#: Error of the lumped model's polynomials; tests/lumped/path_of_contact pins them on the same pairs by hand.
+#: Error of the lumped model's polynomials; tests/lumped/friction pins them on the same pairs by hand.
 FIT = 1e-9
 
 
