@@ -39,9 +39,9 @@ _TYPES: Any = numba.types
 _PASSING = __name__, "lumped.compiler"
 #: Modules with compiled functions are imported after this one [s]; clocks of files tick in hundredths.
 _IMPORTED = time.time() - 0.05
-#: What the bytecode of a function does not say by itself.
+#: Bytecode, and what it means. Not the flags: they repeat it, and numba clears them under a profiler.
 _CODE = (
-    "co_code", "co_names", "co_varnames", "co_freevars", "co_cellvars", "co_exceptiontable", "co_flags",
+    "co_code", "co_names", "co_varnames", "co_freevars", "co_cellvars", "co_exceptiontable",
     "co_argcount", "co_posonlyargcount", "co_kwonlyargcount",
 )  # fmt: skip
 

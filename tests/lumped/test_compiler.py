@@ -1,5 +1,6 @@
 """Does compiled code on disk always belong to the source that runs?"""
 
+import cProfile
 import importlib
 import math
 import pkgutil
@@ -251,6 +252,16 @@ def test_options_are_noticed() -> None:
     options: list[dict[str, Any]] = [{}, {"nogil": True}, {"fastmath": {"contract"}}, {"fastmath": {"nnan"}}]
     kernels = [compiled(**chosen)(double) for chosen in options]
     assert len({kernel_stamps.stamp_of(kernel) for kernel in kernels}) == len(options)
+
+
+def test_a_profiler_leaves_the_stamp() -> None:
+    @compiled
+    def double(x: float) -> float:
+        return 2.0 * x
+
+    before = kernel_stamps.stamp_of(double)
+    assert cProfile.Profile().runcall(double, 1.0) == 2.0
+    assert kernel_stamps.stamp_of(double) == before
 
 
 #: Ends the process at the moment at which the kernel that was compiled last would get its name.
