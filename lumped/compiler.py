@@ -2,8 +2,8 @@
 
 numba's own cache looks only at the file a function is in and writes its index before the code: after an edit,
 a second process or a kill at that moment can leave old code under the new index for good. Here each kernel is
-one file, named after everything its code depends on, see ``lumped.cache``. Of processes side
-by side one compiles a kernel and the others wait for its file.
+one file, named after everything its code depends on, see ``lumped.kernel_stamps`` and ``lumped.cache``. Of
+processes side by side one compiles a kernel and the others wait for its file.
 """
 
 from __future__ import annotations
@@ -13,13 +13,12 @@ import hashlib
 import os
 import pickle
 import shutil
-import sys
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar, overload
 
 import filelock
 import numba
@@ -28,43 +27,42 @@ from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
 from lumped.cache import cache_folder, cores, read_whole, write_whole
+from lumped.kernel_stamps import UnknownDependencyError, compiled_behind, described, stamp_of
 
 F = TypeVar("F", bound=Callable[..., Any])
 Part = TypeVar("Part")
 Result = TypeVar("Result")
 
-#: Folders of kernels that stay: one for each set of source files and each of its latest states.
-_MOST_FOLDERS = 40
+#: Folders of kernels that stay: one for each function in each of its latest states, some 200 in a state.
+_MOST_FOLDERS = 4000
 #: Longest wait for a kernel that another process compiles [s]; the largest one takes a tenth of it.
 _LONGEST_WAIT = 120.0
 
 
-class Compiler:
-    """Compiles functions that call each other across files.
+@overload
+def compiled(function: F, /) -> F: ...
+@overload
+def compiled(**options: Any) -> Callable[[F], F]: ...
+def compiled(function: Any = None, /, **options: Any) -> Any:
+    """Compile the function below with numba, stored on disk, IEEE arithmetic unless options say otherwise.
 
-    Parameters
-    ----------
-    files : all files with such functions; an edit of one makes all compile anew
+    Without the wrapper for callers in C: there are none, and it takes a tenth of the time.
     """
+    if function is None:
+        return partial(_compiled, **options)
+    return _compiled(function, **options)
 
-    def __init__(self, files: Iterable[Path]) -> None:
-        source = b"".join(path.read_bytes() for path in sorted(files))
-        version = f"{numba.__version__} {sys.version}".encode()
-        self.stamp = hashlib.sha256(version + source).hexdigest()
 
-    def __call__(self, function: F, **options: Any) -> F:
-        """Compile with numba, stored on disk, IEEE arithmetic unless options say otherwise.
+def _compiled(function: Callable[..., Any], /, **options: Any) -> Any:
+    dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
+    if not numba.config.DISABLE_JIT:
+        dispatcher._cache = _KernelFiles(dispatcher)
+    return dispatcher
 
-        Without the wrapper for callers in C: there are none, and it takes a tenth of the time.
-        """
-        dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
-        if not numba.config.DISABLE_JIT:
-            dispatcher._cache = _KernelFiles(function, self.stamp)
-        return cast(F, dispatcher)
 
-    def stored(self, name: str) -> bool:
-        """Whether there is a file with compiled code of the function of that name."""
-        return any((kernel_folder() / self.stamp[:24]).glob(f"{name}-*.kernel"))
+def is_stored(function: Callable[..., Any]) -> bool:
+    """Whether there is a file with code of this compiled function as it is now."""
+    return any(Path(function._cache.cache_path).glob("*.kernel"))  # type: ignore[attr-defined]
 
 
 def kernel_folder() -> Path:
@@ -83,45 +81,74 @@ def in_threads(run: Callable[[Part], Result], parts: Sequence[Part]) -> list[Res
 
 
 class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
-    """Compiled code of one function, under numba's key of signature, processor and bytecode."""
+    """Compiled code of one function, a file for its stamp, the types of its arguments and the processor."""
 
-    def __init__(self, function: Callable[..., Any], stamp: str) -> None:
-        self._py_func = function
-        self._stamp = stamp
+    def __init__(self, dispatcher: Any) -> None:
+        self._dispatcher = dispatcher
+        self._py_func = dispatcher.py_func
+        self._first_stamp: str | None = None
+        self._compiling: dict[Any, Path] = {}
         self._held: dict[Path, filelock.BaseFileLock] = {}
         self.enable()
 
     @property
     def cache_path(self) -> str:
-        return str(kernel_folder() / self._stamp[:24])
+        try:
+            return str(kernel_folder() / stamp_of(self._dispatcher)[:24])
+        except UnknownDependencyError:
+            return str(kernel_folder())
 
     def _path(self, sig: Any, codegen: Any) -> Path:
-        function = self._py_func
-        key = repr((self._stamp, function.__module__, function.__qualname__, self._index_key(sig, codegen)))
+        function, stamp = self._py_func, stamp_of(self._dispatcher)
+        self._first_stamp = self._first_stamp or stamp
+        key = repr((stamp, described(sig), codegen.magic_tuple()))
         digest = hashlib.sha256(key.encode()).hexdigest()
-        return Path(self.cache_path, f"{function.__name__}-{digest[:32]}.kernel")
+        return kernel_folder() / stamp[:24] / f"{function.__name__}-{digest[:32]}.kernel"
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
-        path = self._path(sig, target_context.codegen())
+        try:
+            path = self._path(sig, target_context.codegen())
+        except UnknownDependencyError:
+            return None
         content = read_whole(path)
-        if content is None and self._hold(path):
-            content = read_whole(path)  # another process may have stored it while this one waited
-            if content is not None:
-                self._release(path)
+        if content is None:
+            self._compiling[sig] = path  # numba freezes what is named now, not what is when it has compiled
+            if self._hold(path):
+                content = read_whole(path)  # another process may have stored it while this one waited
+                if content is not None:
+                    self._release(path)
         return None if content is None else CompileResult._rebuild(target_context, *pickle.loads(content))
 
     def _save_overload(self, sig: Any, data: Any) -> None:
-        path = self._path(sig, data.codegen)
+        path = self._compiling.pop(sig, None)
+        if path is None:
+            return
         try:
-            if self._enabled and not data.library.has_dynamic_globals:  # addresses of this process
+            has_addresses = data.library.has_dynamic_globals  # of this process
+            if self._enabled and not has_addresses and not self._calls_older_code():
                 write_whole(path, dumps(data._reduce()))
         except OSError as error:
             _warn_once(f"{kernel_folder()}: {error.strerror}")
         finally:
             self._release(path)
 
+    def _calls_older_code(self) -> bool:
+        """Whether a function that this one calls was compiled before a global changed in this process.
+
+        A module that is loaded again changes the globals of functions that others still hold.
+        """
+        files = [
+            one._cache for one in compiled_behind(self._dispatcher) if isinstance(one._cache, _KernelFiles)
+        ]
+        return any(one._first_stamp not in (None, stamp_of(one._dispatcher)) for one in files)
+
     def _hold(self, path: Path) -> bool:
-        """Wait until no other process compiles this kernel, and keep the others waiting; False: no place."""
+        """Wait until no other process compiles this kernel, and keep the others waiting.
+
+        False: there is no place, or it calls itself by another kernel, and is held already.
+        """
+        if path in self._held:
+            return False
         try:
             if not path.parent.exists():
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -140,7 +167,7 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
 
     def flush(self) -> None:
         """Remove the files of this function."""
-        for path in Path(self.cache_path).glob(f"{self._py_func.__name__}-*.kernel"):
+        for path in Path(self.cache_path).glob("*.kernel"):
             path.unlink(missing_ok=True)
 
 

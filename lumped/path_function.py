@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
@@ -20,7 +19,7 @@ from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -205,7 +204,7 @@ class PathFunction:
         return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))
 
 
-@Compiler([Path(__file__)])
+@compiled
 def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> FloatArray:
     """Values (k,) at positions (k,); neighbours mostly lie on the same piece, which is tried first."""
     values = np.zeros(xi.size)

@@ -14,7 +14,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from floquet.orbits.polynomials import compiled, crossing, extremes, shift, slope, value
+from floquet.orbits.polynomials import crossing, extremes, shift, slope, value
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 #: What a contact does: it carries load, its flanks still overlap but would pull, or there is a gap.
@@ -22,7 +23,7 @@ GAP, RECOVERING, CLOSED = 0, 1, 2
 _GAUSS_NODES, _GAUSS_WEIGHTS = (np.ascontiguousarray(a) for a in np.polynomial.legendre.leggauss(12))
 
 
-@compiled
+@compiled(nogil=True)
 def _series(
     z: FloatArray, v: FloatArray, load: FloatArray, d: FloatArray, w: FloatArray,
     order: int, state: npt.NDArray[np.int64],
@@ -100,7 +101,7 @@ def _series(
                 v[j + 1, r, q] /= j + 1
 
 
-@compiled
+@compiled(nogil=True)
 def _step_size(z: FloatArray, v: FloatArray, order: int, columns: int, tolerance: float, h: float) -> float:
     """Largest step up to h whose last two terms are below the tolerance, each column by its own size."""
     n, m = v.shape[1], z.shape[1]
@@ -123,7 +124,7 @@ def _step_size(z: FloatArray, v: FloatArray, order: int, columns: int, tolerance
     return h
 
 
-@compiled
+@compiled(nogil=True)
 def _watched(
     alpha: FloatArray, beta: FloatArray, d: FloatArray, w: FloatArray, T: float, out: FloatArray
 ) -> None:
@@ -136,7 +137,7 @@ def _watched(
                 out[j + p] += alpha[p] * d[j] + beta[p] / T * w[j]
 
 
-@compiled
+@compiled(nogil=True)
 def propagate(
     x: FloatArray, T: float, parameter: float, cycles: int, derivatives: bool, order: int, tolerance: float,
     phases: FloatArray, present: npt.NDArray[np.bool_],
@@ -333,7 +334,7 @@ def propagate(
     return events
 
 
-@compiled
+@compiled(nogil=True)
 def _load(series: FloatArray, order: int, s: float) -> float:
     """T^2 N of a closed contact."""
     total = 0.0
@@ -342,7 +343,7 @@ def _load(series: FloatArray, order: int, s: float) -> float:
     return total
 
 
-@compiled
+@compiled(nogil=True)
 def _jump(
     z: FloatArray, v: FloatArray, i: int, u: FloatArray, c: float, rate: float, closing: float,
     a: FloatArray, s: float, T: float, columns: int, closes: bool,

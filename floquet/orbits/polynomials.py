@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any, TypeVar
-
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
-F = TypeVar("F", bound=Callable[..., Any])
-
-_COMPILE = Compiler(Path(__file__).parent.glob("*.py"))
 _SAMPLES = 8
 _MOST_BISECTIONS = 100
 #: Of a zero, relative: a bit or two.
@@ -20,12 +13,7 @@ _ROOT = 4e-16
 _HALVINGS = 20
 
 
-def compiled(function: F) -> F:
-    """Compile; callers see the signature of the Python function."""
-    return _COMPILE(function, nogil=True)
-
-
-@compiled
+@compiled(nogil=True)
 def value(c: FloatArray, s: float) -> float:
     """Polynomial, lowest power first."""
     total = 0.0
@@ -34,7 +22,7 @@ def value(c: FloatArray, s: float) -> float:
     return total
 
 
-@compiled
+@compiled(nogil=True)
 def slope(c: FloatArray, s: float) -> float:
     total = 0.0
     for j in range(c.size - 1, 0, -1):
@@ -42,7 +30,7 @@ def slope(c: FloatArray, s: float) -> float:
     return total
 
 
-@compiled
+@compiled(nogil=True)
 def value_and_slope(c: FloatArray, s: float) -> tuple[float, float]:
     total, rate = 0.0, 0.0
     for j in range(c.size - 1, -1, -1):
@@ -51,7 +39,7 @@ def value_and_slope(c: FloatArray, s: float) -> tuple[float, float]:
     return total, rate
 
 
-@compiled
+@compiled(nogil=True)
 def shift(c: FloatArray, s: float, out: FloatArray) -> None:
     """Coefficients of c(s + x) in powers of x."""
     n = c.size
@@ -64,7 +52,7 @@ def shift(c: FloatArray, s: float, out: FloatArray) -> None:
             out[j] += s * out[j + 1]
 
 
-@compiled
+@compiled(nogil=True)
 def bounds(c: FloatArray, h: float) -> tuple[float, float]:
     """Bounds on [0, h]: those of the quadratic part, less and more the size of the rest."""
     rest, power = 0.0, h * h * h
@@ -79,7 +67,7 @@ def bounds(c: FloatArray, h: float) -> tuple[float, float]:
     return low - rest, high + rest
 
 
-@compiled
+@compiled(nogil=True)
 def crossing(c: FloatArray, h: float, sign: float) -> float:
     """First s in (0, h] where the polynomial leaves the sign that it counts as having at 0; else 2 h."""
     least, most = bounds(c, h)
@@ -109,7 +97,7 @@ def crossing(c: FloatArray, h: float, sign: float) -> float:
     return 2.0 * h
 
 
-@compiled
+@compiled(nogil=True)
 def _root(c: FloatArray, low: float, high: float, sign: float, above: float, below: float) -> float:
     """Zero between low, where the sign holds or counts as holding, and high, where it does not.
 
@@ -131,7 +119,7 @@ def _root(c: FloatArray, low: float, high: float, sign: float, above: float, bel
     return s
 
 
-@compiled
+@compiled(nogil=True)
 def extremes(c: FloatArray, h: float, low: float, high: float) -> tuple[float, float]:
     """The given smallest and largest value, or those on [0, h] where they are beyond."""
     least, most = bounds(c, h)

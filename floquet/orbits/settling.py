@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from floquet.orbits.branch import Family, Limits
-from floquet.orbits.polynomials import compiled
 from floquet.orbits.system import ContactSystem
+from lumped.compiler import compiled
 from lumped.typing import BoolArray, FloatArray
 
 #: Steps in a period of the fastest natural motion.
@@ -107,7 +107,7 @@ def _tables(system: ContactSystem, steps: float) -> tuple[Any, ...]:
     return h, k, c, values(e), values(b), values(a[:, :, :m]), u, K[:m], C[:m], F[:m], H[:m], output
 
 
-@compiled
+@compiled(nogil=True)
 def _run(
     z: FloatArray, v: FloatArray, T: FloatArray, parameter: FloatArray, cycles: int, observed: int,
     h: FloatArray, k: FloatArray, c: FloatArray, e: FloatArray, b: FloatArray, a: FloatArray,

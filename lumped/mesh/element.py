@@ -10,20 +10,15 @@ Sources: docs/theory/contact_energy.md, "Energy of one pair", "Tip corner", "Nei
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
-#: Files whose compiled functions the callers of the element contain.
-FILES = [Path(__file__)]
-compiled = Compiler(FILES)
 #: Of functions that allocate nothing: counting references would take most of their time.
-inlined = partial(compiled, _nrt=False, forceinline=True)
+inlined = compiled(_nrt=False, forceinline=True)
 
 #: One record, or an array of records, of a dtype below.
 Record = Any

@@ -11,14 +11,11 @@ model".
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
-from lumped.mesh import tables as mesh_tables
+from lumped.compiler import compiled
 from lumped.mesh.element import (
     AT_REST,
     BY_APPROACH,
@@ -34,6 +31,7 @@ from lumped.mesh.element import (
     add_force,
     clear_force,
     damper_share,
+    inlined,
     place_pair,
     record,
     rolling_rate,
@@ -43,9 +41,6 @@ from lumped.mesh.element import (
 )
 from lumped.mesh.tables import CyclePairs, MeshTables, cycle_pairs, fill_steps
 from lumped.typing import FloatArray, IntArray
-
-compiled = Compiler([Path(__file__), *mesh_tables.FILES])
-inlined = partial(compiled, _nrt=False, forceinline=True)
 
 #: The mesh about its static state, beside its FORCE.
 STATE = record(
@@ -279,7 +274,7 @@ def linear_of_step(
         linear_at(pairs, line, tables.coupling[step, node], tables.law, at, forces, state)
 
 
-@partial(compiled, nogil=True)
+@compiled(nogil=True)
 def linear_places(
     start: int, tables: MeshTables, asked: FloatArray, form: LinearForm, loads: Records
 ) -> None:
@@ -415,7 +410,7 @@ def fill_moments(
     return first
 
 
-@partial(compiled, nogil=True)
+@compiled(nogil=True)
 def linear_cycles(
     start: int, tables: MeshTables, looks: FloatArray, signs: int, rounds: int, form: LinearForm, fills: bool
 ) -> FloatArray:

@@ -8,20 +8,14 @@ Sources: docs/theory/teeth.md, "Motion"; docs/theory/contact_energy.md, "First l
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
-from lumped.mesh import tables as mesh_tables
-from lumped.mesh.element import CONTACT, MeshForce, Record, Records, mesh_force, record, share_load
+from lumped.compiler import compiled
+from lumped.mesh.element import CONTACT, MeshForce, Record, Records, inlined, mesh_force, record, share_load
 from lumped.mesh.tables import MeshTables, cycle_pairs, fill_steps
 from lumped.typing import FloatArray
-
-compiled = Compiler([Path(__file__), *mesh_tables.FILES])
-inlined = partial(compiled, _nrt=False, forceinline=True)
 
 #: A harmonic of a torque: amplitude cos(angle t/T_m + start).
 RIPPLE = record(

@@ -7,14 +7,11 @@ Sources: docs/theory/contact_energy.md, "Loaded contact of the linear model"; do
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
-from lumped.mesh import element
+from lumped.compiler import compiled
 from lumped.mesh.element import (
     CONTACT,
     FLANKS,
@@ -25,6 +22,7 @@ from lumped.mesh.element import (
     Record,
     Records,
     corner_gap,
+    inlined,
     open_gap,
     place_pair,
     share_load,
@@ -32,8 +30,6 @@ from lumped.mesh.element import (
 )
 from lumped.typing import FloatArray
 
-compiled = Compiler([Path(__file__), *element.FILES])
-inlined = partial(compiled, _nrt=False, forceinline=True)
 #: Relative error of an approach from which laws are fitted: that of rounding.
 _EXACT = 2e-15
 

@@ -11,20 +11,13 @@ Sources: docs/theory/teeth.md, "Tables", "Eccentricity".
 from __future__ import annotations
 
 import math
-from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
-from lumped.mesh import element
-from lumped.mesh.element import LINE, PAIR, ContactLaw, Record, Records, place_pair, record
+from lumped.compiler import compiled
+from lumped.mesh.element import LINE, PAIR, ContactLaw, Record, Records, inlined, place_pair, record
 from lumped.typing import FloatArray, IntArray
-
-FILES = [Path(__file__), *element.FILES]
-compiled = Compiler(FILES)
-inlined = partial(compiled, _nrt=False, forceinline=True)
 
 #: Laws of a kind of tooth pair at a place of the mesh cycle, or their slopes over xi.
 LAWS = record(

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.typing import FloatArray, IntArray
-
-compiled = Compiler([Path(__file__)])
 
 
 class Propagated(NamedTuple):
@@ -68,7 +64,7 @@ def add_rows(found: FloatArray, values: FloatArray, rows: FloatArray, first: int
             found[row] += f0 * part[0, row] + f1 * part[1, row] + f2 * part[2, row] + f3 * part[3, row]
 
 
-@partial(compiled, nogil=True)
+@compiled(nogil=True)
 def propagate(
     columns: FloatArray,
     kept: int,

@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
-from multibody.contact.kinematics import compiled
 
 #: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the mean
 #: load. Acting at once it would make the load jump by c times the speed of approach at the first touch.

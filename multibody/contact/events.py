@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from lumped.compiler import compiled
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
@@ -20,7 +21,6 @@ from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import (
     DRIVE,
     Line,
-    compiled,
     corner_gap,
     corner_reach,
     mesh_position,

@@ -15,6 +15,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from lumped.compiler import compiled
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
@@ -22,7 +23,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import stiffness_at
-from multibody.contact.kinematics import N_FRICTION, compiled
+from multibody.contact.kinematics import N_FRICTION
 
 # Places in the vector of friction parameters, all SI.
 (

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from lumped.compiler import compiled
 from lumped.typing import FloatArray, IntArray
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import (
@@ -31,7 +32,6 @@ from multibody.contact.kinematics import (
     OwnPair,
     add_gradient,
     add_wrench,
-    compiled,
     corners_at,
     engaged,
     mesh_position,

@@ -11,17 +11,13 @@ Sources: docs/theory/multibody.md, "Line of action", "Overlap, wrench and contac
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.path_function import FIT_DEGREE
 from lumped.typing import FloatArray
-
-_PACKAGE = Path(__file__).parents[1]
-compiled = Compiler(path for path in _PACKAGE.rglob("*.py") if b"@compiled" in path.read_bytes())
 
 #: Most tooth pairs in contact at once: contact ratio below 4.
 MAX_PAIRS = 4

@@ -19,12 +19,12 @@ from dataclasses import dataclass
 import exudyn as exu
 import numpy as np
 
+from lumped.compiler import compiled
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.events import SLIDING, time_to_event
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.kinematics import compiled
 from multibody.run.model import ExudynModel, accelerations, stored
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step

@@ -1,34 +1,36 @@
 """Does compiled code on disk always belong to the source that runs?"""
 
 import importlib
+import math
 import pkgutil
 import subprocess
 import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import filelock
 import pytest
 from numba.core.dispatcher import Dispatcher
 
 import lumped.compiler
+from lumped import kernel_stamps
+from lumped.compiler import compiled
 
-JIT = """
-from pathlib import Path
-from lumped.compiler import Compiler
-
-compiled = Compiler(Path(__file__).parent.glob("*.py"))
-"""
 CALLED = """
-from pkg.jit import compiled
+from lumped.compiler import compiled
 
 @compiled
 def double(x):
     return 2.0 * x
+
+@compiled
+def half(x):
+    return 0.5 * x
 """
 CALLER = """
-from pkg.jit import compiled
+from lumped.compiler import compiled
 from pkg.called import double
 
 @compiled
@@ -49,7 +51,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.syspath_prepend(tmp_path)
     folder = tmp_path / "pkg"
     folder.mkdir()
-    for name, text in (("__init__", ""), ("jit", JIT), ("called", CALLED), ("caller", CALLER)):
+    for name, text in (("__init__", ""), ("called", CALLED), ("caller", CALLER)):
         (folder / f"{name}.py").write_text(text, encoding="utf-8")
     return folder
 
@@ -60,8 +62,9 @@ def run(package: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
         """Value, and the number of functions taken from the disk."""
         for name in [name for name in sys.modules if name.partition(".")[0] == "pkg"]:
             monkeypatch.delitem(sys.modules, name)
-        f = importlib.import_module("pkg.caller").f
-        return f(1.0), sum(f.stats.cache_hits.values())
+        caller = importlib.import_module("pkg.caller")
+        value = caller.f(1.0)
+        return value, sum(getattr(caller, "kernel", caller.f).stats.cache_hits.values())
 
     return run
 
@@ -73,6 +76,181 @@ def test_edits_of_called_files_are_noticed(package: Path, run: Run) -> None:
     assert run() == (3.0, 0)
     (package / "called.py").write_text(CALLED, encoding="utf-8")
     assert run() == (2.0, 1)  # both states of the source have their own files
+
+
+def test_an_edit_that_does_not_act_leaves_the_stored_code(package: Path, run: Run) -> None:
+    assert run() == (2.0, 0)
+    (package / "called.py").write_text("# moved down\n\n" + CALLED.replace("0.5", "0.3"), encoding="utf-8")
+    assert run() == (2.0, 1)
+
+
+#: Files that make f(1.0) = 2.0, and an edit of the second one that makes it 3.0.
+DEPENDENCIES = {
+    "operation of a called function": (
+        "from pkg.called import add\n@compiled\ndef f(x):\n    return add(x)",
+        "@compiled\ndef add(x):\n    return 2.0 * x",
+        ("*", "+"),
+    ),
+    "number of another file": (
+        "from pkg.called import FACTOR\n@compiled\ndef f(x):\n    return FACTOR * x",
+        "FACTOR = 2.0",
+        ("2.0", "3.0"),
+    ),
+    "number that another file computes": (
+        "from pkg import called\n@compiled\ndef f(x):\n    return called.FACTOR * x",
+        "def _sum(a, b):\n    return a + b\nFACTOR = _sum(1.0, 1.0)",
+        ("(1.0,", "(2.0,"),
+    ),
+    "array": (
+        "from pkg.called import TABLE\n@compiled\ndef f(x):\n    return TABLE[1, 0] * x",
+        "import numpy as np\nTABLE = np.array([[1.0, 3.0], [2.0, 4.0]])",
+        ("]])", "]]).T.copy()"),
+    ),
+    "members of an enum": (
+        "from pkg.called import Gear\n@compiled\ndef f(x):\n    return Gear.WHEEL.value * x",
+        "from enum import Enum\nclass Gear(Enum):\n    PINION, WHEEL = 3.0, 2.0",
+        ("3.0, 2.0", "2.0, 3.0"),
+    ),
+    "default of a called function": (
+        "from pkg.called import times\n@compiled\ndef f(x):\n    return times(x)",
+        "@compiled\ndef times(x, by=2.0):\n    return by * x",
+        ("2.0", "3.0"),
+    ),
+    "closure of a called function": (
+        "from pkg.called import times\n@compiled\ndef f(x):\n    return times(x)",
+        "def by(n):\n    @compiled\n    def f(x):\n        return n * x\n    return f\ntimes = by(2.0)",
+        ("2.0", "3.0"),
+    ),
+    "function inside a called function": (
+        "from pkg.called import times\n@compiled\ndef f(x):\n    return times(x)",
+        "@compiled\ndef times(x):\n    def inner(x):\n        return 2.0 * x\n    return inner(x)",
+        ("2.0", "3.0"),
+    ),
+    "functions that call each other": (
+        "from pkg import called\nfrom pkg.called import even\n@compiled\ndef odd(x, n):\n"
+        "    if n == 0:\n        return 4.0 * x\n    return even(x, n - 1)\ncalled.odd = odd\n"
+        "@compiled\ndef f(x):\n    return odd(x, 3)",
+        "@compiled\ndef even(x, n):\n    if n == 0:\n        return 2.0 * x\n    return odd(x, n - 1)",
+        ("2.0", "3.0"),
+    ),
+    "fields of a record that is made": (
+        "from pkg.called import Record\n@compiled\ndef f(x):\n    return Record(3.0, 2.0).second * x",
+        "from typing import NamedTuple\nclass Record(NamedTuple):\n    first: float\n    second: float",
+        ("first: float\n    second", "second: float\n    first"),
+    ),
+    "fields of a record in an argument": (
+        "from pkg.called import Record\n@compiled\ndef kernel(pair, x):\n    return pair[0].second * x\n"
+        "def f(x):\n    return kernel((Record(3.0, 2.0), 0), x)",
+        "from typing import NamedTuple\nclass Record(NamedTuple):\n    first: float\n    second: float",
+        ("first: float\n    second", "second: float\n    first"),
+    ),
+    "dtype": (
+        "import numpy as np\nfrom pkg.called import KIND\n@compiled\ndef f(x):\n"
+        "    rows = np.zeros(1, KIND)\n    rows[0].n = 2.5\n    return 2.0 * rows[0].n - 2.0 * x",
+        "import numpy as np\nKIND = np.dtype([('n', 'i8')])",
+        ("i8", "f8"),
+    ),
+}
+
+
+def _write(package: Path, **files: str) -> None:
+    for name, text in files.items():
+        text = f"from lumped.compiler import compiled\n{text}\n"
+        (package / f"{name}.py").write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", DEPENDENCIES)
+def test_every_kind_of_dependency_is_noticed(name: str, package: Path, run: Run) -> None:
+    caller, called, edit = DEPENDENCIES[name]
+    assert called.count(edit[0]) == 1
+    _write(package, caller=caller, called=called)
+    assert [run(), run()] == [(2.0, 0), (2.0, 1)]
+    _write(package, called=called.replace(*edit))
+    assert [run(), run()] == [(3.0, 0), (3.0, 1)]
+
+
+def test_an_edit_at_the_end_of_a_chain_of_files_is_noticed(package: Path, run: Run) -> None:
+    last = "@compiled\ndef last(x):\n    return 2.0 * x"
+    _write(
+        package,
+        caller="from pkg.called import middle\n@compiled\ndef f(x):\n    return middle(x)",
+        called="from pkg.last import last\n@compiled\ndef middle(x):\n    return last(x)",
+        last=last,
+    )
+    assert [run(), run()] == [(2.0, 0), (2.0, 1)]
+    _write(package, last=last.replace("2.0", "3.0"))
+    assert [run(), run()] == [(3.0, 0), (3.0, 1)]
+
+
+#: Globals that count with files: of which ``called`` is one, and imports ``last``.
+BY_FILES = {
+    "intrinsic": """
+from numba.extending import intrinsic
+from pkg.last import FACTOR
+
+@intrinsic
+def times(typing, x):
+    def code(context, builder, signature, args):
+        return builder.fmul(args[0], context.get_constant(x, FACTOR))
+
+    return x(x), code
+""",
+    "object of another kind": """
+from numba import types
+from . import last
+
+kind = (types.int8, types.int16)[last.FACTOR > 2.5]
+""",
+}
+
+
+@pytest.fixture(params=BY_FILES)
+def by_files(request: pytest.FixtureRequest, package: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    name, result = (
+        ("times", "times(x)") if request.param == "intrinsic" else ("kind", "1.0 + x + (kind(257) == 257)")
+    )
+    _write(package, called=BY_FILES[request.param], last="FACTOR = 2.0")
+    _write(package, caller=f"from pkg.called import {name}\n@compiled\ndef f(x):\n    return {result}")
+    kernel_stamps._text_behind.cache_clear()  # as a new process has it
+    return package
+
+
+def test_files_behind_a_global_that_cannot_be_taken_apart_are_noticed(
+    by_files: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kernel_stamps, "_IMPORTED", math.inf)  # files are older than the process
+    assert [run(), run()] == [(2.0, 0), (2.0, 1)]
+    _write(by_files, last="FACTOR = 3.0")
+    kernel_stamps._text_behind.cache_clear()
+    assert [run(), run()] == [(3.0, 0), (3.0, 1)]
+
+
+def test_code_of_a_file_that_was_written_after_its_import_is_not_stored(
+    by_files: Path, run: Run, tmp_path: Path
+) -> None:
+    assert [run(), run()] == [(2.0, 0), (2.0, 0)]
+    assert not list((tmp_path / "cache").rglob("*.kernel"))
+
+
+def test_code_that_calls_older_code_is_not_stored(package: Path, run: Run, tmp_path: Path) -> None:
+    """A module is loaded again after an edit; another one holds its function, compiled before the edit."""
+    called = "FACTOR = 2.0\n@compiled\ndef times(x):\n    return FACTOR * x"
+    late = "@compiled\ndef late(x):\n    return times(x)"
+    _write(package, called=called, caller=f"from pkg.called import times\nf = times\n{late}")
+    assert run() == (2.0, 0)
+    _write(package, called=called.replace("2.0", "3.0"))
+    importlib.reload(sys.modules["pkg.called"])
+    assert sys.modules["pkg.caller"].late(1.0) == 2.0
+    assert not list((tmp_path / "cache").rglob("late-*.kernel"))
+
+
+def test_options_are_noticed() -> None:
+    def double(x: float) -> float:
+        return 2.0 * x
+
+    options: list[dict[str, Any]] = [{}, {"nogil": True}, {"fastmath": {"contract"}}, {"fastmath": {"nnan"}}]
+    kernels = [compiled(**chosen)(double) for chosen in options]
+    assert len({kernel_stamps.stamp_of(kernel) for kernel in kernels}) == len(options)
 
 
 #: Ends the process at the moment at which the kernel that was compiled last would get its name.
@@ -139,16 +317,24 @@ def test_old_folders_are_removed(run: Run, tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(lumped.compiler, "_MOST_FOLDERS", 2)
     for name in ("a", "b", "c"):
         (tmp_path / "cache" / "spurcheck" / name).mkdir(parents=True)
-    run()
+    run()  # two kernels, each with a folder
     assert len(list((tmp_path / "cache" / "spurcheck").iterdir())) == 2
     assert run() == (2.0, 1)  # the newest is one of them
 
 
-@pytest.mark.parametrize("package", ["floquet.rank_one.kernels", "multibody.contact"])
-def test_all_kernels_that_call_each_other_across_files_have_one_stamp(package: str) -> None:
-    folder = importlib.import_module(package).__path__
-    modules = [importlib.import_module(f"{package}.{module.name}") for module in pkgutil.iter_modules(folder)]
+def test_of_the_globals_in_compiled_functions_intrinsics_alone_count_with_files(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """So an edit compiles what it acts on, and nothing else."""
+    by_files: list[object] = []
+    monkeypatch.setattr(kernel_stamps._Dependencies, "_of_files", lambda _, value, __: by_files.append(value))
+    modules = [
+        importlib.import_module(module.name)
+        for package in ("lumped", "multibody", "floquet")
+        for module in pkgutil.walk_packages(importlib.import_module(package).__path__, f"{package}.")
+    ]
     functions = {f for module in modules for f in vars(module).values() if isinstance(f, Dispatcher)}
-    own = {f for f in functions if f.py_func.__module__.startswith(package)}
-    assert len(own) > 10
-    assert len({f._cache._stamp for f in own}) == 1
+    stamps = {kernel_stamps.stamp_of(function) for function in functions}
+    assert len(stamps) == len(functions) > 100
+    assert by_files
+    assert {type(value).__name__ for value in by_files} == {"_Intrinsic"}

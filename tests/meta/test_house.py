@@ -10,8 +10,8 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Files that every folder of a package may need; everything else has a folder.
 LOOSE = {
-    "lumped": {"arguments", "cache", "compiler", "errors", "gauss_legendre", "labelling", "outcomes",
-     "path_function", "ranges", "typing"},
+    "lumped": {"arguments", "cache", "compiler", "errors", "gauss_legendre", "kernel_stamps", "labelling",
+     "outcomes", "path_function", "ranges", "typing"},
     "validation": {"stop_signals", "cli"},
 }  # fmt: skip
 #: Folders of tests that belong to no single package.

@@ -41,10 +41,11 @@ def compiling(bar: Progress) -> Iterator[Progress]:
 
 
 def _all_stored() -> bool:
-    from floquet.rank_one.kernels.simd import _COMPILE as charts
-    from multibody.contact.kinematics import compiled as contact
+    from floquet.rank_one.kernels.taylor import propagate_points
+    from lumped.compiler import is_stored
+    from multibody.run.integration import bridge
 
-    return charts.stored("spectra") and contact.stored("bridge")
+    return is_stored(propagate_points) and is_stored(bridge)
 
 
 def _start() -> subprocess.Popen[bytes]:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.rank_one.kernels.eigenvalues import eigenvalues
-from floquet.rank_one.kernels.simd import compiled
+from lumped.compiler import compiled
 from lumped.typing import ComplexArray, FloatArray
 
 _EPS = 2.220446049250313e-16

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from floquet.rank_one.kernels.simd import compiled
+from lumped.compiler import compiled
 from lumped.typing import ComplexArray, FloatArray
 
 _EPS = 2.220446049250313e-16

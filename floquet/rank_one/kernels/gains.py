@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from floquet.rank_one.kernels.simd import (
     LANES,
-    compiled,
     least,
     load,
     plus,
@@ -26,6 +25,7 @@ from floquet.rank_one.kernels.simd import (
     total,
     zero,
 )
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 MAX_TERMS = 64

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from floquet.rank_one.kernels.simd import LANES, compiled, load, plus, plus_square, scaled, store, total, zero
+from floquet.rank_one.kernels.simd import LANES, load, plus, plus_square, scaled, store, total, zero
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 BLOCKS = 34

@@ -1,4 +1,4 @@
-"""The compiler of the kernels, and eight numbers side by side as one value of compiled code.
+"""Eight numbers side by side as one value of compiled code.
 
 The compiler does not turn short loops over possibly overlapping arrays into vector instructions. ``load`` and
 ``store`` move eight numbers of the last axis of an array; everything else works on registers.
@@ -6,26 +6,12 @@ The compiler does not turn short loops over possibly overlapping arrays into vec
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba.core import cgutils, types
 from numba.core.datamodel import models
 from numba.extending import intrinsic, register_model
-
-from lumped.compiler import Compiler
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-_COMPILE = Compiler(Path(__file__).parent.glob("*.py"))
-
-
-def compiled(**options: Any) -> Callable[[F], F]:
-    """Compile with these options of numba.njit."""
-    return lambda function: _COMPILE(function, **options)
-
 
 LANES = 8
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)

@@ -27,7 +27,8 @@ from floquet.rank_one.kernels.gains import (
     scratch_for,
 )
 from floquet.rank_one.kernels.product import BLOCKS, carry, copy, divide, frobenius, multiply
-from floquet.rank_one.kernels.simd import LANES, compiled, load, plus, scaled, store, zero
+from floquet.rank_one.kernels.simd import LANES, load, plus, scaled, store, zero
+from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 _U = 0.5 * 2.220446049250313e-16

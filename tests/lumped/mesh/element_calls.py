@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
-from lumped.compiler import Compiler
+from lumped.compiler import compiled
 from lumped.mesh import element, linear
 from lumped.mesh.element import CONTACT, EXACT, FLANKS, LINE, PAIR, ContactLaw
-
-compiled = Compiler([Path(__file__), Path(linear.__file__), *element.FILES])
 
 
 @compiled
