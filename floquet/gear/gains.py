@@ -19,12 +19,13 @@ import numpy.typing as npt
 from floquet.rank_one.piecewise import series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
+from lumped.mesh.element import BY_APPROACH, BY_RATE, FORCE
+from lumped.mesh.linear import SIGNS, STATE, LinearForm, linear_cycles
+from lumped.mesh.tables import MeshTables
 from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import PathFunction
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.kernels import Tables
-from lumped.teeth.motion import moments, static_rows
-from lumped.teeth.static_kernels import static_cycles
+from lumped.teeth.motion import linear_form_at, moments
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -320,7 +321,7 @@ class MeshGains:
         return total, self.mean + self.factor * (total - self.mean)
 
 
-def own_tables(laws: Laws) -> Tables:
+def own_tables(laws: Laws) -> MeshTables:
     """Tables of laws with every break that give each law to rounding between their nodes."""
     return tables(laws, _LARGEST_STEP, 1, 0.5 - 0.5 * to_series(_NODES)[0])
 
@@ -335,11 +336,13 @@ class OwnGains:
 
     count = 12
 
-    def __init__(self, own: Tables, system: LTVSystem, fixed: bool, first: int, cycles: int) -> None:
-        self.own, self.fixed, self.first = own, fixed, first
+    def __init__(self, own: MeshTables, system: LTVSystem, first: int, cycles: int) -> None:
+        self.own, self.first = own, first
         self.forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
         starts = np.add.outer(np.arange(cycles), own.edges[:-1])
-        kinks = static_cycles(first, fixed, own, _LOOKS, 4, _ROUNDS, np.empty((*starts.shape, 0, 18)))
+        shape = (*starts.shape, 0)
+        nothing = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
+        kinks = linear_cycles(first, own, _LOOKS, SIGNS, _ROUNDS, nothing, False)
         self.edges = np.unique(np.concatenate([starts.ravel(), [cycles], kinks]))
 
     def __call__(
@@ -349,11 +352,13 @@ class OwnGains:
         cycle, ends = np.floor(centre)[:, None], self.own.edges
         step = np.searchsorted(ends[1:-1], centre[:, None] - cycle, side="right")
         place = (centre[:, None] + half[:, None] * nodes - cycle - ends[step]) / np.diff(ends)[step]
-        rows = static_rows(self.own, self.first, self.fixed, 0, cycle, step, place)[0]
+        form, _ = linear_form_at(self.own, self.first, cycle, step, place)
         gains = []
-        for n in (0, 3):
-            load, apart = rows[..., n], rows[..., 14 + n // 3]
-            by = [load, load * rows[..., 9], load * rows[..., 10], rows[..., n + 1], rows[..., n + 2], apart]
+        for part in (BY_APPROACH, BY_RATE):
+            force = form.forces[..., part]
+            normal, state = force["normal"], form.states
+            by = [normal, normal * state["moment_pinion"], normal * state["moment_gear"]]
+            by += [force["friction"], force["friction_moment"], force["separating"]]
             gains.append(-np.stack(by, axis=-1) @ self.forces)
         nothing = np.zeros((2, centre.size))
         return np.stack(gains), nothing, nothing

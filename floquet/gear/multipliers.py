@@ -26,6 +26,7 @@ from floquet.rank_one.piecewise import fit_pieces
 from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import one_of, real_number
 from lumped.compiler import in_threads
+from lumped.mesh.tables import RIPPLES
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.supports import Form
 from lumped.path_of_contact.friction import friction_misfit
@@ -426,7 +427,7 @@ def revolution_multipliers(
     like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
     cycles, laws = period_of(pair), Laws(pair, every=True)
     # Errors of the teeth force prescribed contact and do not change it.
-    alike = not laws.loaded and len(laws.faults) == 1 and not laws.eccentric()[:2, 0].any()
+    alike = not laws.loaded and len(laws.faults) == 1 and not laws.turning()["amplitude"][:RIPPLES].any()
     healthy = float(_of_cycles(Laws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
     # The product of so many does not vanish, and the kernel has as many steps.
     most = min(_SMALLEST / np.log(min(healthy, 0.99)), 4e4 / (1e3 + like.modal().omega.max() * like.period))
@@ -441,11 +442,11 @@ def _of_cycles(
     laws: Laws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
 ) -> tuple[ComplexArray, FloatArray, float]:
     """Multipliers over so many cycles, largest first, their rates, and a bound on the largest one's error."""
-    own, fixed, mean = own_tables(laws), not laws.loaded, like.mean_of(like.gains.w)
+    own, mean = own_tables(laws), like.mean_of(like.gains.w)
 
     def map_of(first: int) -> FastMonodromy:
         count = min(block, cycles - first)
-        gains = OwnGains(own, feedback.system, fixed, first, count)
+        gains = OwnGains(own, feedback.system, first, count)
         phases, (w, wd), misfit, _ = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
         period, fits = count * like.period, Gains(w, wd, misfit)
         turning = None if like.gyroscopic is None else count * like.gyroscopic

@@ -1,6 +1,8 @@
-"""Compiled Gauss steps with a rank-one mesh, and chains of affine maps."""
+"""Compiled Gauss steps of a system with a feedback of rank one, and chains of affine maps."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,74 +10,136 @@ from lumped.compiler import compiled
 from lumped.typing import FloatArray, IntArray
 
 
-@compiled
-def gauss_steps(
-    which: IntArray,
-    free_end: FloatArray,
-    free_p: FloatArray,
-    by_feedback: FloatArray,
-    start: FloatArray,
-    by_p: FloatArray,
-    stiffness: FloatArray,
-    damping: FloatArray,
-    error: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Maps (k, 2m, columns) of Gauss steps, and to delta and its rate at their stages (k, 2, s, columns).
+class Propagated(NamedTuple):
+    """Columns that were taken through steps; the first of them are kept.
 
-    ``which`` (k,) is the length of each step, a row of the next five, which are those of
-    ``lumped.model.propagation.without_mesh``; then (k, s, m) the gains of the mesh at the stages.
+    Attributes
+    ----------
+    ends : (runs, columns, 2m) states at the ends of the runs
+    states : (runs, steps, kept, 2m) at the start of every step
+    inside : (runs, steps, kept, 2s) deflection at the stages, then its rate
     """
-    k, stages, m = stiffness.shape
-    rows, columns = stages + 2 * m, free_end.shape[2]
-    maps = np.empty((k, 2 * m, columns))
-    to, fixed = np.empty((2 * stages, rows)), np.empty(rows)
-    matrix, p = np.empty((stages, stages)), np.empty((stages, columns))
-    inside = np.empty((k, 2, stages, columns))
-    for j in range(k):
-        inner = inside[j].reshape(2 * stages, columns)
-        of = which[j]
+
+    ends: FloatArray
+    states: FloatArray
+    inside: FloatArray
+
+
+@compiled
+def feedback_at_stages(strength: FloatArray, by_force: FloatArray, to: FloatArray, fixed: FloatArray) -> None:
+    """Write what p and end of a step take from deflections and rates at the stages, and from neither.
+
+    ``strength`` (s, 3, forces) per deflection, per rate and without motion; ``by_force`` (s, forces, rows).
+    """
+    stages, rows = strength.shape[0], fixed.size
+    for row in range(rows):
+        fixed[row] = 0.0
+    for stage in range(stages):
         for row in range(rows):
-            fixed[row] = 0.0
-        for stage in range(stages):
-            for row in range(rows):
-                to[stage, row], to[stages + stage, row] = 0.0, 0.0
-            for i in range(m):
-                by_k, by_c, by_e = stiffness[j, stage, i], damping[j, stage, i], error[j, stage, i]
+            to[stage, row] = to[stages + stage, row] = 0.0
+        for force in range(strength.shape[2]):
+            by_deflection = strength[stage, 0, force]
+            by_rate = strength[stage, 1, force]
+            at_rest = strength[stage, 2, force]
+            if by_deflection != 0.0 or by_rate != 0.0 or at_rest != 0.0:
                 for row in range(rows):
-                    factor = by_feedback[of, stage, i, row]
-                    to[stage, row] += factor * by_k
-                    to[stages + stage, row] += factor * by_c
-                    fixed[row] += factor * by_e
-        for row in range(stages):
-            for column in range(columns):
-                p[row, column] = free_p[of, row, column]
-            p[row, 2 * m] += fixed[row]
-            for column in range(stages):
-                matrix[row, column] = 0.0
-            matrix[row, row] = 1.0
-            for i in range(2 * stages):
-                factor = to[i, row]
-                for column in range(columns):
-                    p[row, column] += factor * start[of, i, column]
+                    factor = by_force[stage, force, row]
+                    to[stage, row] += by_deflection * factor
+                    to[stages + stage, row] += by_rate * factor
+                    fixed[row] += at_rest * factor
+
+
+@compiled
+def add_rows(found: FloatArray, values: FloatArray, rows: FloatArray, first: int) -> None:
+    """Add values times rows to what is found from an entry on.
+
+    Four rows together, for a processor loads and stores fewer; there are a multiple of four.
+    """
+    for i in range(0, values.size, 4):
+        f0, f1, f2, f3 = values[i], values[i + 1], values[i + 2], values[i + 3]
+        if f0 == 0.0 and f1 == 0.0 and f2 == 0.0 and f3 == 0.0:  # most of a unit column
+            continue
+        part = rows[i : i + 4]
+        for row in range(first, found.size):
+            found[row] += f0 * part[0, row] + f1 * part[1, row] + f2 * part[2, row] + f3 * part[3, row]
+
+
+@compiled(nogil=True)
+def propagate(
+    columns: FloatArray,
+    kept: int,
+    strength: FloatArray,
+    which: IntArray,
+    free: FloatArray,
+    by_force: FloatArray,
+    by_p: FloatArray,
+    reach: FloatArray,
+    deflection: FloatArray,
+) -> Propagated:
+    """Take columns through Gauss steps of z'' = free part + forces of rank one, each run from its own start.
+
+    Parameters
+    ----------
+    columns : (runs, columns, wide) states at the starts (2m), then the weights of the forcings; the forces
+        without motion have that of the first one
+    kept : how many columns are kept at every step
+    strength : (runs, steps, s, 3, forces) of each force per deflection, per its rate and without motion
+    which : (runs or 1, steps) the length of each step, a row of the next four
+    free : (k, wide, s + 2m) p, the stage accelerations along the deflection, and end without forces
+    by_force, by_p : of ``lumped.model.propagation.without_mesh``, (k, s, forces, s + 2m) and (k, 2s, s)
+    reach : (k, s) time from the start to each stage [s]
+    deflection : (m,)
+    """
+    runs, count, wide = columns.shape
+    steps, stages, m = strength.shape[1], strength.shape[2], deflection.size
+    n, rows = 2 * m, stages + 2 * m
+    ends, states = np.empty((runs, count, n)), np.empty((runs, steps, kept, n))
+    inside = np.empty((runs, steps, kept, 2 * stages))
+    fours = -(-2 * stages // 4) * 4  # as ``add_rows`` takes them
+    to, fixed, found = np.zeros((fours, rows)), np.empty(rows), np.empty(rows)
+    at_stages, p = np.zeros(fours), np.empty(stages)
+    matrix, inverse = np.empty((stages, stages)), np.empty((stages, stages))
+    now = np.empty((count, wide))
+    for run in range(runs):
+        now[:] = columns[run]
+        for step in range(steps):
+            of = which[run if which.shape[0] > 1 else 0, step]
+            feedback_at_stages(strength[run, step], by_force[of], to, fixed)
+            for row in range(stages):
                 for column in range(stages):
-                    matrix[row, column] -= factor * by_p[of, i, column]
-        solve_in_place(matrix, p)
-        for row in range(2 * stages):
-            for column in range(columns):
-                inner[row, column] = start[of, row, column]
-            for i in range(stages):
-                factor = by_p[of, row, i]
-                for column in range(columns):
-                    inner[row, column] += factor * p[i, column]
-        for row in range(2 * m):
-            for column in range(columns):
-                maps[j, row, column] = free_end[of, row, column]
-            maps[j, row, 2 * m] += fixed[stages + row]
-            for i in range(2 * stages):
-                factor = to[i, stages + row]
-                for column in range(columns):
-                    maps[j, row, column] += factor * inner[i, column]
-    return maps, inside
+                    matrix[row, column] = inverse[row, column] = 1.0 if row == column else 0.0
+                    for i in range(2 * stages):
+                        matrix[row, column] -= to[i, row] * by_p[of, i, column]
+            solve_in_place(matrix, inverse)
+            for column in range(count):
+                x = now[column]
+                place = rate = 0.0
+                for j in range(m):
+                    place += deflection[j] * x[j]
+                    rate += deflection[j] * x[m + j]
+                for row in range(rows):
+                    found[row] = fixed[row] * x[n]
+                add_rows(found, x, free[of], 0)
+                for stage in range(stages):
+                    at_stages[stage], at_stages[stages + stage] = place + reach[of, stage] * rate, rate
+                for i in range(2 * stages):
+                    for row in range(stages):
+                        found[row] += to[i, row] * at_stages[i]
+                for row in range(stages):
+                    p[row] = 0.0
+                    for i in range(stages):
+                        p[row] += inverse[row, i] * found[i]
+                for row in range(2 * stages):
+                    for i in range(stages):
+                        at_stages[row] += by_p[of, row, i] * p[i]
+                if column < kept:
+                    states[run, step, column] = x[:n]
+                    inside[run, step, column] = at_stages[: 2 * stages]
+                add_rows(found, at_stages, to, stages)
+                for row in range(n):
+                    x[row] = found[stages + row]
+        ends[run] = now[:, :n]
+    return Propagated(ends, states, inside)
 
 
 @compiled

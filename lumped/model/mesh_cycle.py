@@ -16,6 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
+from lumped.mesh.element import Records
+from lumped.mesh.linear import forces_of_laws
 from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
@@ -51,6 +53,17 @@ class PairState:
     error: FloatArray
     error_rate: FloatArray
     tilt: FloatArray | None = None
+
+    def load(self, approach: FloatArray, rate: FloatArray) -> FloatArray:
+        """Normal load (pairs, k) [N] of the linear form, at an approach [m] and its rate [m/s]."""
+        closing = rate - self.error_rate
+        return np.asarray(self.stiffness * (approach - self.error) + self.damping * closing)
+
+    @property
+    def forces(self) -> Records:
+        """FORCE (k, 3) of all pairs in the linear form, see ``lumped.mesh.linear``."""
+        at_rest = -(self.stiffness * self.error + self.damping * self.error_rate)
+        return forces_of_laws(self.position, self.friction, self.tilt, self.stiffness, self.damping, at_rest)
 
 
 @dataclass(frozen=True, eq=False)

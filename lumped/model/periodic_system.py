@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
+from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, Records
 from lumped.model.equations import Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, PairState
 from lumped.model.supports import SUPPORTS, Form
@@ -153,22 +154,23 @@ class LTVSystem:
         """Acceleration (m,) of z per unit of the force by which a tip corner pushes the gears apart."""
         return np.asarray(self.structure.apart / self.structure.mass @ self.reduction.T, dtype=np.float64)
 
+    @cached_property
+    def directions(self) -> FloatArray:
+        """Accelerations (4, m) of z per unit of each field of ``lumped.mesh.element.FORCE``."""
+        return np.vstack([self.per_load, self.per_apart])
+
+    def mesh_forces(
+        self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None
+    ) -> tuple[Records, PairState]:
+        """FORCE (k, 3) of the linear form at times (k,) [s], and its pairs; ``segment`` as in ``gain``."""
+        pairs = self.cycle.sample(time, segment)
+        return pairs.forces, pairs
+
     def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
         """Rank-one feedback of the mesh at times (k,) [s]; ``segment`` as in ``MeshCycle.sample``."""
-        pairs = self.cycle.sample(time, segment)
-
-        def acceleration(load: FloatArray) -> FloatArray:
-            friction = pairs.friction * load
-            loads = np.stack([v.sum(0) for v in (load, friction, friction * pairs.position)], axis=-1)
-            found = loads @ self.per_load
-            if pairs.tilt is not None:
-                found += np.multiply.outer((pairs.tilt * load).sum(0), self.per_apart)
-            return found
-
-        error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
-        return MeshGain(
-            acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error), pairs
-        )
+        forces, pairs = self.mesh_forces(time, segment)
+        by_part = forces.view(np.float64).reshape(*forces.shape, -1) @ self.directions
+        return MeshGain(by_part[:, BY_APPROACH], by_part[:, BY_RATE], by_part[:, AT_REST], pairs)
 
     def matrices(self, time: ArrayLike) -> FloatArray:
         """A at times (k,) [s] -> (k, 2m, 2m)."""

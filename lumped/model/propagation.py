@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, gauss_steps, merged, states_along
+from lumped.model.kernels import chained, merged, propagate, states_along
 from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
@@ -43,7 +44,7 @@ class Steps:
     ----------
     length : (k,) [s]
     maps : (k, n, n + columns) transition, then forced for each forcing, then columns of zeros
-    inside : (k, 2, s, n + columns) maps to the dynamic transmission error and its rate at the stages
+    inside : (k, n + columns, 2 s) maps to the dynamic transmission error at the stages, and to its rate
     teeth : (4, pairs, k, s) k, c, e and e' there, as in ``PairState``
     """
 
@@ -94,12 +95,11 @@ class StepMaps:
         state, work = initial, 0.0
         for steps in self.steps():
             states = states_along(steps.maps, state, weights)
-            count, _, stages, columns = steps.inside.shape
-            held = np.zeros((count, columns, 1))
-            held[:, : state.size, 0] = states[:-1]
-            held[:, state.size : state.size + weights.size, 0] = weights
-            moved = steps.inside.reshape(count, 2 * stages, columns) @ held
-            dte, rate = moved[:, :stages, 0], moved[:, stages:, 0]
+            count, columns, _ = steps.inside.shape
+            held = np.zeros((count, 1, columns))
+            held[:, 0, : state.size] = states[:-1]
+            held[:, 0, state.size : state.size + weights.size] = weights
+            dte, rate = np.split((held @ steps.inside)[:, 0], 2, axis=1)
             k, c, e, e_rate = steps.teeth
             power = (k * (dte - e)).sum(axis=0) * rate + (c * (rate - e_rate) * e_rate).sum(axis=0)
             work += float(steps.length @ power @ gauss_tableau(power.shape[1])[1])
@@ -145,10 +145,10 @@ def step_maps(
     forcings = 1 + extra.shape[1]
     extra = padded(system, extra)
     first, which = distinct_lengths(system, grid.length)
-    free = without_mesh(system, grid.length[first], extra, gauss_tableau(stages))
+    free = without_mesh(system, grid.length[first], extra, gauss_tableau(stages), system.directions)
 
     count = grid.length.size
-    few = count <= max(_ALWAYS_KEPT, _MOST_KEPT // free[0][0].size)
+    few = count <= max(_ALWAYS_KEPT, _MOST_KEPT // free.along[0].size)
     together = count if few else _BLOCK  # kept ones at once: maps need not be copied into one array
 
     def steps() -> Iterator[Steps]:
@@ -180,7 +180,7 @@ def _steps(
     start: FloatArray,
     h: FloatArray,
     which: IntArray,
-    free: tuple[FloatArray, ...],
+    free: FreeSteps,
 ) -> Steps:
     """Gauss steps of lengths h (k,) from the times ``start``; ``which`` of the lengths of ``free`` each has.
 
@@ -193,14 +193,17 @@ def _steps(
     The part without n depends on h alone, and few lengths differ. W reaches n through the numbers p_i = u.W_i
     only, so each step solves s equations instead of s m, for all unit states and forcings together.
     """
-    m, k, stages = system.size // 2, h.size, free[1].shape[1]
+    n, k, (_, stages) = system.size, h.size, free.reach.shape
     times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
-    gain = system.gain(times, np.repeat(segment, stages))
-    gains = [values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error)]
-    maps, inside = gauss_steps(which, *free, *gains)
-    pairs = gain.pairs
+    forces, pairs = system.mesh_forces(times, np.repeat(segment, stages))
+    strength = forces.view(np.float64).reshape(k, 1, stages, 3, -1)
+    width = free.along.shape[1]
+    units = np.broadcast_to(np.eye(width), (k, width, width))
+    found = propagate(units, width, strength, which[:, None], *free, system.deflection)
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
-    return Steps(h, maps, inside, teeth.reshape(*teeth.shape[:2], k, stages))
+    maps = np.ascontiguousarray(found.ends.swapaxes(1, 2))
+    assert maps.shape[1] == n
+    return Steps(h, maps, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
 
 
 def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArray]:
@@ -213,22 +216,36 @@ def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArr
     return first, which
 
 
-def without_mesh(
-    system: LTVSystem, h: FloatArray, extra: FloatArray, gauss: tuple[FloatArray, FloatArray, FloatArray]
-) -> tuple[FloatArray, ...]:
-    """What ``_steps`` needs of step lengths h (k,); columns are unit states and forcings, s stages.
+class FreeSteps(NamedTuple):
+    """What ``propagate`` needs of k step lengths with s stages.
 
-    Returns
-    -------
-    end (k, 2m, columns) and p (k, s, columns) without feedback; what p, then the end take from the feedback
-    n_i (k, s, m, s + 2m); stage deflections, then their rates, by the start (k, 2s, columns) and by p
-    (k, 2s, s)
+    Attributes
+    ----------
+    along : (k, wide, s + 2m) p, then the end, without forces, of unit states and forcings
+    by_force : (k, s, forces, s + 2m) what p, then the end take from each force at each stage
+    by_p : (k, 2s, s) deflection at the stages, then its rate, by p
+    reach : (k, s) time from the start to each stage [s]
     """
+
+    along: FloatArray
+    by_force: FloatArray
+    by_p: FloatArray
+    reach: FloatArray
+
+
+def without_mesh(
+    system: LTVSystem,
+    h: FloatArray,
+    extra: FloatArray,
+    gauss: tuple[FloatArray, FloatArray, FloatArray],
+    directions: FloatArray,
+) -> FreeSteps:
+    """What ``propagate`` needs of step lengths h (k,), of forces with the ``directions`` (forces, m)."""
     a, b, c = gauss
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
     stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
-    h = h[:, None, None]
+    lengths, h = h, h[:, None, None]
     left = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
     inverse = np.linalg.inv(left).reshape(k, s, m, s, m)
     right = np.zeros((k, s, m, 2 * m + forces.shape[1]))
@@ -242,15 +259,16 @@ def without_mesh(
     end[:, :, : 2 * m] += np.eye(2 * m)
     end[:, :m, m : 2 * m] += h * np.eye(m)
     p = np.einsum("m,ksmx->ksx", u, accelerations)
-    start = np.zeros((k, 2 * s, columns))
-    start[:, :s, :m] = start[:, s:, m : 2 * m] = u
-    start[:, :s, m : 2 * m] = h * np.multiply.outer(c, u)
     by_feedback = np.zeros((k, s, m, s + 2 * m))
     by_feedback[..., :s] = np.einsum("m,krmsi->ksir", u, inverse)
     moves = np.einsum("kdr,krmsi->ksidm", to_end, inverse)
     by_feedback[..., s:] = moves.reshape(k, s, m, 2 * m)
-    by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
-    return end, p, by_feedback, start, by_p
+    return FreeSteps(
+        along=np.ascontiguousarray(np.concatenate([p, end], axis=1).swapaxes(1, 2)),
+        by_force=np.einsum("fm,ksmr->ksfr", directions, by_feedback),
+        by_p=np.concatenate([h**2 * (a @ a), h * a], axis=1),
+        reach=np.multiply.outer(lengths, c),
+    )
 
 
 @dataclass(frozen=True, eq=False)

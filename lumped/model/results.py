@@ -128,7 +128,7 @@ def response(
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
     pairs = system.cycle.sample(time) if pairs is None else pairs
     if (normal := normal_load) is None:
-        normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
+        normal = pairs.load(dte, dte_dot)
     friction = pairs.friction * normal
     arm_g = g.L_XY - pairs.position
     sliding = (

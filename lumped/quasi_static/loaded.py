@@ -20,11 +20,12 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
+from lumped.mesh.element import CONTACT, EXACT, FLANKS, ContactLaw, Records
+from lumped.mesh.statics import Phases, middle_contacts, static_approaches
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
-from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
 from lumped.schema.bodies import bodies_of
@@ -47,8 +48,16 @@ _LEAST_STIFFNESS = 1e-11
 _DAMPING_TOLERANCE = 1e-11
 #: Pairs whose contact is kept: the samples of an uncertainty, whose range over speed asks for them again.
 _KEPT = 256
+#: Largest load of a pair, over the mean load, for which ``ContactLaw.apart`` holds.
+_MOST_LOAD = 10.0
 #: The damper is whole where a pair carries this share of the mean load.
 FULL_DAMPING = 1.0 / 15.0
+
+
+def _least(law: PathFunction) -> float:
+    """Least value at the breaks and halfway between."""
+    breaks = law.breaks
+    return float(law(np.concatenate([breaks[:-1], 0.5 * (breaks[1:] + breaks[:-1])])).min())
 
 
 class Loaded(Contact):
@@ -86,55 +95,58 @@ class Loaded(Contact):
 
 
 @dataclass(frozen=True, eq=False)
-class ContactLaw:
-    """Load of one tooth pair over its compression p: p = N (1/k - D/2 ln((N^2 + N_1^2)/N_0^2)).
+class PairStiffness:
+    """k(xi) of a tooth pair at the mean load; its end values hold outside its path [N/m]."""
 
-    D = 0 is a linear spring. Otherwise it is the contact of Weber and Banaschek, p = N (1/k - D ln(N/N_0)),
-    kept linear below N_1, a thousandth of the mean load N_0, where its logarithm would make the pair
-    infinitely soft.
-
-    Attributes
-    ----------
-    stiffness : k at the load N_0; its end values hold outside its path [N/m]
-    softening : D [m/N]
-    nominal : N_0 [N]
-    """
-
-    stiffness: PathFunction
-    softening: float
-    nominal: float
-
-    @property
-    def least(self) -> float:
-        """N_1 [N]."""
-        return LEAST_LOAD * self.nominal
+    law: PathFunction
 
     def extended(self, xi: FloatArray) -> FloatArray:
         """K at positions of any shape, held beyond the ends of its path; never quite zero [N/m]."""
-        low, high = self.stiffness.interval
-        found = self.stiffness(np.clip(xi, low, np.nextafter(high, low)))
+        low, high = self.law.interval
+        found = self.law(np.clip(xi, low, np.nextafter(high, low)))
         return np.maximum(found, _LEAST_STIFFNESS * self.largest)
 
     @cached_property
     def largest(self) -> float:
         """Largest k at the breaks and halfway between [N/m]."""
-        breaks = self.stiffness.breaks[:-1]
-        return float(
-            self.stiffness(np.concatenate([breaks, breaks + 0.5 * np.diff(self.stiffness.breaks)])).max()
-        )
+        breaks = self.law.breaks[:-1]
+        return float(self.law(np.concatenate([breaks, breaks + 0.5 * np.diff(self.law.breaks)])).max())
 
 
 class StaticPair(NamedTuple):
-    """One pair in static equilibrium at n positions: delta [m], N [N] and dN/ddelta [N/m], gap [m].
+    """One pair in static equilibrium at n positions: the approach (n,) [m], and CONTACT records (n,).
 
-    ``pressed`` is what gap and neighbours leave of the approach, negative where the pair is apart [m].
+    The compression of ``contact`` is what gap and neighbours leave of the approach, negative where the pair
+    is apart.
     """
 
     approach: FloatArray
-    load: FloatArray
-    tangent: FloatArray
-    gap: FloatArray
-    pressed: FloatArray
+    contact: Records
+
+    @property
+    def load(self) -> FloatArray:
+        """N [N]."""
+        return np.asarray(self.contact["load"], dtype=np.float64)
+
+    @property
+    def tangent(self) -> FloatArray:
+        """dN/dp, all pairs pressed further together [N/m]."""
+        return np.asarray(self.contact["tangent"], dtype=np.float64)
+
+    @property
+    def gap(self) -> FloatArray:
+        """Gap between flanks and tip corners [m]."""
+        return np.asarray(self.contact["gap"], dtype=np.float64)
+
+    @property
+    def tilt(self) -> FloatArray:
+        """Sine of the angle between the normal and the line of action [-]."""
+        return np.asarray(self.contact["tilt"], dtype=np.float64)
+
+    @property
+    def compression(self) -> FloatArray:
+        """By the own load [m]."""
+        return np.asarray(self.contact["compression"], dtype=np.float64)
 
     @property
     def error(self) -> FloatArray:
@@ -174,13 +186,26 @@ class StaticMesh:
         self.pair, self.geometry = pair, g
         self.force = pair.operating.pinion_torque / g.base_radius_pinion
         self.neighbours = cross_compliances(pair)
-        self.law = ContactLaw(pair_stiffness(pair), contact_softening(pair), self.force)
+        self.stiffness = PairStiffness(pair_stiffness(pair))
+        self.law = ContactLaw(
+            force=self.force,
+            softening=contact_softening(pair),
+            linear_below=LEAST_LOAD * self.force,
+            converged=EXACT,
+            full_damper=FULL_DAMPING * self.force,
+            coupled=len(self.neighbours) > 0,
+            apart=_MOST_LOAD * self.force * min([0.0, *(_least(moved) for moved in self.neighbours)]),
+            windows=False,
+            radius_pinion=g.base_radius_pinion,
+            radius_gear=g.base_radius_gear,
+            rolling_speed=g.omega_pinion * g.base_radius_pinion,
+        )
         compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
         self.lengthening = self.force * compliance  # of the line of action, by the bearings
         # Pairs further from one that is followed are not.
         reach = int(g.contact_ratio + 2.0 * _REACH)
         self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
-        self.ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
+        self.flanks = np.array([(g.L_XA, g.L_XD, g.L_XY, 0.0, 0.0)], FLANKS)
         self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
         self._fitted: PathFunction | None = None
 
@@ -195,17 +220,19 @@ class StaticMesh:
         place = np.asarray(xi, dtype=float)[:, None] + self.shifts
         return place, (place > self.low) & (place < self.high)
 
+    def phases(self, xi: FloatArray) -> Phases:
+        """All pairs without load, with one at each position xi (n,) [m] in the middle."""
+        place, near = self.pairs(xi)
+        stiffness = np.where(near, self.stiffness.extended(place), 0.0)
+        coupling = coupled(self.neighbours, place, near)
+        return Phases(place, stiffness, self.relief(place), coupling, self.lengthening)
+
     def approach(self, xi: FloatArray) -> FloatArray:
         """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
         if self._fitted is not None:
             start = self._fitted.breaks[0]
             return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
-        place, near = self.pairs(xi)
-        law, k = self.law, np.where(near, self.law.extended(place), 0.0)
-        relief, coupling = self.relief(place), coupled(self.neighbours, place, near)
-        found = approaches(
-            place, k, relief, coupling, self.force, self.lengthening, law.softening, law.least, self.ends
-        )
+        found = static_approaches(self.phases(xi), self.flanks, self.law)
         if not np.isfinite(found).all():
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
         return np.asarray(found, dtype=np.float64)
@@ -228,39 +255,13 @@ class StaticMesh:
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
-        place, near = self.pairs(xi)
-        delta = np.broadcast_to(self.approach(xi)[:, None], place.shape)
-        longer = np.full(place.size, self.lengthening)
-        gap = self.gap(place.ravel(), 0.5 * (delta.ravel() + longer), longer).reshape(place.shape)
-        load, tangent, pressed = self.middle_load(place, delta - gap, near)
-        middle = place.shape[1] // 2
-        return StaticPair(delta[:, middle], load, tangent, gap[:, middle], pressed)
+        approach, contact = self.approach(xi), np.zeros(np.size(xi), CONTACT)
+        middle_contacts(approach, self.phases(xi), self.flanks, self.law, contact)
+        return StaticPair(approach, contact)
 
     def half(self, xi: FloatArray) -> FloatArray:
         """How far the contact point of deflected teeth is beyond where the tips leave the line, (n,) [m]."""
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
-
-    def gap(self, xi: FloatArray, half: FloatArray, longer: FloatArray) -> FloatArray:
-        """Gap of the pair at xi without deflection, (n,) [m]; ``half`` and ``longer`` as in ``gap_at``."""
-        return np.asarray(gaps_at(xi, self.relief(xi), half, longer, self.ends)[0], dtype=np.float64)
-
-    def tilt(self, xi: FloatArray) -> FloatArray:
-        """Sine of the angle between the normal of the pair at xi and the line of action, (n,) [-]."""
-        longer = np.full(xi.size, self.lengthening)
-        found = gaps_at(xi, np.zeros(xi.size), self.half(xi), longer, self.ends)[1]
-        return np.asarray(found, dtype=np.float64)
-
-    def middle_load(
-        self, place: FloatArray, compression: FloatArray, near: BoolArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Of the middle one of pairs that share a load N [N], dN/ddelta [N/m] and what presses it [m]; (n,).
-
-        ``place`` and ``compression``, delta less gap, are (n, pairs), the pair behind first.
-        """
-        law, k = self.law, np.where(near, self.law.extended(place), 0.0)
-        coupling = coupled(self.neighbours, place, near)
-        found = middle_loads(compression, k, coupling, law.softening, law.nominal, law.least)
-        return found[:, 0], found[:, 1], found[:, 2]
 
 
 @lru_cache(maxsize=_KEPT)
@@ -287,11 +288,13 @@ def _damping(pair: GearPair, ratio: float) -> PathFunction:
 def loaded_contact(pair: GearPair) -> LoadedContact:
     """Contact of a tooth pair in the mesh under the mean torque, of a pair ``at_rest``."""
     mesh, g = StaticMesh(pair), pair.geometry
-    law, near = mesh.law, _SAME * pair.geometry.base_pitch
+    law, stiffness_of, near = mesh.law, mesh.stiffness, _SAME * pair.geometry.base_pitch
     starts = relief_starts(pair) if pair.mesh.relief == "static" else np.empty(0)
-    kinks = np.concatenate([law.stiffness.switches, starts, [g.L_XA, g.L_XD]])
+    kinks = np.concatenate([stiffness_of.law.switches, starts, [g.L_XA, g.L_XD]])
     jumps = np.add.outer(kinks, mesh.shifts)
-    contact = positive_intervals(lambda xi: mesh.static(xi).pressed, mesh.low, mesh.high, jumps, g.base_pitch)
+    contact = positive_intervals(
+        lambda xi: mesh.static(xi).compression, mesh.low, mesh.high, jumps, g.base_pitch
+    )
     if contact.size == 0 or contact[0, 0] <= mesh.low or contact[-1, 1] >= mesh.high:
         raise NumericalError(
             f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
@@ -306,15 +309,15 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
     inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
     inside = inside[np.diff(inside, prepend=-np.inf) > near]
-    smooth = law.stiffness.breaks[(law.stiffness.breaks > low) & (law.stiffness.breaks < high)]
+    smooth = stiffness_of.law.breaks[(stiffness_of.law.breaks > low) & (stiffness_of.law.breaks < high)]
     breaks = np.concatenate([[low], inside, [high]])
     pieces = np.union1d(breaks, smooth)
-    largest = float(law.extended(np.linspace(low, high, 101)).max())
+    largest = float(stiffness_of.extended(np.linspace(low, high, 101)).max())
     deflection = mesh.force / largest
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
     # Not below the rounding of positions, several times over: the approach is solved for by iteration.
     exact = max(_APPROACH * relative * deflection, 5.0 * _LENGTH)
-    mesh.fit_approach(np.concatenate([marks.ravel(), law.stiffness.breaks]), exact)
+    mesh.fit_approach(np.concatenate([marks.ravel(), stiffness_of.law.breaks]), exact)
 
     known: dict[bytes, StaticPair] = {}
 
@@ -347,9 +350,11 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
         stiffness=restricted(stiffness, contact),
         error=error,
         gap=fitted(lambda xi: static(xi).gap, deflection),
-        tilt=PathFunction.fit(mesh.tilt, error.breaks, inside, tolerance=relative, by_length=True),
+        tilt=PathFunction.fit(
+            lambda xi: static(xi).tilt, error.breaks, inside, tolerance=relative, by_length=True
+        ),
         engagement=restricted(engaged, contact),
-        secant=PathFunction.fit(law.extended, pieces, inside, tolerance=_TOLERANCE * largest),
+        secant=PathFunction.fit(stiffness_of.extended, pieces, inside, tolerance=_TOLERANCE * largest),
         contact=contact,
     )
 

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.errors import refuse
+from lumped.mesh.statics import corner_gaps
 from lumped.path_function import PathFunction
-from lumped.quasi_static.kernels import gaps_at
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -70,10 +70,10 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     of one base circle are parallel curves. xi of any shape outside is where longer teeth would touch [m].
     """
     g, place = geometry, np.asarray(xi, dtype=float)
-    ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
-    none = np.zeros(place.size)
-    found = gaps_at(place.ravel(), none, none, none, ends)[0]
-    return np.asarray(found.reshape(place.shape), dtype=np.float64)
+    radii, at = (g.base_radius_pinion, g.base_radius_gear), place.ravel()
+    before = corner_gaps(g.L_XA - at, g.L_XY - g.L_XA, g.L_XY, *radii)
+    behind = corner_gaps(at - g.L_XD, g.L_XD, g.L_XY, *radii[::-1])
+    return np.asarray((before + behind).reshape(place.shape), dtype=np.float64)
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 
 from lumped.errors import NumericalError
+from lumped.mesh.motion import Run
+from lumped.mesh.tables import MeshTables
 from lumped.model.periodic_system import LTVSystem
 from lumped.schema.pair import GearPair
-from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
-from lumped.teeth.kernels import Tables
-from lumped.teeth.motion import OwnMotion, labelled_motion, run, steps_of, without_drift
+from lumped.teeth.motion import OwnMotion, Touch, labelled_motion, mean_powers, run, steps_of, without_drift
 from lumped.typing import FloatArray
 
 #: Least steps in the cycle: where a pair touches inside a step, 256 cost 0.1 % of a motion with contact loss.
@@ -65,15 +65,13 @@ def closed_motion(
             return pair.operating.pinion_torque, float(unknown[-1])
         return float(unknown[-1]), float(given)
 
-    def cycle(
-        unknown: FloatArray, of: Tables = own, rate: float = 0.0
-    ) -> tuple[FloatArray, tuple[FloatArray, ...]]:
+    def cycle(unknown: FloatArray, of: MeshTables = own, rate: float = 0.0) -> tuple[FloatArray, Run]:
         """What is left after a cycle from a common rate, that of this rate last, and the motion."""
         driving, brake = torques_of(unknown)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         state = back @ unknown[:-1] + np.append(np.zeros(m), rate * support.common)
-        found = run(pair, of, system, True, 0, 1, 1, state, torques)
-        moved = found[2] - state
+        found = run(pair, of, system, 0, 1, 1, state, torques)
+        moved = found.end - state
         return np.append(relative @ moved, weights @ moved[m:]), found
 
     unknown = np.append(start, torque)
@@ -95,18 +93,17 @@ def closed_motion(
             return closed_motion(pair, samples, start, torque)
         raise NumericalError("No periodic motion that follows the momentary load is near this one.")
     # Powers are those of the mean speed: from a common rate whose mean vanishes.
-    rates = found[0][:, m:] @ weights / (weights @ support.common)
-    states, load, end, work = cycle(unknown, rate=-float(rates.mean()))[1]
+    rates = found.states[:, m:] @ weights / (weights @ support.common)
+    found = cycle(unknown, rate=-float(rates.mean()))[1]
+    states = found.states
     dte = states[:, :m] @ system.deflection
-    other = cycle(unknown, coarse)[1][0][:, :m] @ system.deflection
-    work = work / system.period
+    other = cycle(unknown, coarse)[1].states[:, :m] @ system.deflection
     time = np.arange(samples) / samples * system.period
-    powers = {"sliding": work[0], "tooth_dampers": work[1], "supports": work[2], "rolling": work[1] - work[3]}
     motion = OwnMotion(
-        *(pair, system, own, kernels.PUSH, time, without_drift(system, time, states, 0.0), load),
+        *(pair, system, own, Touch.MOMENTARY, time, without_drift(system, time, states, 0.0), found.loads),
         *torques_of(unknown),
-        {name: float(value) for name, value in powers.items()},
-        closure=float(np.abs(relative @ (end - states[0])).max() / np.abs(relative @ end).max()),
+        mean_powers(found, system.period),
+        closure=float(np.abs(relative @ (found.end - states[0])).max() / np.abs(relative @ found.end).max()),
         error=float(np.abs(other - dte[::2]).max() / np.abs(dte).max()),
         spectral_radius=max(
             float(np.abs(np.linalg.eigvals(slopes[:-1, :-1] + np.eye(2 * m - 2))).max()),

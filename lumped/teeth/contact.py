@@ -15,23 +15,23 @@ from functools import partial
 import numpy as np
 
 from lumped.faults.base import ToothFault
+from lumped.mesh.element import FLANKS, QUICK, ContactLaw, Records
+from lumped.mesh.motion import RIPPLE
+from lumped.mesh.statics import corner_gaps
+from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements
-from lumped.quasi_static.kernels import gaps_at
 from lumped.quasi_static.load_sharing import coupled
-from lumped.quasi_static.loaded import FULL_DAMPING, StaticMesh
+from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
-from lumped.teeth.kernels import Tables
-from lumped.teeth.pairs import first_teeth, own_teeth, period_of, ripples
+from lumped.teeth.pairs import OwnTeeth, first_teeth, own_teeth, period_of, ripples
 from lumped.typing import FloatArray, IntArray
 
 #: Nodes at the ends of a step lie this fraction of a cycle inside it, and phases closer than this are one.
 _INSIDE = 1e-11
-#: Columns of ``Tables.shape``: a gear's constant error, profile slope and tip relief, pinion's then gear's.
-_SHAPES = 6
 #: Share of the gap of a tip's corner that is left when the line of action is longer or shorter.
 _LEAST_GAP = 0.8
 
@@ -78,7 +78,7 @@ class Laws:
         g = self.geometry
         found = [g.L_XA, g.L_XD, g.L_XP, self.low, self.high]
         if (e := self.elements) is None:
-            laws = [self.friction, self.mesh.law.stiffness, *self.mesh.neighbours]
+            laws = [self.friction, self.mesh.stiffness.law, *self.mesh.neighbours]
             found += [*relief_starts(self.healthy)]
         else:
             laws = [self.friction, e.stiffness, e.damping, e.error]
@@ -100,11 +100,11 @@ class Laws:
             for gear, flank in zip(gears, self.flanks, strict=True)
         ]
 
-    def of_kind(self, kind: int, xi: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Stiffness k [N/m], c [N s/m] and gap without corners [m] of a kind at positions of any shape."""
+    def of_kind(self, kind: int, xi: FloatArray) -> Records:
+        """LAWS of a kind at positions of any shape."""
         g, inside = self.geometry, (xi >= self.low) & (xi <= self.high)
         if self.elements is None:
-            k = np.where(inside, self.mesh.law.extended(xi), 0.0)
+            k = np.where(inside, self.mesh.stiffness.extended(xi), 0.0)
             gap = self.mesh.relief(xi)
             c = self._dampers(k)
         else:
@@ -118,62 +118,80 @@ class Laws:
         if more.any():
             whole, k = k, k / (1.0 + more * k)
             c = c * np.sqrt(k / np.where(whole > 0.0, whole, 1.0))
-        return k, c, gap
+        near = _INSIDE * g.base_pitch
+        found = np.zeros(xi.shape, LAWS)
+        found["stiffness"], found["damping"], found["gap"] = k, c, gap
+        found["friction"] = self.friction(np.clip(xi, g.L_XA + near, g.L_XD - near))
+        return found
 
     def _dampers(self, k: FloatArray) -> FloatArray:
         ratio, mass = self.pair.mesh.damping_ratio, bodies_of(self.pair).effective_mass
         return np.asarray(2.0 * ratio * np.sqrt(k * mass), dtype=np.float64)
 
-    def shapes(self, xi: FloatArray) -> FloatArray:
-        """Gap per unit of each number of a pair, (..., 6), see ``Tables.pinion``."""
+    def shapes(self, xi: FloatArray) -> Records:
+        """TOOTH (..., 2) of pinion and gear: gap per unit of each number of their teeth."""
         g = self.geometry
-        found = np.zeros((*xi.shape, _SHAPES))
+        found = np.zeros((*xi.shape, 2), TOOTH)
         pitch = (g.L_XP, g.L_XY - g.L_XP)
         for which, length in enumerate(self.lengths(np.clip(xi, g.L_XA, g.L_XD))):
             flank, gear = self.flanks[which], (self.pair.pinion, self.pair.gear)[which]
-            found[..., 3 * which] = 1.0
+            found["error"][..., which] = 1.0
             # Material at the tip, none at the pitch point, where the index is taken.
-            found[..., 3 * which + 1] = -(length - pitch[which]) / (flank.tip - flank.start)
+            found["slope"][..., which] = -(length - pitch[which]) / (flank.tip - flank.start)
             if gear.tip_relief is not None:
                 unit = gear.tip_relief.model_copy(update={"amount": 1.0})
                 radius = flank.wheel.tooth.base_radius
-                found[..., 3 * which + 2] = flank_relief(unit, flank.tip / radius, length / radius)
+                found["relief"][..., which] = flank_relief(unit, flank.tip / radius, length / radius)
         return found
 
-    def ends(self, kind: int) -> FloatArray:
-        """Where the flanks of a kind end, see ``Tables.ends``."""
+    def ends(self, kind: int) -> tuple[float, ...]:
+        """FLANKS of a kind."""
         g = self.geometry
         tips = [
             min([fault.end(flank) for fault in faults], default=flank.tip)
             for flank, faults in zip(self.flanks, self.faults[kind], strict=True)
         ]
-        found = np.array([g.L_XY - tips[1], tips[0], g.L_XY, g.base_radius_pinion, g.base_radius_gear])
-        beyond, most = np.linspace(0.0, self.high - self.low, 65)[1:], np.zeros(64)
-        early, _ = gaps_at(found[0] - beyond, most, most, most, found)
-        late, _ = gaps_at(found[1] + beyond, most, most, most, found)
-        return np.append(found, [_LEAST_GAP * (one / beyond**2).min() for one in (early, late)])
+        beyond, radii = (
+            np.linspace(0.0, self.high - self.low, 65)[1:],
+            (g.base_radius_pinion, g.base_radius_gear),
+        )
+        before = corner_gaps(beyond, tips[1], g.L_XY, *radii) / beyond**2
+        behind = corner_gaps(beyond, tips[0], g.L_XY, *radii[::-1]) / beyond**2
+        return g.L_XY - tips[1], tips[0], g.L_XY, _LEAST_GAP * before.min(), _LEAST_GAP * behind.min()
 
-    def constants(self) -> FloatArray:
-        """See ``Tables.constants``."""
-        law, force = self.mesh.law, self.mesh.force
-        return np.array([force, self.mesh.lengthening, law.softening, law.least, FULL_DAMPING * force])
+    def contact_law(self) -> ContactLaw:
+        """Law of the contact for motions."""
+        neighbours = self.loaded and len(self.mesh.neighbours) > 0
+        return self.mesh.law._replace(converged=QUICK, coupled=neighbours, windows=not self.loaded)
 
-    def eccentric(self) -> FloatArray:
-        """See ``Tables.eccentric``."""
-        g, first = self.geometry, first_teeth(self.pair)
-        rows = []
+    def turning(self) -> Records:
+        """TURNING of both gears, then of each ripple of a torque; nothing swings yet."""
+        first = first_teeth(self.pair)
+        rows: list[tuple[float, ...]] = []
         for which, one in enumerate(own_teeth(self.pair)):
             z = one.error.size
-            start = one.phase + 2.0 * np.pi * first[which] / z
-            rows.append([one.eccentricity, start, z, g.L_XY, 1.0 / np.tan(g.operating_pressure_angle), 0.0])
-        for shaft, angle, start, size, _ in ripples(self.pair):
-            rows.append([size, start - 0.5 * np.pi, 2.0 * np.pi / angle, shaft, 0.0, 0.0])
-        return np.array(rows)
+            rows.append((which, one.eccentricity, one.phase + 2.0 * np.pi * first[which] / z, z, 0.0))
+        for ripple in torque_ripples(self.pair):
+            start, cycles = ripple["start"] - 0.5 * np.pi, 2.0 * np.pi / ripple["angle"]
+            rows.append((ripple["shaft"], ripple["amplitude"], start, cycles, 0.0))
+        return np.array(rows, TURNING)
+
+
+def torque_ripples(pair: GearPair) -> Records:
+    """RIPPLE of each harmonic of the torques."""
+    return np.array([tuple(row) for row in ripples(pair)], RIPPLE)
+
+
+def _of_teeth(teeth: OwnTeeth) -> Records:
+    """TOOTH of each tooth of a gear."""
+    found = np.zeros(teeth.error.size, TOOTH)
+    found["error"], found["slope"], found["relief"] = teeth.error, teeth.slope, teeth.relief
+    return found
 
 
 def tables(
     laws: Laws, largest_step: float, outputs: int, nodes: FloatArray | tuple[float, ...] = (0.0,)
-) -> Tables:
+) -> MeshTables:
     """Tables on steps that end at outputs and wherever a law jumps or has a kink.
 
     Parameters
@@ -208,56 +226,53 @@ def tables(
     place = np.asarray(g.L_XA + (tau[..., None] + ahead) * g.base_pitch, dtype=np.float64)
     moved = 1e-7 * g.base_pitch
 
-    def slope(function: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        """Over xi, one-sided at the ends of a step."""
+    def slope(function: Callable[[FloatArray], Records]) -> Records:
+        """Of every field over xi, one-sided at the ends of a step."""
         before = np.where(at > 0.0, -moved, 0.0)[:, None]
         after = np.where(at < 1.0, moved, 0.0)[:, None]
-        rise = function(place + after) - function(place + before)
-        found: FloatArray = rise / (after - before).reshape((1, at.size, 1) + (1,) * (rise.ndim - 3))
+        high, low = function(place + after), function(place + before)
+        found = np.zeros(high.shape, high.dtype)
+        way = (after - before).reshape((1, at.size, 1) + (1,) * (high.ndim - 3))
+        for name in high.dtype.names or ():
+            found[name] = (high[name] - low[name]) / way
         return found
 
-    def all_laws(kind: int, xi: FloatArray) -> FloatArray:
-        """k, c, gap and mu, (..., 4)."""
-        mu = laws.friction(np.clip(xi, g.L_XA + _INSIDE * g.base_pitch, g.L_XD - _INSIDE * g.base_pitch))
-        return np.stack([*laws.of_kind(kind, xi), mu], axis=-1)
-
     kinds = range(len(laws.faults))
-    k, c, gap, mu = np.moveaxis(np.stack([all_laws(v, place) for v in kinds]), -1, 0).copy()
-    follows = 1.0 if laws.loaded else np.array([0.0, 0.0, 1.0, 0.0])  # fixed windows stay at their places
+    slopes = np.stack([slope(partial(laws.of_kind, kind)) for kind in kinds])
+    if not laws.loaded:  # fixed windows stay at their places
+        slopes["stiffness"] = slopes["damping"] = slopes["friction"] = 0.0
     near = (place >= laws.low) & (place <= laws.high)
     neighbours = laws.mesh.neighbours if laws.loaded else ()
     flat = place.reshape(-1, ahead.size)[:, ::-1], near.reshape(-1, ahead.size)[:, ::-1]
-    coupling = np.zeros((1, at.size, ahead.size, ahead.size))
+    coupling = np.zeros((edges.size - 1, at.size, ahead.size, ahead.size))
     if neighbours:
         found = coupled(neighbours, *flat)[:, ::-1, ::-1]
         coupling = np.ascontiguousarray(found.reshape(edges.size - 1, at.size, ahead.size, ahead.size))
-    eccentric = laws.eccentric()
-    turn = 2.0 * np.pi / eccentric[:, 2] * tau[..., None]
-    pinion, gear = (np.stack([o.error, o.slope, o.relief], axis=1) for o in own_teeth(pair))
-    return Tables(
+    turning = laws.turning()
+    turn = 2.0 * np.pi / turning["cycles"] * tau[..., None]
+    pinion, gear = own_teeth(pair)
+    return MeshTables(
         edges=edges,
         nodes=at,
         weights=weights,
         outputs=starts,
         ahead=ahead,
-        place=place,
-        stiffness=k,
-        damping=c,
-        friction=mu[0],
-        gap=gap,
-        slopes=follows * np.stack([slope(partial(all_laws, v)) for v in kinds]),
+        position=place,
+        laws=np.stack([laws.of_kind(kind, place) for kind in kinds]),
+        slopes=slopes,
         shape=laws.shapes(place),
         shape_slope=slope(laws.shapes),
-        ends=np.stack([laws.ends(v) for v in kinds]),
+        flanks=np.array([laws.ends(kind) for kind in kinds], FLANKS),
         coupling=coupling,
         kinds=laws.kinds,
-        pinion=pinion,
-        gear=gear,
-        constants=laws.constants(),
-        eccentric=eccentric,
+        pinion=_of_teeth(pinion),
+        gear=_of_teeth(gear),
+        turning=turning,
         turned=np.stack([np.cos(turn), np.sin(turn)], axis=-1),
+        cotangent=1.0 / np.tan(g.operating_pressure_angle),
         first=np.array(first_teeth(pair), dtype=np.int64),
         period=period_of(pair),
         duration=g.mesh_period,
-        speed=g.omega_pinion * g.base_radius_pinion,
+        lengthening=laws.mesh.lengthening,
+        law=laws.contact_law(),
     )

@@ -12,19 +12,28 @@ import numpy as np
 from lumped.compiler import in_threads
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, states_along
+from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, FORCE
+from lumped.mesh.linear import STATE, LinearForm
+from lumped.mesh.tables import MeshTables
+from lumped.model.kernels import Propagated, chained, propagate, states_along
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.steady import balanced_start, periodic_solution
 from lumped.schema.pair import GearPair
-from lumped.teeth import kernels
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.kernels import Tables
-from lumped.teeth.motion import OwnMotion, moments, static_loads, static_mesh, swinging, without_drift
-from lumped.teeth.motion_kernels import STAGES, linear_cycles
-from lumped.teeth.pairs import ripples
+from lumped.teeth.contact import Laws, tables, torque_ripples
+from lumped.teeth.motion import (
+    OwnMotion,
+    Touch,
+    fill_linear_form,
+    moments,
+    static_loads,
+    swinging,
+    without_drift,
+)
 from lumped.typing import FloatArray
 
+#: Stages of the Gauss steps.
+STAGES = 4
 #: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of that vibration, less
 #: than the touches of pairs inside steps do.
 _STEP_ANGLE = 2.4
@@ -40,7 +49,7 @@ def linear_steps(system: LTVSystem) -> int:
     return max(_LEAST_STEPS, math.ceil(fastest_frequency(system) * system.period / _STEP_ANGLE))
 
 
-class LinearForm:
+class CycleSteps:
     """Gauss steps through every mesh cycle of the period, in blocks of cycles, a thread a block.
 
     ``system`` gives the coordinates, of any form; ``steps`` is the least number in a cycle, ``most`` ends
@@ -51,7 +60,7 @@ class LinearForm:
         self, pair: GearPair, system: LTVSystem, samples: int, steps: int, most: int | None = None
     ) -> None:
         self.pair, self.system = pair, system
-        self.laws, self.fixed = Laws(pair), pair.mesh.contact != "loaded"
+        self.laws = Laws(pair)
         tableau = gauss_tableau(STAGES)
         steps = samples if samples <= steps <= _LONGER * samples else steps
         self.own = tables(self.laws, 1.0 / steps, samples, tableau[2])
@@ -62,27 +71,50 @@ class LinearForm:
         extra = padded(system, torques)
         first, which = distinct_lengths(system, self.lengths)
         lengths = self.lengths[first]
-        end, p, feedback, _, by_p = without_mesh(system, lengths, extra, tableau)
         m = len(system.coordinates)
         forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
         forces = np.vstack([forces, torques[m:].T])
-        by_force = np.einsum("fm,ksmr->ksfr", forces, feedback)
-        free = np.ascontiguousarray(np.concatenate([p, end], axis=1).swapaxes(1, 2))
-        self.steps = (which, free, by_force, by_p, np.multiply.outer(lengths, tableau[2]))
-        self.width = end.shape[2]
+        self.which, self.free = which[None], without_mesh(system, lengths, extra, tableau, forces)
+        self.width = self.free.along.shape[1]
         count = self.own.period if most is None else min(most, self.own.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
-        #: Of ``static_mesh`` at the stages; one large array, for the system gives many small ones slowly.
-        self.sums = np.empty((count, self.lengths.size, STAGES, 18))
+        # At the stages; large arrays, for the system gives many small ones slowly.
+        shape = (count, self.lengths.size, STAGES)
+        self.form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
 
-    def along(self, first: int, columns: FloatArray, sums: FloatArray, keeps: bool) -> tuple[FloatArray, ...]:
-        """``linear_cycles`` of a block that starts at the cycle ``first``."""
+    def part(self, first: int, count: int) -> LinearForm:
+        """The form of so many cycles from one on."""
+        return LinearForm(*(part[first : first + count] for part in self.form))
+
+    def strength(self, first: int, form: LinearForm) -> FloatArray:
+        """Strengths (cycles, steps, stages, 3, 8) of the forces in cycles from one on, for ``propagate``.
+
+        The forces are N, its moments on both gears, F, F xi, that of tip corners, and both torques' ripples.
+        """
+        forces, states, own = form.forces, form.states, self.own
+        found = np.zeros((*forces.shape, 8))
+        normal = forces["normal"]
+        found[..., 0] = normal
+        found[..., 1], found[..., 2] = (
+            normal * states[f"moment_{gear}"][..., None] for gear in ("pinion", "gear")
+        )
+        found[..., 3], found[..., 4] = forces["friction"], forces["friction_moment"]
+        found[..., 5] = forces["separating"]
+        phase = own.edges[:-1, None] + own.nodes * np.diff(own.edges)[:, None]
+        time = first + np.arange(len(forces))[:, None, None] + phase
+        for ripple in torque_ripples(self.pair):
+            turn = ripple["angle"] * np.mod(time, ripple["cycles"]) + ripple["start"]
+            found[..., AT_REST, 6 + int(ripple["shaft"])] += ripple["amplitude"] * np.cos(turn)
+        return found
+
+    def along(self, columns: FloatArray, kept: int, strength: FloatArray) -> Propagated:
+        """``propagate`` of a block of cycles."""
         deflection = np.ascontiguousarray(self.system.deflection)
-        ripple = ripples(self.pair)
-        return linear_cycles(first, columns, keeps, sums, *self.steps, deflection, ripple, self.own)
+        found: Propagated = propagate(columns, kept, strength, self.which, *self.free, deflection)
+        return found
 
     def cycle_maps(self) -> FloatArray:
-        """Affine map of each mesh cycle, (cycles, n, n + 3); fills ``sums``.
+        """Affine map of each mesh cycle, (cycles, n, n + 3); fills ``form``.
 
         States that move no tooth, of which all cycles make the same, are followed once.
         """
@@ -94,14 +126,15 @@ class LinearForm:
         units = np.zeros((1, 2 * fed + 3, self.width))
         units[0, : 2 * fed, :n], units[0, 2 * fed :, n : n + 3] = back.T, np.eye(3)
         others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
-        nothing = np.zeros((1, self.lengths.size, STAGES, 18))
-        still = self.along(0, others[None], nothing, False)[0][0].T
+        nothing = np.zeros((1, self.lengths.size, STAGES, 3, 8))
+        still = self.along(others[None], 0, nothing).ends[0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
             first, count = block
-            sums = self.sums[first : first + count]
-            static_mesh(self.own, first, sums, self.fixed)
-            ends = self.along(first, np.tile(units, (count, 1, 1)), sums, False)[0].swapaxes(1, 2)
+            form = self.part(first, count)
+            fill_linear_form(self.own, first, form)
+            strength = self.strength(first, form)
+            ends = self.along(np.tile(units, (count, 1, 1)), 0, strength).ends.swapaxes(1, 2)
             return np.concatenate([ends[..., : 2 * fed] @ to + still, ends[..., 2 * fed :]], axis=2)
 
         return np.concatenate(in_threads(maps, self.cycles))
@@ -118,8 +151,8 @@ def linear_motion(
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     steps = linear_steps(system) if steps is None else steps
     m, dte, relative = len(system.coordinates), system.deflection, system.supports.relative
-    coarse = LinearForm(pair, system, 1, -(-steps // 2), _BLOCK)
-    form = LinearForm(pair, system, samples, steps)
+    coarse = CycleSteps(pair, system, 1, -(-steps // 2), _BLOCK)
+    form = CycleSteps(pair, system, samples, steps)
     cycles, weights = _closed(form)
     other = states_along(coarse.cycle_maps(), cycles[0], weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
@@ -133,14 +166,14 @@ def linear_motion(
     powers["sliding"] = torque * g.omega_pinion - brake * g.omega_gear - lost
     largest = np.abs(cycles[:, :m] @ relative.T).max()
     closure = float(np.abs(relative @ (cycles[-1] - cycles[0])[:m]).max() / largest)
-    kind = kernels.FIXED if form.fixed else kernels.LINEAR
+    touch = Touch.TIED if form.own.law.windows else Touch.LINEAR
     return OwnMotion(
-        *(pair, system, outer, kind, time, states, load, torque, brake, powers, closure, float(error)),
+        *(pair, system, outer, touch, time, states, load, torque, brake, powers, closure, float(error)),
         twin.spectral_radius,
     )
 
 
-def _closed(form: LinearForm) -> tuple[FloatArray, FloatArray]:
+def _closed(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     """States at the starts of the cycles, (cycles + 1, n), and weights of the forcings, by the own maps."""
     system, support = form.system, form.system.supports
     maps = form.cycle_maps()
@@ -155,7 +188,7 @@ def _closed(form: LinearForm) -> tuple[FloatArray, FloatArray]:
 
 
 def _inside(
-    form: LinearForm, outer: Tables, cycles: FloatArray, weights: FloatArray
+    form: CycleSteps, outer: MeshTables, cycles: FloatArray, weights: FloatArray
 ) -> tuple[FloatArray, FloatArray, dict[str, float]]:
     """States and loads (pairs, k) at the outputs, and mean powers that the motion inside steps tells [W]."""
     system, own, dte, kept = form.system, form.own, form.system.deflection, outer.outputs == 1
@@ -165,23 +198,32 @@ def _inside(
 
     def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray, FloatArray]:
         first, count = block
-        sums = form.sums[first : first + count]
+        part = form.part(first, count)
         start = np.zeros((count, 1, form.width))
         start[:, 0, : 2 * m], start[:, 0, 2 * m : 2 * m + weights.size] = (
             cycles[first : first + count],
             weights,
         )
-        _, states, inside = form.along(first, start, sums, True)
+        _, states, inside = form.along(start, 1, form.strength(first, part))
+        states, inside = states[:, :, 0], inside[:, :, 0]
         delta, closing = np.moveaxis(inside.reshape(*inside.shape[:2], 2, b.size), 2, 0)
-        n = np.moveaxis(sums, -1, 0)
-        load, taken = n[0] * delta + n[3] * closing + n[6], (n[11] * closing + n[12]) * closing + n[13]
+
+        def force(name: str) -> FloatArray:
+            of = part.forces[name]
+            return np.asarray(of[..., BY_APPROACH] * delta + of[..., BY_RATE] * closing + of[..., AT_REST])
+
+        mesh = part.states
+        taken = (mesh["damper_by_square"] * closing + mesh["damper_by_rate"]) * closing + mesh[
+            "damper_at_rest"
+        ]
         flat = np.vstack([states.reshape(-1, 2 * m), cycles[first + count]])[:, m:]
         turning = flat @ rates.T
         along = (turning[:-1, None] + own.nodes[:, None] * np.diff(turning, axis=0)[:, None]).reshape(
             *delta.shape, 3
         )
-        late = n[9] * (g.omega_pinion + along[..., 0]) + n[10] * (g.omega_gear + along[..., 1])
-        corners = (n[14] * delta + n[15] * closing + n[16]) * along[..., 2]
+        late = mesh["moment_pinion"] * (g.omega_pinion + along[..., 0])
+        late += mesh["moment_gear"] * (g.omega_gear + along[..., 1])
+        load, corners = force("normal"), force("separating") * along[..., 2]
         outside = np.sum(list(system.supports.powers(flat).values()), axis=0)
         lengths = np.tile(form.lengths, count)
         work = [
@@ -190,9 +232,10 @@ def _inside(
             0.5 * float(lengths @ (outside[1:] + outside[:-1])),
         ]
         at = states[:, own.outputs == 1]
-        rise, damper, constant = static_loads(outer, first, count, form.fixed)[1][1:, ..., kept]
-        carried = rise * (at[..., :m] @ dte) + damper * (at[..., m:] @ dte) + constant
-        return at.reshape(-1, 2 * m), carried.reshape(len(carried), -1), np.array(work)
+        loads = static_loads(outer, first, count)[1][:, kept]
+        place, rate = (at[..., :m] @ dte)[..., None], (at[..., m:] @ dte)[..., None]
+        carried = loads["by_approach"] * place + loads["by_rate"] * rate + loads["at_rest"]
+        return at.reshape(-1, 2 * m), carried.reshape(-1, carried.shape[-1]).T, np.array(work)
 
     outputs, loads, work = zip(*in_threads(block_of, form.cycles), strict=True)
     duration = own.period * system.period

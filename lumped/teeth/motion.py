@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,10 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable
+from lumped.mesh.element import FORCE, Records
+from lumped.mesh.linear import PAIR_LOAD, STATE, LinearForm, linear_cycles, linear_places
+from lumped.mesh.motion import Body, Run, run_cycles
+from lumped.mesh.tables import RIPPLES, MeshTables
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import fastest_frequency
@@ -22,24 +27,23 @@ from lumped.model.results import labelled, peak_to_peak, response
 from lumped.model.steady import periodic_solution
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.pair import GearPair
-from lumped.teeth import kernels
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.kernels import Tables
-from lumped.teeth.motion_kernels import motion_cycles
-from lumped.teeth.pairs import numbers, ripples
-from lumped.teeth.static_kernels import static_cycles, static_places
+from lumped.teeth.contact import Laws, tables, torque_ripples
+from lumped.teeth.pairs import numbers
 from lumped.typing import FloatArray, IntArray
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Form of the kernels -> how a result says it.
-FORMS = (
-    "fixed windows of contact, teeth tied (linear)",
-    "fixed windows of contact, unilateral",
-    "own gaps and tip corners, unilateral",
-    "linear about the own static state of every pair",
-)
+
+class Touch(Enum):
+    """How the teeth touch in a motion; the value is how a result says it."""
+
+    TIED = "fixed windows of contact, teeth tied (linear)"
+    WINDOWS = "fixed windows of contact, unilateral"
+    MOMENTARY = "own gaps and tip corners, unilateral"
+    LINEAR = "linear about the own static state of every pair"
+
+
 #: Most and least outputs of a mesh cycle by default, and how many all cycles together are to have.
 _MOST_SAMPLES, _LEAST_SAMPLES, _ALL_SAMPLES = 512, 32, 65536
 #: Steps in a period of the fastest vibration, and least steps in a mesh cycle.
@@ -62,7 +66,7 @@ class OwnMotion:
     ----------
     system : the "full" system of the healthy twin
     tables : the contact that was integrated
-    form : of ``kernels``
+    touch : how the teeth touch
     time : (k,) [s]
     states : (k, n)
     load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
@@ -76,8 +80,8 @@ class OwnMotion:
 
     pair: GearPair
     system: LTVSystem
-    tables: Tables
-    form: int
+    tables: MeshTables
+    touch: Touch
     time: FloatArray
     states: FloatArray
     load: FloatArray
@@ -116,21 +120,22 @@ class OwnMotion:
         """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
         own = self.tables
         step = np.resize(np.flatnonzero(own.outputs), self.time.size)
-
-        pitch, touches = own.speed * own.duration, self.load != 0.0
-        moved = swing(own, self.time) if self.form in (kernels.PUSH, kernels.LINEAR) else 0.0 * self.time
+        pitch, touches = own.law.rolling_speed * own.duration, self.load != 0.0
+        moved = 0.0 * self.time if own.law.windows else swing(own, self.time)
         pitches, phase = np.divmod(own.edges[step] + moved / pitch, 1.0)
         at = np.searchsorted(own.edges[1:-1], phase, side="right")
         place, when = np.nonzero(touches)
         place = np.clip(place - pitches[when].astype(np.int64), 0, own.ahead.size - 1)
         kind, way = own.kinds[self.teeth][touches], ((phase - own.edges[at]) * pitch)[when]
-        index = np.ravel_multi_index((kind, at[when], place), own.stiffness[:, :, 0].shape)
-        found, slopes = np.zeros((4, *touches.shape)), own.slopes[:, :, 0].reshape(-1, 4)[index].T
-        friction = np.broadcast_to(own.friction, own.stiffness.shape)
-        for n, law in enumerate((own.stiffness, own.damping, own.gap, friction)):
-            found[n, touches] = law[:, :, 0].ravel()[index] + slopes[n] * way
-        k, c, gap, mu = found
-        return PairState(own.place[step, 0].T + moved, touches, k, c, mu, gap, np.zeros(gap.shape))
+        laws, slopes = (table[kind, at[when], 0, place] for table in (own.laws, own.slopes))
+
+        def of_pairs(name: str) -> FloatArray:
+            found = np.zeros(touches.shape)
+            found[touches] = laws[name] + slopes[name] * way
+            return found
+
+        k, c, mu, gap = (of_pairs(name) for name in ("stiffness", "damping", "friction", "gap"))
+        return PairState(own.position[step, 0].T + moved, touches, k, c, mu, gap, np.zeros(gap.shape))
 
 
 def steps_of(system: LTVSystem) -> int:
@@ -155,7 +160,7 @@ def push_motion(
     supports : as of ``periodic_system``
     steps : least number of steps in a mesh cycle; by default by the fastest vibration
     """
-    form = kernels.PUSH if pair.mesh.contact == "loaded" else kernels.FIXED_PUSH
+    touch = Touch.MOMENTARY if pair.mesh.contact == "loaded" else Touch.WINDOWS
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     laws = Laws(pair)
@@ -169,8 +174,8 @@ def push_motion(
         own = swinging(tables(laws, part / steps, samples, (0.0, 0.5, 1.0)), system)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + own.period
-        push = form == kernels.PUSH
-        states, load, end, work = run(pair, own, system, push, -settling, count, own.period, state, torques)
+        found = run(pair, own, system, -settling, count, own.period, state, torques)
+        states, end = found.states, found.end
         if not np.isfinite(end).all():
             raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
         duration = own.period * system.period
@@ -195,18 +200,23 @@ def push_motion(
             f"After {own.period} mesh cycles the motion has not closed ({closed:.1e} of its size): it is "
             "unstable, not periodic over the period of the teeth, or damped too little."
         )
-    work /= duration
+    powers = mean_powers(found, duration)
     # Sliding at nominal speed: without what a rate of the common rotation that is left adds.
     rates = system.gears[:2] @ (end - states[0])[:m] / duration
-    work[0] -= driving * rates[0] - brake * rates[1]
+    powers["sliding"] -= float(driving * rates[0] - brake * rates[1])
     states = without_drift(system, time, states, drift)
-    powers = {"sliding": work[0], "tooth_dampers": work[1], "supports": work[2], "rolling": work[1] - work[3]}
-    named = {name: float(value) for name, value in powers.items()}
     error /= float(np.abs(coarse).max())
     return OwnMotion(
-        *(pair, system, own, form, time, states, load, driving, brake, named, closed, error),
+        *(pair, system, own, touch, time, states, found.loads, driving, brake, powers, closed, error),
         twin.spectral_radius,
     )
+
+
+def mean_powers(run: Run, duration: float) -> dict[str, float]:
+    """Mean powers of what was recorded [W]; see ``OwnMotion.powers``."""
+    names = ("sliding", "tooth_dampers", "supports", "teeth")
+    powers = {name: float(run.work[name][0]) / duration for name in names}
+    return powers | {"rolling": powers["tooth_dampers"] - powers.pop("teeth")}
 
 
 def moments(system: LTVSystem) -> FloatArray:
@@ -214,7 +224,7 @@ def moments(system: LTVSystem) -> FloatArray:
     return np.asarray((system.reduction[:, :2] / system.structure.mass[:2]).T, dtype=np.float64)
 
 
-def swinging(own: Tables, system: LTVSystem) -> Tables:
+def swinging(own: MeshTables, system: LTVSystem) -> MeshTables:
     """Tables whose contact follows the common rotation as eccentric gears and ripples of torques swing it.
 
     ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2, A cos by -cos.
@@ -222,13 +232,13 @@ def swinging(own: Tables, system: LTVSystem) -> Tables:
     g, support = system.pair.geometry, system.supports
     theta = system.gears[:2] @ support.common / float(support.common_weights @ support.common)
     way = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
-    eccentric = own.eccentric.copy()
-    omega = 2.0 * math.pi / (eccentric[:, 2] * own.duration)
-    turning = own.constants[0] * (moments(system) @ support.common_weights)
+    turning = own.turning.copy()
+    omega = 2.0 * math.pi / (turning["cycles"] * own.duration)
+    by_moment = own.law.force * (moments(system) @ support.common_weights)
     torques = np.stack([system.torque_pinion, system.torque_gear])[:, support.common_weights.size :]
-    by_torque = (torques @ support.common_weights)[eccentric[2:, 3].astype(np.int64)]
-    eccentric[:, 5] = way * np.append(turning, by_torque) / omega**2
-    swing, most = float(np.abs(eccentric[:, 5] * eccentric[:, 0]).sum()), _MOST_SWING * g.base_pitch
+    by_torque = (torques @ support.common_weights)[turning["shaft"][RIPPLES:].astype(np.int64)]
+    turning["swing"] = way * np.append(by_moment, by_torque) / omega**2
+    swing, most = float(np.abs(turning["swing"] * turning["amplitude"]).sum()), _MOST_SWING * g.base_pitch
     if swing > most:
         raise refuse(
             "operating.pinion_speed",
@@ -238,14 +248,16 @@ def swinging(own: Tables, system: LTVSystem) -> Tables:
             f"Here it is {swing * 1e3:.3g} mm. Add the inertia of motor and load to pinion.inertia and "
             "gear.inertia.",
         )
-    return own._replace(eccentric=eccentric)
+    return own._replace(turning=turning)
 
 
-def swing(own: Tables, time: FloatArray) -> FloatArray:
+def swing(own: MeshTables, time: FloatArray) -> FloatArray:
     """Common rotation that the contact follows, at times (k,) [m]; tables of ``swinging``."""
-    size, start, teeth, way = own.eccentric[:, [0, 1, 2, 5]].T[..., None]
-    moved = size * way * np.sin(2.0 * np.pi * time / (own.duration * teeth) + start)
-    return np.asarray(moved.sum(axis=0), dtype=np.float64)
+    moved = np.zeros(time.size)
+    for shaft in own.turning:
+        turn = 2.0 * np.pi * time / (own.duration * shaft["cycles"]) + shaft["start"]
+        moved += shaft["amplitude"] * shaft["swing"] * np.sin(turn)
+    return moved
 
 
 def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift: float) -> FloatArray:
@@ -265,28 +277,40 @@ def without_drift(system: LTVSystem, time: FloatArray, states: FloatArray, drift
 
 def run(
     pair: GearPair,
-    own: Tables,
+    own: MeshTables,
     system: LTVSystem,
-    corners: bool,
     start: int,
     cycles: int,
     recorded: int,
     state: FloatArray,
     torques: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """``motion_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
-    g, m = system.pair.geometry, len(system.coordinates)
-    rates = system.gears
-    sliding = np.zeros((3, m + 1))
-    sliding[0, :m], sliding[1, :m], sliding[2, :m] = rates[0], rates[1], rates[4] - rates[5]
-    sliding[:, m] = g.omega_pinion, g.omega_gear, g.L_XY
-    arrays = (
-        *(state, system.constant[m:], system.deflection, system.per_load, moments(system), system.per_apart),
-        *(torques[m:], ripples(pair), np.stack([system.torque_pinion[m:], system.torque_gear[m:]])),
-        *(_power_matrix(system), sliding),
+) -> Run:
+    """``run_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
+    ripples = torque_ripples(pair)
+    found: Run = run_cycles(start, cycles, recorded, own, body_of(system, torques), ripples, state)
+    return found
+
+
+def body_of(system: LTVSystem, torques: FloatArray) -> Body:
+    """The gears on their supports as numbers, under constant torques (2m,) of acceleration."""
+    g, m, rates = system.pair.geometry, len(system.coordinates), system.gears
+    per_normal, per_friction, per_friction_moment = np.ascontiguousarray(system.per_load)
+    return Body(
+        constant=np.ascontiguousarray(system.constant[m:]),
+        torque=np.ascontiguousarray(torques[m:]),
+        deflection=np.ascontiguousarray(system.deflection),
+        per_normal=per_normal,
+        per_friction=per_friction,
+        per_friction_moment=per_friction_moment,
+        per_separating=np.ascontiguousarray(system.per_apart),
+        per_moment=np.ascontiguousarray(moments(system)),
+        per_torque=np.stack([system.torque_pinion[m:], system.torque_gear[m:]]),
+        supports=np.ascontiguousarray(_power_matrix(system)),
+        turning=np.ascontiguousarray(rates[:2]),
+        off_line=np.ascontiguousarray(rates[4] - rates[5]),
+        speeds=np.array([g.omega_pinion, g.omega_gear]),
+        line=g.L_XY,
     )
-    given = [np.ascontiguousarray(one) for one in arrays]
-    return motion_cycles(corners, start, cycles, recorded, own, *given)
 
 
 def _power_matrix(system: LTVSystem) -> FloatArray:
@@ -311,38 +335,40 @@ def _settling(radius: float) -> int:
     return found
 
 
-def static_rows(
-    own: Tables, start: int, fixed: bool, kinds: int, *where: ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    """``static_places`` of cycles, steps and places that go together, (..., 18) and (..., kinds, pairs)."""
+def linear_form_at(
+    own: MeshTables, start: int, *where: ArrayLike, loads: bool = False
+) -> tuple[LinearForm, Records]:
+    """Linear form at cycles after ``start``, steps and places that go together (...), see ``linear_places``.
+
+    Returned are FORCE (..., 3) and STATE (...), and PAIR_LOAD (..., pairs) where ``loads`` are asked for.
+    """
     asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
     shape, asked = asked.shape[:-1], asked.reshape(-1, 3)
-    sums, numbers = np.empty((len(asked), 18)), np.empty((len(asked), kinds, own.ahead.size))
-    static_places(start, fixed, own, asked, sums, numbers)
-    _all_carried(sums)
-    return sums.reshape(*shape, 18), numbers.reshape(*shape, *numbers.shape[1:])
+    form = LinearForm(np.zeros((len(asked), 3), FORCE), np.zeros(len(asked), STATE))
+    of_pairs = np.zeros((len(asked) if loads else 0, own.ahead.size), PAIR_LOAD)
+    linear_places(start, own, asked, form, of_pairs)
+    _all_carried(form)
+    whole = LinearForm(form.forces.reshape(*shape, 3), form.states.reshape(shape))
+    return whole, of_pairs.reshape(*shape, own.ahead.size) if loads else of_pairs
 
 
-def _all_carried(sums: FloatArray) -> None:
-    if not np.isfinite(sums[..., 17]).all():
+def _all_carried(form: LinearForm) -> None:
+    if not np.isfinite(form.states["approach"]).all():
         raise NumericalError("At a position no tooth pair carries the load: check stiffness and deviations.")
 
 
-def static_mesh(own: Tables, start: int, sums: FloatArray, fixed: bool = False) -> None:
-    """Fill ``sums`` (cycles, steps, nodes, 18) of consecutive cycles, see ``static_cycles``."""
-    nodes = np.arange(sums.shape[2], dtype=np.float64)
-    static_cycles(start, fixed, own, -1.0 - nodes, 2, _FEW_ROUNDS, sums)
-    _all_carried(sums)
+def fill_linear_form(own: MeshTables, start: int, form: LinearForm) -> None:
+    """Fill FORCE (cycles, steps, nodes, 3) and STATE (cycles, steps, nodes) of consecutive cycles."""
+    nodes = np.arange(own.nodes.size, dtype=np.float64)
+    linear_cycles(start, own, -1.0 - nodes, 2, _FEW_ROUNDS, form, True)
+    _all_carried(form)
 
 
-def static_loads(own: Tables, start: int, cycles: int, fixed: bool = False) -> tuple[FloatArray, FloatArray]:
-    """Static approach (cycles, steps) [m] at the starts of steps, and (4, pairs, cycles, steps) of each pair.
-
-    Those are static load and load of small motions, see ``static_places``.
-    """
-    where = np.arange(cycles)[:, None], np.arange(own.place.shape[0]), -1.0
-    sums, numbers = static_rows(own, start, fixed, 8, *where)
-    return sums[..., 17], numbers[..., 4:, :].transpose(2, 3, 0, 1)
+def static_loads(own: MeshTables, start: int, cycles: int) -> tuple[FloatArray, Records]:
+    """Static approach (cycles, steps) [m] and PAIR_LOAD (cycles, steps, pairs) at the starts of the steps."""
+    where = np.arange(cycles)[:, None], np.arange(own.edges.size - 1), -1.0
+    form, loads = linear_form_at(own, start, *where, loads=True)
+    return np.asarray(form.states["approach"], dtype=np.float64), loads
 
 
 def default_samples(period: int) -> int:
@@ -367,7 +393,7 @@ def labelled_motion(motion: OwnMotion, attributes: dict[str, Any], *, periodic: 
         "model": "lumped",
         "period_cycles": motion.period,
         "teeth": "as given",
-        "touch": FORMS[motion.form],
+        "touch": motion.touch.value,
         "spectral_radius": motion.spectral_radius,
     }
     if periodic:

@@ -47,8 +47,10 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     count = default_samples(period) if samples_per_cycle is None else samples_per_cycle
     count = whole_number("samples_per_cycle", count, 1, 65536)
     own = tables(laws, 1.0, count)
+    # With prescribed contact too, pairs touch where their own gaps close.
+    own = own._replace(law=own.law._replace(windows=False))
     approach, each = static_loads(own, 0, period)
-    loads = each[0]
+    loads = each["static"].transpose(2, 0, 1)
     kept = np.flatnonzero(own.outputs)
     places = own.ahead.size
     load = loads[:, :, kept].reshape(places, -1)

@@ -19,7 +19,6 @@ from lumped.model.periodic_system import Supports
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.teeth import kernels
 from lumped.teeth.motion import labelled_motion, push_motion, run
 from lumped.typing import Progress
 
@@ -78,9 +77,9 @@ def simulate(
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     twin = replace(twin, states=steady.states[:1], pinion_torque=steady.pinion_torque)
     torques = steady.pinion_torque * system.torque_pinion + steady.brake_torque * system.torque_gear
-    start, push = initial_state(system, initial, twin), steady.form == kernels.PUSH
+    start = initial_state(system, initial, twin)
     # One cycle more gives the end of the last one.
-    states, load, _, _ = run(pair, steady.tables, system, push, 0, cycles + 1, cycles + 1, start, torques)
+    states, load, _, _ = run(pair, steady.tables, system, 0, cycles + 1, cycles + 1, start, torques)
     count = cycles * samples + 1
     if not np.isfinite(states[:count]).all():
         raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")

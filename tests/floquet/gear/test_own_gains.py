@@ -13,7 +13,7 @@ from floquet.gear.gains import OwnGains, own_tables
 from floquet.rank_one.piecewise import fit_pieces
 from lumped.model.periodic_system import LTVSystem
 from lumped.teeth.contact import Laws
-from lumped.teeth.linear import LinearForm, linear_steps
+from lumped.teeth.linear import CycleSteps, linear_steps
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     {"operating.pinion_speed": 1500, "friction.law": "coulomb", "friction.coefficient": 0.06}
@@ -31,7 +31,7 @@ def cracked(*teeth):
 def by_gauss_steps(pair, times, rate):
     """Rate, near ``rate``, and mean log of the determinants of the linear form, its steps so much shorter."""
     system = LTVSystem.of(pair.healthy, "mesh")
-    maps = LinearForm(pair, system, 1, times * linear_steps(system)).cycle_maps()[..., :6]
+    maps = CycleSteps(pair, system, 1, times * linear_steps(system)).cycle_maps()[..., :6]
     largest = np.abs(np.linalg.eigvals(reduce(lambda product, one: one @ product, maps / rate))).max()
     return rate * largest ** (1.0 / len(maps)), np.linalg.slogdet(maps)[1].mean()
 
@@ -91,7 +91,7 @@ def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
 
 def test_pieces_end_where_a_pair_touches_its_damper_is_full_or_its_tip_leaves_the_line():
     pair = PAIR.with_({"mesh.contact": "loaded", "mesh.relief": "ignored"} | CLASS_6)
-    gains = OwnGains(own_tables(Laws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh"), False, 5, 8)
+    gains = OwnGains(own_tables(Laws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh"), 5, 8)
     # Else pieces are halved around every kink, down to the tolerance: 115 of a cycle.
     assert fit_pieces(gains, gains.edges, np.ones(3), rtol=1e-11)[0].size < 27 * 8
 

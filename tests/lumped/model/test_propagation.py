@@ -38,6 +38,7 @@ def system_of(constant, gain, deflection, edges):
         size=size, period=float(edges[-1]), cycle=SimpleNamespace(edges=ends, breaks=ends, bends=ends[:0]),
         constant=constant, deflection=column, torque_pinion=np.zeros(size), pinion_torque=0.0,
         gain=lambda t, segment: MeshGain(*gain(t), no_pairs(t)), matrices=matrices,
+        mesh_forces=lambda t, segment: (np.stack(gain(t), axis=1), no_pairs(t)), directions=np.eye(size // 2),
     )  # fmt: skip
 
 

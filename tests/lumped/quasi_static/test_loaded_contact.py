@@ -49,7 +49,7 @@ def test_pairs_two_pitches_apart_move_each_other_too():
     three = mesh.static(xi)
     assert three.load.min() > 0.0
     w, far = mesh.neighbours[0](xi[:2]), float(mesh.neighbours[1](xi[0]))
-    compliance = np.diag(1.0 / mesh.law.extended(xi))
+    compliance = np.diag(1.0 / mesh.stiffness.extended(xi))
     compliance += np.array([[0.0, w[0], far], [w[0], 0.0, w[1]], [far, w[1], 0.0]])
     assert compliance @ three.load == pytest.approx(three.approach - three.gap, rel=1e-10)
     assert abs(far) > 1e-3 * w[0]

@@ -7,13 +7,14 @@ import pytest
 
 import lumped
 from lumped.gauss_legendre import gauss_tableau
-from lumped.quasi_static.kernels import corner_at, shared_loads
+from lumped.mesh.element import FORCE, LINE
+from lumped.mesh.linear import SIGNS, STATE, LinearForm, linear_cycles
+from lumped.mesh.tables import TURNING, turn_line
 from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
-from lumped.teeth import kernels
 from lumped.teeth.contact import Laws, tables
 from lumped.teeth.linear import linear_motion
-from lumped.teeth.motion import push_motion, static_loads, static_mesh, static_rows
+from lumped.teeth.motion import fill_linear_form, linear_form_at, push_motion, static_loads
 from tests.unlike_pairs import unlike_pair
 
 COS = np.cos(np.radians(20.0))
@@ -203,18 +204,19 @@ class TestEccentricGears:
         for which, u in enumerate(
             (eps * np.array([-np.cos(turn), np.sin(turn)]), -eps * np.array([np.cos(turn), np.sin(turn)]))
         ):
-            rows = np.zeros((2, 6))
-            rows[:, 2] = 25, 31
-            cotangent = 1.0 / np.tan(g.operating_pressure_angle)
-            rows[which] = eps, turn - 0.5, rows[which, 2], g.L_XY, cotangent, 0.0
-            moved, turned = np.zeros((1, 1, 8)), np.array([[[[1.0, 0.0]] * 2]])
-            turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
-            kernels.eccentric_steps(0, 0, len(moved), turned, rows, moved)
-            found = moved[0, 0]
+            turning = np.zeros(2, TURNING)
+            turning["cycles"] = 25, 31
+            turning["amplitude"][which], turning["start"][which] = eps, turn - 0.5
+            own = tables(Laws(unequal), 1.0, 1)
+            own.turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
+            own, moved = own._replace(turning=turning, lengthening=0.0), np.zeros(1, LINE)
+            starts = np.zeros((2, 2))
+            starts[which] = eps * np.cos(turn - 0.5), eps * np.sin(turn - 0.5)
+            gap, _ = turn_line(0, 0, own, starts, moved[0])
             length, angle = line(u)
-            assert found[2] == pytest.approx(length - g.L_XY, rel=1e-5)
-            assert found[3] == pytest.approx(angle, rel=1e-5)
-            assert found[0] == pytest.approx(length - g.L_XY - radius * angle, rel=1e-5)
+            assert moved["length"][0] - g.L_XY == pytest.approx(length - g.L_XY, rel=1e-5)
+            assert moved["turn"][0] == pytest.approx(angle, rel=1e-5)
+            assert gap == pytest.approx(length - g.L_XY - radius * angle, rel=1e-5)
 
     def test_an_eccentric_gear_makes_small_sidebands_where_a_list_of_steps_makes_large_ones(self, loaded):
         staircase = 20.0 / COS * np.cos(2.0 * np.pi * np.arange(28) / 28)
@@ -275,11 +277,11 @@ class TestOfEveryPair:
         mounted = {"eccentricity": 20, "phase": 50}
         pair, way = loaded.with_({"pinion.deviations": slopes, "pinion.mounting": mounted}), 3.0
         own = tables(Laws(pair), 1.0 / 32, 1)
-        own.eccentric[0, 5] = way
+        own.turning["swing"][0] = way
         moved, loads = static_loads(own, 0, 28)
-        own.eccentric[0, 5] = 0.0
+        own.turning["swing"][0] = 0.0
         unmoved, others = static_loads(own, 0, 28)
-        single = (loads[0] + others[0] > 0.0).sum(axis=0) == 1
+        single = (loads["static"] + others["static"] > 0.0).sum(axis=-1) == 1
         turn = 2.0 * np.pi / 28 * (np.arange(28)[:, None] + own.edges[:-1]) + np.radians(50.0)
         flank = pair.flank(0)
         expected = -8e-6 / (flank.tip - flank.start) * way * 20e-6 * np.sin(turn)
@@ -289,39 +291,22 @@ class TestOfEveryPair:
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
         laws = Laws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
         own, x = tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2]), (np.arange(2000) + 0.5) / 2000
-        sums = np.empty((28, *own.place.shape[:2], 18))
-        static_mesh(own, 0, sums)
-        at = np.arange(28)[:, None, None], np.arange(sums.shape[1])[:, None], x
-        rows, numbers = static_rows(own, 0, False, 2, *at)
-        wanted = (np.vander(x, 4) @ np.linalg.inv(np.vander(own.nodes)) / x.size).T @ rows
-        assert ((numbers[:, :, 1:] * numbers[:, :, :-1] < 0.0).sum(axis=(2, 3, 4)) > 1).sum() > 30
+        shape = (28, *own.position.shape[:2])
+        form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
+        fill_linear_form(own, 0, form)
+        at = np.arange(28)[:, None, None], np.arange(shape[1])[:, None], x
+        fine, _ = linear_form_at(own, 0, *at)
+        kinks = linear_cycles(0, own, np.linspace(0.0, 1.0, 3), SIGNS, 16, form, False)
+        steps_with = np.histogram(kinks, np.add.outer(np.arange(28), own.edges[:-1]).ravel())[0]
+        assert (steps_with > 1).sum() > 30
+        to_moments = (np.vander(x, 4) @ np.linalg.inv(np.vander(own.nodes)) / x.size).T
         # Up to 1.5 % of a sum is left where a tip leaves the line of action inside a step.
-        wrong = np.abs(own.weights[:, None] * sums - wanted).max(axis=(0, 1, 2))
-        assert (wrong <= 0.02 * np.abs(wanted).max(axis=(0, 1, 2))).all()
-
-
-def test_loads_of_pairs_that_move_each_other_are_those_that_like_teeth_relax_to():
-    k, force, softening, least = np.array([3e8, 4e8, 0.0, 3.5e8]), 3600.0, 1.4e-10, 3.6
-    w = 6e-10 * (1.0 - np.eye(4))
-    here = np.zeros((kernels.MATRIX + 4, 4))  # loads of the last one are the first guess
-    for pressed in np.random.default_rng(3).normal(2e-6, 8e-6, (200, 4)):
-        here[kernels.PRESSED] = np.where(k > 0.0, pressed, 0.0)
-        kernels.shared(k, w, np.array([force, 0.0, softening, least, 0.0]), here)
-        loads, tangents = np.zeros(4), np.zeros(4)
-        shared_loads(pressed, k, w, softening, force, least, loads, tangents, np.zeros(4))
-        assert here[kernels.LOAD] == pytest.approx(loads, abs=1e-8)
-        assert here[kernels.TANGENT] == pytest.approx(tangents, rel=1e-6)
-
-
-def test_slope_of_a_tip_corner_is_the_rate_of_its_gap(nasa):
-    g = nasa.geometry
-    at = (g.L_XA, g.L_XY, g.base_radius_pinion, g.base_radius_gear)
-    for beyond in (1e-5, 4e-4, 2e-3):
-        gap, slope, tilt = kernels.corner(beyond, *at)
-        around = [kernels.corner(beyond + h, *at)[0] for h in (-1e-6, 1e-6)]
-        assert slope == pytest.approx((around[1] - around[0]) / 2e-6, rel=1e-6, abs=1e-9)
-        assert gap > 0.0
-        assert tilt == corner_at(beyond, *at)[1]
+        for coarse, exact in zip(form, fine, strict=True):
+            for name in coarse.dtype.names:
+                found = coarse[name].reshape(*shape, -1)
+                wanted = to_moments @ exact[name].reshape(*shape[:2], x.size, -1)
+                wrong = np.abs(own.weights[:, None] * found - wanted).max(axis=(0, 1, 2))
+                assert (wrong <= 0.02 * np.abs(wanted).max(axis=(0, 1, 2))).all(), name
 
 
 @pytest.mark.parametrize("form", FORMS)

@@ -6,8 +6,6 @@ from scipy.special import lambertw
 
 import lumped
 import multibody
-from lumped.quasi_static.kernels import load_of
-from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
 from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import corner_gap as lumped_corner_gap
 from multibody.contact import kinematics as kn
@@ -15,6 +13,7 @@ from multibody.contact.elements import GRADUAL, elastic_load, shared_loads, stor
 from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
 from multibody.run.effects import effect_flags
+from tests.lumped.mesh.element_calls import Mesh
 from tests.unlike_pairs import unlike_pair
 
 ALL = effect_flags(None, "loaded")
@@ -208,9 +207,8 @@ def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
     softer, stiffer = (energy(pressed, k + s)[0] for s in (-1e3, 1e3))
     assert slope == pytest.approx((stiffer - softer) / 2e3 * 2e9, rel=1e-6)
     # The lumped model's own evaluation: load, and its slope as the tangent.
-    (here, tangent), (further, _) = (
-        load_of(p, k, d, nominal, 1e-3 * nominal, 0.0) for p in (pressed, pressed + h)
-    )
+    one = Mesh([0.015], stiffness=k, softening=d, force=nominal, linear_below=1e-3 * nominal)
+    (further,), (here,), tangent = one.loads(pressed + h), one.loads(pressed), one.contacts["tangent"][0]
     assert here == pytest.approx(load, rel=1e-12)
     assert tangent == pytest.approx((further - here) / h, rel=1e-5)
     assert stored_energy(1e-9, k, 2e9, d, nominal)[0] == pytest.approx(0.0, abs=1e-20)  # no load, no energy
@@ -256,18 +254,18 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
 
 @pytest.mark.parametrize("softening", [0.0, 4.4e-10])
 def test_neighbours_share_the_load_in_both_models(softening):
-    """Newton's steps here, relaxation there; and the conditions of contact themselves."""
+    """Each solves by its own means; and the conditions of contact themselves."""
     rng, seen = np.random.default_rng(7), set()
     for _ in range(2000):
         n, nominal = int(rng.integers(1, 5)), 1353.0
         k, pressed = rng.uniform(5e7, 1e8, n), rng.uniform(-5e-6, 2e-5, n)
         w = rng.uniform(-1.5e-9, 4e-9, (n, n))
         w = np.tril(w, -1) + np.tril(w, -1).T
-        loads, theirs = np.empty(n), np.zeros(n)
+        loads = np.empty(n)
         shared_loads(n, pressed, k, 0, w, softening, nominal, loads)
-        lumped_shared_loads(
-            pressed, k, w, softening, nominal, 1e-3 * nominal, theirs, np.zeros(n), np.zeros(n)
-        )
+        law = {"softening": softening, "force": nominal, "linear_below": 1e-3 * nominal, "coupled": True}
+        law["apart"] = -1.0  # neighbours may bring any pair into contact
+        theirs = Mesh(np.full(n, 0.015), w, stiffness=k, gap=-pressed, **law).loads(0.0)
         assert loads == pytest.approx(theirs, rel=1e-11, abs=1e-9)
         left = pressed - w @ loads
         touch = loads > 0.0

@@ -1,0 +1,1 @@
+"""The forces between the teeth that mesh: how an approach of the gears becomes a force."""

@@ -1,0 +1,95 @@
+"""The element of the mesh by itself, for tests: compiled calls, and a mesh of plain numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lumped.compiler import compiled
+from lumped.mesh import element, linear
+from lumped.mesh.element import CONTACT, EXACT, FLANKS, LINE, PAIR, ContactLaw
+
+
+@compiled
+def place(position, flanks, line, law, pairs):
+    """Put every pair at its position (pairs,)."""
+    for i in range(pairs.size):
+        element.place_pair(pairs[i], position[i], flanks[0], line[0], law)
+
+
+@compiled
+def loads_at(approach, pairs, line, law, coupling, contacts):
+    """Gaps and elastic loads at an approach."""
+    matrix = np.empty((pairs.size, pairs.size))
+    element.share_load(approach, pairs, line[0], law, coupling, matrix, contacts)
+
+
+@compiled
+def force_at(approach, closing, pairs, line, law, coupling, contacts, normal):
+    """Force of the mesh at an approach and its rate."""
+    matrix = np.empty((pairs.size, pairs.size))
+    element.share_load(approach, pairs, line[0], law, coupling, matrix, contacts)
+    return element.mesh_force(closing, pairs, line[0], law, contacts, normal)
+
+
+@compiled
+def static_at(guess, tolerance, pairs, line, law, coupling, contacts):
+    """Static approach."""
+    matrix = np.empty((pairs.size, pairs.size))
+    return element.static_approach(guess, tolerance, pairs, line[0], law, coupling, matrix, contacts)
+
+
+@compiled
+def linear_about(static, pairs, line, law, contacts, forces, states, loads):
+    """The linear form about a static approach whose contacts are known."""
+    linear.linearise(static, pairs, line[0], law, contacts, forces, states[0], loads)
+
+
+class Mesh:
+    """Pairs of given numbers on a line of action of their own, and what the element makes of them.
+
+    ``position`` (pairs,) xi [m]; other keywords set fields of PAIR, of LINE and of ContactLaw by name.
+    """
+
+    LAW = ContactLaw(
+        force=3000.0, softening=0.0, linear_below=3.0, converged=EXACT, full_damper=200.0, coupled=False,
+        apart=0.0, windows=False, radius_pinion=0.040, radius_gear=0.075, rolling_speed=6.0,
+    )  # fmt: skip
+    ENDS = (0.0080, 0.0235, 0.0420, 0.0, 0.0)  # FLANKS [m]
+
+    def __init__(self, position, coupling=None, **numbers):
+        position = np.atleast_1d(np.asarray(position, dtype=float))
+        self.law = self.LAW._replace(**{name: numbers[name] for name in self.LAW._fields if name in numbers})
+        self.line, self.pairs = np.zeros(1, LINE), np.zeros(position.size, PAIR)
+        self.line["length"] = self.ENDS[2]
+        self.pairs["stiffness"] = 3e8
+        for name in LINE.names:
+            self.line[name] = numbers.get(name, self.line[name])
+        self.line["length"] += self.line["lengthening"]
+        place(position, np.array([self.ENDS], FLANKS), self.line, self.law, self.pairs)
+        for name in PAIR.names:
+            self.pairs[name] = numbers.get(name, self.pairs[name])
+        self.coupling = np.zeros((position.size,) * 2) if coupling is None else np.asarray(coupling)
+        self.contacts, self.normal = np.zeros(position.size, CONTACT), np.zeros(position.size)
+
+    def loads(self, approach):
+        """Elastic loads (pairs,) [N]; ``contacts`` are those then."""
+        loads_at(approach, self.pairs, self.line, self.law, self.coupling, self.contacts)
+        return self.contacts["load"].copy()
+
+    def force(self, approach, closing):
+        """MeshForce; ``normal`` are the loads then."""
+        arguments = self.pairs, self.line, self.law, self.coupling, self.contacts, self.normal
+        return force_at(approach, closing, *arguments)
+
+    def static(self):
+        """Static approach [m]."""
+        arguments = self.pairs, self.line, self.law, self.coupling, self.contacts
+        return static_at(0.0, 1e-13, *arguments)
+
+    def linear(self):
+        """FORCE (3,), STATE and PAIR_LOAD (pairs,) about the static approach."""
+        static = self.static()
+        forces, states = np.zeros(3, element.FORCE), np.zeros(1, linear.STATE)
+        loads = np.zeros(self.pairs.size, linear.PAIR_LOAD)
+        linear_about(static, self.pairs, self.line, self.law, self.contacts, forces, states, loads)
+        return forces, states[0], loads
