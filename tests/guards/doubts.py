@@ -227,7 +227,7 @@ FLAGGED = (
       for base, law in ((LONG, "xu_kahraman"), (FAST, "benedict_kelley"), (FAST, "iso_14179"))),
     *(Choice(_FLAGS, "film_parameter", LONG, why, {"{gear}.roughness": 9.0},
              {"{gear}.roughness": 9.0, "friction.law": law}, judge=film_flag)
-      for law, why in (("composite", "law V changes its law itself"), ("coulomb", "a number fits no regime"))),
+      for law, why in (("composite", "law V changes its law itself"), ("coulomb", "no regime"))),
     Guard(_FLAGS, "friction_law_range", RACK_25, "ISO/TR 14179-2: 150 N/mm and more",
           sets="operating.pinion_torque",
           least=torque_of_unit_load(150.0), after={"friction.law": "iso_14179"}, judge=law_flag),
