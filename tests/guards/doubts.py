@@ -223,11 +223,11 @@ def _rough(pair: GearPair, gear: str) -> float:
 _FLAGS = "validation/validity/flags.py"
 FLAGGED = (
     *(Guard(_FLAGS, "film_parameter", base, "boundary lubrication below the first threshold of law V",
-            most=_rough,
-            sets="{gear}.roughness", after={"friction.law": law}, judge=film_flag)
+            most=_rough, sets="{gear}.roughness", after={"friction.law": law}, judge=film_flag)
       for base, law in ((LONG, "xu_kahraman"), (FAST, "benedict_kelley"), (FAST, "iso_14179"))),
-    Choice(_FLAGS, "film_parameter", LONG, "law V changes its law itself",
-           {"{gear}.roughness": 9.0}, {"{gear}.roughness": 9.0, "friction.law": "coulomb"}, judge=film_flag),
+    *(Choice(_FLAGS, "film_parameter", LONG, why, {"{gear}.roughness": 9.0},
+             {"{gear}.roughness": 9.0, "friction.law": law}, judge=film_flag)
+      for law, why in (("composite", "law V changes its law itself"), ("coulomb", "no regime"))),
     Guard(_FLAGS, "friction_law_range", RACK_25, "ISO/TR 14179-2: 150 N/mm and more",
           sets="operating.pinion_torque",
           least=torque_of_unit_load(150.0), after={"friction.law": "iso_14179"}, judge=law_flag),

@@ -96,7 +96,7 @@ GEOMETRY = (
             most=of(lambda h: h.tip_diameter(h.line)), says="involute interference", beside=True)
       for base in (SMALL, FAST)),
     Guard(_GEOMETRY, "{gear}.profile_shift", RACK_25,
-          "contact ends above the rack's fillet; 1e-9 m is rounding",
+          "contact ends above the rack's fillet; 1e-9 of a module is rounding",
           most=of(lambda h: h.mate.tip_diameter(h.line - h.form_length)), near=1e-8,
           sets="{mate}.tip_diameter", says="undercut or fillet", beside=True),
     Guard(_GEOMETRY, "{gear}.tip_diameter", RELIEVED, "clearance to the mate's root, a - r_a - r_f >= 0",
@@ -107,7 +107,8 @@ GEOMETRY = (
           after={"basic_rack.dedendum_coefficient": 1.9, "basic_rack.fillet_radius_coefficient": 0.1}),
     Guard(_GEOMETRY, "{gear}.bore", UNLIKE_TEETH, "a gear has a rim: d_f = m (z - 2 h_f + 2 x) (ISO 21771)",
           most=of(lambda h: 2.0 * h.r_f), says="< root diameter"),
-    Guard(_GEOMETRY, "centre_distance", RACK_25, "teeth overlap by 1e-4 m at most, as drawings are rounded",
+    Guard(_GEOMETRY, "centre_distance", RACK_25,
+          "teeth overlap by 1e-4 of a module at most: drawings are rounded",
           least=of(_wedged_centre), says="normal backlash >= 0"),
     Guard(_GEOMETRY, "centre_distance", FAST, "the same, by the shift of one gear",
           most=of(_wedged_shift), sets="{gear}.profile_shift", says="normal backlash >= 0",
@@ -148,6 +149,10 @@ def _room(pair: GearPair) -> float:
     return 0.25 * math.pi - rack.dedendum_coefficient * math.tan(rack.pressure_angle)
 
 
+def _full_radius(pair: GearPair, gear: str) -> float:
+    return _room(pair) / math.tan(0.25 * math.pi - 0.5 * pair.basic_rack.pressure_angle)
+
+
 def _bearing(at: float, **more: float) -> dict[str, float]:
     return {"position": at, "loa_stiffness": 2e8, "oloa_stiffness": 3e8} | more
 
@@ -174,15 +179,17 @@ def _one_segment(long: bool) -> Callable[[GearPair, str, float], Changes]:
 
 
 _PAIR, _GEAR, _CONTACT = "lumped/schema/pair.py", "lumped/schema/gear.py", "lumped/schema/contact.py"
-_SHAFTS, _TEETH, _FILES = "lumped/schema/shafts.py", "lumped/schema/teeth.py", "lumped/schema/files.py"
+_SHAFTS, _TEETH = "lumped/schema/shafts.py", "lumped/schema/teeth.py"
+_BLANK = {"teeth": 33, "face_width": 15, "roughness": 0.4}
 SCHEMA = (
     Guard(_PAIR, "{gear}.mass", RACK_25, "1e-4 of the solid disc: less is a unit error",
           least=lambda pair, gear: 1e-4 * _disc(pair, gear)),
     Guard(_PAIR, "{gear}.inertia", RACK_25, "1e-4 of the solid disc: less is a unit error",
           least=lambda pair, gear: 1e-4 * _disc_inertia(pair, gear)),
     Guard(_PAIR, "mesh.first_teeth", SMALL, "teeth are counted from 1 to z", most=_teeth, whole=True,
-          sets=lambda pair, gear, tooth: {"mesh.first_teeth": [tooth, 1] if gear == "pinion" else [1,
-          tooth]}),
+          sets=lambda pair, gear, tooth: {
+              "mesh.first_teeth": [tooth, 1] if gear == "pinion" else [1, tooth]
+          }),
     Guard(_GEAR, "basic_rack.dedendum_coefficient", RACK_25,
           "the rack's tooth has a tip: h_f <= pi/4 cot(alpha)",
           most=lambda pair, gear: 0.25 * math.pi / math.tan(pair.basic_rack.pressure_angle),
@@ -190,14 +197,13 @@ SCHEMA = (
           after={"basic_rack.fillet_radius_coefficient": 0.0}, beside=True, says="pointed above their tips"),
     Guard(_GEAR, "basic_rack.fillet_radius_coefficient", RACK_25,
           "full tip radius: rho (1 - sin(alpha))/cos(alpha) fills half the rack's tip",
-          most=lambda pair,
-          gear: _room(pair) / math.tan(0.25 * math.pi - 0.5 * pair.basic_rack.pressure_angle)),
+          most=_full_radius),
     Guard(_GEAR, "{gear}.faults.0.tooth", FAST, "teeth are counted from 1 to z", most=_teeth, whole=True,
-          sets=lambda pair, gear, tooth: {f"{gear}.faults": [{"kind": "crack", "tooth": tooth,
-          "depth": 0.1}]}),
+          sets=lambda pair, gear, tooth: {
+              f"{gear}.faults": [{"kind": "crack", "tooth": tooth, "depth": 0.1}]
+          }),
     *(Guard(_TEETH, f"{{gear}}.deviations.{field}", RELIEVED, "one value a tooth", **{end: _teeth},
-            whole=True,
-            sets=_values(field))
+            whole=True, sets=_values(field))
       for field in ("index", "profile_slope", "tip_relief") for end in ("least", "most")),
     Guard(_SHAFTS, "shafts.{gear}.gear_position", LONG, "on the shaft, up to the rounding of lengths",
           most=lambda pair, gear: _length(pair, gear) * (1.0 + 1e-9), near=1e-10),
@@ -219,9 +225,8 @@ SCHEMA = (
            {"shafts.{gear}.bearings": [_bearing(50.0)]},
            {"shafts.{gear}.bearings": [_bearing(50.0, tilt_stiffness=1e-3)]}, says="two bearings"),
     Choice(_GEAR, "{gear}.tip_diameter", FAST, "one tip",
-           {"{gear}": {"teeth": 33, "face_width": 15, "roughness": 0.4, "addendum": 2.0,
-           "tip_diameter": 70.0}},
-           {"{gear}": {"teeth": 33, "face_width": 15, "roughness": 0.4, "tip_diameter": 70.0}},
+           {"{gear}": _BLANK | {"addendum": 2.0, "tip_diameter": 70.0}},
+           {"{gear}": _BLANK | {"tip_diameter": 70.0}},
            says="either addendum or tip_diameter"),
     Choice(_GEAR, "{gear}.mounting.eccentricity", UNLIKE_TEETH, "the first harmonic of the deviations is one",
            {"{gear}.mounting": {"eccentricity": 1e-6}},
