@@ -32,7 +32,8 @@ def test_where_contact_holds_it_is_the_linear_motion(name, brake):
     orbit, linear = floquet.periodic_orbit(pair), lumped.steady_state(pair, samples_per_cycle=256)
     assert not orbit.contact_lost
     span = float(np.ptp(linear.dte.values))
-    assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-11 * span)
+    # Rounding of the states, larger by the cycles in which a disturbance decays: 2e-11 with light damping.
+    assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-10 * span)
     assert orbit.motion.attrs["dte_peak_to_peak"] == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=1e-6)
     for name in ("y_p", "y_g", "bearing_force_y_g", "friction_force"):
         own, wanted = orbit.motion[name].values, linear[name].values[..., :256]

@@ -88,7 +88,7 @@ def operating_angle(parameters):
 
 
 def path_of_contact(parameters):
-    """A, P, D and the whole line of action X to Y [m]; tips lie addendum and shift above the reference circle."""
+    """A, P, D and the whole line of action X to Y [m]; tips are addendum and shift beyond the reference."""
     rack, (r_p, r_g) = parameters["basic_rack"], base_radii(parameters)
     working = math.tan(operating_angle(parameters))
     tips = [
