@@ -8,7 +8,7 @@ import multibody
 from multibody.run.effects import default_effects
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
-from tests.unlike_pairs import UNLIKE, unlike_pair
+from tests.unlike_pairs import unlike_pair
 from validation.cross_check.agreement import _scale
 
 BASE = lumped.load_gear_pair("nasa_28_28").with_(
@@ -127,11 +127,15 @@ def steady_difference(pair):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [n for n in UNLIKE if unlike_pair(n).healthy is unlike_pair(n)])
+@pytest.mark.parametrize(
+    "name",
+    ["contact_ratio_2_3_on_shafts", "heavily_relieved_under_load", "rack_25_degrees_always_pushing"],
+)
 def test_exact_level_scales_with_torque(name):
     """Coulomb friction (a coefficient free of torque) at a fourth and at a sixteenth of the pair's torque.
 
-    At the full torque vibration turns the sliding of two of them, which does not go with the torque.
+    Not where vibration turns the sliding (contact ratio 1.1) or light damping stands at a resonance that
+    finite motions move (the larger gear): there the difference is no first order of the torque.
     """
     pair = unlike_pair(name).with_(
         mesh__contact="prescribed",
