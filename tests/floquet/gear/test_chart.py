@@ -10,6 +10,7 @@ from floquet.gear import chart as module
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
 from tests.evidence.floquet.reference_systems import mathieu_many, mathieu_unstable, meissner_trace
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 COULOMB = {"friction.law": "coulomb", "friction.coefficient": 0.05}
 UNDAMPED = {f"bearings.{g}.{d}_damping_ratio": 0.0 for g in ("pinion", "gear") for d in ("loa", "oloa")}
@@ -37,10 +38,11 @@ CASES = {
     "thin tongues": (
         UNDAMPED | {"mesh.damping_ratio": 0.003}, {"bearing_stiffness": np.geomspace(3e7, 3e8, 41)}
     ),
-    "law II": ({"friction.law": "benedict_kelley"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
-    "law III": ({"friction.law": "xu_kahraman"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
-    "law IV": ({"friction.law": "smoothed_coulomb"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
-    "law V": ({"friction.law": "composite"}, {"damping_ratio": np.linspace(0.0, 0.04, 21)}),
+}  # fmt: skip
+#: Laws II, III, IV and V, with the geometry and stiffness of the pair that has them.
+CASES |= {
+    name: ({}, {"damping_ratio": np.linspace(0.0, 0.04, 21)})
+    for name in UNLIKE if name.startswith(("rack", "contact_ratio_2", "larger", "heavily"))
 }  # fmt: skip
 
 
@@ -48,7 +50,8 @@ CASES = {
 @pytest.mark.parametrize("case", CASES)
 def test_a_refined_chart_has_the_verdicts_of_the_full_grid(pair, case) -> None:
     changes, axis = CASES[case]
-    here, axes = pair.with_(changes), {**axis, "speed_rpm": SPEEDS}
+    here = unlike_pair(case) if case in UNLIKE else pair.with_(changes)
+    axes = {**axis, "speed_rpm": SPEEDS}
     got = stability_chart(here, axes, rtol=1e-8)
     full = stability_chart(here, axes, rtol=1e-8, refine=False)
     assert 0.0 < float(got.known.mean()) < 0.95

@@ -6,10 +6,11 @@ import pytest
 from floquet import gear_block, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
 from floquet.gear.multipliers import feedback_system, fitted_block
-from lumped import load_gear_pair, preset_names
+from lumped import load_gear_pair
 from lumped.friction import LAWS, base
 from lumped.path_of_contact.friction import contact_path, friction_path_function
 from tests.evidence.floquet.extended import as_periodic_system
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
 
@@ -20,13 +21,22 @@ def with_law(law: str, preset: str = "nasa_28_28", **changes: object) -> GearVar
     )
 
 
+#: Laws whose value goes with the speed, each on its own pair and on one that has another path of contact.
+WITH_LAW = {
+    "contact_ratio_1_1_large_shifts": ("coulomb", "xu_kahraman"),
+    "contact_ratio_2_3_on_shafts": ("xu_kahraman", "composite"),
+    "heavily_relieved_under_load": ("composite",),
+    "larger_gear_drives_contact_lost": ("smoothed_coulomb", "benedict_kelley"),
+    "rack_25_degrees_always_pushing": ("benedict_kelley", "composite"),
+    "unlike_teeth_finite_elements": ("iso_14179", "xu_kahraman"),
+}
+
+
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # law II at 20000 rpm
-@pytest.mark.parametrize("preset", preset_names())
-@pytest.mark.parametrize(
-    "law", ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
-)
-def test_families_give_the_law_of_every_speed(law: str, preset: str) -> None:
-    variation = with_law(law, preset)
+@pytest.mark.parametrize(("name", "law"), [(name, law) for name, laws in WITH_LAW.items() for law in laws])
+def test_families_give_the_law_of_every_speed(name: str, law: str) -> None:
+    pair = unlike_pair(name).healthy
+    variation = GearVariation(pair.with_(mesh__contact="prescribed", friction__law=law))
     families = friction_families(variation, SPEEDS)
     seen = np.concatenate([family.members for family in families])
     assert sorted(seen) == list(range(SPEEDS.size))  # every speed once
@@ -77,11 +87,10 @@ def test_moving_regimes_are_fitted_apart() -> None:
             assert inside.sum() == family.members.size
 
 
-@pytest.mark.parametrize("preset", preset_names())
-@pytest.mark.parametrize("contact", ["prescribed", "loaded"])
-def test_charts_of_presets_are_proven_and_share_the_polynomials_of_single_speeds(preset, contact) -> None:
+@pytest.mark.parametrize("name", UNLIKE)
+def test_charts_are_proven_and_share_the_polynomials_of_single_speeds(name) -> None:
     """Law III goes with n^-0.100601: a chart has the very polynomials of each speed, times a factor."""
-    pair = load_gear_pair(preset).with_(mesh__contact=contact)
+    pair = unlike_pair(name).healthy.with_(friction__law="xu_kahraman", friction__coefficient=None)
     chart = stability_chart(pair, {"speed_rpm": SPEEDS[:-1], "damping_ratio": [0.0, 0.03]})
     assert chart.certificate == "proven"
     for speed in SPEEDS[[0, 3, 4]]:

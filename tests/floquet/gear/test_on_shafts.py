@@ -10,6 +10,7 @@ from floquet.gear.axes import GearVariation, vary
 from floquet.gear.multipliers import MODES, feedback_system
 from lumped.errors import ParameterError
 from lumped.schema.pair import GearPair
+from tests.unlike_pairs import unlike_pair
 
 
 def on_shafts(pinion: tuple[float, float], gear: tuple[float, float], **more: object) -> GearPair:
@@ -38,9 +39,10 @@ def matched(found: np.ndarray, exact: np.ndarray) -> np.ndarray:
 
 
 def test_charts_are_the_general_engine_at_every_speed(slender: GearPair) -> None:
-    axes = {"speed_rpm": [5000.0, 12000.0], "friction_coefficient": [0.1], "torque": [150.0]}
-    chart = stability_chart(slender, axes, supports="shafts", rtol=1e-8, store="all")
-    slow = scan(lambda at: gear_pair_multipliers(vary(slender, at, "shafts"), 1e-6, method="gauss"), axes)
+    pair = unlike_pair("contact_ratio_2_3_on_shafts")
+    axes = {"speed_rpm": [2600.0, 12000.0], "friction_coefficient": [0.1], "torque": [150.0]}
+    chart = stability_chart(pair, axes, supports="shafts", rtol=1e-8, store="all")
+    slow = scan(lambda at: gear_pair_multipliers(vary(pair, at, "shafts"), 1e-6, method="gauss"), axes)
     for values, errors, exact, bounds in zip(
         *(part.values.reshape(2, -1) for c in (chart, slow) for part in (c.multipliers, c.multiplier_errors)),
         strict=True,

@@ -9,6 +9,7 @@ from floquet.gear.unilateral import _coast_flank, unilateral_family, unilateral_
 from lumped import NumericalError, ParameterError
 from lumped.model.equations import structure
 from lumped.model.mesh_cycle import MeshCycle
+from tests.unlike_pairs import UNLIKE, unlike_pair
 
 
 @pytest.fixture(scope="module")
@@ -22,17 +23,17 @@ def at(pair, rpm):
     return pair.with_({"operating.pinion_speed": rpm})
 
 
-@pytest.mark.parametrize("brake", ["balanced", 56.0])
-def test_where_contact_holds_it_is_the_linear_motion(brake):
+@pytest.mark.parametrize(("name", "brake"), [
+    ("rack_25_degrees_always_pushing", "balanced"), ("larger_gear_drives_contact_lost", 27.8),
+])  # fmt: skip
+def test_where_contact_holds_it_is_the_linear_motion(name, brake):
     """With friction that depends on speed, and with either torque as the unknown."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed", mesh__relief="ignored", operating__brake_torque=brake
-    )
-    pair = at(pair, 12000.0)
+    pair = unlike_pair(name).with_(mesh__contact="prescribed", operating__brake_torque=brake)
     orbit, linear = floquet.periodic_orbit(pair), lumped.steady_state(pair, samples_per_cycle=256)
     assert not orbit.contact_lost
     span = float(np.ptp(linear.dte.values))
-    assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-11 * span)
+    # Rounding of the states, larger by the cycles in which a disturbance decays: 2e-11 with light damping.
+    assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-10 * span)
     assert orbit.motion.attrs["dte_peak_to_peak"] == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=1e-6)
     for name in ("y_p", "y_g", "bearing_force_y_g", "friction_force"):
         own, wanted = orbit.motion[name].values, linear[name].values[..., :256]
@@ -110,11 +111,10 @@ def test_between_the_neimark_sacker_points_the_run_beats(branches, frictionless)
     assert settled.orbit.stable
 
 
-@pytest.mark.parametrize(
-    "law", ["coulomb", "smoothed_coulomb", "benedict_kelley", "xu_kahraman", "composite"]
-)
-def test_friction_over_speed_is_that_fitted_at_each_speed(law):
-    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", friction__law=law)
+@pytest.mark.parametrize("name", [n for n in UNLIKE if unlike_pair(n).healthy is unlike_pair(n)])
+def test_friction_over_speed_is_that_fitted_at_each_speed(name):
+    """Each pair has a law of its own."""
+    pair = unlike_pair(name)
     family = unilateral_family(pair, 1000.0, 21000.0)
     there = at(pair, 7890.0)
     T = there.geometry.mesh_period

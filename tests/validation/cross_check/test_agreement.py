@@ -32,7 +32,8 @@ def test_the_measure_of_the_load_is_at_most_the_static_load():
 
 
 def test_both_models_return_the_same_table():
-    linear, reference = multibody.simulate(BASE, 1, fidelity="linear"), lumped.simulate(BASE, 1)
+    pair = RACK_25.with_(mesh__contact="prescribed")
+    linear, reference = multibody.simulate(pair, 1, fidelity="linear"), lumped.simulate(pair, 1)
     assert set(reference.data_vars) <= set(linear.data_vars)
     np.testing.assert_array_equal(linear["time"], reference["time"])
     for name, variable in reference.data_vars.items():
@@ -118,16 +119,6 @@ def test_periodic_motion_is_found_where_friction_holds_the_teeth(stiffness):
     assert run.attrs["closure"] < 1e-8
 
 
-STIFFNESS = {
-    "rectangular": {"model": "rectangular"},
-    "parabolic": {"model": "parabolic"},
-    "smooth": {"model": "parabolic", "ramp_length": 2.0},
-}
-#: The default pair with all, every other preset with one.
-WITH_STIFFNESS = {("nasa_28_28", name) for name in STIFFNESS}
-WITH_STIFFNESS |= {(name, list(STIFFNESS)[i % 3]) for i, name in enumerate(lumped.preset_names())}
-
-
 def steady_difference(pair):
     """Periodic motions compared, each with the brake torque that balances it: no transient, no drift."""
     run = multibody.steady_state(pair, samples_per_cycle=128, effects={"contact_loss": False})
@@ -136,19 +127,25 @@ def steady_difference(pair):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("preset", "stiffness"), sorted(WITH_STIFFNESS))
-def test_exact_level_scales_with_torque(preset, stiffness):
-    """Coulomb friction (a coefficient free of torque) at full and at a quarter of the preset's torque."""
-    pair = lumped.load_gear_pair(preset).with_(
+@pytest.mark.parametrize(
+    "name",
+    ["contact_ratio_2_3_on_shafts", "heavily_relieved_under_load", "rack_25_degrees_always_pushing"],
+)
+def test_exact_level_scales_with_torque(name):
+    """Coulomb friction (a coefficient free of torque) at a fourth and at a sixteenth of the pair's torque.
+
+    Not where vibration turns the sliding (contact ratio 1.1) or light damping stands at a resonance that
+    finite motions move (the larger gear): there the difference is no first order of the torque.
+    """
+    pair = unlike_pair(name).with_(
         mesh__contact="prescribed",
         mesh__relief="ignored",
-        mesh__stiffness=STIFFNESS[stiffness],
         friction__law="coulomb",
         friction__coefficient=0.05,
     )
     torque = pair.operating.pinion_torque
     full, quarter = (
-        steady_difference(pair.with_(operating__pinion_torque=share * torque)) for share in (1.0, 0.25)
+        steady_difference(pair.with_(operating__pinion_torque=share * torque)) for share in (0.25, 0.0625)
     )
     for name, value in full.items():
         # The next order in torque is a share of the difference itself: some per cent.

@@ -4,7 +4,9 @@ import math
 import re
 
 import numpy as np
+from scipy.optimize import brentq
 
+_GEARS = ("pinion", "gear")
 _PREFIX = {"G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "p": 1e-12}
 _PREFIXED = ("N/m", "m/s", "Pa", "Hz", "N", "W", "m", "s")
 _SUPERSCRIPT = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -77,21 +79,32 @@ def amplitudes(values, cycles=1):
     return np.array(found)
 
 
+def operating_angle(parameters):
+    """Operating pressure angle [rad] of gears that mesh without backlash: inv a_w = inv a + 2 tan a X/Z."""
+    alpha = math.radians(parameters["basic_rack"]["pressure_angle"])
+    shifts, teeth = (sum(parameters[g][key] for g in _GEARS) for key in ("profile_shift", "teeth"))
+    wanted = math.tan(alpha) - alpha + 2.0 * math.tan(alpha) * shifts / teeth
+    return brentq(lambda angle: math.tan(angle) - angle - wanted, 0.1, 1.0, xtol=1e-15)
+
+
 def path_of_contact(parameters):
-    """A, P, D and the whole line of action X to Y [m], of standard gears."""
+    """A, P, D and the whole line of action X to Y [m]; tips are addendum and shift beyond the reference."""
     rack, (r_p, r_g) = parameters["basic_rack"], base_radii(parameters)
-    alpha = math.radians(rack["pressure_angle"])
-    tips = [0.5e-3 * rack["module"] * (parameters[g]["teeth"] + 2.0) for g in ("pinion", "gear")]
-    length = (r_p + r_g) * math.tan(alpha)
+    working = math.tan(operating_angle(parameters))
+    tips = [
+        1e-3 * rack["module"] * (0.5 * gear["teeth"] + rack["addendum_coefficient"] + gear["profile_shift"])
+        for gear in (parameters[name] for name in _GEARS)
+    ]
+    length = (r_p + r_g) * working
     end, start = math.sqrt(tips[0] ** 2 - r_p**2), length - math.sqrt(tips[1] ** 2 - r_g**2)
-    return start, r_p * math.tan(alpha), end, length
+    return start, r_p * working, end, length
 
 
 def contact(parameters, xi):
     """Modulus E' [Pa], reduced radius [m], full load per width [N/m], sum velocity [m/s] at xi."""
     _, _, _, length = path_of_contact(parameters)
     pinion, gear = parameters["pinion"], parameters["gear"]
-    modulus = pinion["youngs_modulus"] * 1e9 / (1.0 - pinion["poisson_ratio"] ** 2)  # equal steels
+    modulus = 2e9 / sum((1.0 - g["poisson_ratio"] ** 2) / g["youngs_modulus"] for g in (pinion, gear))
     load = static_force(parameters) / (1e-3 * min(pinion["face_width"], gear["face_width"]))
     omega = parameters["operating"]["pinion_speed"] * math.pi / 30.0
     rolling = omega * (xi + pinion["teeth"] / gear["teeth"] * (length - xi))

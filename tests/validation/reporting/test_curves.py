@@ -115,10 +115,14 @@ def test_csv_of_the_curves_over_a_cycle(written):
         force = cycle[name.removesuffix(" [N]")].to_numpy()
         close(bearings[name], force - force.mean())
     overlay, second = written.curves("overlay"), written.data("second_program")
-    for column_name, motion in (("prediction [m]", cycle), ("second [m]", second)):
-        values = motion["dte"].to_numpy()
-        assert overlay[column_name].max() == pytest.approx(values.max(), rel=1e-3)
-        assert overlay[column_name].min() == pytest.approx(values.min(), rel=1e-3)
+    dte = cycle[
+        "dte"
+    ].to_numpy()  # 512 samples of a cycle, of which every second is drawn, and the first again
+    close(overlay["prediction [m]"], np.append(dte[::2], dte[0]))
+    turning = second["dte"].to_numpy()
+    assert (overlay["second [m]"].max(), overlay["second [m]"].min()) == (
+        pytest.approx(turning.max(), rel=5e-3), pytest.approx(turning.min(), rel=5e-3),
+    )  # fmt: skip
     close(overlay["difference [m]"], overlay["second [m]"] - overlay["prediction [m]"])
     assert np.abs(overlay["difference [m]"]).max() > 1e-9, "curves of two models differ"
 

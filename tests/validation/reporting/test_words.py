@@ -355,7 +355,7 @@ def test_more_information_never_gives_a_worse_verdict(what):
     given, effort = known("calm"), replace(SMALL, samples=0)
     changes = {
         "sources": {"sources": dict.fromkeys((*leaf_paths(given.pair), "mesh.stiffness"), "drawing")},
-        "stiff shafts": shafts_of(90, 1e9),
+        "stiff shafts": shafts_of(60, 6e8),
         "slender shafts": shafts_of(20, 2e8),
     }
     less, more = Results(given.pair, effort), Results(given.pair.with_(changes[what]), effort)

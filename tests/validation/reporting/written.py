@@ -35,9 +35,22 @@ def pair(name: str, teeth: str, speed: float, torque: float, **more: object) -> 
     return lumped.load_gear_pair(tomllib.loads(new_pair_text(name, request | more)))
 
 
+#: Materials and shifts in which gear and pinion differ.
+UNLIKE_GEARS = {
+    "gear.youngs_modulus": 172.0, "gear.poisson_ratio": 0.26, "gear.density": 7200.0,
+    "pinion.roughness": 0.3, "gear.roughness": 0.7,
+}  # fmt: skip
+#: From a 25-degree rack, with large shifts against each other: contact is kept. And a pinion with more teeth
+#: than the gear, which it drives far above its resonance: contact is lost.
 PAIRS = {
-    "calm": lambda: pair("calm", "19/41", 1450.0, 80.0),
-    "lost": lambda: pair("lost", "31/57", 12000.0, 150.0),
+    "calm": lambda: pair("calm", "19/41", 1450.0, 80.0).with_(
+        UNLIKE_GEARS
+        | {"pinion.profile_shift": 0.31, "gear.profile_shift": -0.12}
+        | {"basic_rack.pressure_angle": 25.0, "basic_rack.fillet_radius_coefficient": 0.22}
+    ),
+    "lost": lambda: pair("lost", "57/31", 6500.0, 275.0).with_(
+        UNLIKE_GEARS | {"pinion.profile_shift": -0.14, "gear.profile_shift": 0.22}
+    ),
 }
 
 

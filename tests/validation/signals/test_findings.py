@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +9,7 @@ import xarray as xr
 import floquet
 import lumped
 from lumped.teeth.tolerances import flank_tolerances
+from tests.unlike_pairs import unlike_pair
 from tests.validation.commands.conftest import refused, run
 from validation.reporting.build import findings
 from validation.reporting.chapters import teeth as chapter
@@ -19,10 +18,16 @@ from validation.reporting.results import QUICK, Results
 from validation.signals import indicators
 from validation.signals.findings import TeethFindings, deviations_table
 
-ONE_TOOTH = [1.5] + [0.0] * 25 + [2.0, 4.0]
-PAIR = lumped.load_gear_pair("nasa_28_28").with_(
-    {"pinion.deviations": {"index": ONE_TOOTH, "first_order": "steps"}, "friction.law": "none"}
-)
+
+def one_tooth_off(name: str) -> lumped.GearPair:
+    """An unlike pair of which one tooth of the pinion is off, and its neighbours a little; no friction."""
+    index = [3.75] + [0.0] * (unlike_pair(name).pinion.teeth - 3) + [5.0, 10.0]
+    deviations = {"pinion.deviations": {"index": index, "first_order": "steps"}}
+    return unlike_pair(name).with_({"friction.law": "none"} | deviations)
+
+
+PAIR = one_tooth_off("rack_25_degrees_always_pushing")
+LOST = one_tooth_off("larger_gear_drives_contact_lost")
 
 
 @pytest.fixture(scope="module")
@@ -32,19 +37,19 @@ def found() -> TeethFindings:
 
 def test_deviations_are_compared_with_the_standard() -> None:
     table = deviations_table(PAIR).sel(gear="pinion")
-    assert float(table["cumulative"]) == pytest.approx(4e-6)
-    assert float(table["pitch"]) == pytest.approx(2.5e-6)  # from the last tooth to the first
+    assert float(table["cumulative"]) == pytest.approx(10e-6)
+    assert float(table["pitch"]) == pytest.approx(6.25e-6)  # from the last tooth to the first
     held = int(table["tolerance_class"])
-    limits = [flank_tolerances(28, PAIR.basic_rack.module, number)["f_p"] for number in (held - 1, held)]
-    assert limits[0] < 2.5e-6 <= limits[1]
+    limits = [flank_tolerances(23, PAIR.basic_rack.module, number)["f_p"] for number in (held - 1, held)]
+    assert limits[0] < 6.25e-6 <= limits[1]
     drawn = PAIR.with_({"pinion.deviations": {"tolerance_class": 6, "seed": 2}})
     assert int(deviations_table(drawn)["tolerance_class"][0]) == 6
-    worse = PAIR.with_({"pinion.deviations": {"index": [0.0] * 27 + [500.0]}})
+    worse = PAIR.with_({"pinion.deviations": {"index": [0.0] * 22 + [500.0]}})
     assert int(deviations_table(worse)["tolerance_class"][0]) == 12
 
 
 def test_one_tooth_off_is_told_as_sidebands_and_residual(found: TeethFindings) -> None:
-    hertz = PAIR.geometry.mesh_frequency / 28
+    hertz = PAIR.geometry.mesh_frequency / 23
     assert f"every {hertz:.3g} Hz" in found.sentence
     assert "contact is kept" in found.sentence
     assert found.contact_lost == ()
@@ -57,66 +62,130 @@ def test_one_tooth_off_is_told_as_sidebands_and_residual(found: TeethFindings) -
     assert f"{float(table[0] / table[1]):.2g} times the residual" in found.sentence
 
 
-def test_the_report_has_a_chapter_on_teeth_that_differ(found: TeethFindings) -> None:
-    results = Results(PAIR, QUICK)
-    assert results.pair is PAIR.healthy
-    # A copy whose contact is lost at one time, and whose pinion alone carries more.
-    lost, (motion, twin, force) = copy(found), (found.motion, found.twin, found.static_force)
-    lost.__dict__.pop("contact_lost", None)
-    apart = motion["normal_load"].where(motion["time"] != motion["time"][9], 0)
-    lost.motion = motion.assign(normal_load=apart)
-    lost.largest_loads = found.largest_loads.copy()
-    lost.largest_loads[3, 5] = 2.0 * force
-    results.__dict__["teeth"] = lost
+@pytest.fixture(scope="module", params=[PAIR, LOST], ids=["contact kept", "contact lost"])
+def results(request) -> Results:
+    """Of the report of a pair whose teeth differ: everything but the teeth is that of the twin."""
+    results = Results(request.param, QUICK)
+    assert results.pair is request.param.healthy
+    assert results.teeth.pair is request.param
+    return results
+
+
+@pytest.fixture(scope="module")
+def blocks(results) -> dict:
+    """Tables and pictures of the chapter by name."""
     content = chapter.write(results)
-    assert content is not None
-    assert content.result == lost.sentence
-    assert len(lost.contact_lost) == 1
-    blocks = {block.key: block for block in content.blocks if hasattr(block, "key")}
-    numbers = [(row[1].value, row[2]) for row in blocks["teeth_numbers"].rows]
-    expected = [motion.attrs["dte_peak_to_peak"], found.load(motion) / force, 1.0]
-    expected.insert(2, floquet.revolution_multipliers(PAIR).rate)
-    assert [value for value, _ in numbers] == pytest.approx(expected)
-    assert f"{found.rates[1]:.3g}" in numbers[2][1]
-    assert f"{found.load(twin) / force:.3g}" in numbers[1][1]
+    assert content.result == results.teeth.sentence
+    return {block.key: block for block in content.blocks if hasattr(block, "key")}
+
+
+def values(block) -> list[float]:
+    return [row[1].value for row in block.rows]
+
+
+def test_meeting_teeth_lose_contact_where_the_total_load_is_zero(results) -> None:
+    found = results.teeth
+    total = found.motion["normal_load"].sum("pair").to_numpy()
+    assert (len(found.contact_lost) > 0) == (total.min() == 0.0) == (found.pair is LOST)
+    # As many as there are mesh cycles with such a time: each has teeth of its own that come last to A.
+    when = found.motion["time"].to_numpy()[total == 0.0] / found.pair.geometry.mesh_period
+    assert len(found.contact_lost) == len(set(np.floor(when + 1e-9).astype(int)))
+
+
+def test_the_chapter_has_the_numbers_of_the_motion(results, blocks) -> None:
+    found = results.teeth
+    swing, load, rate, lost = values(blocks["teeth_numbers"])
+    assert swing == pytest.approx(
+        np.ptp(found.motion["dte"].to_numpy()), rel=0.01
+    )  # peaks lie between samples
+    assert load == pytest.approx(found.motion["normal_load"].max().item() / found.static_force)
+    assert rate == pytest.approx(floquet.revolution_multipliers(found.pair).rate)
+    assert lost == len(found.contact_lost)
+
+
+def test_the_chapter_has_the_numbers_of_like_teeth_beside_them(results, blocks) -> None:
+    found, notes = results.teeth, [row[2] for row in blocks["teeth_numbers"].rows]
+    assert f"{found.twin['normal_load'].max().item() / found.static_force:.3g}" in notes[1]
+    assert f"{floquet.gear_pair_multipliers(found.pair.healthy).spectral_radius:.3g}" in notes[2]
+
+
+def test_the_chapter_has_the_deviations_and_indicators(results, blocks) -> None:
+    table = blocks["teeth_deviations"]
+    assert list(table.columns)[1:4] == ["cumulative", "pitch", "eccentricity"]
+    assert [cell.value for cell in table.rows[0][1:4]] == pytest.approx([10e-6, 6.25e-6, 0.0])
     rows = {(row[0], row[1]): row[2:] for row in blocks["teeth_indicators"].rows}
-    wanted = found.indicators("gear")["value"].sel(indicator="RMS_residual").to_numpy()
-    assert rows["gear", "RMS_residual"] == pytest.approx(tuple(wanted))
-    shown = blocks["teeth_turn"].data
-    cycle = shown.sizes["turn"] // 28
+    for gear in ("pinion", "gear"):
+        wanted = results.teeth.indicators(gear)["value"].sel(indicator="RMS_residual").to_numpy()
+        assert rows[gear, "RMS_residual"] == pytest.approx(tuple(wanted))
+
+
+def test_the_curve_over_a_turn_repeats_that_of_like_teeth(results, blocks) -> None:
+    shown, z = blocks["teeth_turn"].data, results.pair.pinion.teeth
+    cycle = shown.sizes["turn"] // z
     assert shown["healthy"].values[cycle:] == pytest.approx(shown["healthy"].values[:-cycle])
     assert shown["turn"].values[-1] == pytest.approx(1.0 - 1.0 / shown.sizes["turn"])
-    loads, orders = (blocks[f"teeth_{key}_pinion"].figure().axes[0] for key in ("loads", "orders"))
-    share = np.diag(found.largest_loads) / force  # 28/28: tooth i meets tooth i alone
-    assert share.max() == pytest.approx(found.load(motion) / force)
-    assert np.isfinite(found.largest_loads).sum() == 28
-    share[3] = 2.0
-    table = blocks["teeth_deviations"]
-    assert [cell.value for cell in table.rows[0][1:4]] == pytest.approx([4e-6, 2.5e-6, 0.0])
-    assert list(table.columns)[1:4] == ["cumulative", "pitch", "eccentricity"]
-    assert [bar.get_height() for bar in loads.patches] == pytest.approx(share)
-    assert loads.lines[0].get_ydata()[0] == pytest.approx(found.load(twin) / force)
-    tops = [line[1, 1] for line in orders.collections[0].get_segments()]
-    healthy = blocks["teeth_orders_pinion"].data["healthy"].to_numpy()
-    assert healthy[28] == pytest.approx(2.0 * abs(np.fft.rfft(twin["dte"])[1]) / twin.sizes["time"])
-    assert set(np.flatnonzero(healthy) % 28) == {0}
-    amplitude = blocks["teeth_orders_pinion"].data["amplitude"].to_numpy()
-    assert len(tops) > 40
+    assert np.ptp(shown["dte"].values - shown["healthy"].values) > 1e-7
+
+
+def test_the_bars_are_the_largest_loads_of_the_teeth(results, blocks) -> None:
+    found = results.teeth
+    axes = blocks["teeth_loads_pinion"].figure().axes[0]
+    numbers, loads = (found.motion[name].to_numpy() for name in ("pinion_tooth", "normal_load"))
+    expected = [loads[numbers == tooth].max() for tooth in range(1, found.pair.pinion.teeth + 1)]
+    assert [bar.get_height() for bar in axes.patches] == pytest.approx(
+        np.array(expected) / found.static_force
+    )
+    healthy = found.twin["normal_load"].max().item() / found.static_force
+    assert axes.lines[0].get_ydata()[0] == pytest.approx(healthy)
+
+
+def test_the_orders_of_like_teeth_are_those_of_the_mesh(results, blocks) -> None:
+    found, z = results.teeth, results.pair.pinion.teeth
+    data = blocks["teeth_orders_pinion"].data
+    healthy, amplitude = data["healthy"].to_numpy(), data["amplitude"].to_numpy()
+    twin = found.twin["dte"].to_numpy()
+    assert healthy[z] == pytest.approx(2.0 * abs(np.fft.rfft(twin)[1]) / twin.size)
+    assert set(np.flatnonzero(healthy) % z) == {0}
+    tops = [
+        line[1, 1] for line in blocks["teeth_orders_pinion"].figure().axes[0].collections[0].get_segments()
+    ]
+    assert len(tops) > z
     assert np.isin(np.round(tops, 9), np.round(np.multiply.outer([1.0, 1e6, 1e9], amplitude), 9)).all()
-    assert chapter.write(Results(PAIR.healthy, QUICK)) is None
-    unstable = Results(PAIR.with_({"mesh.damping_ratio": 0.001, "operating.pinion_speed": "6350 rpm"}), QUICK)
-    assert (unstable.teeth, "of like teeth" in unstable.warnings[-1]) == (None, True)
-    first = page_one(results)
-    assert (first.verdict, "lose contact, at 1 pairs" in first.headline) == (Verdict.DO_NOT_RUN, True)
-    assert (findings(results), "class" in first.actions[0].text) == ({"contact", "holds"}, True)
+
+
+def test_page_1_judges_the_teeth_as_given(results) -> None:
+    found, first = results.teeth, page_one(results)
+    lost = len(found.contact_lost)
+    assert (first.verdict is Verdict.DO_NOT_RUN) == (lost > 0)
+    assert ("the teeth lose contact" in first.headline) == (lost > 0)
+    assert ("contact" in findings(results)) == (lost > 0)
+    swing, load = values(results_table(results))[:2]
     words = "with the teeth as given"
-    assert first.numbers[0].note == f"{words} {expected[0] * 1e6:.3g}\u00a0µm over 28 mesh cycles"
-    assert first.numbers[2].note == f"{words} {expected[1]:.3g}"
+    assert first.numbers[0].note == f"{words} {swing * 1e6:.3g}\u00a0µm over {found.period} mesh cycles"
+    assert first.numbers[2].note == f"{words} {load:.3g}"
     assert first.numbers[5].note.endswith(", with like teeth")
-    results.__dict__["teeth_band"] = np.array([[1e-6, 0.02], [9e-6, 0.03]])
-    assert "µm, 1.0 to 9.0\u00a0µm, over 28" in page_one(results).numbers[0].note
+
+
+def results_table(results):
+    return next(b for b in chapter.write(results).blocks if getattr(b, "key", "") == "teeth_numbers")
+
+
+def test_what_a_class_leaves_open_is_told(monkeypatch) -> None:
+    results = Results(PAIR, QUICK)
+    monkeypatch.setattr(Results, "teeth_band", np.array([[1e-6, 0.02], [9e-6, 0.03]]))
     spread = chapter.write(results).blocks[4].text
     assert "is 1 to 9 µm and the largest sideband 2 to 3 %" in spread
+    assert f"µm, 1.0 to 9.0\u00a0µm, over {results.teeth.period}" in page_one(results).numbers[0].note
+
+
+def test_like_teeth_have_no_chapter_and_an_unstable_pair_has_none_and_says_so() -> None:
+    assert chapter.write(Results(PAIR.healthy, QUICK)) is None
+    unstable = lumped.load_gear_pair("nasa_28_28").with_(
+        {"pinion.deviations": {"index": [1.5] + [0.0] * 27, "first_order": "steps"}, "friction.law": "none"}
+        | {"mesh.damping_ratio": 0.001, "operating.pinion_speed": "6350 rpm"}
+    )
+    results = Results(unstable, QUICK)
+    assert (results.teeth, "of like teeth" in results.warnings[-1]) == (None, True)
 
 
 def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
@@ -145,4 +214,4 @@ def test_a_command_about_like_teeth_says_so(tmp_path) -> None:
     result = run("simulate", path, "--steady", "--samples", 64, "-o", motion)
     assert "as alike" not in result.stderr
     with xr.open_dataset(motion, engine="h5netcdf") as data:
-        assert data.attrs["period_cycles"] == 28
+        assert data.attrs["period_cycles"] == 23

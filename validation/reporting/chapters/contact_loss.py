@@ -124,7 +124,8 @@ def motions(results: Results, branches: ResponseBranches) -> xr.Dataset:
     orbits = [orbit for branch in branches.branches for orbit in branch.orbits]
     speed = np.array([period / orbit.period for orbit in orbits])
     size = np.array([orbit.run.most - orbit.run.least for orbit in orbits])
-    stable = np.array([float(orbit.stable) for orbit in orbits])
+    # As in the saved motions: a bifurcation belongs to the stable motions before it.
+    stable = branches.dataset["stable"].to_numpy().astype(float)
     jumps = [j for j in branches.jumps if np.isfinite(j.dte_rms_after)]
     at = np.array([j.speed_rpm for j in jumps])
     before, after = (
