@@ -32,17 +32,12 @@ def balance_of(pair):
 
 #: A light pair far above its resonance: the damper's pull takes the whole load of teeth that are pressed.
 CLIPPED = new_pair("31/57", module=3, face_width=25, speed=29500, torque=150, changes=RECTANGULAR)
-UNDER_THE_CLIP = pytest.mark.xfail(
-    strict=True,
-    reason="where the damper pulls more than the spring presses the load is zero, and its loss N_el |p'| is "
-    "left out: 198 W for 244 W",
-)
 
 
 @pytest.mark.parametrize("pair", [
     unlike_pair("heavily_relieved_under_load"),
     unlike_pair("larger_gear_drives_contact_lost"),
-    pytest.param(CLIPPED, marks=UNDER_THE_CLIP),
+    CLIPPED,
 ], ids=lambda pair: pair.name)  # fmt: skip
 def test_dampers_and_bearings_take_what_the_power_balance_of_the_exact_motion_leaves(pair):
     """Driving power less braking power and sliding. Finite motions leave 1.0 and 1.7 %."""

@@ -125,13 +125,11 @@ def test_the_efficiency_is_that_of_the_power_balance_of_the_second_program(writt
     assert (number["low"], number["high"]) == (close(low), close(high))
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="the efficiency printed for the second program leaves out the dampers of teeth and bearings",
-)
 def test_the_efficiency_of_the_second_program_is_that_of_its_own_power_balance(written):
-    loss = (1.0 - written.document["numbers"]["efficiency"]["second"]) * own.power(written.parameters)
-    assert loss == pytest.approx(balanced_loss(written), rel=1e-6)
+    power = own.power(written.parameters)
+    loss = (1.0 - written.document["numbers"]["efficiency"]["second"]) * power
+    # Integration at 1e-8 over the ten steps or so of a vibration leaves 1e-7 of the driving power.
+    assert loss == pytest.approx(balanced_loss(written), abs=1e-7 * power)
 
 
 def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
@@ -297,7 +295,7 @@ def test_the_table_of_losses(written):
         "losses",
         {
             "input power": (supply, "W"),
-            "loss of the mesh": ((1.0 - share) * supply, "W"),
+            "loss, all places": ((1.0 - share) * supply, "W", "of the motion of page 1"),
             **parts,
             "mesh loss of ISO/TR 14179-2": (iso_14179_mesh_loss(pair_of(written)), "W"),
             "smallest film thickness": (film.min(), "m", f"gives {(other / film).min():.2f} to "),
@@ -307,15 +305,11 @@ def test_the_table_of_losses(written):
     )
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="the parts are those of the linear motion, the loss of the mesh is that of the prediction",
-)
 def test_the_parts_of_the_loss_add_up_to_it(written):
     rows = {one["name"]: one["value"]["value"] for one in written.table("losses")}
     sliding = -written.data("prediction")["friction_power"].sum("pair").mean().item()
     assert rows["sliding"] == pytest.approx(sliding, rel=2e-3)  # a jump of friction between two samples
-    assert sum(rows[name] for name in LOSS_PARTS) == pytest.approx(rows["loss of the mesh"], rel=1e-6)
+    assert sum(rows[name] for name in LOSS_PARTS) == pytest.approx(rows["loss, all places"], rel=1e-6)
 
 
 def test_the_error_budget(written):

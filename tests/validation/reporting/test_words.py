@@ -274,7 +274,7 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     loss = 100.0 * (1.0 - losses_of_laws(pair_of(written))["mesh_efficiency"].to_numpy())
     supply = own.power(written.parameters)
     own.assert_says(
-        plain(said["losses"]), r"The mesh loses (.*) of (.*); the friction laws differ from (.*) to (.*) %\.",
+        plain(said["losses"]), r"The pair loses (.*) of (.*); the friction laws differ from (.*) to (.*) %\.",
         ((1.0 - written.document["numbers"]["efficiency"]["value"]) * supply, "W"), (supply, "W"),
         (loss.min(), "1"), (loss.max(), "1"), digits=2,
     )  # fmt: skip
