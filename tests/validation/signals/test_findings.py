@@ -10,7 +10,7 @@ import xarray as xr
 
 import floquet
 import lumped
-from lumped.teeth.tolerances import flank_tolerances
+from lumped.schema.tolerances import flank_tolerances
 from tests.validation.commands.conftest import refused, run
 from validation.reporting.build import findings
 from validation.reporting.chapters import teeth as chapter
