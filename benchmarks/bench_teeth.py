@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from lumped.teeth.contact import Laws
+from lumped.model.tooth_laws import ToothLaws
 from validation.exchange.new_pair_file import new_pair
 from validation.signals import indicators
 from validation.signals.averages import sidebands
@@ -107,7 +107,7 @@ def cracks() -> None:
     g, gear = ALIKE.geometry, ALIKE.pinion
     for depth, elements in ((0.5, 0.623), (1.0, 1.963), (2.0, 6.561), (3.0, 15.68)):
         faults = [{"kind": "crack", "tooth": 1, "depth": depth, "angle": 90}]
-        laws = Laws(ALIKE.with_({"pinion.faults": faults}))
+        laws = ToothLaws(ALIKE.with_({"pinion.faults": faults}))
         at = np.array([g.L_XP, g.L_XD - 1e-9])
         whole, left = (laws.of_kind(kind, at)[0] for kind in (0, 1))
         more = float((1.0 / left - 1.0 / whole)[1]) * gear.youngs_modulus * g.face_width

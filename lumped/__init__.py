@@ -13,7 +13,10 @@ from lumped.model.averaged import natural_frequencies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.run_up import run_up
+from lumped.model.static_sharing import static_sharing
+from lumped.model.steady_state import steady_state
 from lumped.model.sweep import speed_sweep
+from lumped.model.transient import simulate
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.plane_compliance import plane_compliance
 from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_components
@@ -22,13 +25,10 @@ from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import MeshElements
 from lumped.schema.bodies import Bodies, bodies
 from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
+from lumped.schema.meeting_teeth import meeting_teeth, revolution, tooth_gaps
 from lumped.schema.pair import GearPair
+from lumped.schema.tolerances import flank_tolerances
 from lumped.shafts.equivalents import condensed_bearings, shaft_modes
-from lumped.teeth.pairs import meeting_teeth, revolution, tooth_gaps
-from lumped.teeth.static import static_sharing
-from lumped.teeth.steady_state import steady_state
-from lumped.teeth.tolerances import flank_tolerances
-from lumped.teeth.transient import simulate
 
 __all__ = [
     "Bodies",

@@ -21,11 +21,12 @@ from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
 from lumped.mesh.element import BY_APPROACH, BY_RATE, FORCE
 from lumped.mesh.linear import SIGNS, STATE, LinearForm, linear_cycles
+from lumped.mesh.places import linear_form_at
 from lumped.mesh.tables import MeshTables
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.swing import moments
+from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.path_function import PathFunction
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import linear_form_at, moments
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -321,9 +322,9 @@ class MeshGains:
         return total, self.mean + self.factor * (total - self.mean)
 
 
-def own_tables(laws: Laws) -> MeshTables:
+def own_tables(laws: ToothLaws) -> MeshTables:
     """Tables of laws with every break that give each law to rounding between their nodes."""
-    return tables(laws, _LARGEST_STEP, 1, 0.5 - 0.5 * to_series(_NODES)[0])
+    return mesh_tables(laws, _LARGEST_STEP, 1, 0.5 - 0.5 * to_series(_NODES)[0])
 
 
 class OwnGains:
@@ -336,23 +337,23 @@ class OwnGains:
 
     count = 12
 
-    def __init__(self, own: MeshTables, system: LTVSystem, first: int, cycles: int) -> None:
-        self.own, self.first = own, first
+    def __init__(self, tables: MeshTables, system: LTVSystem, first: int, cycles: int) -> None:
+        self.tables, self.first = tables, first
         self.forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
-        starts = np.add.outer(np.arange(cycles), own.edges[:-1])
+        starts = np.add.outer(np.arange(cycles), tables.edges[:-1])
         shape = (*starts.shape, 0)
         nothing = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
-        kinks = linear_cycles(first, own, _LOOKS, SIGNS, _ROUNDS, nothing, False)
+        kinks = linear_cycles(first, tables, _LOOKS, SIGNS, _ROUNDS, nothing, False)
         self.edges = np.unique(np.concatenate([starts.ravel(), [cycles], kinks]))
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """See `PolynomialGains`."""
-        cycle, ends = np.floor(centre)[:, None], self.own.edges
+        cycle, ends = np.floor(centre)[:, None], self.tables.edges
         step = np.searchsorted(ends[1:-1], centre[:, None] - cycle, side="right")
         place = (centre[:, None] + half[:, None] * nodes - cycle - ends[step]) / np.diff(ends)[step]
-        form, _ = linear_form_at(self.own, self.first, cycle, step, place)
+        form, _ = linear_form_at(self.tables, self.first, cycle, step, place)
         gains = []
         for part in (BY_APPROACH, BY_RATE):
             force = form.forces[..., part]

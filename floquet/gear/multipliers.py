@@ -29,10 +29,10 @@ from lumped.compiler import in_threads
 from lumped.mesh.tables import RIPPLES
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.supports import Form
+from lumped.model.tooth_laws import ToothLaws
 from lumped.path_of_contact.friction import friction_misfit
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.teeth.contact import Laws
-from lumped.teeth.pairs import period_of
+from lumped.schema.meeting_teeth import period_of
 from lumped.typing import ComplexArray, FloatArray
 
 MODES = 12
@@ -425,10 +425,10 @@ def revolution_multipliers(
     one_of("supports", supports, ("springs", "shafts"))
     feedback = feedback_system(GearVariation(pair.healthy, supports=supports))
     like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
-    cycles, laws = period_of(pair), Laws(pair, every=True)
+    cycles, laws = period_of(pair), ToothLaws(pair, every=True)
     # Errors of the teeth force prescribed contact and do not change it.
     alike = not laws.loaded and len(laws.faults) == 1 and not laws.turning()["amplitude"][:RIPPLES].any()
-    healthy = float(_of_cycles(Laws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
+    healthy = float(_of_cycles(ToothLaws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
     # The product of so many does not vanish, and the kernel has as many steps.
     most = min(_SMALLEST / np.log(min(healthy, 0.99)), 4e4 / (1e3 + like.modal().omega.max() * like.period))
     block = int(np.clip(most, 1, _BLOCK))
@@ -439,7 +439,7 @@ def revolution_multipliers(
 
 
 def _of_cycles(
-    laws: Laws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
+    laws: ToothLaws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
 ) -> tuple[ComplexArray, FloatArray, float]:
     """Multipliers over so many cycles, largest first, their rates, and a bound on the largest one's error."""
     own, mean = own_tables(laws), like.mean_of(like.gains.w)

@@ -63,7 +63,8 @@ class PairState:
     def forces(self) -> Records:
         """FORCE (k, 3) of all pairs in the linear form, see ``lumped.mesh.linear``."""
         at_rest = -(self.stiffness * self.error + self.damping * self.error_rate)
-        return forces_of_laws(self.position, self.friction, self.tilt, self.stiffness, self.damping, at_rest)
+        loads = self.stiffness, self.damping, at_rest
+        return forces_of_laws(self.position, self.friction, self.tilt, *loads)
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,8 +29,8 @@ from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.gear import Gear
+from lumped.schema.meeting_teeth import first_teeth, own_teeth
 from lumped.schema.pair import GearPair
-from lumped.teeth.pairs import first_teeth, own_teeth
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn

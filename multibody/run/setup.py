@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
 from lumped.labelling import provenance
+from lumped.model.momentary_load import settled_motion
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
+from lumped.schema.meeting_teeth import ripples
 from lumped.schema.pair import GearPair
-from lumped.teeth.motion import push_motion
-from lumped.teeth.pairs import ripples
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
@@ -197,7 +197,7 @@ def _on_springs(
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
     if pair.healthy is not pair:
-        own = push_motion(pair, 8)
+        own = settled_motion(pair, 8)
         balance = replace(balance, states=own.states[:1])
         mean_balance = own.balance(conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]

@@ -11,9 +11,10 @@ import xarray as xr
 import lumped
 from lumped import GearPair
 from lumped.model.periodic_system import LTVSystem
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import default_samples, swing, swinging
-from lumped.teeth.pairs import period_of
+from lumped.model.revolution_motion import default_samples
+from lumped.model.swing import swing, swinging
+from lumped.model.tooth_laws import ToothLaws, mesh_tables
+from lumped.schema.meeting_teeth import period_of
 from multibody.run.simulation import at_mean_speed
 
 #: Longest period that is compared as a whole, cycles of a window, and cycles in which a start is forgotten.
@@ -52,7 +53,7 @@ def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr
     reference = motion.isel(time=number % motion.sizes["time"])
     time = reference["time"].to_numpy()[1] * np.arange(number.size)
     # What friction adds over many turns of a free train is no phase of the lumped contact.
-    followed = swing(swinging(tables(Laws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full")), time)
+    followed = swing(swinging(mesh_tables(ToothLaws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full")), time)
     exact = at_mean_speed(pair, reference, followed, samples, _FORGOTTEN // 2)
     kept = slice(_FORGOTTEN * samples, None)
     exact = exact.isel(time=kept)

@@ -26,13 +26,13 @@ from floquet.gear.motions import GearOrbit
 from floquet.gear.unilateral import contact_cycle
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
+from lumped.model.closed import closed_motion
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import cycle_peak_to_peak
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.teeth.closed import closed_motion
 from lumped.typing import FloatArray
 
 _SAMPLES = 512

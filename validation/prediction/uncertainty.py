@@ -23,8 +23,8 @@ from lumped.model.solution import steady_cycle
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
-from lumped.teeth.pairs import period_of
 from lumped.typing import FloatArray, Progress
 from validation.prediction.inputs import Input, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, predicted

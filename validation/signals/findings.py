@@ -15,9 +15,9 @@ import lumped
 from lumped.errors import refuse
 from lumped.fields.units import to_stated
 from lumped.labelling import labelled_dataset
+from lumped.schema.meeting_teeth import own_teeth
 from lumped.schema.pair import GearPair
-from lumped.teeth.pairs import own_teeth
-from lumped.teeth.tolerances import flank_tolerances
+from lumped.schema.tolerances import flank_tolerances
 from lumped.typing import FloatArray
 from validation.signals.averages import Gear, indicators, sidebands
 from validation.signals.orders import order_spectrum

@@ -16,7 +16,7 @@ from lumped.errors import FieldProblem, ParameterError
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
 from lumped.model.results import cycle_peak_to_peak, load_range
-from lumped.teeth.steady_state import steady_state
+from lumped.model.steady_state import steady_state
 
 AnalysisName = Literal["geometry", "lumped", "multibody", "floquet"]
 Values = dict[str, float]

@@ -11,9 +11,9 @@ from floquet import gear_pair_multipliers, revolution_multipliers
 from floquet.gear import multipliers
 from floquet.gear.gains import OwnGains, own_tables
 from floquet.rank_one.piecewise import fit_pieces
+from lumped.model.cycle_maps import CycleSteps, linear_steps
 from lumped.model.periodic_system import LTVSystem
-from lumped.teeth.contact import Laws
-from lumped.teeth.linear import CycleSteps, linear_steps
+from lumped.model.tooth_laws import ToothLaws
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     {"operating.pinion_speed": 1500, "friction.law": "coulomb", "friction.coefficient": 0.06}
@@ -91,7 +91,7 @@ def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
 
 def test_pieces_end_where_a_pair_touches_its_damper_is_full_or_its_tip_leaves_the_line():
     pair = PAIR.with_({"mesh.contact": "loaded", "mesh.relief": "ignored"} | CLASS_6)
-    gains = OwnGains(own_tables(Laws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh"), 5, 8)
+    gains = OwnGains(own_tables(ToothLaws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh"), 5, 8)
     # Else pieces are halved around every kink, down to the tolerance: 115 of a cycle.
     assert fit_pieces(gains, gains.edges, np.ones(3), rtol=1e-11)[0].size < 27 * 8
 

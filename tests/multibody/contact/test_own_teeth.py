@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 import lumped
 import multibody
-from lumped.teeth.contact import Laws
+from lumped.model.tooth_laws import ToothLaws
 from multibody.contact import kinematics as kn
 from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import tooth_pair
@@ -61,7 +61,7 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
     xi = np.linspace(g.L_XA, g.L_XD, 12)[1:-1]
     for fault in (crack, spall, pit, chip):
         own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
-        laws, p = Laws(own), machine(own).parameters
+        laws, p = ToothLaws(own), machine(own).parameters
         (k0, _, gap0), (k, _, gap) = (laws.of_kind(kind, xi) for kind in (0, 1))
 
         def found(x, p=p, at=2 * g.base_pitch):  # two pairs later these teeth are in contact

@@ -8,7 +8,7 @@ import xarray as xr
 
 import floquet
 import lumped
-from lumped.teeth.tolerances import flank_tolerances
+from lumped.schema.tolerances import flank_tolerances
 from tests.unlike_pairs import unlike_pair
 from tests.validation.commands.conftest import refused, run
 from validation.reporting.build import findings

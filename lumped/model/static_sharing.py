@@ -11,10 +11,11 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.labelling import labelled_dataset
+from lumped.mesh.places import static_loads
+from lumped.model.revolution_motion import default_samples
+from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import default_samples, static_loads
-from lumped.teeth.pairs import numbers, period_of
+from lumped.schema.meeting_teeth import numbers, period_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,21 +43,21 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     NumericalError : at some position no tooth pair can carry the load
     """
     pair = load_gear_pair(pair)
-    laws = Laws(pair)
+    laws = ToothLaws(pair)
     period = period_of(pair)
     count = default_samples(period) if samples_per_cycle is None else samples_per_cycle
     count = whole_number("samples_per_cycle", count, 1, 65536)
-    own = tables(laws, 1.0, count)
+    tables = mesh_tables(laws, 1.0, count)
     # With prescribed contact too, pairs touch where their own gaps close.
-    own = own._replace(law=own.law._replace(windows=False))
-    approach, each = static_loads(own, 0, period)
+    tables = tables._replace(law=tables.law._replace(windows=False))
+    approach, each = static_loads(tables, 0, period)
     loads = each["static"].transpose(2, 0, 1)
-    kept = np.flatnonzero(own.outputs)
-    places = own.ahead.size
+    kept = np.flatnonzero(tables.outputs)
+    places = tables.ahead.size
     load = loads[:, :, kept].reshape(places, -1)
-    pinion, gear = numbers(pair, np.repeat(np.arange(period), count) - own.ahead[:, None])
+    pinion, gear = numbers(pair, np.repeat(np.arange(period), count) - tables.ahead[:, None])
     largest = np.full((pair.pinion.teeth, pair.gear.teeth), np.nan)
-    every = numbers(pair, np.arange(period) - own.ahead[:, None])
+    every = numbers(pair, np.arange(period) - tables.ahead[:, None])
     largest[every] = 0.0
     np.maximum.at(largest, every, loads.max(axis=2))
     phase = (np.arange(period)[:, None] + np.arange(count) / count).ravel()

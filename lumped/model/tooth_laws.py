@@ -26,8 +26,8 @@ from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.loaded import StaticMesh
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
+from lumped.schema.meeting_teeth import OwnTeeth, first_teeth, own_teeth, period_of, ripples
 from lumped.schema.pair import GearPair
-from lumped.teeth.pairs import OwnTeeth, first_teeth, own_teeth, period_of, ripples
 from lumped.typing import FloatArray, IntArray
 
 #: Nodes at the ends of a step lie this fraction of a cycle inside it, and phases closer than this are one.
@@ -36,7 +36,7 @@ _INSIDE = 1e-11
 _LEAST_GAP = 0.8
 
 
-class Laws:
+class ToothLaws:
     """Laws of tooth pairs over xi, of each kind, for tables; ``every`` end of a polynomial is a switch."""
 
     def __init__(self, pair: GearPair, every: bool = False) -> None:
@@ -189,8 +189,8 @@ def _of_teeth(teeth: OwnTeeth) -> Records:
     return found
 
 
-def tables(
-    laws: Laws, largest_step: float, outputs: int, nodes: FloatArray | tuple[float, ...] = (0.0,)
+def mesh_tables(
+    laws: ToothLaws, largest_step: float, outputs: int, nodes: FloatArray | tuple[float, ...] = (0.0,)
 ) -> MeshTables:
     """Tables on steps that end at outputs and wherever a law jumps or has a kink.
 

@@ -14,22 +14,17 @@ from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
 from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, FORCE
 from lumped.mesh.linear import STATE, LinearForm
+from lumped.mesh.places import fill_linear_form, static_loads
 from lumped.mesh.tables import MeshTables
 from lumped.model.kernels import Propagated, chained, propagate, states_along
+from lumped.model.momentary_load import without_drift
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import distinct_lengths, fastest_frequency, padded, without_mesh
+from lumped.model.revolution_motion import RevolutionMotion, Touch
 from lumped.model.steady import balanced_start, periodic_solution
+from lumped.model.swing import moments, swinging
+from lumped.model.tooth_laws import ToothLaws, mesh_tables, torque_ripples
 from lumped.schema.pair import GearPair
-from lumped.teeth.contact import Laws, tables, torque_ripples
-from lumped.teeth.motion import (
-    OwnMotion,
-    Touch,
-    fill_linear_form,
-    moments,
-    static_loads,
-    swinging,
-    without_drift,
-)
 from lumped.typing import FloatArray
 
 #: Stages of the Gauss steps.
@@ -60,13 +55,13 @@ class CycleSteps:
         self, pair: GearPair, system: LTVSystem, samples: int, steps: int, most: int | None = None
     ) -> None:
         self.pair, self.system = pair, system
-        self.laws = Laws(pair)
+        self.laws = ToothLaws(pair)
         tableau = gauss_tableau(STAGES)
         steps = samples if samples <= steps <= _LONGER * samples else steps
-        self.own = tables(self.laws, 1.0 / steps, samples, tableau[2])
+        self.tables = mesh_tables(self.laws, 1.0 / steps, samples, tableau[2])
         if system.form == "full":
-            self.own = swinging(self.own, system)
-        self.lengths = np.diff(self.own.edges) * system.period
+            self.tables = swinging(self.tables, system)
+        self.lengths = np.diff(self.tables.edges) * system.period
         torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
         extra = padded(system, torques)
         first, which = distinct_lengths(system, self.lengths)
@@ -76,7 +71,7 @@ class CycleSteps:
         forces = np.vstack([forces, torques[m:].T])
         self.which, self.free = which[None], without_mesh(system, lengths, extra, tableau, forces)
         self.width = self.free.along.shape[1]
-        count = self.own.period if most is None else min(most, self.own.period)
+        count = self.tables.period if most is None else min(most, self.tables.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
         # At the stages; large arrays, for the system gives many small ones slowly.
         shape = (count, self.lengths.size, STAGES)
@@ -91,7 +86,7 @@ class CycleSteps:
 
         The forces are N, its moments on both gears, F, F xi, that of tip corners, and both torques' ripples.
         """
-        forces, states, own = form.forces, form.states, self.own
+        forces, states, tables = form.forces, form.states, self.tables
         found = np.zeros((*forces.shape, 8))
         normal = forces["normal"]
         found[..., 0] = normal
@@ -100,7 +95,7 @@ class CycleSteps:
         )
         found[..., 3], found[..., 4] = forces["friction"], forces["friction_moment"]
         found[..., 5] = forces["separating"]
-        phase = own.edges[:-1, None] + own.nodes * np.diff(own.edges)[:, None]
+        phase = tables.edges[:-1, None] + tables.nodes * np.diff(tables.edges)[:, None]
         time = first + np.arange(len(forces))[:, None, None] + phase
         for ripple in torque_ripples(self.pair):
             turn = ripple["angle"] * np.mod(time, ripple["cycles"]) + ripple["start"]
@@ -132,7 +127,7 @@ class CycleSteps:
         def maps(block: tuple[int, int]) -> FloatArray:
             first, count = block
             form = self.part(first, count)
-            fill_linear_form(self.own, first, form)
+            fill_linear_form(self.tables, first, form)
             strength = self.strength(first, form)
             ends = self.along(np.tile(units, (count, 1, 1)), 0, strength).ends.swapaxes(1, 2)
             return np.concatenate([ends[..., : 2 * fed] @ to + still, ends[..., 2 * fed :]], axis=2)
@@ -142,7 +137,7 @@ class CycleSteps:
 
 def linear_motion(
     pair: GearPair, samples: int, supports: Supports = "springs", steps: int | None = None
-) -> OwnMotion:
+) -> RevolutionMotion:
     """Periodic motion of the linear form over the period of teeth that differ, by the maps of its cycles.
 
     Parameters as of ``push_motion``.
@@ -156,7 +151,7 @@ def linear_motion(
     cycles, weights = _closed(form)
     other = states_along(coarse.cycle_maps(), cycles[0], weights)
     error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
-    outer = swinging(tables(form.laws, 1.0, samples), system)
+    outer = swinging(mesh_tables(form.laws, 1.0, samples), system)
     states, load, powers = _inside(form, outer, cycles, weights)
     time = np.arange(states.shape[0]) / samples * system.period
     states = without_drift(system, time, states, 0.0)
@@ -166,8 +161,8 @@ def linear_motion(
     powers["sliding"] = torque * g.omega_pinion - brake * g.omega_gear - lost
     largest = np.abs(cycles[:, :m] @ relative.T).max()
     closure = float(np.abs(relative @ (cycles[-1] - cycles[0])[:m]).max() / largest)
-    touch = Touch.TIED if form.own.law.windows else Touch.LINEAR
-    return OwnMotion(
+    touch = Touch.TIED if form.tables.law.windows else Touch.LINEAR
+    return RevolutionMotion(
         *(pair, system, outer, touch, time, states, load, torque, brake, powers, closure, float(error)),
         twin.spectral_radius,
     )
@@ -191,7 +186,7 @@ def _inside(
     form: CycleSteps, outer: MeshTables, cycles: FloatArray, weights: FloatArray
 ) -> tuple[FloatArray, FloatArray, dict[str, float]]:
     """States and loads (pairs, k) at the outputs, and mean powers that the motion inside steps tells [W]."""
-    system, own, dte, kept = form.system, form.own, form.system.deflection, outer.outputs == 1
+    system, tables, dte, kept = form.system, form.tables, form.system.deflection, outer.outputs == 1
     m, gears, b = len(system.coordinates), system.gears, gauss_tableau(STAGES)[1]
     rates = np.vstack([gears[:2], gears[5] - gears[4]])
     g = form.pair.geometry
@@ -218,7 +213,7 @@ def _inside(
         ]
         flat = np.vstack([states.reshape(-1, 2 * m), cycles[first + count]])[:, m:]
         turning = flat @ rates.T
-        along = (turning[:-1, None] + own.nodes[:, None] * np.diff(turning, axis=0)[:, None]).reshape(
+        along = (turning[:-1, None] + tables.nodes[:, None] * np.diff(turning, axis=0)[:, None]).reshape(
             *delta.shape, 3
         )
         late = mesh["moment_pinion"] * (g.omega_pinion + along[..., 0])
@@ -231,14 +226,14 @@ def _inside(
             float((((load * (closing - late) - corners) @ b) @ form.lengths).sum()),
             0.5 * float(lengths @ (outside[1:] + outside[:-1])),
         ]
-        at = states[:, own.outputs == 1]
+        at = states[:, tables.outputs == 1]
         loads = static_loads(outer, first, count)[1][:, kept]
         place, rate = (at[..., :m] @ dte)[..., None], (at[..., m:] @ dte)[..., None]
         carried = loads["by_approach"] * place + loads["by_rate"] * rate + loads["at_rest"]
         return at.reshape(-1, 2 * m), carried.reshape(-1, carried.shape[-1]).T, np.array(work)
 
     outputs, loads, work = zip(*in_threads(block_of, form.cycles), strict=True)
-    duration = own.period * system.period
+    duration = tables.period * system.period
     dampers, moved, supports = (float(value) for value in np.sum(work, axis=0) / duration)
     powers = {"tooth_dampers": dampers, "supports": supports, "rolling": dampers - moved}
     return np.concatenate(outputs), np.concatenate(loads, axis=1), powers

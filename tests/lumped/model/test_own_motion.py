@@ -9,19 +9,20 @@ import lumped
 from lumped.gauss_legendre import gauss_tableau
 from lumped.mesh.element import FORCE, LINE
 from lumped.mesh.linear import SIGNS, STATE, LinearForm, linear_cycles
+from lumped.mesh.places import fill_linear_form, linear_form_at, static_loads
 from lumped.mesh.tables import TURNING, turn_line
+from lumped.model.cycle_maps import linear_motion
+from lumped.model.momentary_load import settled_motion
+from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.linear import linear_motion
-from lumped.teeth.motion import fill_linear_form, linear_form_at, push_motion, static_loads
 from tests.unlike_pairs import unlike_pair
 
 COS = np.cos(np.radians(20.0))
 ERRORS = np.random.default_rng(5).normal(size=28) * 5.0
 ERRORS -= ERRORS.mean()
 SAMPLES = 16
-MOTION = {"unilateral": push_motion, "linear": linear_motion}
+MOTION = {"unilateral": settled_motion, "linear": linear_motion}
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +92,7 @@ class TestFixedContacts:
         changes |= {"mesh.first_teeth": [3, 9], "pinion.faults": faults}
         changes |= {"pinion.mounting": {"eccentricity": 1, "phase": 30}}
         pair = loaded.with_(changes)
-        one, other = linear_motion(pair, SAMPLES, steps=192), push_motion(pair, SAMPLES, steps=4096)
+        one, other = linear_motion(pair, SAMPLES, steps=192), settled_motion(pair, SAMPLES, steps=4096)
         assert other.load[other.load != 0.0].min() > 100.0
         scale = np.abs(other.states[:, 2:6]).max(axis=0)
         assert one.states[:, 2:6] / scale == pytest.approx(other.states[:, 2:6] / scale, abs=1e-8)
@@ -207,7 +208,7 @@ class TestEccentricGears:
             turning = np.zeros(2, TURNING)
             turning["cycles"] = 25, 31
             turning["amplitude"][which], turning["start"][which] = eps, turn - 0.5
-            own = tables(Laws(unequal), 1.0, 1)
+            own = mesh_tables(ToothLaws(unequal), 1.0, 1)
             own.turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
             own, moved = own._replace(turning=turning, lengthening=0.0), np.zeros(1, LINE)
             starts = np.zeros((2, 2))
@@ -223,7 +224,7 @@ class TestEccentricGears:
         turning, listed = {"pinion.mounting": {"eccentricity": 20}}, {"pinion.deviations": steps(staircase)}
         side = {}
         for name, change in (("turning", turning), ("steps", listed)):
-            run = push_motion(loaded.with_(change), SAMPLES, steps=160)
+            run = settled_motion(loaded.with_(change), SAMPLES, steps=160)
             te = run.states[:, :6] @ run.system.structure.deflection
             orders = 2.0 * np.abs(np.fft.rfft(te)) / te.size
             assert orders[1] == pytest.approx(20e-6, rel=0.02)
@@ -276,7 +277,7 @@ class TestOfEveryPair:
         slopes = {"profile_slope": [8.0] * 28, "first_order": "steps"}
         mounted = {"eccentricity": 20, "phase": 50}
         pair, way = loaded.with_({"pinion.deviations": slopes, "pinion.mounting": mounted}), 3.0
-        own = tables(Laws(pair), 1.0 / 32, 1)
+        own = mesh_tables(ToothLaws(pair), 1.0 / 32, 1)
         own.turning["swing"][0] = way
         moved, loads = static_loads(own, 0, 28)
         own.turning["swing"][0] = 0.0
@@ -289,8 +290,8 @@ class TestOfEveryPair:
         assert (moved - unmoved)[single] == pytest.approx(expected[single], abs=1e-12)
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
-        laws = Laws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
-        own, x = tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2]), (np.arange(2000) + 0.5) / 2000
+        laws = ToothLaws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
+        own, x = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2]), (np.arange(2000) + 0.5) / 2000
         shape = (28, *own.position.shape[:2])
         form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
         fill_linear_form(own, 0, form)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumped import ParameterError, flank_tolerances, meeting_teeth, revolution, tooth_gaps
-from lumped.teeth.tolerances import drawn_index
+from lumped.schema.tolerances import drawn_index
 from tests.unlike_pairs import unlike_pair
 
 LIST = [round(math.sin(3.0 * j) + 0.1 * j, 3) for j in range(28)]

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Literal
 from lumped.arguments import one_of, whole_number
 from lumped.errors import refuse
 from lumped.labelling import provenance
+from lumped.model.cycle_maps import linear_motion
+from lumped.model.momentary_load import settled_motion
 from lumped.model.periodic_system import Supports
+from lumped.model.revolution_motion import default_samples, labelled_motion
 from lumped.model.solution import steady_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.teeth.linear import linear_motion
-from lumped.teeth.motion import default_samples, labelled_motion, push_motion
-from lumped.teeth.pairs import period_of
+from lumped.schema.meeting_teeth import period_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,5 +83,5 @@ def steady_state(
     one_of("touch", touch, ("unilateral", "linear"))
     cycles = period_of(pair)
     count = default_samples(cycles) if samples_per_cycle is None else samples_per_cycle
-    motion = (linear_motion if touch == "linear" else push_motion)(pair, count, supports)
+    motion = (linear_motion if touch == "linear" else settled_motion)(pair, count, supports)
     return labelled_motion(motion, provenance(pair, samples_per_cycle=count, touch=touch))

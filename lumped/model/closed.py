@@ -11,10 +11,11 @@ import xarray as xr
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
 from lumped.mesh.tables import MeshTables
+from lumped.model.momentary_load import mean_powers, run, steps_of, without_drift
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.revolution_motion import RevolutionMotion, Touch, labelled_motion
+from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.schema.pair import GearPair
-from lumped.teeth.contact import Laws, tables
-from lumped.teeth.motion import OwnMotion, Touch, labelled_motion, mean_powers, run, steps_of, without_drift
 from lumped.typing import FloatArray
 
 #: Least steps in the cycle: where a pair touches inside a step, 256 cost 0.1 % of a motion with contact loss.
@@ -54,18 +55,18 @@ def closed_motion(
     ------
     NumericalError : no periodic motion near the start
     """
-    system, laws, given = LTVSystem.of(pair, "full"), Laws(pair), pair.operating.brake_torque
+    system, laws, given = LTVSystem.of(pair, "full"), ToothLaws(pair), pair.operating.brake_torque
     support, step = system.supports, 1.0 / max(_LEAST, steps_of(system))
     weights, m = support.common_weights, support.common_weights.size
     relative, back = (np.kron(np.eye(2), one) for one in (support.relative, support.back))
-    own, coarse = (tables(laws, n * step, samples // n, (0.0, 0.5, 1.0)) for n in (1, 2))
+    tables, coarse = (mesh_tables(laws, n * step, samples // n, (0.0, 0.5, 1.0)) for n in (1, 2))
 
     def torques_of(unknown: FloatArray) -> tuple[float, float]:
         if given == "balanced":
             return pair.operating.pinion_torque, float(unknown[-1])
         return float(unknown[-1]), float(given)
 
-    def cycle(unknown: FloatArray, of: MeshTables = own, rate: float = 0.0) -> tuple[FloatArray, Run]:
+    def cycle(unknown: FloatArray, of: MeshTables = tables, rate: float = 0.0) -> tuple[FloatArray, Run]:
         """What is left after a cycle from a common rate, that of this rate last, and the motion."""
         driving, brake = torques_of(unknown)
         torques = driving * system.torque_pinion + brake * system.torque_gear
@@ -99,8 +100,8 @@ def closed_motion(
     dte = states[:, :m] @ system.deflection
     other = cycle(unknown, coarse)[1].states[:, :m] @ system.deflection
     time = np.arange(samples) / samples * system.period
-    motion = OwnMotion(
-        *(pair, system, own, Touch.MOMENTARY, time, without_drift(system, time, states, 0.0), found.loads),
+    motion = RevolutionMotion(
+        *(pair, system, tables, Touch.MOMENTARY, time, without_drift(system, time, states, 0.0), found.loads),
         *torques_of(unknown),
         mean_powers(found, system.period),
         closure=float(np.abs(relative @ (found.end - states[0])).max() / np.abs(relative @ found.end).max()),

@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import provenance
+from lumped.model.momentary_load import run, settled_motion
 from lumped.model.periodic_system import Supports
+from lumped.model.revolution_motion import labelled_motion
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.teeth.motion import labelled_motion, push_motion, run
 from lumped.typing import Progress
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def simulate(
     if as_printed:
         raise refuse("as_printed", list(as_printed), "() where teeth differ", "Use pair.healthy.")
     samples = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
-    steady = push_motion(pair, samples, supports)
+    steady = settled_motion(pair, samples, supports)
     system = steady.system
     twin = periodic_solution(system, np.zeros(1), estimate_error=False)
     twin = replace(twin, states=steady.states[:1], pinion_torque=steady.pinion_torque)

@@ -17,7 +17,7 @@ from lumped.labelling import labelled_dataset
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.schema.teeth import Deviations
-from lumped.teeth.tolerances import drawn_index
+from lumped.schema.tolerances import drawn_index
 from lumped.typing import FloatArray, IntArray
 
 if TYPE_CHECKING:

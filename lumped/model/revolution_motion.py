@@ -1,0 +1,170 @@
+"""A periodic motion over a mesh cycle, a revolution or the hunting period, and its labelled result.
+
+Sources: docs/theory/teeth.md, "Motion", "Brake torque".
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lumped.labelling import Variable
+from lumped.mesh.tables import MeshTables
+from lumped.model.mesh_cycle import PairState
+from lumped.model.periodic_system import LTVSystem
+from lumped.model.results import labelled, peak_to_peak, response
+from lumped.model.swing import swing
+from lumped.quasi_static.contacts import contact_of
+from lumped.schema.meeting_teeth import numbers
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Most and least outputs of a mesh cycle by default, and how many all cycles together are to have.
+_MOST_SAMPLES, _LEAST_SAMPLES, _ALL_SAMPLES = 512, 32, 65536
+
+
+class Touch(Enum):
+    """How the teeth touch in a motion; the value is how a result says it."""
+
+    TIED = "fixed windows of contact, teeth tied (linear)"
+    WINDOWS = "fixed windows of contact, unilateral"
+    MOMENTARY = "own gaps and tip corners, unilateral"
+    LINEAR = "linear about the own static state of every pair"
+
+
+@dataclass(frozen=True, eq=False)
+class RevolutionMotion:
+    """Periodic motion over ``period`` mesh cycles.
+
+    Attributes
+    ----------
+    system : the "full" system of the healthy twin
+    tables : the contact that was integrated
+    touch : how the teeth touch
+    time : (k,) [s]
+    states : (k, n)
+    load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
+    pinion_torque, brake_torque : mean torques that hold the mean speed against moments [N m]
+    powers : mean power of sliding, tooth dampers, supports, and of the gap that closes as the teeth roll [W]
+    closure : mismatch of the state after the period, over the largest displacement
+    error : difference of the dynamic transmission error to that of steps four times longer, over its
+        largest value
+    spectral_radius : of the healthy twin
+    """
+
+    pair: GearPair
+    system: LTVSystem
+    tables: MeshTables
+    touch: Touch
+    time: FloatArray
+    states: FloatArray
+    load: FloatArray
+    pinion_torque: float
+    brake_torque: float
+    powers: dict[str, float]
+    closure: float
+    error: float
+    spectral_radius: float
+
+    @property
+    def period(self) -> int:
+        """Mesh cycles."""
+        return self.tables.period
+
+    def balance(self, conservative: bool) -> dict[str, float]:
+        """Torques that hold the mean speed [N m] and efficiency, as of ``lumped.model.powers.balance``."""
+        g, torque = self.pair.geometry, self.pinion_torque
+        brake = self.brake_torque - (self.powers["rolling"] / g.omega_gear if conservative else 0.0)
+        efficiency = brake * g.omega_gear / (torque * g.omega_pinion)
+        return {"brake_torque": brake, "pinion_torque": torque, "mesh_efficiency": efficiency}
+
+    @cached_property
+    def number(self) -> IntArray:
+        """Number of the pair in each place at each output, (pairs, k)."""
+        cycle = np.arange(self.time.size) // self.tables.outputs.sum()
+        return np.asarray(cycle - self.tables.ahead[:, None], dtype=np.int64)
+
+    @cached_property
+    def teeth(self) -> tuple[IntArray, IntArray]:
+        """Teeth of pinion and gear in each place at each output, from 0, (pairs, k)."""
+        return numbers(self.pair, self.number)
+
+    @cached_property
+    def pairs(self) -> PairState:
+        """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
+        tables = self.tables
+        step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
+        pitch, touches = tables.law.rolling_speed * tables.duration, self.load != 0.0
+        moved = 0.0 * self.time if tables.law.windows else swing(tables, self.time)
+        pitches, phase = np.divmod(tables.edges[step] + moved / pitch, 1.0)
+        at = np.searchsorted(tables.edges[1:-1], phase, side="right")
+        place, when = np.nonzero(touches)
+        place = np.clip(place - pitches[when].astype(np.int64), 0, tables.ahead.size - 1)
+        kind, way = tables.kinds[self.teeth][touches], ((phase - tables.edges[at]) * pitch)[when]
+        laws, slopes = (table[kind, at[when], 0, place] for table in (tables.laws, tables.slopes))
+
+        def of_pairs(name: str) -> FloatArray:
+            found = np.zeros(touches.shape)
+            found[touches] = laws[name] + slopes[name] * way
+            return found
+
+        k, c, mu, gap = (of_pairs(name) for name in ("stiffness", "damping", "friction", "gap"))
+        return PairState(tables.position[step, 0].T + moved, touches, k, c, mu, gap, np.zeros(gap.shape))
+
+
+def default_samples(period: int) -> int:
+    """Outputs a mesh cycle: fewer, the more cycles a period has; a power of two."""
+    found: int = 2 ** int(math.log2(_ALL_SAMPLES / period))
+    return min(max(found, _LEAST_SAMPLES), _MOST_SAMPLES)
+
+
+def labelled_motion(
+    motion: RevolutionMotion, attributes: dict[str, Any], *, periodic: bool = True
+) -> xr.Dataset:
+    """A motion under the names of ``lumped.model.results.VARIABLES``, with the teeth of each pair.
+
+    Not ``periodic``: a transient, about which the attributes of the periodic motion say nothing.
+    """
+    system = motion.system
+    values = response(system, motion.time, motion.states, motion.load, motion.pairs)
+    further: dict[str, Variable] = {
+        f"{name}_tooth": (("pair", "time"), teeth + 1, "1", f"tooth of the {name}, counted from 1")
+        for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
+    }
+    attributes = attributes | motion.balance(contact_of(motion.pair).conservative)
+    attributes |= {
+        "model": "lumped",
+        "period_cycles": motion.period,
+        "teeth": "as given",
+        "touch": motion.touch.value,
+        "spectral_radius": motion.spectral_radius,
+    }
+    if periodic:
+        attributes |= _of_period(motion, values)
+    run = labelled(motion.time, values, attributes, further)
+    return system.supports.labelled(run, motion.states)
+
+
+def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[str, float]:
+    """Mean powers, errors and ranges of a motion that closes."""
+    found = {
+        "power_sliding": motion.powers["sliding"],
+        "power_tooth_dampers": motion.powers["tooth_dampers"],
+        "power_bearings": motion.powers["supports"],
+        "power_energy_residual": 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"],
+        "closure": motion.closure,
+        "error_estimate": motion.error,
+    }
+    closed = np.append(motion.time, motion.period * motion.system.period)
+    for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
+        one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
+        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
+    return found

@@ -1,1 +1,0 @@
-"""Teeth that differ: which pairs meet, their gaps, statics and motion over a revolution or hunting period."""
