@@ -98,6 +98,9 @@ def test_a_moved_break_changes_the_gain_by_no_more_than_is_said(name: str, level
     mesh = mesh_of(name, levels=levels)
     ends = mesh(*whole_segments(mesh), np.array([-1.0, 1.0]))[0]
     assert (mesh.slips > 0.0).all()
+    for law in (mesh.k, mesh.c, mesh.mu):  # a tooth pair that leaves counts on the side where it is gone
+        assert (law.near[:, :-1] >= law.size).all()
+        assert (law.near[:, 1:] >= law.size).all()
     told = mesh.jumps / mesh.slips
     assert (told[:, -1] == told[:, 0]).all()  # of both ends of the period
     before = np.roll(ends[:, :, 1], 1, axis=1)
