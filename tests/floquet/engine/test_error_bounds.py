@@ -200,7 +200,7 @@ def test_the_radius_may_be_that_of_another_multiplier_within_its_bound() -> None
     values, bounds = np.array([1.0, -0.875]), np.array([0.0625, 0.25])
     one = Spectrum(values, bounds, 1.0)
     assert (one.spectral_radius, one.error) == (1.0, 0.125)
-    radii, errors = radii_with_bounds(np.array([values, [0.5, 0.25]]), np.array([bounds, bounds[::-1]]))
+    radii, errors = radii_with_bounds(np.array([values, [0.25, 0.5]]), np.array([bounds, bounds]))
     assert (radii.tolist(), errors.tolist()) == ([1.0, 0.5], [0.125, 0.25])
 
 

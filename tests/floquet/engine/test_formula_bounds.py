@@ -109,6 +109,20 @@ def test_errors_of_second_order_of_a_product_and_of_a_sum_are_attained() -> None
         assert error <= bounds[0] < error * (1.0 + 1e-13)
 
 
+def test_moduli_count_where_coefficients_cancel() -> None:
+    """1 - s, whose coefficients sum to 0, times s^2, which is beyond degree 1, and times a matrix."""
+    falling, square = (
+        PiecewisePolynomial([0.0, 1.0], [[1.0, -1.0]]),
+        PiecewisePolynomial([0.0, 1.0], [[0.0, 0.0, 1.0]]),
+    )
+    for function in (falling * square, square * falling):
+        series, bounds = function.taylor(np.zeros(1), np.ones(1), 1)
+        assert not series.any()
+        assert 4.0 / 27.0 <= bounds[0] < 2.0 + 1e-12  # at s = 2/3; the sum of the moduli is 2
+    matrix = PeriodicMatrix(0.0, (falling, 2.0), errors=np.array([[[0.0]], [[0.1]]]))
+    assert 0.1 <= matrix.taylor(np.zeros(1), np.ones(1), 1, np.ones(1))[1][0] < 0.2 + 1e-8
+
+
 def test_errors_of_the_matrices_are_those_of_all_products() -> None:
     """(1 + s) (2 + 0.1) less 2 is 2.2 at s = 1, and the constant adds 0.3."""
     line = PiecewisePolynomial([0.0, 1.0], [[1.0, 1.0]])
