@@ -40,6 +40,10 @@ NAMES_ELSEWHERE = {
         "centre_distance",
     ): "of other teeth, named first: tests/lumped/schema/test_refusals",
     ("lumped/schema/pair.py", "format"): "of a later release: tests/lumped/schema/test_pair",
+    (
+        "lumped/schema/tolerances.py",
+        "tolerance_class",
+    ): "an argument: tests/lumped/schema/test_meeting_teeth",
     ("lumped/schema/teeth.py", "file"): "malformed files: tests/lumped/faults/test_schema",
     ("lumped/fields/tables.py", "file"): "malformed files: tests/lumped/stiffness/test_models",
     ("lumped/stiffness/finite_elements.py", "support"): "tests/lumped/path_of_contact/test_plane_compliance",

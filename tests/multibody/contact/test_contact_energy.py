@@ -1,5 +1,7 @@
 """Is the contact force the gradient of an energy, and do dampers take no more than they turn to heat?"""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.special import lambertw
@@ -242,8 +244,9 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
     p, radii = numbers.parameters, numbers.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
     speed, mass = p[kn.OMEGA_P] * radii[0], (numbers.inertia / radii**2).sum()
     ripple = {}
-    for acts in (True, False):
-        run = multibody.steady_state(pair, effects={"path_work": acts}, samples_per_cycle=64)
+    for acts in (False, True):  # the momentum stays in any motion, so the first one need not repeat
+        move = multibody.steady_state if acts else partial(multibody.simulate, cycles=1)
+        run = move(pair, effects={"path_work": acts}, samples_per_cycle=64)
         rates = np.stack([run["theta_p_dot"], run["theta_g_dot"]], axis=1)
         ripple[acts] = rates @ (numbers.inertia / radii) / mass / speed
     delta = mesh.approach(p[kn.L_XA] + speed * run["time"].to_numpy())

@@ -85,14 +85,15 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
 def test_a_ripple_is_that_of_motor_or_load_in_both_models(shaft, order, other):
     one = {"shaft": shaft, "order": order, "amplitude": 8.0, "phase": 40}
     more = {"mesh.contact": "loaded", "mesh.stiffness": "rectangular", "friction.coefficient": 0.0}
-    more |= {"operating.pinion_speed": 1450, "shafts.max_frequency": 5e3}
+    more |= {"operating.pinion_speed": 1450, "shafts.max_frequency": 2e3}  # far above the ripples
+    pair = PAIR.with_(more | {"operating.torque_ripple": [one]})
+    exact = record(prepare(pair, "exact", "periodic", supports="shafts"), 9, 16)[0].dte.values[48:]
+    # The lumped motion is the quick one to compute, so it is the one with another ripple.
     for wrong in {}, {"phase": 70}, {"order": order + 1}, {"shaft": other}:
-        pair = PAIR.with_(more | {"operating.torque_ripple": [one | wrong]})
-        exact = record(prepare(pair, "exact", "periodic", supports="shafts"), 16, 16)[0].dte.values[160:]
-        if not wrong:
-            run = lumped.steady_state(pair, supports="shafts", samples_per_cycle=16).dte.values[160:257]
-        # Finite rotations leave 2.3 and 3.6 %.
-        assert (np.abs(exact - run).max() < 0.04 * np.ptp(run)) == (not wrong), wrong
+        other_pair = pair.with_({"operating.torque_ripple": [one | wrong]})
+        run = lumped.steady_state(other_pair, supports="shafts", samples_per_cycle=16).dte.values[48:145]
+        # Finite rotations leave 2.5 and 3.6 %, the least of the others 7.8 %.
+        assert (np.abs(exact - run).max() < 0.04 * np.ptp(exact)) == (not wrong), wrong
 
 
 def test_gears_are_discs_on_shafts_that_turn_against_each_other(setup):

@@ -2,10 +2,11 @@
 
 import pytest
 
-from tests.validation.reporting.written import PAIRS, Written, write_report
+from tests.validation.reporting.written import PAIRS, Written, known, write_report
 
 
 @pytest.fixture(scope="session", params=list(PAIRS))
 def written(request, tmp_path_factory) -> Written:
-    """The report of each pair."""
-    return write_report(request.param, tmp_path_factory.mktemp(request.param) / "report")
+    """The report of each pair, of the results that other tests ask for too."""
+    folder = tmp_path_factory.mktemp(request.param) / "report"
+    return write_report(request.param, folder, results=known(request.param))

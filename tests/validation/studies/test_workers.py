@@ -41,7 +41,7 @@ def test_processes_give_the_same_bytes_whatever_a_library_prints(study, tmp_path
 
 @pytest.mark.parametrize(("what", "options", "status", "text"), [
     ("is_killed", {"workers": 2}, Status.WORKER_DIED, "the worker process died on this case"),
-    ("compiled_loop", {"case_seconds": 1.0}, Status.TIME_LIMIT, "longer than 1 s"),
+    ("compiled_loop", {"workers": 1, "case_seconds": 1.0}, Status.TIME_LIMIT, "longer than 1 s"),
 ])  # fmt: skip
 def test_a_case_that_ends_its_worker_costs_itself_alone(
     study, tmp_path, odd, monkeypatch, undisturbed, what, options, status, text
