@@ -1,9 +1,11 @@
 """The prediction for a pair at its operating point: the best motion that the program has, and its numbers.
 
-The linear motion about the static state is the prediction while every tooth pair pushes. Elsewhere it is the
-motion with unilateral contact: the one that Newton's method finds from the linear motion, if it is stable,
-else the one to which a run from there settles. Near it is the motion whose contact and dampers follow the
-momentary load. Contact is lost where the total mesh force is zero.
+The prediction is the motion with unilateral contact whose contact and dampers follow the momentary load. It
+is looked for near the linear motion about the static state where every tooth pair of that pushes; else near
+the motion with unilateral contact that Newton's method finds from the linear motion, if it is stable, or to
+which a run from there settles. Where no such motion is near, and with prescribed contact, which knows no
+other load, the prediction is the motion near which it was looked for. On the shafts it is the linear motion.
+Contact is lost where the total mesh force is zero.
 
 Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Prediction".
 """
@@ -190,8 +192,9 @@ QUANTITIES = {
 def predict(pair: AnyPair) -> Prediction:
     """Return the best motion that the program has for a pair at its operating point, and its numbers.
 
-    The linear motion while every tooth pair pushes, else the motion with unilateral contact; on the shafts
-    where the pair has them. ``uncertainty`` says how far the inputs move it.
+    The motion with unilateral contact by momentary load, of teeth that differ over their whole period; on the
+    shafts the linear motion. ``Prediction.motion`` says which one it is, ``uncertainty`` how far the inputs
+    move it.
 
     Parameters
     ----------
@@ -221,18 +224,56 @@ def predicted(pair: GearPair, motion: Callable[..., xr.Dataset] = lumped.steady_
     """
     if pair.shafts is not None:
         return _of_cycle(pair, motion(pair, supports="shafts", samples_per_cycle=_SAMPLES))
+    if pair.healthy is not pair:
+        found = measured(pair, motion(pair), Motion.UNILATERAL)
+        stable = float(found.cycle.attrs["spectral_radius"]) <= 1.0  # of the twin with like teeth
+        return replace(found, stable=stable, mesh_cycles=int(found.cycle.attrs["period_cycles"]))
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     try:
         linear = motion(pair, samples_per_cycle=_SAMPLES)
     except NumericalError:
         linear = None
     if linear is not None and float(linear["normal_load"].min()) >= _PULLS * force:
-        return _of_cycle(pair, linear)
+        cycle = near_linear(pair, linear)
+        return _of_cycle(pair, linear) if cycle is None else measured(pair, cycle, Motion.UNILATERAL)
     orbit, which = unilateral_motion(pair)
     cycle = by_momentary_load(orbit)
     if cycle is None:
         return _of_orbit(orbit, which)
     return replace(measured(pair, cycle, which), stable=orbit.stable)
+
+
+def near_linear(pair: GearPair, linear: xr.Dataset) -> xr.Dataset | None:
+    """Return the motion by momentary load near a linear motion in which every pair of like teeth pushes.
+
+    None with prescribed contact, of an unstable motion, or where no such motion is near.
+    """
+    radius = float(linear.attrs["spectral_radius"])
+    if contact_of(pair).name != "loaded" or pair.healthy is not pair or radius > 1.0:
+        return None
+    first, g = linear.isel(time=0), pair.geometry
+    start = []
+    for suffix in ("", "_dot"):
+        turned = float(first[f"theta_p{suffix}"]), float(first[f"theta_g{suffix}"])
+        start.append(g.base_radius_pinion * turned[0] - g.base_radius_gear * turned[1])
+        start += [float(first[f"{name}{suffix}"]) for name in ("x_p", "x_g", "y_p", "y_g")]
+    balanced = pair.operating.brake_torque == "balanced"
+    torque = float(linear.attrs["brake_torque" if balanced else "pinion_torque"])
+    size = float(linear.attrs["dte_peak_to_peak"])
+    return _momentary(pair, np.array(start), torque, radius, size, linear.sizes["time"])
+
+
+def _momentary(
+    pair: GearPair, start: FloatArray, torque: float, radius: float, size: float, samples: int
+) -> xr.Dataset | None:
+    """The motion by momentary load near a motion of that peak to peak; None where there is none."""
+    try:
+        found = closed_motion(pair, samples, start, torque, radius)
+    except NumericalError:
+        return None
+    if abs(cycle_peak_to_peak(found, "dte") - size) > _NEAR * size:
+        return None
+    return found.assign_attrs(provenance(pair, samples_per_cycle=samples))
 
 
 def by_momentary_load(orbit: GearOrbit, samples: int = _SAMPLES) -> xr.Dataset | None:
@@ -249,15 +290,8 @@ def by_momentary_load(orbit: GearOrbit, samples: int = _SAMPLES) -> xr.Dataset |
     start, known = np.zeros((2, 5)), orbit.orbit.start.reshape(2, -1)
     start[:, : known.shape[1]] = known  # y, which friction alone drives, follows
     start[1] /= orbit.orbit.period
-    try:
-        found = closed_motion(pair, samples, start.ravel(), torque, orbit.spectral_radius)
-    except NumericalError:
-        return None
-    size = cycle_peak_to_peak(found, "dte")
     low, high = orbit.dte_range
-    if abs(size - (high - low)) > _NEAR * (high - low):
-        return None
-    return found.assign_attrs(provenance(pair, samples_per_cycle=samples))
+    return _momentary(pair, start.ravel(), torque, orbit.spectral_radius, high - low, samples)
 
 
 def unilateral_motion(pair: GearPair) -> tuple[GearOrbit, Motion]:

@@ -57,11 +57,6 @@ def test_with_a_relief_of_the_size_of_the_deflection_it_is_the_exact_motion_at_t
     assert predicted(pair).peak_to_peak == pytest.approx(exact, rel=0.01)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="where no pair of the linear motion pulls, the motion by momentary load is not asked for, though "
-    "relief moves the shares of the load: 31.09 um for 29.29",
-)
 def test_with_such_a_relief_it_is_the_exact_motion_where_the_linear_one_pulls_nowhere_too():
     """The motion by momentary load is the exact one: nothing else of the program is in the way."""
     rectangular = {"mesh.stiffness": {"model": "rectangular"}}

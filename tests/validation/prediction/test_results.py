@@ -14,10 +14,10 @@ from validation.prediction.motion import Motion, predicted
 PRESCRIBED = {
     f"{name}, prescribed": name for name in UNLIKE if unlike_pair(name).healthy is unlike_pair(name)
 }
-#: Motions with unilateral contact of pairs with loaded contact.
+#: Motions with unilateral contact: of pairs with loaded contact on springs, teeth alike or not.
 UNILATERAL = (
     "contact_ratio_1_1_large_shifts", "heavily_relieved_under_load", "larger_gear_drives_contact_lost",
-    "rack_25_degrees_always_pushing",
+    "rack_25_degrees_always_pushing", "unlike_teeth_finite_elements",
 )  # fmt: skip
 CASES = (*UNLIKE, *PRESCRIBED)
 
