@@ -309,7 +309,10 @@ def _lost(pair: GearPair, motion: xr.Dataset) -> float:
     mesh = contact_cycle(pair)
     at = mesh.sample(np.mod(motion["time"].to_numpy(), mesh.period))
     load, closing = motion["normal_load"].to_numpy(), motion["dte_dot"].to_numpy() - at.error_rate
-    damper = np.where(load > 0.0, load - at.stiffness * (motion["dte"].to_numpy() - at.error), 0.0)
+    elastic = at.stiffness * (motion["dte"].to_numpy() - at.error)
+    # Where teeth that do not pull cut the load to zero, the damper still takes what the pair expands by.
+    damper = np.where(load > 0.0, load - elastic, np.minimum(-elastic, 0.0))
+    closing = closing if at.closing is None else closing * at.closing
     rates = np.stack([motion[f"{name}_dot"].to_numpy() for name in COORDINATES])
     bearings = LTVSystem.of(pair, "full").structure.damping @ rates**2
     sliding = -motion["friction_power"].sum("pair").to_numpy()
