@@ -104,6 +104,12 @@ class PathFunction:
         return PathFunction(self.breaks, poly.c, self.switches)
 
     @cached_property
+    def antiderivative(self) -> PathFunction:
+        """The continuous function with this slope that is zero at the start."""
+        poly = PPoly(self.coefficients, self.breaks).antiderivative()
+        return PathFunction(self.breaks, poly.c, self.switches)
+
+    @cached_property
     def bends(self) -> FloatArray:
         """Inner breaks behind which the function does not go on as the polynomial before them says [m].
 

@@ -43,6 +43,7 @@ class PairState:
     contact : whether the pair is where it can touch
     stiffness, damping, friction, error, error_rate : k_i [N/m], c_i [N s/m], mu_i [-], e_i [m], de_i/dt [m/s]
     tilt : sine of the angle between normal and line of action [-]; None where that is 0
+    closing : rate of the compression over delta' - e' [-]; None where that is 1
     """
 
     position: FloatArray
@@ -53,6 +54,12 @@ class PairState:
     error: FloatArray
     error_rate: FloatArray
     tilt: FloatArray | None = None
+    closing: FloatArray | None = None
+
+    def taken(self, rate: FloatArray) -> FloatArray:
+        """Power (pairs, k) [W] that the dampers take in the linear form, at a rate of the approach [m/s]."""
+        share = 1.0 if self.closing is None else self.closing
+        return np.asarray(share * self.damping * (rate - self.error_rate) ** 2)
 
     def load(self, approach: FloatArray, rate: FloatArray) -> FloatArray:
         """Normal load (pairs, k) [N] of the linear form, at an approach [m] and its rate [m/s]."""
@@ -120,7 +127,7 @@ class MeshCycle:
     def _laws(self) -> tuple[PathFunction, ...]:
         e = self.elements
         laws = e.stiffness, e.damping, e.friction, e.error
-        return laws if e.tilt is None else (*laws, e.tilt)
+        return laws if e.tilt is None or e.closing is None else (*laws, e.tilt, e.closing)
 
     def _times(self, positions: list[FloatArray]) -> FloatArray:
         """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
@@ -193,11 +200,11 @@ class MeshCycle:
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
         contact, place = np.take(self._contact, index, axis=1), self.offsets[:, None] + shift
-        slope, k, c, mu, error, *tilt = (
+        slope, k, c, mu, error, *corners = (
             np.where(contact, law(place), 0.0) for law in (self.elements.error_slope, *self._laws)
         )
         position = self.offsets[:, None] + speed * tau
-        return PairState(position, contact, k, c, mu, error, slope * speed, tilt[0] if tilt else None)
+        return PairState(position, contact, k, c, mu, error, slope * speed, *corners)
 
 
 def is_edge(times: FloatArray, edges: FloatArray) -> BoolArray:

@@ -152,12 +152,11 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     system = solution.system
     pairs, rates = system.cycle.sample(times), states[:, len(system.coordinates) :]
     values = response(system, times, states, pairs=pairs)
-    closing = values["dte_dot"] - pairs.error_rate
     supports = system.supports.powers(rates)
     return np.stack(
         [
             -values["friction_power"].sum(axis=0),
-            (pairs.damping * closing**2).sum(axis=0),
+            pairs.taken(values["dte_dot"]).sum(axis=0),
             supports["bearings"],
             supports.get("shafts", np.zeros(times.size)),
             corner_force(values, pairs) * (values["y_g_dot"] - values["y_p_dot"]),

@@ -45,7 +45,7 @@ class Steps:
     length : (k,) [s]
     maps : (k, n, n + columns) transition, then forced for each forcing, then columns of zeros
     inside : (k, n + columns, 2 s) maps to the dynamic transmission error at the stages, and to its rate
-    teeth : (4, pairs, k, s) k, c, e and e' there, as in ``PairState``
+    teeth : (5, pairs, k, s) k, c, e, e' and ``closing`` there, as in ``PairState``
     """
 
     length: FloatArray
@@ -89,8 +89,8 @@ class StepMaps:
         """Mean power that losses take beyond what torques bring [W], of the periodic motion from x(0).
 
         The tooth forces N_i do the work N_i delta' on the bodies, with both gears' rigid rotation none; the
-        dampers take c_i (delta' - e_i')^2. The rest, -k_i (delta - e_i) delta' - c_i (delta' - e_i') e_i', is
-        of no energy: in the mean all other powers cancel.
+        dampers take f_i c_i (delta' - e_i')^2. The rest, f_i c_i (delta' - e_i')^2 - N_i delta', is of no
+        energy: in the mean all other powers cancel.
         """
         state, work = initial, 0.0
         for steps in self.steps():
@@ -100,8 +100,9 @@ class StepMaps:
             held[:, 0, : state.size] = states[:-1]
             held[:, 0, state.size : state.size + weights.size] = weights
             dte, rate = np.split((held @ steps.inside)[:, 0], 2, axis=1)
-            k, c, e, e_rate = steps.teeth
-            power = (k * (dte - e)).sum(axis=0) * rate + (c * (rate - e_rate) * e_rate).sum(axis=0)
+            k, c, e, e_rate, closing = steps.teeth
+            power = (k * (dte - e)).sum(axis=0) * rate
+            power += (c * (rate - e_rate) * (rate - closing * (rate - e_rate))).sum(axis=0)
             work += float(steps.length @ power @ gauss_tableau(power.shape[1])[1])
             state = states[-1]
         return -work / float(self.times[-1])
@@ -200,7 +201,8 @@ def _steps(
     width = free.along.shape[1]
     units = np.broadcast_to(np.eye(width), (k, width, width))
     found = propagate(units, width, strength, which[:, None], *free, system.deflection)
-    teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
+    closing = np.ones_like(pairs.damping) if pairs.closing is None else pairs.closing
+    teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate, closing])
     maps = np.ascontiguousarray(found.ends.swapaxes(1, 2))
     assert maps.shape[1] == n
     return Steps(h, maps, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))

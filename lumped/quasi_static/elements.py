@@ -31,17 +31,20 @@ class MeshElements:
 
     That is [L_XA, L_XD] with prescribed contact, and reaches beyond with loaded contact.
 
-    N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4).
+    N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4). The compression
+    grows at the rate f (delta' - e'), so the damper takes f c (delta' - e')^2.
 
     Attributes
     ----------
     stiffness : k [N/m]
-    damping : c = 2 zeta sqrt(k m_e) [N s/m]
+    damping : c = 2 zeta sqrt(k m_e) [N s/m], with loaded contact times f and the share that acts
     friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
     error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
-    gap : the gap that closes at the first touch, where e is not that gap (loaded, Hertz) [m]
+    gap : that whose slope is the e' of the damper, where it is not that of e [m]
     tilt : sine of the angle by which a tip corner beyond A and D turns the normal out of the line of action,
         so that it pushes the gears apart [-]; None where teeth touch on that line alone
+    closing : f, by how much less than 1 the approach closes a tip corner, whose contact it moves outside [-];
+        None where it is 1
     """
 
     stiffness: PathFunction
@@ -50,6 +53,7 @@ class MeshElements:
     error: PathFunction
     gap: PathFunction | None = None
     tilt: PathFunction | None = None
+    closing: PathFunction | None = None
 
     @property
     def error_slope(self) -> PathFunction:

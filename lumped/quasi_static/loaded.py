@@ -38,6 +38,8 @@ _REACH = 0.4
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
 _TOLERANCE, _LENGTH = 1e-10, 2e-17
+#: Fit error of a slope of the gap over the largest one.
+_SLOPE = 1e-8
 #: Fit error of the approach over that of the laws that follow from it.
 _APPROACH = 1e-2
 #: Below this share of the mean load Hertz's contact is linear, see ``ContactLaw``.
@@ -77,8 +79,9 @@ class Loaded(Contact):
             damping=_damping(rest, pair.mesh.damping_ratio),
             friction=friction_path_function(pair, interval=contact.stiffness.interval),
             error=contact.error,
-            gap=contact.gap,
+            gap=contact.damper_gap,
             tilt=contact.tilt,
+            closing=contact.closing,
         )
 
     def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
@@ -163,6 +166,8 @@ class LoadedContact:
     stiffness : tangent stiffness k_t(xi), zero where the loaded pair is apart [N/m]
     error : e(xi) with N = k_t (delta - e) [m]
     gap : between flanks and tip corners without deflection [m]
+    damper_gap : that which grows, at a constant approach, as fast as the gap over ``closing`` [m]
+    closing : rate of the compression over that of the approach, at a constant xi [-]
     tilt : sine of the angle between the normal at a tip corner and the line of action, 0 on the line [-]
     engagement : share of its damper that acts, 0 at the first touch to 1 [-]
     secant : k(xi) of the stiffness model, on which the damper is based [N/m]
@@ -172,6 +177,8 @@ class LoadedContact:
     stiffness: PathFunction
     error: PathFunction
     gap: PathFunction
+    damper_gap: PathFunction
+    closing: PathFunction
     tilt: PathFunction
     engagement: PathFunction
     secant: PathFunction
@@ -259,6 +266,12 @@ class StaticMesh:
         middle_contacts(approach, self.phases(xi), self.flanks, self.law, contact)
         return StaticPair(approach, contact)
 
+    def approach_slope(self, xi: FloatArray) -> FloatArray:
+        """Slope of the fitted approach over xi, (n,) [-]."""
+        assert self._fitted is not None
+        start = self._fitted.breaks[0]
+        return self._fitted.slope(start + np.mod(xi - start, self.geometry.base_pitch))
+
     def half(self, xi: FloatArray) -> FloatArray:
         """How far the contact point of deflected teeth is beyond where the tips leave the line, (n,) [m]."""
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
@@ -273,10 +286,10 @@ def _damping(pair: GearPair, ratio: float) -> PathFunction:
 
     def damping(xi: FloatArray) -> FloatArray:
         root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
-        return np.asarray(scale * root * contact.engagement(xi), dtype=np.float64)
+        return np.asarray(scale * root * contact.engagement(xi) * contact.closing(xi), dtype=np.float64)
 
     engaged = contact.engagement
-    breaks = np.union1d(engaged.breaks, contact.secant.breaks)
+    breaks = np.union1d(np.union1d(engaged.breaks, contact.secant.breaks), contact.closing.breaks)
     largest = float(np.abs(damping(np.linspace(low, high, 401))).max())
     if largest == 0.0:
         return PathFunction.constant(0.0, low, high)
@@ -346,10 +359,24 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
 
     engaged = PathFunction.fit(engagement, cuts, bends, tolerance=relative, by_length=True)
     error = fitted(lambda xi: static(xi).error, deflection)
+    gap = fitted(lambda xi: static(xi).gap, deflection)
+
+    def closing(xi: FloatArray) -> FloatArray:
+        return np.asarray(1.0 - static(xi).contact["gap_by_approach"], dtype=np.float64)
+
+    def rolling(xi: FloatArray) -> FloatArray:
+        """Slope of the gap at a constant approach, without what the static approach moves the corner."""
+        share = closing(xi)
+        return np.asarray((gap.slope(xi) - (1.0 - share) * mesh.approach_slope(xi)) / share)
+
+    steepest = max(float(np.abs(gap.slope(np.linspace(low, high, 101))).max()), deflection / g.base_pitch)
+    damper_gap = PathFunction.fit(rolling, gap.breaks, inside, tolerance=_SLOPE * steepest, by_length=True)
     return LoadedContact(
         stiffness=restricted(stiffness, contact),
         error=error,
-        gap=fitted(lambda xi: static(xi).gap, deflection),
+        gap=gap,
+        damper_gap=damper_gap.antiderivative,
+        closing=PathFunction.fit(closing, error.breaks, inside, tolerance=relative, by_length=True),
         tilt=PathFunction.fit(
             lambda xi: static(xi).tilt, error.breaks, inside, tolerance=relative, by_length=True
         ),

@@ -210,7 +210,10 @@ class _Mesh:
         loads, left = self.loads(places, pressed)
         more, less = (self.loads(places, pressed + s * _STEP * delta)[0] for s in (1.0, -1.0))
         share = gradual(float(loads[own]) / (FULL_DAMPING * self.force))
-        damping = p[kn.DAMPING] * np.sqrt(stiffness_at(self.machine.table, xi)) * share
+        # The contact moves outside with the approach: a corner closes by less than that.
+        ahead, behind = (self.pressed(places, delta + s * _STEP * delta)[0][own] for s in (1.0, -1.0))
+        closing = (ahead - behind) / (2.0 * _STEP * delta)
+        damping = p[kn.DAMPING] * np.sqrt(stiffness_at(self.machine.table, xi)) * share * closing
         tangent = (more - less)[own] / (2.0 * _STEP * delta)
         values = (loads[own], tangent, damping, left[own], tilt[own])
         return _Equilibrium(delta, *(float(value) for value in values))

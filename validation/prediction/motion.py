@@ -370,7 +370,9 @@ def losses(pair: GearPair, motion: xr.Dataset) -> dict[str, float]:
     at = mesh.sample(np.mod(motion["time"].to_numpy(), mesh.period))
     load, closing = motion["normal_load"].to_numpy(), motion["dte_dot"].to_numpy() - at.error_rate
     elastic = at.stiffness * (motion["dte"].to_numpy() - at.error)
-    damper = np.where(elastic > 0.0, load - elastic, 0.0)
+    # Where teeth that do not pull cut the load to zero, the damper still takes what the pair expands by.
+    damper = np.where(load > 0.0, load - elastic, np.minimum(-elastic, 0.0))
+    closing = closing if at.closing is None else closing * at.closing
     rates = np.stack([motion[f"{name}_dot"].to_numpy() for name in COORDINATES])
     bearings = LTVSystem.of(pair, "full").structure.damping @ rates**2
     return {

@@ -31,7 +31,7 @@ def system_of(constant, gain, deflection, edges):
 
     def no_pairs(t):
         none = np.zeros((0, t.size))
-        return SimpleNamespace(stiffness=none, damping=none, error=none, error_rate=none)
+        return SimpleNamespace(stiffness=none, damping=none, error=none, error_rate=none, closing=None)
 
     ends = np.asarray(edges, dtype=float)
     return System(

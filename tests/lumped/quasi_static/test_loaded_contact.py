@@ -120,11 +120,13 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
     # Elastic loads follow e, the approach at which their tangents vanish; the dampers follow the gaps.
     elastic = e.stiffness(xi) * pressed
     path = elastic * contact.error.slope(xi) - 0.5 * e.stiffness.slope(xi) * pressed**2
-    path += (motion["normal_load"].to_numpy() - elastic) * e.error_slope(xi)
+    # Of what a damper does on the approach, it takes its load times the rate of the compression.
+    speed, rate = g.base_radius_pinion * g.omega_pinion, motion["dte_dot"].to_numpy()
+    compressing = e.closing(xi) * (rate - e.error_slope(xi) * speed)
+    path += (motion["normal_load"].to_numpy() - elastic) * (rate - compressing) / speed
     by_path = np.where(touching, path, 0.0).sum(axis=0).mean() * g.base_radius_pinion * g.omega_pinion
     # The motion swings about the static one: what is stored where a pair comes or goes jumps with all k_t.
     ends = contact.contact[0]
-    speed = g.base_radius_pinion * g.omega_pinion
     times = np.sort(np.mod((ends - g.L_XA) / speed, g.mesh_period))
     at = periodic_solution(periodic_system(pair, "full"), times, estimate_error=False)
     dte = np.interp(np.mod((ends - g.L_XA) / speed, g.mesh_period), times, at.values["dte"])
