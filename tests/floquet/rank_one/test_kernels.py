@@ -12,7 +12,7 @@ from flint import arb_mat
 
 from floquet import RankOneSystem, fast_monodromies
 from floquet.rank_one.batch import _quick
-from floquet.rank_one.kernels.eigenvalue_bounds import _gershgorin
+from floquet.rank_one.kernels.eigenvalue_bounds import _gershgorin, _join
 from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, powers_of_radii
 from floquet.rank_one.kernels.product import BLOCKS, carry, divide
 from floquet.rank_one.kernels.simd import LANES
@@ -167,16 +167,29 @@ def test_disks_hold_the_worst_errors_until_they_are_called_unsafe() -> None:
     assert min(whole[power, delta] for power in (2, 4) for delta in (1e-9, 1e-7)) > 0.95
 
 
-@pytest.mark.parametrize("signs", [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)])
-def test_a_scaled_disk_holds_what_its_coupling_moves(signs: tuple[float, float]) -> None:
-    """Of 2 x 2 with entries of modulus f the first moves by f_11 + f_12 f_21/gap, at most by twice that."""
+@pytest.mark.parametrize("own", [-1.0, 1.0])
+@pytest.mark.parametrize("coupling", [-1.0, 1.0])
+def test_a_scaled_disk_holds_what_its_coupling_moves(own: float, coupling: float) -> None:
+    """Of 2 x 2 with entries of modulus f the first moves by f_11 + f_12 f_21/gap, more if both attract."""
     values, rows, radii = np.array([0.5 + 0j, 0.75]), np.empty(2), np.empty(2)
     f = np.array([[1e-6, 1e-2], [2e-2, 1e-6]])
     _gershgorin(values, f, rows, radii)
-    F = signs[0] * f * [[1.0, signs[1]], [signs[1], 1.0]]
+    F = f * [[own, 1.0], [coupling, own]]
     moved = min(abs(disk[0] - 0.5) for disk in disks(balls(np.diag(values) + F)))
-    assert moved <= radii[0] < 2.0 * (1e-6 + 2e-4 / 0.25) * (1.0 + 1e-9)
-    assert moved > 0.45 * radii[0] or signs[0] * signs[1] > 0.0
+    assert moved <= radii[0] < 2.03 * moved  # the theorem allows for twice f_12 f_21/gap
+    if own > coupling:
+        assert moved > 1e-6 + 2e-4 / 0.25
+
+
+def test_disks_that_hang_together_are_widened_around_all_of_them() -> None:
+    """A union of k disks holds k eigenvalues, each anywhere in it: here a chain of three."""
+    values, radii = np.array([0.0, 1.0 + 0j, 1.9, 5.0, 3.4j]), np.array([0.6, 0.7, 0.4, 0.5, 0.1])
+    given = radii.copy()
+    _join(values, radii, np.empty(5), np.empty(5, dtype=np.int64))
+    chain, apart = np.abs(values[:3, None] - values[:3]) + given[:3], np.array([3, 4])
+    assert radii[:3] == pytest.approx(chain.max(axis=1), rel=1e-10)
+    assert (radii[:3] >= chain.max(axis=1)).all()
+    assert (radii[apart] == given[apart]).all()
 
 
 def test_the_product_keeps_terms_of_second_order_and_of_blocks() -> None:
