@@ -190,6 +190,11 @@ def test_disks_that_hang_together_are_widened_around_all_of_them() -> None:
     assert radii[:3] == pytest.approx(chain.max(axis=1), rel=1e-10)
     assert (radii[:3] >= chain.max(axis=1)).all()
     assert (radii[apart] == given[apart]).all()
+    # Row sums of three entries of 6e-4 overlap over a gap of 1e-3; the third disk is scaled by 2 6e-4/0.8.
+    values, radii, safe = (part[0] for part in _quick(np.diag([0.5, 0.501, -0.3])[None], np.array([6e-4])))
+    assert safe
+    order = np.argsort(-values.real)
+    assert radii[order] == pytest.approx([2.8e-3, 2.8e-3, 6e-4 + 1.5e-3 * 1.2e-3], rel=1e-5)
 
 
 def test_the_product_keeps_terms_of_second_order_and_of_blocks() -> None:
