@@ -7,7 +7,7 @@ import pytest
 
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import contact_softening, pair_compliance
-from lumped.stiffness.finite_elements import hertz_half_width
+from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width
 from lumped.stiffness.foundation import body_twist
 from tests.guards.by_hand import ByHand, Contact
 from tests.unlike_pairs import unlike_pair
@@ -77,3 +77,13 @@ def test_each_body_twists_with_its_own_bore_width_and_material(unlike):
         shear = own.youngs_modulus / (2.0 * (1.0 + own.poisson_ratio))
         radii = (0.5 * own.bore) ** -2 - (1e-3 * hand.r_f) ** -2
         assert found == pytest.approx(4.0 * math.pi * shear * own.face_width / radii, rel=1e-9)
+
+
+def test_plane_strain_is_plane_stress_of_another_material():
+    """With nu/(1 - nu) in place of nu, and E/(1 - nu^2) for E, which the unit of the flank leaves out."""
+    pair = unlike_pair("contact_ratio_1_1_large_shifts")
+    strained = elastic_teeth(pair.with_(pinion__poisson_ratio=0.3), "strain")[0]
+    stressed = elastic_teeth(pair.with_(pinion__poisson_ratio=0.3 / 0.7), "stress")[0]
+    length = np.linspace(strained.wheel.tooth.form_length, 22e-3, 5)[1:-1] / strained.wheel.tooth.module
+    found, expected = strained.flank.deflection(length), stressed.flank.deflection(length)
+    assert found == pytest.approx(expected, rel=1e-12)

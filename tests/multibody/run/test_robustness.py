@@ -50,6 +50,20 @@ def test_ctrl_c_stops_a_run():
         signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.parametrize("which", [1, 2])
+def test_coordinates_or_rates_alone_that_are_not_finite_are_seen(monkeypatch, which):
+    whole = multibody.run.integration.stored
+
+    def spoilt(model):
+        found = [np.array(one) for one in whole(model)]
+        found[which][-1, 0] = np.nan
+        return tuple(found)
+
+    monkeypatch.setattr("multibody.run.integration.stored", spoilt)
+    with pytest.raises(lumped.NumericalError, match="not finite"):
+        multibody.simulate(PAIR, 1)
+
+
 def test_an_impossible_state_raises_and_says_what_to_check():
     """Explicit solvers carry NaN forces through in silence; the model looks at every force."""
     state = np.zeros(12)
