@@ -120,7 +120,14 @@ def room_of(own: Tables) -> Room:
     """Arrays for a pair."""
     steps, nodes, pairs = own.place.shape
     place, coupling = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, pairs))
-    place[:steps], coupling[:steps] = own.place, own.coupling
+    # One by one: of slices numba would compile the message about other shapes, a second.
+    for s in range(steps):
+        same = min(s, own.coupling.shape[0] - 1)
+        for node in range(nodes):
+            for i in range(pairs):
+                place[s, node, i] = own.place[s, node, i]
+                for other in range(pairs):
+                    coupling[s, node, i, other] = own.coupling[same, node, i, other]
     contact = np.zeros((steps + 1, nodes, pairs)), np.zeros((steps + 1, nodes, pairs, 4))
     moved, here = np.zeros((steps + 1, nodes, 8)), np.zeros((MATRIX + pairs, pairs))
     kind, errors = np.zeros(pairs, np.int64), np.zeros((pairs, 6))

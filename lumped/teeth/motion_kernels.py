@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.model.kernels import solve_in_place
+from lumped.model.kernels import copy, solve_in_place
 from lumped.teeth import kernels as kn
 from lumped.teeth.kernels import Tables, contact_of_steps, loads_at, room_of
 from lumped.typing import FloatArray, IntArray
@@ -68,12 +68,9 @@ def motion_cycles(
             h = (edges[s + 1] - edges[s]) * own.duration
             for stage in range(4):
                 node = (stage + 1) // 2
-                if stage == 0:
-                    at[:] = x
-                else:
-                    part = h if stage == 3 else 0.5 * h
-                    for j in range(2 * m):
-                        at[j] = x[j] + part * rate[stage - 1, j]
+                part = h if stage == 3 else 0.5 * h
+                for j in range(2 * m):
+                    at[j] = x[j] if stage == 0 else x[j] + part * rate[stage - 1, j]
                 delta, closing = 0.0, 0.0
                 for j in range(m):
                     delta += deflection[j] * at[j]
@@ -145,7 +142,10 @@ def motion_cycles(
                 for n in range(4):
                     work[n] += weight * power[n]
                 if stage == 0 and outputs[s] == 1:
-                    states[row], record[:, row] = x, normal
+                    for j in range(2 * m):
+                        states[row, j] = x[j]
+                    for i in range(pairs):
+                        record[i, row] = normal[i]
                     row += 1
             for j in range(2 * m):
                 x[j] += h / 6.0 * (rate[0, j] + 2.0 * rate[1, j] + 2.0 * rate[2, j] + rate[3, j])
@@ -186,7 +186,7 @@ def linear_cycles(
     start, p, strength = np.empty(2 * STAGES), np.empty(STAGES), np.zeros((3, FORCES))
     fixed, matrix, inverse = np.empty(rows), np.empty((STAGES, STAGES)), np.empty((STAGES, STAGES))
     for c in range(cycles):
-        now[:] = columns[c]
+        copy(now, columns[c])
         for s in range(steps):
             of = which[s]
             fixed[:] = 0.0
