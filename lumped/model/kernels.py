@@ -210,7 +210,7 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     product = np.empty((n, width))
     held = 0
     for j in range(k):
-        _copy(waiting[held], maps[j])
+        copy(waiting[held], maps[j])
         doubled[held] = 0
         held += 1
         last = j == k - 1 or group[j + 1] != group[j]
@@ -223,17 +223,17 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
                     factor = after[row, inner]
                     for column in range(width):
                         product[row, column] += factor * before[inner, column]
-            _copy(before, product)
+            copy(before, product)
             held -= 1
             doubled[held - 1] += 1
         if last:
-            _copy(found[group[j]], waiting[0])
+            copy(found[group[j]], waiting[0])
             held = 0
     return found
 
 
 @compiled
-def _copy(to: FloatArray, source: FloatArray) -> None:
+def copy(to: FloatArray, source: FloatArray) -> None:
     """``to[:] = source``, for which numba would compile the message about other shapes: two seconds."""
     for row in range(to.shape[0]):
         for column in range(to.shape[1]):

@@ -190,12 +190,12 @@ def _first_matrix(
         transition, forced = maps.over_all
         by_torque = forced[:, 2]
     else:
+        # To one side: the motion found does not depend on the matrix, and central ones take twice the runs.
         flow = Flow(setup, machine, cycles)
-        transition = _differences(flow, state, scale * _STEP["exact"])
+        end = flow(state)
+        transition = _differences(flow, state, scale * _STEP["exact"], end)
         more = replace(machine, torque_gear=machine.torque_gear * (1.0 + _STEP["exact"]))
-        by_torque = (Flow(setup, more, cycles)(state) - flow(state)) / (
-            more.torque_gear - machine.torque_gear
-        )
+        by_torque = (Flow(setup, more, cycles)(state) - end) / (more.torque_gear - machine.torque_gear)
     if machine.train is None:
         turn = machine.inertia / machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
     else:
@@ -317,7 +317,7 @@ def _unpacked(machine: Machine, state: FloatArray) -> tuple[FloatArray, FloatArr
 def _differences(
     flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None = None
 ) -> FloatArray:
-    """Columns of the map: differences to ``end``, where a linear model arrives, else central ones."""
+    """Columns of the map: differences to ``end``, where the state itself arrives, else central ones."""
     columns = []
     for i, h in enumerate(steps):
         ahead, behind = state.copy(), state.copy()

@@ -120,9 +120,10 @@ def shortened(arguments: list[str]) -> list[str]:
     """The same line with less to compute.
 
     A stability chart has a few nodes on every axis, a cross-check runs for fewer cycles, a sweep starts no
-    processes, branches of motions and jump maps cover a small range.
+    processes, branches of motions and jump maps cover a small range, few samples are predicted.
     """
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
+    quicker["uncertainty"] = ["--samples", "16"]
     quicker["response"] = ["--periods", "1", "--seeds", "0", "--speeds", "3", "--range", "12000..12100"]
     most = 2 if arguments[0] in ("response", "floquet") else 5
     arguments = [
