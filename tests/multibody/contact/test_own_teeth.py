@@ -63,7 +63,8 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
     for fault in (crack, spall, pit, chip):
         own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
         laws, p = ToothLaws(own), machine(own).parameters
-        (k0, _, gap0), (k, _, gap) = (laws.of_kind(kind, xi) for kind in (0, 1))
+        whole, faulty = (laws.of_kind(kind, xi) for kind in (0, 1))
+        (k0, k), (gap0, gap) = ([one[name] for one in (whole, faulty)] for name in ("stiffness", "gap"))
 
         def found(x, p=p, at=2 * g.base_pitch):  # two pairs later these teeth are in contact
             return tooth_pair(p[int(p[kn.OWN]) :], p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
