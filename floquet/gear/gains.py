@@ -19,9 +19,8 @@ import numpy.typing as npt
 from floquet.rank_one.piecewise import series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
-from lumped.mesh.element import BY_APPROACH, BY_RATE, FORCE
-from lumped.mesh.linear import SIGNS, STATE, LinearForm, linear_cycles
-from lumped.mesh.places import linear_form_at
+from lumped.mesh.element import BY_APPROACH, BY_RATE
+from lumped.mesh.places import kinks, linear_form_at
 from lumped.mesh.tables import MeshTables
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.swing import moments
@@ -341,10 +340,8 @@ class OwnGains:
         self.tables, self.first = tables, first
         self.forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
         starts = np.add.outer(np.arange(cycles), tables.edges[:-1])
-        shape = (*starts.shape, 0)
-        nothing = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
-        kinks = linear_cycles(first, tables, _LOOKS, SIGNS, _ROUNDS, nothing, False)
-        self.edges = np.unique(np.concatenate([starts.ravel(), [cycles], kinks]))
+        touches = kinks(tables, first, cycles, _LOOKS, _ROUNDS)
+        self.edges = np.unique(np.concatenate([starts.ravel(), [cycles], touches]))
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray

@@ -17,8 +17,11 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
-#: Of functions that allocate nothing: counting references would take most of their time.
-inlined = compiled(_nrt=False, forceinline=True)
+#: Of functions that kernels alone call, and that allocate nothing: counting references would take most of
+#: their time, and what Python would call takes as long to compile as the function itself.
+inlined = compiled(_nrt=False, forceinline=True, no_cpython_wrapper=True)
+#: The same where one kernel calls a function at several places: a copy at each would take long to compile.
+called = compiled(_nrt=False, no_cpython_wrapper=True)
 
 #: One record, or an array of records, of a dtype below.
 Record = Any
@@ -393,10 +396,11 @@ def mesh_force(
     return MeshForce(total, friction, moment, separating, power)
 
 
-@inlined
+@called
 def static_approach(
     guess: float,
     tolerance: float,
+    force: float,
     pairs: Records,
     line: Record,
     law: ContactLaw,
@@ -404,22 +408,22 @@ def static_approach(
     matrix: FloatArray,
     contacts: Records,
 ) -> float:
-    """Approach at which the elastic loads make the mean force [m], or NaN; ``contacts`` are those there.
+    """Approach at which the elastic loads make a force [m], or NaN; ``contacts`` are those there.
 
     Newton steps in a bracket, from a guess until force or approach is met to the relative tolerance.
     """
     stiffest = 1e-300
     for i in range(pairs.size):
         stiffest = max(stiffest, pairs[i].stiffness)
-    scale, low, high, approach = law.force / stiffest, -math.inf, math.inf, guess
+    scale, low, high, approach = force / stiffest, -math.inf, math.inf, guess
     for _ in range(_MOST_STEPS):
         share_load(approach, pairs, line, law, coupling, matrix, contacts)
-        excess, slope = -law.force, 0.0
+        excess, slope = -force, 0.0
         for i in range(pairs.size):
             excess += contacts[i].load
             if contacts[i].load > 0.0:
                 slope += contacts[i].tangent * (1.0 - contacts[i].gap_by_approach)
-        if abs(excess) <= tolerance * law.force:
+        if abs(excess) <= tolerance * force:
             return approach
         if excess < 0.0:
             low = approach

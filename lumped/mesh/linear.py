@@ -29,6 +29,7 @@ from lumped.mesh.element import (
     Records,
     acts,
     add_force,
+    called,
     clear_force,
     damper_share,
     inlined,
@@ -39,7 +40,7 @@ from lumped.mesh.element import (
     static_approach,
     ways_beyond,
 )
-from lumped.mesh.tables import CyclePairs, MeshTables, cycle_pairs, fill_steps
+from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.typing import FloatArray, IntArray
 
 #: The mesh about its static state, beside its FORCE.
@@ -117,9 +118,8 @@ class Instant(NamedTuple):
     static: FloatArray
 
 
-@compiled
 def empty_instant(tables: MeshTables) -> Instant:
-    """Records for a mesh."""
+    """Records for a mesh; not compiled, for that takes half a second."""
     nodes, count = tables.position.shape[1], tables.position.shape[2]
     return Instant(
         np.zeros(count, PAIR),
@@ -254,43 +254,54 @@ def linear_at(
         share_load(static, pairs, line, law, coupling, at.matrix, at.contacts)
     else:
         guess = 0.0 if math.isnan(at.static[0]) else at.static[0]
-        static = static_approach(guess, _SETTLED, pairs, line, law, coupling, at.matrix, at.contacts)
+        static = static_approach(
+            guess, _SETTLED, law.force, pairs, line, law, coupling, at.matrix, at.contacts
+        )
     at.static[0] = static
     linearise(static, pairs, line, law, at.contacts, forces, state, at.loads)
     write_signs(static, pairs, line, law, coupling, at)
 
 
-@inlined
+@called
 def linear_of_step(
     step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant, forces: Records, state: Record
 ) -> None:
     """``linear_at`` a place of a step whose pairs ``mesh`` has: 0 to 1, or -1 - j for the node j."""
     if x > -0.5:
         put_between(step, x, tables, mesh, at)
-        linear_at(at.pairs, at.line[0], at.coupling, tables.law, at, forces, state)
+        pairs, line, coupling = at.pairs, at.line, at.coupling
     else:
         node = int(-1.0 - x)
-        pairs, line = mesh.pairs[step, node], mesh.lines[step, node]
-        linear_at(pairs, line, tables.coupling[step, node], tables.law, at, forces, state)
+        pairs, line = mesh.pairs[step, node], mesh.lines[step, node : node + 1]
+        coupling = tables.coupling[step, node]
+    linear_at(pairs, line[0], coupling, tables.law, at, forces, state)
 
 
 @compiled(nogil=True)
 def linear_places(
-    start: int, tables: MeshTables, asked: FloatArray, form: LinearForm, loads: Records
+    start: int,
+    tables: MeshTables,
+    asked: FloatArray,
+    form: LinearForm,
+    loads: Records,
+    mesh: CyclePairs,
+    at: Instant,
 ) -> None:
     """Write the linear form at n places into ``form``, and into ``loads`` (n or 0, pairs) those of each pair.
 
-    ``asked`` (n, 3) is cycles after ``start``, step, and place in it, as of ``linear_of_step``.
+    ``asked`` (n, 3) is cycles after ``start``, step, and place in it, as of ``linear_of_step``. ``mesh`` and
+    ``at`` are worked in.
     """
-    mesh, at = cycle_pairs(tables), empty_instant(tables)
-    known, steps = np.full(tables.position.shape[0], -1), loads.shape[0]  # cycle whose pairs a step has
+    known = np.empty(tables.position.shape[0], np.int64)  # cycle whose pairs a step has
+    for step in range(known.size):
+        known[step] = -1
     for n in range(asked.shape[0]):
         cycle, step = int(asked[n, 0]), int(asked[n, 1])
         if known[step] != cycle:
             known[step] = cycle
             fill_steps(start + cycle, step, step + 1, tables, mesh)
         linear_of_step(step, asked[n, 2], tables, mesh, at, form.forces[n], form.states[n])
-        for i in range(at.loads.size if n < steps else 0):
+        for i in range(at.loads.size if n < loads.shape[0] else 0):
             loads[n, i] = at.loads[i]
 
 
@@ -339,7 +350,7 @@ def keep_kink(phase: float, step: int, kinks: Kinks) -> None:
     kinks.known[0] += 1
 
 
-@inlined
+@called
 def find_kink(
     sign: int,
     i: int,
@@ -374,7 +385,7 @@ def find_kink(
     keep_kink(root, here, kinks)
 
 
-@inlined
+@called
 def fill_moments(
     step: int,
     first: int,
@@ -410,36 +421,55 @@ def fill_moments(
     return first
 
 
+@compiled
+def twice_as_long(values: FloatArray) -> FloatArray:
+    """The same values and as much place behind them."""
+    longer = np.empty(2 * values.size)
+    for i in range(values.size):
+        longer[i] = values[i]
+    return longer
+
+
 @compiled(nogil=True)
 def linear_cycles(
-    start: int, tables: MeshTables, looks: FloatArray, signs: int, rounds: int, form: LinearForm, fills: bool
+    start: int,
+    tables: MeshTables,
+    looks: FloatArray,
+    signs: int,
+    rounds: int,
+    form: LinearForm,
+    fills: bool,
+    mesh: CyclePairs,
+    at: Instant,
 ) -> FloatArray:
     """Linear form of mesh cycles from ``start`` on, and the phases of their kinks, by cycles from ``start``.
 
     ``form`` has (cycles, steps, nodes, 3) FORCE and (cycles, steps, nodes) STATE. Where it ``fills`` them,
     they are those at the nodes, which ``looks`` then are, and in a step with kinks the moments. ``looks``
     (k,) are places in a step, as of ``linear_of_step``, between which each of the first ``signs`` numbers of
-    a pair has at most one root; it is found by so many ``rounds``.
+    a pair has at most one root; it is found by so many ``rounds``. ``mesh`` and ``at`` are worked in.
     """
     (steps, _, count), edges, looked = tables.position.shape, tables.edges, looks.size
-    mesh, at = cycle_pairs(tables), empty_instant(tables)
-    one = LinearForm(np.zeros(3, FORCE), np.zeros(1, STATE))
+    one = LinearForm(np.empty(3, FORCE), np.empty(1, STATE))
     phase, values = np.empty(steps * looked), np.empty((steps * looked, SIGNS, count))
     most = phase.size * signs * count
-    kinks = Kinks(np.empty(most), np.empty(most, np.int64), np.zeros(1, np.int64))
+    kinks = Kinks(np.empty(most), np.empty(most, np.int64), np.empty(1, np.int64))
     found, known = np.empty(16), 0
+    first = steps - steps  # the literal 0 would be compiled for itself
     for look in range(phase.size):
         step, x = look // looked, looks[look % looked]
         place = x if x > -0.5 else tables.nodes[int(-1.0 - x)]
         phase[look] = edges[step] + (edges[step + 1] - edges[step]) * place
     for cycle in range(form.states.shape[0]):
-        fill_steps(start + cycle, 0, steps, tables, mesh)
+        fill_steps(start + cycle, first, steps, tables, mesh)
         for look in range(phase.size):
             step, j = look // looked, look % looked
             forces = form.forces[cycle, step, j] if fills else one.forces
             state = form.states[cycle, step, j] if fills else one.states[0]
             linear_of_step(step, looks[j], tables, mesh, at, forces, state)
-            values[look] = at.signs
+            for sign in range(SIGNS):
+                for i in range(count):
+                    values[look, sign, i] = at.signs[sign, i]
         kinks.known[0] = 0
         for look in range(1, phase.size):
             ends = phase[look - 1], phase[look]
@@ -464,14 +494,14 @@ def linear_cycles(
                         )
         for kink in range(kinks.known[0]):
             if known == found.size:
-                found = np.append(found, np.empty(known))
+                found = twice_as_long(found)
             found[known] = cycle + kinks.phase[kink]
             known += 1
-        kink = 0
+        kink = first
         while fills and kink < kinks.known[0]:
             step = kinks.step[kink]
             kink = fill_moments(
                 step, kink, kinks, tables, mesh, at, one.forces, one.states[0],
                 form.forces[cycle, step], form.states[cycle, step],
             )  # fmt: skip
-    return found[:known].copy()
+    return found[:known]

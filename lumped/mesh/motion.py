@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh.element import CONTACT, MeshForce, Record, Records, inlined, mesh_force, record, share_load
-from lumped.mesh.tables import MeshTables, cycle_pairs, fill_steps
+from lumped.mesh.element import MeshForce, Record, Records, inlined, mesh_force, record, share_load
+from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.typing import FloatArray
 
 #: A harmonic of a torque: amplitude cos(angle t/T_m + start).
@@ -158,21 +158,29 @@ def run_cycles(
     body: Body,
     ripples: Records,
     initial: FloatArray,
+    mesh: CyclePairs,
+    work: Records,
 ) -> Run:
     """Motion from a state (2m,) at the start of a mesh cycle, over so many; the last ones are recorded.
 
-    The nodes of ``tables`` are start, middle and end of each step.
+    The nodes of ``tables`` are start, middle and end of each step; ``mesh`` is worked in, ``work`` (1,)
+    is added to.
     """
     m, count, steps = body.torque.size, tables.position.shape[2], tables.edges.size - 1
-    outputs = recorded * tables.outputs.sum()
-    states, loads, work = np.empty((outputs, 2 * m)), np.empty((count, outputs)), np.zeros(1, WORK)
-    state, stage_state, rates = initial.copy(), np.empty(2 * m), np.zeros((4, 2 * m))
-    mesh, law, edges = cycle_pairs(tables), tables.law, tables.edges
-    contacts, matrix, normal = np.zeros(count, CONTACT), np.empty((count, count)), np.zeros(count)
-    row = 0
+    outputs = 0
+    for step in range(steps):
+        outputs += recorded * tables.outputs[step]
+    states, loads = np.empty((outputs, 2 * m)), np.empty((count, outputs))
+    state, stage_state, rates = np.empty(2 * m), np.empty(2 * m), np.empty((4, 2 * m))
+    for j in range(2 * m):
+        state[j] = initial[j]
+        rates[-1, j] = 0.0
+    law, edges = tables.law, tables.edges
+    contacts, matrix, normal = mesh.contacts, mesh.matrix, np.empty(count)
+    row, first = 0, steps - steps  # the literal 0 would be compiled for itself
     for cycle in range(start, start + cycles):
         keeps = cycle >= start + cycles - recorded
-        fill_steps(cycle, 0, steps, tables, mesh)
+        fill_steps(cycle, first, steps, tables, mesh)
         for step in range(steps):
             h = (edges[step + 1] - edges[step]) * tables.duration
             for stage in range(4):
@@ -192,7 +200,10 @@ def run_cycles(
                     weight = h / (3.0 if 0 < stage < 3 else 6.0)
                     add_work(weight, stage_state, closing, force, line, body, work[0])
                 if keeps and stage == 0 and tables.outputs[step] == 1:
-                    states[row], loads[:, row] = state, normal
+                    for j in range(2 * m):
+                        states[row, j] = state[j]
+                    for i in range(count):
+                        loads[i, row] = normal[i]
                     row += 1
             for j in range(2 * m):
                 state[j] += h / 6.0 * (rates[0, j] + 2.0 * rates[1, j] + 2.0 * rates[2, j] + rates[3, j])

@@ -10,8 +10,16 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import NumericalError
 from lumped.mesh.element import FORCE, Records
-from lumped.mesh.linear import PAIR_LOAD, STATE, LinearForm, linear_cycles, linear_places
-from lumped.mesh.tables import MeshTables
+from lumped.mesh.linear import (
+    PAIR_LOAD,
+    SIGNS,
+    STATE,
+    LinearForm,
+    empty_instant,
+    linear_cycles,
+    linear_places,
+)
+from lumped.mesh.tables import MeshTables, cycle_pairs
 from lumped.typing import FloatArray
 
 #: Steps to a kink inside a step of the linear form, whose error is that of the step there.
@@ -29,7 +37,7 @@ def linear_form_at(
     shape, asked = asked.shape[:-1], asked.reshape(-1, 3)
     form = LinearForm(np.zeros((len(asked), 3), FORCE), np.zeros(len(asked), STATE))
     of_pairs = np.zeros((len(asked) if loads else 0, tables.ahead.size), PAIR_LOAD)
-    linear_places(start, tables, asked, form, of_pairs)
+    linear_places(start, tables, asked, form, of_pairs, cycle_pairs(tables), empty_instant(tables))
     _all_carried(form)
     whole = LinearForm(form.forces.reshape(*shape, 3), form.states.reshape(shape))
     return whole, of_pairs.reshape(*shape, tables.ahead.size) if loads else of_pairs
@@ -43,7 +51,8 @@ def _all_carried(form: LinearForm) -> None:
 def fill_linear_form(tables: MeshTables, start: int, form: LinearForm) -> None:
     """Fill FORCE (cycles, steps, nodes, 3) and STATE (cycles, steps, nodes) of consecutive cycles."""
     nodes = np.arange(tables.nodes.size, dtype=np.float64)
-    linear_cycles(start, tables, -1.0 - nodes, 2, _FEW_ROUNDS, form, True)
+    mesh, at = cycle_pairs(tables), empty_instant(tables)
+    linear_cycles(start, tables, -1.0 - nodes, 2, _FEW_ROUNDS, form, True, mesh, at)
     _all_carried(form)
 
 
@@ -52,3 +61,12 @@ def static_loads(tables: MeshTables, start: int, cycles: int) -> tuple[FloatArra
     where = np.arange(cycles)[:, None], np.arange(tables.edges.size - 1), -1.0
     form, loads = linear_form_at(tables, start, *where, loads=True)
     return np.asarray(form.states["approach"], dtype=np.float64), loads
+
+
+def kinks(tables: MeshTables, start: int, cycles: int, looks: FloatArray, rounds: int) -> FloatArray:
+    """Phases of all kinks of mesh cycles from ``start`` on, in cycles after it; see ``linear_cycles``."""
+    shape = (cycles, tables.edges.size - 1, 0)
+    nothing = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
+    mesh, at = cycle_pairs(tables), empty_instant(tables)
+    found: FloatArray = linear_cycles(start, tables, looks, SIGNS, rounds, nothing, False, mesh, at)
+    return found

@@ -14,10 +14,8 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.mesh.element import (
     CONTACT,
-    FLANKS,
     LINE,
     PAIR,
-    QUICK,
     ContactLaw,
     Record,
     Records,
@@ -42,7 +40,8 @@ class Phases(NamedTuple):
     position : (n, pairs) xi [m]
     stiffness : (n, pairs) k at the mean load [N/m]; 0 where a pair is not followed
     gap : (n, pairs) without tip corners [m]
-    coupling : (n, pairs, pairs) w_ij by which the load of a pair moves another [m/N]
+    coupling : (n, pairs, pairs), or (1, pairs, pairs) where pairs stand alone, w_ij by which the load of a
+        pair moves another [m/N]
     lengthening : of the line of action by the loaded bearings [m]
     """
 
@@ -51,6 +50,22 @@ class Phases(NamedTuple):
     gap: FloatArray
     coupling: FloatArray
     lengthening: float
+
+
+class Workspace(NamedTuple):
+    """Records to work in: (pairs,) PAIR, (pairs,) CONTACT, (1,) LINE, and a matrix (pairs, pairs)."""
+
+    pairs: Records
+    contacts: Records
+    line: Records
+    matrix: FloatArray
+
+
+def workspace(phases: Phases) -> Workspace:
+    """For as many pairs; not compiled, for that takes half a second."""
+    count = phases.position.shape[1]
+    matrix = np.zeros((count, count))
+    return Workspace(np.zeros(count, PAIR), np.zeros(count, CONTACT), np.zeros(1, LINE), matrix)
 
 
 @inlined
@@ -66,33 +81,65 @@ def put_pairs(
         pairs[i].gap = phases.gap[phase, i]
 
 
+@inlined
+def least_gap(pairs: Records) -> float:
+    """Least gap of the pairs that can carry a load [m], or NaN."""
+    least = math.nan
+    for i in range(pairs.size):
+        if pairs[i].stiffness > 0.0 and not pairs[i].gap >= least:
+            least = pairs[i].gap
+    return least
+
+
 @compiled
-def static_approaches(phases: Phases, flanks: Records, law: ContactLaw) -> FloatArray:
-    """Static approach (n,) [m] at the phases; NaN where no pair can carry the mean force."""
+def static_approaches(
+    phases: Phases,
+    force: FloatArray,
+    flanks: Records,
+    law: ContactLaw,
+    loads: FloatArray,
+    space: Workspace,
+) -> FloatArray:
+    """Static approach (n,) [m] at the phases under forces (n,) [N]; NaN where no pair can carry one.
+
+    ``loads`` (n or 0, pairs) receive those of the pairs. Without a force the approach is the least gap.
+    """
     n, count = phases.position.shape
-    pairs, contacts, lines = np.zeros(count, PAIR), np.zeros(count, CONTACT), np.zeros(1, LINE)
-    matrix, found, guess = np.empty((count, count)), np.empty(n), 0.0
+    pairs, contacts, lines, matrix = space
+    found, guess = np.empty(n), 0.0
     for phase in range(n):
         put_pairs(phases, phase, flanks[0], law, pairs, lines[0])
-        coupling = phases.coupling[phase]
-        found[phase] = static_approach(guess, _EXACT, pairs, lines[0], law, coupling, matrix, contacts)
+        coupling = phases.coupling[phase if law.coupled else 0]
+        if force[phase] > 0.0:
+            found[phase] = static_approach(
+                guess, _EXACT, force[phase], pairs, lines[0], law, coupling, matrix, contacts
+            )
+        else:
+            found[phase] = least_gap(pairs)
         guess = 0.0 if math.isnan(found[phase]) else found[phase]
+        for i in range(count if phase < loads.shape[0] else 0):
+            loads[phase, i] = contacts[i].load if force[phase] > 0.0 else 0.0
     return found
 
 
 @compiled
 def middle_contacts(
-    approach: FloatArray, phases: Phases, flanks: Records, law: ContactLaw, found: Records
+    approach: FloatArray,
+    phases: Phases,
+    flanks: Records,
+    law: ContactLaw,
+    found: Records,
+    space: Workspace,
 ) -> None:
     """Write the contact of the middle pair at an approach of each phase (n,) [m] into ``found`` (n,).
 
     Its compression is that by its own load, without what the loads of its neighbours move it.
     """
     n, count = phases.position.shape
-    pairs, contacts, lines = np.zeros(count, PAIR), np.zeros(count, CONTACT), np.zeros(1, LINE)
-    matrix, middle = np.empty((count, count)), count // 2
+    pairs, contacts, lines, matrix = space
+    middle = count // 2
     for phase in range(n):
-        line, coupling = lines[0], phases.coupling[phase]
+        line, coupling = lines[0], phases.coupling[phase if law.coupled else 0]
         put_pairs(phases, phase, flanks[0], law, pairs, line)
         share_load(approach[phase], pairs, line, law, coupling, matrix, contacts)
         one = found[phase]
@@ -101,34 +148,6 @@ def middle_contacts(
         one.tangent = contacts[middle].tangent
         for j in range(count):
             one.compression -= coupling[middle, j] * contacts[j].load
-
-
-@compiled
-def shared_loads(
-    stiffness: FloatArray, gap: FloatArray, force: FloatArray, coupling: FloatArray, coupled: bool
-) -> tuple[FloatArray, FloatArray]:
-    """Approach (n,) [m] and loads (n, pairs) [N] of linear pairs with gaps (n, pairs) under forces (n,)."""
-    n, count = stiffness.shape
-    pairs, contacts, lines = np.zeros(count, PAIR), np.zeros(count, CONTACT), np.zeros(1, LINE)
-    matrix, approach, loads = np.empty((count, count)), np.empty(n), np.zeros((n, count))
-    flanks = np.zeros(1, FLANKS)
-    flanks[0].start, flanks[0].end = -math.inf, math.inf
-    for case in range(n):
-        law = ContactLaw(force[case], 0.0, 0.0, QUICK, 0.0, coupled, -math.inf, False, 0.0, 0.0, 0.0)
-        least = math.inf
-        for i in range(count):
-            place_pair(pairs[i], 0.0, flanks[0], lines[0], law)
-            pairs[i].stiffness, pairs[i].gap = stiffness[case, i], gap[case, i]
-            if stiffness[case, i] > 0.0:
-                least = min(least, gap[case, i])
-        if force[case] <= 0.0 or least == math.inf:
-            approach[case] = least if force[case] <= 0.0 and least < math.inf else math.nan
-            continue
-        moves = coupling[case if coupled else 0]
-        approach[case] = static_approach(least, _EXACT, pairs, lines[0], law, moves, matrix, contacts)
-        for i in range(count):
-            loads[case, i] = contacts[i].load
-    return approach, loads
 
 
 @compiled

@@ -15,8 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
-from lumped.mesh.element import LINE, PAIR, ContactLaw, Record, Records, inlined, place_pair, record
+from lumped.mesh.element import CONTACT, LINE, PAIR, ContactLaw, Record, Records, inlined, place_pair, record
 from lumped.typing import FloatArray, IntArray
 
 #: Laws of a kind of tooth pair at a place of the mesh cycle, or their slopes over xi.
@@ -104,6 +103,7 @@ class CyclePairs(NamedTuple):
     pairs : (steps, nodes, pairs) PAIR
     lines : (steps, nodes) LINE
     kind, pinion, gear : (pairs,) kind of each pair and its teeth
+    contacts, matrix : (pairs,) CONTACT and (pairs, pairs) of the loads
     starts : (2 + ripples, 2) amplitude of what turns, times cosine and sine of its angle at the cycle's start
     """
 
@@ -112,16 +112,18 @@ class CyclePairs(NamedTuple):
     kind: IntArray
     pinion: IntArray
     gear: IntArray
+    contacts: Records
+    matrix: FloatArray
     starts: FloatArray
 
 
-@compiled
 def cycle_pairs(tables: MeshTables) -> CyclePairs:
-    """Empty records for the pairs of a mesh cycle."""
+    """Empty records for the pairs of a mesh cycle; not compiled, for that takes half a second."""
     steps, nodes, count = tables.position.shape
     pairs, lines = np.zeros((steps, nodes, count), PAIR), np.zeros((steps, nodes), LINE)
-    teeth = np.zeros(count, np.int64), np.zeros(count, np.int64), np.zeros(count, np.int64)
-    return CyclePairs(pairs, lines, teeth[0], teeth[1], teeth[2], np.zeros((tables.turning.size, 2)))
+    kind, pinion, gear = np.zeros((3, count), np.int64)
+    contacts, matrix = np.zeros(count, CONTACT), np.zeros((count, count))
+    return CyclePairs(pairs, lines, kind, pinion, gear, contacts, matrix, np.zeros((tables.turning.size, 2)))
 
 
 @inlined

@@ -9,6 +9,9 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.typing import FloatArray, IntArray
 
+#: Of functions that kernels alone call.
+called = compiled(no_cpython_wrapper=True)
+
 
 class Propagated(NamedTuple):
     """Columns that were taken through steps; the first of them are kept.
@@ -25,7 +28,15 @@ class Propagated(NamedTuple):
     inside: FloatArray
 
 
-@compiled
+@called
+def _copy(to: FloatArray, source: FloatArray) -> None:
+    """``to[:] = source``, for which numba would compile the message about other shapes: two seconds."""
+    for row in range(to.shape[0]):
+        for column in range(to.shape[1]):
+            to[row, column] = source[row, column]
+
+
+@called
 def feedback_at_stages(strength: FloatArray, by_force: FloatArray, to: FloatArray, fixed: FloatArray) -> None:
     """Write what p and end of a step take from deflections and rates at the stages, and from neither.
 
@@ -49,7 +60,7 @@ def feedback_at_stages(strength: FloatArray, by_force: FloatArray, to: FloatArra
                     fixed[row] += at_rest * factor
 
 
-@compiled
+@called
 def add_rows(found: FloatArray, values: FloatArray, rows: FloatArray, first: int) -> None:
     """Add values times rows to what is found from an entry on.
 
@@ -101,7 +112,7 @@ def propagate(
     matrix, inverse = np.empty((stages, stages)), np.empty((stages, stages))
     now = np.empty((count, wide))
     for run in range(runs):
-        now[:] = columns[run]
+        _copy(now, columns[run])
         for step in range(steps):
             of = which[run if which.shape[0] > 1 else 0, step]
             feedback_at_stages(strength[run, step], by_force[of], to, fixed)
@@ -133,16 +144,20 @@ def propagate(
                     for i in range(stages):
                         at_stages[row] += by_p[of, row, i] * p[i]
                 if column < kept:
-                    states[run, step, column] = x[:n]
-                    inside[run, step, column] = at_stages[: 2 * stages]
+                    for row in range(n):
+                        states[run, step, column, row] = x[row]
+                    for row in range(2 * stages):
+                        inside[run, step, column, row] = at_stages[row]
                 add_rows(found, at_stages, to, stages)
                 for row in range(n):
                     x[row] = found[stages + row]
-        ends[run] = now[:, :n]
+        for column in range(count):
+            for row in range(n):
+                ends[run, column, row] = now[column, row]
     return Propagated(ends, states, inside)
 
 
-@compiled
+@called
 def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
     """Solve matrix (s, s) x = right (s, columns) in place, by elimination with pivots."""
     size, columns = right.shape
@@ -210,7 +225,7 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     product = np.empty((n, width))
     held = 0
     for j in range(k):
-        copy(waiting[held], maps[j])
+        _copy(waiting[held], maps[j])
         doubled[held] = 0
         held += 1
         last = j == k - 1 or group[j + 1] != group[j]
@@ -223,18 +238,10 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
                     factor = after[row, inner]
                     for column in range(width):
                         product[row, column] += factor * before[inner, column]
-            copy(before, product)
+            _copy(before, product)
             held -= 1
             doubled[held - 1] += 1
         if last:
-            copy(found[group[j]], waiting[0])
+            _copy(found[group[j]], waiting[0])
             held = 0
     return found
-
-
-@compiled
-def copy(to: FloatArray, source: FloatArray) -> None:
-    """``to[:] = source``, for which numba would compile the message about other shapes: two seconds."""
-    for row in range(to.shape[0]):
-        for column in range(to.shape[1]):
-            to[row, column] = source[row, column]

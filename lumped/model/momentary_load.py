@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from lumped.errors import NumericalError
-from lumped.mesh.motion import Body, Run, run_cycles
-from lumped.mesh.tables import MeshTables
+from lumped.mesh.motion import WORK, Body, Run, run_cycles
+from lumped.mesh.tables import MeshTables, cycle_pairs
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import fastest_frequency
 from lumped.model.revolution_motion import RevolutionMotion, Touch
@@ -136,8 +136,10 @@ def run(
     torques: FloatArray,
 ) -> Run:
     """``run_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
-    ripples = torque_ripples(pair)
-    found: Run = run_cycles(start, cycles, recorded, tables, body_of(system, torques), ripples, state)
+    ripples, mesh, work = torque_ripples(pair), cycle_pairs(tables), np.zeros(1, WORK)
+    found: Run = run_cycles(
+        start, cycles, recorded, tables, body_of(system, torques), ripples, state, mesh, work
+    )
     return found
 
 

@@ -199,7 +199,7 @@ def _steps(
     forces, pairs = system.mesh_forces(times, np.repeat(segment, stages))
     strength = forces.view(np.float64).reshape(k, 1, stages, 3, -1)
     width = free.along.shape[1]
-    units = np.broadcast_to(np.eye(width), (k, width, width))
+    units = np.tile(np.eye(width), (k, 1, 1))
     found = propagate(units, width, strength, which[:, None], *free, system.deflection)
     closing = np.ones_like(pairs.damping) if pairs.closing is None else pairs.closing
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate, closing])

@@ -7,6 +7,7 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,10 +16,26 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.errors import NumericalError
-from lumped.mesh.statics import shared_loads
+from lumped.mesh.element import EXACT, FLANKS, ContactLaw
+from lumped.mesh.statics import Phases, static_approaches, workspace
 from lumped.path_function import PathFunction
 from lumped.typing import BoolArray, FloatArray
 
+#: Flanks without ends, and linear springs that any neighbour may move.
+_ENDLESS = np.array([(-np.inf, np.inf, np.inf, 0.0, 0.0)], FLANKS)
+_SPRINGS = ContactLaw(
+    force=1.0,
+    softening=0.0,
+    linear_below=0.0,
+    converged=EXACT,
+    full_damper=1.0,
+    coupled=False,
+    apart=-np.inf,
+    windows=False,
+    radius_pinion=1.0,
+    radius_gear=1.0,
+    rolling_speed=0.0,
+)
 _NO_PAIR = "At some position no tooth pair can carry the load: check stiffness and errors."
 
 
@@ -56,22 +73,24 @@ def share_load(
     w = real_array("coupling", coupling) if moved else np.zeros((1, 1))
     lead = np.broadcast_shapes(k.shape[:-1], e.shape[:-1], applied.shape, w.shape[:-2])
     pairs, reach = max(k.shape[-1], e.shape[-1]), np.isfinite(e)
-    approach, load = shared_loads(
-        _rows(np.where(reach, k, 0.0), lead, pairs),
-        _rows(np.where(reach, e, 0.0), lead, pairs),
-        _rows(applied, lead),
-        _rows(w, lead if moved else (1,), pairs, pairs),
-        moved,
+    gaps, load = _rows(np.where(reach, e, 0.0), lead, pairs), np.zeros((math.prod(lead), pairs))
+    phases = Phases(
+        position=np.zeros(gaps.shape),
+        stiffness=_rows(np.where(reach, k, 0.0), lead, pairs),
+        gap=gaps,
+        coupling=_rows(w, lead if moved else (1,), pairs, pairs),
+        lengthening=0.0,
     )
+    law = _SPRINGS._replace(coupled=moved)
+    approach = static_approaches(phases, _rows(applied, lead), _ENDLESS, law, load, workspace(phases))
     if not np.isfinite(approach).all():
         raise NumericalError(_NO_PAIR)
     return LoadSharing(approach.reshape(lead), load.reshape(*lead, pairs))
 
 
 def _rows(values: FloatArray, lead: tuple[int, ...], *inner: int) -> FloatArray:
-    """Values (lead, inner) by broadcasting, as contiguous (n, inner)."""
-    whole = np.broadcast_to(values, (*lead, *inner)).reshape(-1, *inner)
-    return np.ascontiguousarray(whole, dtype=np.float64)
+    """Values (lead, inner) by broadcasting, as (n, inner) of their own."""
+    return np.array(np.broadcast_to(values, (*lead, *inner)).reshape(-1, *inner), dtype=np.float64)
 
 
 def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArray) -> FloatArray:

@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.mesh.element import CONTACT, EXACT, FLANKS, ContactLaw, Records
-from lumped.mesh.statics import Phases, middle_contacts, static_approaches
+from lumped.mesh.statics import Phases, middle_contacts, static_approaches, workspace
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
@@ -239,7 +239,9 @@ class StaticMesh:
         if self._fitted is not None:
             start = self._fitted.breaks[0]
             return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
-        found = static_approaches(self.phases(xi), self.flanks, self.law)
+        force, no_loads = np.full(np.size(xi), self.force), np.empty((0, self.shifts.size))
+        phases = self.phases(xi)
+        found = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
         if not np.isfinite(found).all():
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
         return np.asarray(found, dtype=np.float64)
@@ -263,7 +265,8 @@ class StaticMesh:
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
         approach, contact = self.approach(xi), np.zeros(np.size(xi), CONTACT)
-        middle_contacts(approach, self.phases(xi), self.flanks, self.law, contact)
+        phases = self.phases(xi)
+        middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
         return StaticPair(approach, contact)
 
     def approach_slope(self, xi: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh import element, linear
+from lumped.mesh import element, linear, tables
 from lumped.mesh.element import CONTACT, EXACT, FLANKS, LINE, PAIR, ContactLaw
 
 
@@ -14,6 +14,12 @@ def place(position, flanks, line, law, pairs):
     """Put every pair at its position (pairs,)."""
     for i in range(pairs.size):
         element.place_pair(pairs[i], position[i], flanks[0], line[0], law)
+
+
+@compiled
+def line_at(step, node, mesh_tables, starts, line):
+    """Gap of all pairs by eccentric gears and swing at a node; writes the line of action."""
+    return tables.turn_line(step, node, mesh_tables, starts, line[0])
 
 
 @compiled
@@ -35,7 +41,8 @@ def force_at(approach, closing, pairs, line, law, coupling, contacts, normal):
 def static_at(guess, tolerance, pairs, line, law, coupling, contacts):
     """Static approach."""
     matrix = np.empty((pairs.size, pairs.size))
-    return element.static_approach(guess, tolerance, pairs, line[0], law, coupling, matrix, contacts)
+    numbers = guess, tolerance, law.force
+    return element.static_approach(*numbers, pairs, line[0], law, coupling, matrix, contacts)
 
 
 @compiled

@@ -8,14 +8,15 @@ import pytest
 import lumped
 from lumped.gauss_legendre import gauss_tableau
 from lumped.mesh.element import FORCE, LINE
-from lumped.mesh.linear import SIGNS, STATE, LinearForm, linear_cycles
-from lumped.mesh.places import fill_linear_form, linear_form_at, static_loads
-from lumped.mesh.tables import TURNING, turn_line
+from lumped.mesh.linear import STATE, LinearForm
+from lumped.mesh.places import fill_linear_form, kinks, linear_form_at, static_loads
+from lumped.mesh.tables import TURNING
 from lumped.model.cycle_maps import linear_motion
 from lumped.model.momentary_load import settled_motion
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
+from tests.lumped.mesh.element_calls import line_at
 from tests.unlike_pairs import unlike_pair
 
 COS = np.cos(np.radians(20.0))
@@ -213,7 +214,7 @@ class TestEccentricGears:
             own, moved = own._replace(turning=turning, lengthening=0.0), np.zeros(1, LINE)
             starts = np.zeros((2, 2))
             starts[which] = eps * np.cos(turn - 0.5), eps * np.sin(turn - 0.5)
-            gap, _ = turn_line(0, 0, own, starts, moved[0])
+            gap, _ = line_at(0, 0, own, starts, moved)
             length, angle = line(u)
             assert moved["length"][0] - g.L_XY == pytest.approx(length - g.L_XY, rel=1e-5)
             assert moved["turn"][0] == pytest.approx(angle, rel=1e-5)
@@ -297,8 +298,8 @@ class TestOfEveryPair:
         fill_linear_form(own, 0, form)
         at = np.arange(28)[:, None, None], np.arange(shape[1])[:, None], x
         fine, _ = linear_form_at(own, 0, *at)
-        kinks = linear_cycles(0, own, np.linspace(0.0, 1.0, 3), SIGNS, 16, form, False)
-        steps_with = np.histogram(kinks, np.add.outer(np.arange(28), own.edges[:-1]).ravel())[0]
+        touches = kinks(own, 0, 28, np.linspace(0.0, 1.0, 3), 16)
+        steps_with = np.histogram(touches, np.add.outer(np.arange(28), own.edges[:-1]).ravel())[0]
         assert (steps_with > 1).sum() > 30
         to_moments = (np.vander(x, 4) @ np.linalg.inv(np.vander(own.nodes)) / x.size).T
         # Up to 1.5 % of a sum is left where a tip leaves the line of action inside a step.

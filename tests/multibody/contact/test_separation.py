@@ -18,14 +18,17 @@ PAIR = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
 
 @pytest.mark.slow
 def test_primary_resonance_jumps():
-    """Softening by separation: near resonance a rising and a falling sweep see different motions."""
-    speeds = np.array([5000.0, 5250, 5500, 5750, 6000])
+    """Softening by separation: near resonance a rising and a falling sweep see different motions.
+
+    At 5000 rpm a change of the torque by 1e-13 decides whether the falling sweep stays on its motion.
+    """
+    speeds = np.array([5250.0, 5500, 5750, 6000])
     up = multibody.speed_sweep(PAIR, speeds)
     down = multibody.speed_sweep(PAIR, speeds[::-1]).isel(speed=slice(None, None, -1))
     ltv = lumped.speed_sweep(PAIR, speeds)
     rms = {name: run["dte_rms"].to_numpy() for name, run in (("up", up), ("down", down), ("ltv", ltv))}
     flagged = ltv["normal_load_min"].to_numpy() < 0
-    np.testing.assert_array_equal(flagged, [False, False, False, True, True])
+    np.testing.assert_array_equal(flagged, [False, False, True, True])
     # Below the flag two motions exist: the falling sweep stays on the one with impacts, several times as
     # large.
     assert np.all(rms["down"][~flagged] > 2.0 * rms["up"][~flagged])
