@@ -238,7 +238,7 @@ def write_signs(
         at.signs[BEFORE_START, i], at.signs[BEHIND_END, i] = ways_beyond(pair, static, line)
 
 
-@inlined
+@called
 def linear_at(
     pairs: Records,
     line: Record,
@@ -262,7 +262,7 @@ def linear_at(
     write_signs(static, pairs, line, law, coupling, at)
 
 
-@called
+@inlined
 def linear_of_step(
     step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant, forces: Records, state: Record
 ) -> None:
