@@ -416,6 +416,7 @@ def static_approach(
     for i in range(pairs.size):
         stiffest = max(stiffest, pairs[i].stiffness)
     scale, low, high, approach = force / stiffest, -math.inf, math.inf, guess
+    reach = 2.0 * scale  # of the next step outwards; it doubles, as a light load is far smaller than the gaps
     for _ in range(_MOST_STEPS):
         share_load(approach, pairs, line, law, coupling, matrix, contacts)
         excess, slope = -force, 0.0
@@ -429,12 +430,13 @@ def static_approach(
             low = approach
         else:
             high = approach
-        following = approach - excess / slope if slope > 0.0 else approach + scale
+        following = approach - excess / slope if slope > 0.0 else math.inf
         if not low < following < high:  # bisect, or go on until the root is between two approaches
             if low > -math.inf and high < math.inf:
                 following = 0.5 * (low + high)
             else:
-                following = approach + (2.0 * scale if excess < 0.0 else -2.0 * scale)
+                following = approach + (reach if excess < 0.0 else -reach)
+                reach *= 2.0
         change = abs(following - approach)
         if change <= tolerance * (abs(approach) + scale):
             return approach

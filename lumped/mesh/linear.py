@@ -74,6 +74,27 @@ class LinearForm(NamedTuple):
     states: Records
 
 
+@compiled
+def add_forces(
+    position: FloatArray,
+    friction: FloatArray,
+    tilt: FloatArray,
+    by_approach: FloatArray,
+    by_rate: FloatArray,
+    at_rest: FloatArray,
+    pair: Records,
+    forces: Records,
+) -> None:
+    """Add the forces of pairs (pairs, k) to FORCE (k, 3); a record ``pair`` (1,) is worked in."""
+    for time in range(position.shape[1]):
+        for i in range(position.shape[0]):
+            pair[0].position = position[i, time]
+            pair[0].friction = friction[i, time]
+            add_force(forces[time, BY_APPROACH], by_approach[i, time], pair[0], tilt[i, time])
+            add_force(forces[time, BY_RATE], by_rate[i, time], pair[0], tilt[i, time])
+            add_force(forces[time, AT_REST], at_rest[i, time], pair[0], tilt[i, time])
+
+
 def forces_of_laws(
     position: FloatArray,
     friction: FloatArray,
@@ -84,13 +105,10 @@ def forces_of_laws(
 ) -> Records:
     """FORCE (k, 3) of pairs (pairs, k) whose loads in the linear form are known: those of ``PAIR_LOAD``."""
     found = np.zeros((position.shape[1], 3), FORCE)
-    for part, load in ((BY_APPROACH, by_approach), (BY_RATE, by_rate), (AT_REST, at_rest)):
-        force, sliding = found[:, part], friction * load
-        force["normal"] = load.sum(axis=0)
-        force["friction"] = sliding.sum(axis=0)
-        force["friction_moment"] = (sliding * position).sum(axis=0)
-        if tilt is not None:
-            force["separating"] = (tilt * load).sum(axis=0)
+    tilts = np.zeros(position.shape) if tilt is None else tilt
+    place, mu, angle = (np.ascontiguousarray(one) for one in (position, friction, tilts))
+    rise, damper, rest = (np.ascontiguousarray(one) for one in (by_approach, by_rate, at_rest))
+    add_forces(place, mu, angle, rise, damper, rest, np.zeros(1, PAIR), found)
     return found
 
 
@@ -238,7 +256,7 @@ def write_signs(
         at.signs[BEFORE_START, i], at.signs[BEHIND_END, i] = ways_beyond(pair, static, line)
 
 
-@inlined
+@called
 def linear_at(
     pairs: Records,
     line: Record,
@@ -262,7 +280,7 @@ def linear_at(
     write_signs(static, pairs, line, law, coupling, at)
 
 
-@called
+@inlined
 def linear_of_step(
     step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant, forces: Records, state: Record
 ) -> None:

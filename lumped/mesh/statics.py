@@ -20,6 +20,7 @@ from lumped.mesh.element import (
     Record,
     Records,
     corner_gap,
+    damper_share,
     inlined,
     open_gap,
     place_pair,
@@ -148,6 +149,15 @@ def middle_contacts(
         one.tangent = contacts[middle].tangent
         for j in range(count):
             one.compression -= coupling[middle, j] * contacts[j].load
+
+
+@compiled
+def damper_shares(load: FloatArray, law: ContactLaw) -> FloatArray:
+    """Share of its damper (n,) that a pair with each elastic load (n,) has."""
+    found = np.empty(load.size)
+    for i in range(load.size):
+        found[i] = damper_share(load[i], law)
+    return found
 
 
 @compiled
