@@ -29,8 +29,11 @@ Records = np.ndarray[Any, np.dtype[np.void]]
 
 
 def record(**fields: str) -> np.dtype[np.void]:
-    """A dtype of float fields; the values of the keywords are their meaning."""
-    return np.dtype([(name, np.float64) for name in fields])
+    """A dtype of float fields; the values of the keywords are their meaning.
+
+    Its records have their fields as attributes also where numba is switched off to step through a kernel.
+    """
+    return np.dtype((np.record, [(name, np.float64) for name in fields]))
 
 
 #: One tooth pair at one instant, as it is without load. Lengths along the line of action [m].

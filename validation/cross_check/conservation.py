@@ -150,7 +150,9 @@ def losses(
     sliding = (p[kn.OMEGA_P] + rates[:, 0]) * place
     sliding -= (p[kn.OMEGA_G] + rates[:, 1]) * (p[kn.L_XY] - place) + rates[:, 4] - rates[:, 5]
     closing = p[kn.RADIUS_P] * rates[:, 0] - p[kn.RADIUS_G] * rates[:, 1] + rates[:, 2] - rates[:, 3]
-    damping = np.sum(pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
+    # A tip corner closes by less than the gears approach; damping holds that factor once.
+    share = 1.0 if pairs.closing is None else pairs.closing
+    damping = np.sum(share * pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
     corners = corner_force(values, pairs) * (rates[:, 5] - rates[:, 4])
     bearings = machine.bearing_damping.T.ravel()  # x_p, x_g, y_p, y_g
     return {
