@@ -61,6 +61,7 @@ CONTACT = record(
     load="elastic load N [N]",
     tangent="its slope over the compression of all pairs together [N/m]",
     residual="of the equation of the load, in the iteration",
+    damper_share="share of its damper that acts, where it is asked for",
 )
 #: Where the flanks of a pair end, positions xi on the line of action without load [m].
 FLANKS = record(
@@ -155,7 +156,7 @@ def place_pair(pair: Record, position: float, flanks: Record, line: Record, law:
     pair.corner_behind = flanks.corner_behind
 
 
-@compiled
+@called
 def corner_gap(beyond: float, tip: float, length: float, flank_radius: float, tip_radius: float) -> CornerGap:
     """Gap of a tip corner from the mate's flank, ``beyond`` its first contact.
 

@@ -164,7 +164,7 @@ def lagrange(x: float, nodes: FloatArray, share: FloatArray) -> None:
         share[j] /= below
 
 
-@inlined
+@called
 def put_between(step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant) -> None:
     """Write the pairs at a place of a step, 0 to 1, by the polynomials through those at its nodes."""
     lagrange(x, tables.nodes, at.share)

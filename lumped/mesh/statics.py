@@ -147,17 +147,9 @@ def middle_contacts(
         open_gap(pairs[middle], approach[phase], line, law, one)
         one.load = contacts[middle].load
         one.tangent = contacts[middle].tangent
+        one.damper_share = damper_share(one.load, law)
         for j in range(count):
             one.compression -= coupling[middle, j] * contacts[j].load
-
-
-@compiled
-def damper_shares(load: FloatArray, law: ContactLaw) -> FloatArray:
-    """Share of its damper (n,) that a pair with each elastic load (n,) has."""
-    found = np.empty(load.size)
-    for i in range(load.size):
-        found[i] = damper_share(load[i], law)
-    return found
 
 
 @compiled

@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.mesh.element import CONTACT, EXACT, FLANKS, ContactLaw, Records
-from lumped.mesh.statics import Phases, damper_shares, middle_contacts, static_approaches, workspace
+from lumped.mesh.statics import Phases, middle_contacts, static_approaches, workspace
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
@@ -357,7 +357,7 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     cuts = np.union1d(stiffness.breaks, bends)
 
     def engagement(xi: FloatArray) -> FloatArray:
-        return damper_shares(np.ascontiguousarray(static(xi).load), law)
+        return np.asarray(static(xi).contact["damper_share"], dtype=np.float64)
 
     engaged = PathFunction.fit(engagement, cuts, bends, tolerance=relative, by_length=True)
     error = fitted(lambda xi: static(xi).error, deflection)

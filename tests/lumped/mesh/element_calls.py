@@ -17,6 +17,12 @@ def place(position, flanks, line, law, pairs):
 
 
 @compiled
+def corner_at(beyond, tip, length, flank_radius, tip_radius):
+    """Gap of a tip corner, its slope and its tilt."""
+    return element.corner_gap(beyond, tip, length, flank_radius, tip_radius)
+
+
+@compiled
 def line_at(step, node, mesh_tables, starts, line):
     """Gap of all pairs by eccentric gears and swing at a node; writes the line of action."""
     return tables.turn_line(step, node, mesh_tables, starts, line[0])

@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, corner_gap
+from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE
 from lumped.model.equations import structure
-from tests.lumped.mesh.element_calls import Mesh
+from tests.lumped.mesh.element_calls import Mesh, corner_at
 
 #: Unlike pairs whose loads move each other; the outer two are beyond the ends of their flanks, on corners.
 COUPLED = {"stiffness": [2.4e8, 3.1e8, 2.7e8], "softening": 1.3e-10, "coupled": True, "lengthening": 3e-6}
@@ -95,12 +95,12 @@ def test_corner_gap_is_the_distance_of_two_involutes(beyond, radii):
         lambda string: np.hypot(*(point(string, crossing) - at)),
         bounds=(0.5 * crossing, 2.0 * crossing), method="bounded", options={"xatol": 1e-14},
     )  # fmt: skip
-    found = corner_gap(beyond, corner, length, flank, tip)
+    found = corner_at(beyond, corner, length, flank, tip)
     assert found.gap == pytest.approx(near.fun, rel=1e-6, abs=1e-12)
     # The normal of the flank is the string, which pushes the corner away from the mate's centre.
     assert found.tilt == pytest.approx(np.sin((near.x - crossing) / flank), rel=1e-5)
     h = 1e-7
-    ends = [corner_gap(beyond + s, corner, length, flank, tip).gap for s in (h, -h)]
+    ends = [corner_at(beyond + s, corner, length, flank, tip).gap for s in (h, -h)]
     assert found.slope == pytest.approx((ends[0] - ends[1]) / (2.0 * h), rel=1e-5)
 
 
