@@ -7,6 +7,7 @@ from floquet import gear_block, stability_chart
 from floquet.gear.axes import GearVariation, friction_families, vary
 from floquet.gear.multipliers import feedback_system, fitted_block
 from lumped import load_gear_pair
+from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS, base
 from lumped.path_of_contact.friction import contact_path, friction_path_function
 from tests.evidence.floquet.extended import as_periodic_system
@@ -142,3 +143,18 @@ def test_level_apart_changes_nothing() -> None:
     t = np.linspace(0.01, 0.99, 50) * whole.period
     one, other = (as_periodic_system(block).evaluate(t) for block in (whole, apart))
     assert np.abs(one - other).max() <= 1e-10 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("far", [0.5, 2.0])
+def test_a_table_of_one_speed_is_told_at_either_end_of_the_speeds(far):
+    """The table was made at 1000 rpm; more than 5 % away it says so, below as above."""
+    g = unlike_pair("rack_25_degrees_always_pushing").geometry
+    xi = np.linspace(g.L_XA, g.L_XD, 9)
+    table = {
+        "axis": "position_mm", "points": (1e3 * xi).tolist(), "speed": 1000.0,
+        "coefficient": [0.05] * 9,
+    }  # fmt: skip
+    pair = unlike_pair("rack_25_degrees_always_pushing").with_(friction={"law": "table", "table": table})
+    variation = GearVariation(pair.with_(speed=1000.0))
+    with pytest.warns(LawRangeWarning, match="speed"):
+        friction_families(variation, np.array([1000.0, 1000.0 * far]))
