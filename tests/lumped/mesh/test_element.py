@@ -104,6 +104,17 @@ def test_corner_gap_is_the_distance_of_two_involutes(beyond, radii):
     assert found.slope == pytest.approx((ends[0] - ends[1]) / (2.0 * h), rel=1e-5)
 
 
+def test_deflected_teeth_touch_further_outside_by_half_of_what_approach_and_bearings_add():
+    start, _, length = Mesh.ENDS[:3]
+    radii = Mesh.LAW.radius_pinion, Mesh.LAW.radius_gear
+    for inside in (100e-6, 60e-6):  # half of 140 and 20 um is 80 um
+        mesh = Mesh([start + inside], lengthening=20e-6)
+        mesh.loads(140e-6)
+        beyond = 80e-6 - inside
+        expected = corner_at(beyond, length - start, length + 20e-6, *radii)[0] if beyond > 0.0 else 0.0
+        assert mesh.contacts["gap"][0] == pytest.approx(expected, rel=1e-9, abs=0.0)
+
+
 @pytest.mark.parametrize("approach", [9e-6, 2e-5])
 def test_slopes_of_the_gap_are_those_of_the_gap(approach):
     h = 1e-8
