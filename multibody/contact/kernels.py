@@ -221,6 +221,8 @@ def linear_forces(
     rate = v[0] - v[3] - rp * v[2] - rg * v[5]
     count = 0
     k, c, e, gap = int(p[kn.K_ROWS]), int(p[kn.C_ROWS]), int(p[kn.E_ROWS]), int(p[kn.GAP_ROWS])
+    tilted = k + c + e + gap
+    closed = tilted + int(p[kn.TILT_ROWS])
     loaded = k > 0
     first, last = (table[0, 0], table[k - 1, 1]) if loaded else (p[kn.L_XA], p[kn.L_XD])
     xi = p[kn.L_XA] + advance - pitch * math.floor((p[kn.L_XA] + advance - first) / pitch)
@@ -231,9 +233,10 @@ def linear_forces(
             damping = law_at(table, k, k + c - 1, xi)[0]
             error = law_at(table, k + c, k + c + e - 1, xi)[0]
             slope = law_at(table, k + c + e, k + c + e + gap - 1, xi)[1]
-            tilt = law_at(table, k + c + e + gap, table.shape[0] - 1, xi)[0]
+            tilt = law_at(table, tilted, closed - 1, xi)[0]
+            closing = law_at(table, closed, table.shape[0] - 1, xi)[0]
         else:
-            tilt = 0.0
+            tilt, closing = 0.0, 1.0
             error, slope = relief_at(p, xi, 0.0, 0.0)
             stiffness, stiffness_slope = stiffness_and_slope(table, xi)
             damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
@@ -251,7 +254,8 @@ def linear_forces(
         record = contacts[count]
         record[kn.XI], record[kn.LOAD], record[kn.FRICTION_FORCE], record[kn.MU] = xi, normal, friction, mu
         record[kn.K], record[kn.C], record[kn.FLANK] = stiffness, damping, 1.0
-        record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.CLOSING] = pressed, pressing, rate
+        # The approach moves a tip corner's contact outside, and closes it by less than itself.
+        record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.CLOSING] = pressed, closing * pressing, rate
         gear_arm = p[kn.L_XY] - xi
         slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
         record[kn.SLIDE] = slide
@@ -259,7 +263,8 @@ def linear_forces(
         # The damper works on the gap itself, the spring on the error that stands for it with loaded contact.
         error_slope = law_at(table, k + c, k + c + e - 1, xi)[1] if loaded else slope
         elastic = stiffness * pressed
-        path = elastic * error_slope + (normal - elastic) * slope
+        damper = normal - elastic
+        path = elastic * error_slope + damper * (closing * slope + (1.0 - closing) * rate / speed)
         path -= 0.5 * stiffness_slope * pressed * pressed
         record[kn.PATH] = path - apart * (v[4] - v[1]) / speed
         record[kn.PATH_RATE] = speed

@@ -39,11 +39,11 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
     T_LOW, T_HIGH,  # the nominal phase is clamped to this open time interval (a smooth segment)
     DAMPING,  # c/sqrt(k) of a tooth pair, 2 zeta sqrt(m_e) [sqrt(kg)]
     SOFTENING, NOMINAL_FORCE,  # D of Hertz's contact [m/N], and the load at which the table's k holds [N]
-    K_ROWS, C_ROWS, E_ROWS, GAP_ROWS,  # of k, c, e, gap in the table of the linear, loaded mesh, or 0
+    K_ROWS, C_ROWS, E_ROWS, GAP_ROWS, TILT_ROWS,  # in the table of the linear, loaded mesh, or 0
     OWN,  # where the block of ``machine.own_block`` starts, or 0
     RELIEFS,  # number of reliefs that act
     FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
-) = range(32)  # fmt: skip
+) = range(33)  # fmt: skip
 #: Columns of one relief, and the most reliefs: tip and root of both flanks.
 RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
 #: Where the parameters of the friction laws start, see ``multibody.contact.friction``.

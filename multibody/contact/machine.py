@@ -293,8 +293,9 @@ def _loaded_laws(cycle: MeshCycle, p: FloatArray) -> tuple[FloatArray, FloatArra
     e = cycle.elements
     assert e.gap is not None
     assert e.tilt is not None
-    laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.gap, e.tilt)]
-    p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS, kn.GAP_ROWS]] = [len(law) for law in laws[:4]]
+    assert e.closing is not None
+    laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.gap, e.tilt, e.closing)]
+    p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS, kn.GAP_ROWS, kn.TILT_ROWS]] = [len(law) for law in laws[:5]]
     width = max(law.shape[1] for law in laws)
     # Coefficients stand behind both ends, highest power first: pad between them.
     rows = [np.insert(law, [2] * (width - law.shape[1]), 0.0, axis=1) for law in laws]
