@@ -15,16 +15,6 @@ def test_a_misspelt_fault_is_refused_with_the_kinds_there_are(nasa):
     assert "crack, spall, chip" in problem.allowed
 
 
-@pytest.mark.parametrize(("path", "entry", "most"), [
-    ("gear.faults", {"kind": "crack", "tooth": 3, "depth": 0.1}, 1000),
-    ("operating.torque_ripple", {"shaft": "gear", "order": 5, "amplitude": 0.1}, 100),
-])  # fmt: skip
-def test_lists_are_as_long_as_they_may_be_and_no_longer(nasa, path, entry, most):
-    nasa.with_({path: [entry] * most})
-    with pytest.raises(ParameterError, match=f"at most {most}"):
-        nasa.with_({path: [entry] * (most + 1)})
-
-
 @pytest.mark.parametrize(
     "text", ["index_um\n1\n", "tooth\n1\n", "tooth,index_um\n1,1\n1,2\n", "tooth,index_um\n1,a\n", ""]
 )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lumped import ParameterError, flank_tolerances, meeting_teeth, revolution, tooth_gaps
+from lumped.schema.meeting_teeth import ripples
 from lumped.schema.tolerances import drawn_index
 from tests.unlike_pairs import unlike_pair
 
@@ -88,3 +89,22 @@ def test_each_gear_is_drawn_with_its_own_class_seed_teeth_and_rack():
     pinion, gear = drawn_index(20, 3.5e-3, 6, 11), drawn_index(30, 3.5e-3, 7, 5)
     np.testing.assert_allclose(found.pinion_error, across * pinion, rtol=1e-9, atol=1e-15)
     np.testing.assert_allclose(found.gear_error, -across * gear, rtol=1e-9, atol=1e-15)
+
+
+def test_a_ripple_starts_at_its_phase_and_the_tooth_that_meets_first(unequal):
+    """Order 3 of the gear turns by 3 * 2 pi/38 a mesh cycle; its tooth 5 is four cycles on at t = 0."""
+    ripple = {"shaft": "gear", "order": 3, "amplitude": 1.5, "phase": 40}
+    pair = unequal.with_({"operating.torque_ripple": [ripple], "mesh.first_teeth": [2, 5]})
+    angle = 3.0 * 2.0 * np.pi / 38.0
+    (row,) = ripples(pair)
+    assert row == pytest.approx([1.0, angle, np.radians(40.0) + 4.0 * angle, 1.5, 38.0], rel=1e-12)
+
+
+@pytest.mark.parametrize(("path", "entry", "most"), [
+    ("gear.faults", {"kind": "crack", "tooth": 3, "depth": 0.1}, 1000),
+    ("operating.torque_ripple", {"shaft": "gear", "order": 5, "amplitude": 0.1}, 100),
+])  # fmt: skip
+def test_lists_are_as_long_as_they_may_be_and_no_longer(nasa, path, entry, most):
+    nasa.with_({path: [entry] * most})
+    with pytest.raises(ParameterError, match=f"at most {most}"):
+        nasa.with_({path: [entry] * (most + 1)})

@@ -5,7 +5,15 @@ import pytest
 
 from lumped import PathFunction
 from multibody.contact import kinematics as kn
-from multibody.contact.events import FIRST_TOUCH, LAST_TOUCH, LET_GO, SWITCH, event_table, time_to_event
+from multibody.contact.events import (
+    FIRST_TOUCH,
+    LAST_TOUCH,
+    LET_GO,
+    SWITCH,
+    _change,
+    event_table,
+    time_to_event,
+)
 from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
@@ -18,6 +26,15 @@ def jumps(name):
     changes = {"mesh.relief": "ignored", "friction.law": "coulomb", "friction.coefficient": 0.05}
     changes |= {"operating.pinion_speed": 6000.0}
     return unlike_pair(name).with_(changes)
+
+
+def test_a_law_changes_at_a_break_by_the_jumps_of_value_slope_and_curvature():
+    """x^2 on [0, 1], then 3 + x^2 + 2 (x - 1) on [1, 3], and on [3, 6] the same: nothing at 3."""
+    powers = np.array([[1.0, 1.0, 1.0], [0.0, 4.0, 8.0], [0.0, 4.0, 16.0]])  # of the way since each break
+    law = PathFunction(np.array([0.0, 1.0, 3.0, 6.0]), powers, np.array([1.0]))
+    step, largest = 0.1, 16.0
+    assert _change(law, 1, step) == pytest.approx((3.0 + 2.0 * step) / largest, rel=1e-12)
+    assert _change(law, 2, step) == pytest.approx(0.0, abs=1e-15)
 
 
 def contacts(numbers, flags, t, q, v):
