@@ -18,7 +18,7 @@ from lumped.errors import SpurcheckError
 from lumped.labelling import labelled_dataset
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from validation.prediction.motion import Motion, Prediction, measured, predicted
+from validation.prediction.motion import Motion, Prediction, measured, predicted, pulls
 
 Sizes = tuple[float, float, float]
 #: Quantities that a row tells: the first is the one of the bars.
@@ -154,7 +154,7 @@ def _rows(known: Known) -> Iterator[Row]:
     size, note = (np.nan, "the second program did not run") if same is None else (same * own.peak_to_peak, "")
     yield Row("programs", "same equations in two programs", "numerics", (size, np.nan, np.nan), note)
     notes = {Motion.LINEAR: "the prediction is this motion", Motion.SHAFTS: "on springs, not on the shafts"}
-    note = _note(linear, notes.get(own.motion, "teeth pull in the linear motion"))
+    note = _note(linear, notes.get(own.motion, _linear_contact(pair, linear)))
     yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
     exact = (
         "the pair has it" if pair.mesh.stiffness.model == "finite_elements" else "left out of a quick report"
@@ -182,6 +182,13 @@ def _rows(known: Known) -> Iterator[Row]:
     if record is not None:
         size, note = abs(record.error), f"prediction less record; known to ±{2e6 * record.uncertainty:.2g} µm"
     yield Row("measurement", "measurement", "measurement", (size, np.nan, np.nan), note)
+
+
+def _linear_contact(pair: GearPair, linear: xr.Dataset | Absent) -> str:
+    """In what the contact of the linear motion differs from that of the prediction."""
+    if isinstance(linear, Absent) or pulls(pair, linear):
+        return "teeth pull in the linear motion"
+    return "its contact and dampers are those of the mean load"
 
 
 def _note(motion: object, text: str) -> str:

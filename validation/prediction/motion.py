@@ -228,12 +228,11 @@ def predicted(pair: GearPair, motion: Callable[..., xr.Dataset] = lumped.steady_
         found = measured(pair, motion(pair), Motion.UNILATERAL)
         stable = float(found.cycle.attrs["spectral_radius"]) <= 1.0  # of the twin with like teeth
         return replace(found, stable=stable, mesh_cycles=int(found.cycle.attrs["period_cycles"]))
-    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     try:
         linear = motion(pair, samples_per_cycle=_SAMPLES)
     except NumericalError:
         linear = None
-    if linear is not None and float(linear["normal_load"].min()) >= _PULLS * force:
+    if linear is not None and not pulls(pair, linear):
         cycle = near_linear(pair, linear)
         return _of_cycle(pair, linear) if cycle is None else measured(pair, cycle, Motion.UNILATERAL)
     orbit, which = unilateral_motion(pair)
@@ -241,6 +240,12 @@ def predicted(pair: GearPair, motion: Callable[..., xr.Dataset] = lumped.steady_
     if cycle is None:
         return _of_orbit(orbit, which)
     return replace(measured(pair, cycle, which), stable=orbit.stable)
+
+
+def pulls(pair: GearPair, linear: xr.Dataset) -> bool:
+    """Whether a tooth pair pulls in a linear motion."""
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    return float(linear["normal_load"].min()) < _PULLS * force
 
 
 def near_linear(pair: GearPair, linear: xr.Dataset) -> xr.Dataset | None:

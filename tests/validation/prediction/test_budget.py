@@ -5,8 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 
+import lumped
 from lumped.outcomes import Absent, Outcome
 from tests.unlike_pairs import unlike_pair
+from validation.exchange.new_pair_file import new_pair
 from validation.prediction.budget import error_budget
 from validation.prediction.motion import predicted
 
@@ -30,3 +32,19 @@ def test_finite_elements_are_computed_where_they_are_asked_for(asked):
     else:
         assert math.isnan(float(row["dte"]))
         assert note == "left out of a quick report"
+
+
+@pytest.mark.parametrize(("pair", "note"), [
+    (new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80),
+     "its contact and dampers are those of the mean load"),
+    (unlike_pair("larger_gear_drives_contact_lost"), "teeth pull in the linear motion"),
+], ids=["pushes", "pulls"])  # fmt: skip
+def test_it_says_that_teeth_pull_only_where_they_do(pair, note):
+    linear, none = lumped.steady_state(pair), Absent(Outcome.NOT_ASKED)
+    assert (float(linear["normal_load"].min()) < 0.0) == ("pull" in note)
+    known = SimpleNamespace(
+        pair=pair, prediction=predicted(pair), linear=linear, second=none, same_equations=None,
+        uncertainty=none, measured_error=None, finite_elements=False,
+    )  # fmt: skip
+    budget = error_budget(known)
+    assert dict(zip(budget["row"].to_numpy(), budget.attrs["notes"], strict=True))["linear"] == note
