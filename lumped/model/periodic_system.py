@@ -27,6 +27,14 @@ from lumped.typing import FloatArray
 Supports = Literal["springs", "shafts"]
 
 
+def supports_of(pair: GearPair, supports: Supports | None) -> Supports:
+    """What holds the gears: as asked, by default the shafts of a pair that has them, else its springs."""
+    if supports is None:
+        return "springs" if pair.shafts is None else "shafts"
+    one_of("supports", supports, get_args(Supports))
+    return supports
+
+
 @dataclass(frozen=True, eq=False)
 class MeshGain:
     """Feedback z'' = ... + stiffness (u.z) + damping (u.z') + error of the mesh, (k, m), by ``pairs``."""
@@ -203,7 +211,7 @@ def periodic_system(
     *,
     as_printed: Collection[int] = (),
     cycle: MeshCycle | None = None,
-    supports: Supports = "springs",
+    supports: Supports | None = None,
 ) -> LTVSystem:
     """Return the gear pair as a linear time-varying periodic system (docs/theory/equations.md, eqs. 1 to 9).
 
@@ -214,10 +222,13 @@ def periodic_system(
     as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; every form stays exact, because all
         forces depend on the rotations through the dynamic transmission error only
     cycle : the pair's mesh cycle where it is known already
-    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them
 
     Raises
     ------
     ParameterError : unknown form, supports or equation, or shafts that the pair does not have
     """
-    return LTVSystem.of(load_gear_pair(pair), form, as_printed=as_printed, cycle=cycle, supports=supports)
+    pair = load_gear_pair(pair)
+    supports = supports_of(pair, supports)
+    return LTVSystem.of(pair, form, as_printed=as_printed, cycle=cycle, supports=supports)
