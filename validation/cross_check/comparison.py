@@ -26,6 +26,7 @@ from validation.cross_check.losses import LossAgreement, loss_agreement, sliding
 from validation.cross_check.motions import (
     CONTACT_LOSS,
     integration_tolerances,
+    momentary_motion,
     periodic_motion,
     repeated,
     unilateral_orbit,
@@ -33,7 +34,6 @@ from validation.cross_check.motions import (
 from validation.cross_check.own_teeth import both_motions
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit_of
-from validation.prediction.motion import by_momentary_load, losses, losses_of
 
 #: Cycles at the end of a run that are compared where the exact model has no periodic motion.
 _COMPARED_CYCLES = 4
@@ -240,13 +240,12 @@ def _compared(
         reference = lumped.simulate(
             pair, cycles, samples_per_cycle=samples, initial="periodic", progress=part(0)
         )
-        best, lost = reference, losses_of(reference)
     else:
         stable, reference = True, repeated(orbit.sampled(samples), cycles)
-        momentary = by_momentary_load(orbit, samples)
-        best = reference if momentary is None else repeated(momentary, cycles)
-        lost = losses(pair, orbit.sampled(samples)) if momentary is None else losses_of(momentary)
     cycle = reference.isel(time=slice(-samples - 1, -1))
+    # What the exact contact is compared with: the prediction, in which no pair pulls.
+    momentary = momentary_motion(pair, cycle, samples) if stable and not pulling else None
+    best = reference if momentary is None else repeated(momentary, cycles)
     rtol = integration_tolerances({name: cycle[name].to_numpy() for name in QUANTITIES})
     results: dict[Fidelity, xr.Dataset] = {}
     exact: xr.Dataset | None = None
@@ -290,6 +289,6 @@ def _compared(
         conservation=checks,
         powers=powers,
         orbit=orbit,
-        loss=None if exact is None else loss_agreement(lost, exact),
+        loss=None if exact is None else loss_agreement(best, exact),
         pulling=pulling,
     )

@@ -200,7 +200,12 @@ def indicators(
     draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
     found = harmonics(result, variable, derivative)
     samples = max(2 * (found.values.size - 1) // found.cycles, 8)
-    healthy = lumped.steady_state(found.pair.healthy, samples_per_cycle=samples)
+    healthy = lumped.steady_state(
+        found.pair.healthy,
+        contact=result.attrs.get("contact", "unilateral"),
+        supports=result.attrs["supports"],
+        samples_per_cycle=samples,
+    )
     twin = harmonics(healthy, variable, derivative)
     averages = [_average(found, shaft), _average(twin, shaft)]
     averages = [one + floor * draw.standard_normal(one.size) for one in averages]

@@ -39,9 +39,9 @@ class TeethFindings:
             )
             raise refuse("pinion", "teeth that are alike", "teeth that differ", action)
         self.pair = pair
-        self.motion = lumped.steady_state(pair)
+        self.motion = lumped.steady_state(pair, contact="unilateral")
         samples = self.motion.sizes["time"] // self.period
-        self.twin = lumped.steady_state(pair.healthy, samples_per_cycle=samples)
+        self.twin = lumped.steady_state(pair.healthy, contact="unilateral", samples_per_cycle=samples)
 
     @property
     def period(self) -> int:
