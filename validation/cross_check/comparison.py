@@ -243,9 +243,6 @@ def _compared(
     else:
         stable, reference = True, repeated(orbit.sampled(samples), cycles)
     cycle = reference.isel(time=slice(-samples - 1, -1))
-    # What the exact contact is compared with: the prediction, in which no pair pulls.
-    momentary = momentary_motion(pair, cycle, samples) if stable and not pulling else None
-    best = reference if momentary is None else repeated(momentary, cycles)
     rtol = integration_tolerances({name: cycle[name].to_numpy() for name in QUANTITIES})
     results: dict[Fidelity, xr.Dataset] = {}
     exact: xr.Dataset | None = None
@@ -270,6 +267,9 @@ def _compared(
             rtol=rtol[fidelity],
             progress=part(done),
         )
+    # A periodic motion with exact contact is compared with the prediction, in which no pair pulls.
+    momentary = None if exact is None or pulling else momentary_motion(pair, cycle, samples)
+    best = reference if momentary is None else repeated(momentary, cycles)
     compared = min(_COMPARED_CYCLES, cycles // 2) if exact is None else 1
     end = slice(-compared * samples - 1, None)
     agreements = []
