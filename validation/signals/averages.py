@@ -203,7 +203,7 @@ def indicators(
     healthy = lumped.steady_state(
         found.pair.healthy,
         contact=result.attrs.get("contact", "unilateral"),
-        supports=result.attrs["supports"],
+        supports=result.attrs.get("supports"),
         samples_per_cycle=samples,
     )
     twin = harmonics(healthy, variable, derivative)
