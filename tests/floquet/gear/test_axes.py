@@ -11,6 +11,7 @@ from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
 from lumped.model.averaged import modes
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
+from tests.unlike_pairs import unlike_pair
 
 PAIR = load_gear_pair("nasa_28_28")
 
@@ -58,15 +59,13 @@ def test_relief_keeps_its_length_where_the_contact_ratio_changes(ratio):
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed", mesh__relief="ignored", friction__law="none", mesh__damping_ratio=0.005
+    return unlike_pair("larger_gear_drives_contact_lost").with_(
+        mesh__contact="prescribed", friction__law="none", mesh__damping_ratio=0.005
     )
 
 
 def test_frequencies_are_those_of_the_mean_system_between_the_tongues(pair) -> None:
-    # Other bearings in y than in x, so that the modes off the line of action are told apart.
-    pair = pair.with_({f"bearings.{g}.oloa_stiffness": 2e8 for g in ("pinion", "gear")})
-    result = campbell(pair, [3000.0, 6200.0, 13500.0])
+    result = campbell(pair, [3500.0, 6500.0, 13500.0])
     along = [m for m in modes(pair) if max(abs(m.shape["y_p"]), abs(m.shape["y_g"])) < 1e-6]
     expected = np.array([m.natural_frequency for m in along])
     assert np.allclose(result.natural_frequency, expected, rtol=2e-3)  # damping of 5 % couples the modes
@@ -84,14 +83,14 @@ def test_frequencies_are_those_of_the_mean_system_between_the_tongues(pair) -> N
 
 def test_frequencies_lock_in_a_tongue(pair) -> None:
     # Inside 2w3/2 the third mode moves with twice half the mesh frequency, exactly: its multipliers are real.
-    result = campbell(pair, [16700.0])
-    assert float(result.frequency[0, 2]) == pytest.approx(16700 * 28 / 60, rel=1e-9)
+    result = campbell(pair, [16600.0])
+    assert float(result.frequency[0, 2]) == pytest.approx(16600 * 43 / 60, rel=1e-9)
     assert float(result.decay[0].min()) < 0.0
 
 
 def test_lines_and_orders(pair) -> None:
     result = campbell(pair, np.linspace(4000.0, 18000.0, 3), mesh_orders=2, orders=3)
-    assert result.mesh_frequency.values[1].tolist() == [11000 * 28 / 60, 2 * 11000 * 28 / 60]
+    assert result.mesh_frequency.values[1].tolist() == [11000 * 43 / 60, 2 * 11000 * 43 / 60]
     lines = {str(t): s for t, s in predicted_lines(pair, 3).items()}
     for label, speed in zip(result.label.values, result.line_speed.values, strict=True):
         assert lines[label] == speed
@@ -102,6 +101,4 @@ def test_lines_and_orders(pair) -> None:
 
 def test_a_speed_at_which_a_mode_dies_out_in_one_cycle_is_no_row_of_nan() -> None:
     with pytest.raises(NumericalError, match=r"At 1\.5 rpm"):
-        campbell(
-            load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored"), [1.5]
-        )
+        campbell(unlike_pair("contact_ratio_1_1_large_shifts").with_(mesh__contact="prescribed"), [1.5])

@@ -20,7 +20,8 @@ LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pai
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
+    """Rectangular stiffness, rack of 25 degrees, unequal gears and bearings."""
+    return unlike_pair("rack_25_degrees_always_pushing").with_(mesh__contact="prescribed")
 
 
 def unmatched(computed: np.ndarray, reference: np.ndarray) -> float:
@@ -52,7 +53,7 @@ def test_low_speeds_are_proven_too(pair) -> None:
     """All but the slowest decay of a bearing have died away after a mesh cycle at 5 rpm."""
     found = gear_pair_multipliers(pair.with_(operating__pinion_speed=5))
     assert (found.certificate, found.verdict) == ("proven", "stable")
-    assert found.spectral_radius + found.error < 1e-90
+    assert found.spectral_radius + found.error < 1e-50
     with pytest.raises(ParameterError, match="rtol"):
         gear_pair_multipliers(pair, 1e-14)
 
@@ -71,8 +72,8 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
     ratio = 2.0  # double against single contact with the rectangular model
     full = np.ptp(k) / factor if factor else 0.0
     if factor:
-        single = mean / 1.6380  # contact ratio 1.638 pairs on average
-        assert full == pytest.approx((ratio - 1) * single, rel=1e-3)  # contact ratio given to 4 digits
+        single = mean / geometry(pair).contact_ratio  # so many pairs on average
+        assert full == pytest.approx((ratio - 1) * single, rel=1e-9)
     else:
         assert np.ptp(k) < 1e-9 * mean
 
@@ -130,7 +131,7 @@ def test_every_axis_acts(pair) -> None:
 
 def with_table(points: int, factor: float) -> GearPair:
     """A constant table with one sample that stands out."""
-    pair = load_gear_pair("nasa_28_28").with_(
+    pair = unlike_pair("larger_gear_drives_contact_lost").with_(
         {"mesh.contact": "prescribed", "friction.law": "none", "mesh.damping_ratio": 0.02}
     )
     stiffness = np.full(points, 60e6)
@@ -164,7 +165,7 @@ def test_the_average_of_a_table_is_exact() -> None:
 
 @pytest.mark.parametrize("ratio", [1.0, 1.0 - 1e-15, 1.0 + 1e-12, 0.3])
 def test_bearings_at_critical_damping_are_within_their_bound(ratio: float) -> None:
-    pair = load_gear_pair("nasa_28_28").with_(
+    pair = unlike_pair("contact_ratio_1_1_large_shifts").with_(
         {"mesh.contact": "prescribed", "bearings.pinion.oloa_damping_ratio": min(ratio, 1.0)}
     )
     system = periodic_system(pair, "elastic")

@@ -11,6 +11,7 @@ from floquet.gear.tongues import stability_margins
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.schema.bodies import bodies
 from tests.evidence.floquet.coulomb_zones import CoulombGearPair
+from tests.unlike_pairs import unlike_pair
 
 MU = 0.2
 
@@ -60,12 +61,15 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
 
 @pytest.fixture(scope="module")
 def pair():
-    return with_friction(0.06)
+    """Rack of 25 degrees, unequal gears and bearings."""
+    light = {"friction.law": "coulomb", "friction.coefficient": 0.06, "friction.maximum": None}
+    light |= {"mesh.contact": "prescribed", "mesh.damping_ratio": 0.004}
+    return unlike_pair("rack_25_degrees_always_pushing").with_(light)
 
 
 @pytest.fixture(scope="module")
 def margins(pair):
-    return stability_margins(pair, (6000.0, 9000.0))
+    return stability_margins(pair, (8000.0, 14300.0))
 
 
 def independent(pair, rpm: float, damping: float) -> float:
@@ -75,7 +79,7 @@ def independent(pair, rpm: float, damping: float) -> float:
 
 
 def test_tips_are_the_roots_that_an_independent_integrator_finds(pair, margins) -> None:
-    assert [t.label for t in margins.tongues] == ["2w3/5", "2w3/4"]
+    assert [t.label for t in margins.tongues] == ["2w3/5", "2w3/3"]
     for tongue in margins.tongues:
 
         def top(damping, tongue=tongue):
@@ -91,9 +95,10 @@ def test_tips_are_the_roots_that_an_independent_integrator_finds(pair, margins) 
 
 
 def test_damping_at_the_operating_speed_is_a_root(pair) -> None:
-    inside = stability_margins(pair.with_(operating__pinion_speed="6720 rpm"), (6000.0, 9000.0))
+    inside = stability_margins(pair.with_(operating__pinion_speed="13600 rpm"), (13000.0, 14300.0))
     limit = inside.damping_at_speed
-    assert independent(pair, 6720.0, limit * (1 - 1e-5)) > 1.0 > independent(pair, 6720.0, limit * (1 + 1e-5))
+    below, above = (independent(pair, 13600.0, limit * (1.0 + side)) for side in (-1e-5, 1e-5))
+    assert below > 1.0 > above
     assert limit < inside.critical_damping
 
 
@@ -105,26 +110,23 @@ def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
     assert found.dataset.sizes["tongue"] == 0
 
 
-def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() -> None:
-    pair = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", mesh__relief="ignored")
-    wide = stability_margins(pair, (15000.0, 40000.0))
-    tongues = [t for t in wide.tongues if t.upper < 30000.0]
-    below, target = tongues[-2:]
-    narrow = stability_margins(pair, (15000.0, 0.5 * (below.upper + target.lower)))
+def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds(pair) -> None:
+    wide = stability_margins(pair, (26000.0, 50000.0))
+    below, target = wide.tongues[-2:]
+    narrow = stability_margins(pair, (26000.0, 0.5 * (below.upper + target.lower)))
     assert narrow.above.label == target.label
     assert narrow.above.lower == pytest.approx(target.lower, rel=1e-7)
     assert narrow.above.upper == pytest.approx(target.upper, rel=1e-7)
     assert narrow.above.critical_damping == pytest.approx(target.critical_damping, rel=1e-5)
     # A tongue that begins within the range is not the next one.
-    inside = stability_margins(pair, (15000.0, 0.5 * (below.lower + below.upper)))
+    inside = stability_margins(pair, (26000.0, 0.5 * (below.lower + below.upper)))
     assert inside.above.lower == pytest.approx(target.lower, rel=1e-7)
     assert wide.above is None
 
 
 def test_the_search_above_stays_within_the_speeds_of_the_schema() -> None:
-    pair = load_gear_pair("nasa_28_28").with_(
-        mesh__contact="prescribed",
-        mesh__relief="ignored", operating__pinion_speed=150_000.0, bearings__pinion__loa_stiffness=1e12,
+    pair = unlike_pair("contact_ratio_1_1_large_shifts").with_(
+        mesh__contact="prescribed", operating__pinion_speed=150_000.0, bearings__pinion__loa_stiffness=1e12,
         mesh__damping_ratio=0.0,
     )  # fmt: skip
     margins = stability_margins(pair, (100_000.0, 190_000.0))

@@ -6,7 +6,6 @@ from functools import reduce
 import numpy as np
 import pytest
 
-import lumped
 from floquet import gear_pair_multipliers, revolution_multipliers
 from floquet.gear import multipliers
 from floquet.gear.gains import OwnGains, own_tables
@@ -14,13 +13,17 @@ from floquet.rank_one.piecewise import fit_pieces
 from lumped.model.cycle_maps import CycleSteps, linear_steps
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.tooth_laws import ToothLaws
+from tests.unlike_pairs import unlike_pair
 
-PAIR = lumped.load_gear_pair("nasa_28_28").with_(
-    {"operating.pinion_speed": 1500, "friction.law": "coulomb", "friction.coefficient": 0.06}
-)
+#: 20/30, a rack of 22.5 degrees. Unlike teeth of the pinion repeat after 20 cycles, those of both after 60.
+PAIR = unlike_pair("unlike_teeth_finite_elements").healthy.with_(
+    {
+        "friction.law": "coulomb", "friction.coefficient": 0.06, "mesh.stiffness": {"model": "rectangular"},
+        "pinion.tip_relief": None, "gear.tip_relief": None, "operating.pinion_speed": 4000,
+    }
+)  # fmt: skip
 CLASS_6 = {f"{gear}.deviations": {"tolerance_class": 6} for gear in ("pinion", "gear")}
 HUNTING = {"pinion.teeth": 19, "gear.teeth": 41, "centre_distance": None} | CLASS_6
-HUNTING |= {"pinion.tip_relief": None, "gear.tip_relief": None}
 ECCENTRIC = {"pinion.mounting": {"eccentricity": 20, "phase": 50}}
 
 
@@ -43,7 +46,7 @@ def test_rates_are_those_of_gauss_steps_and_of_finer_polynomials(contact, change
     found = revolution_multipliers(pair)
     monkeypatch.setattr(multipliers, "_BLOCK", 4)
     finer = revolution_multipliers(pair, 1e-11)
-    times, most, kept = (8, 1e-7, 4) if found.cycles == 28 else (2, 1e-6, 2)
+    times, most, kept = (8, 1e-7, 4) if found.cycles <= 60 else (2, 1e-6, 2)
     coarse, fine = (by_gauss_steps(pair, times * n, found.rate)[0] for n in (1, 2))
     assert 4.0 * abs(fine - coarse) < most
     assert abs(found.rate - fine) <= found.error + 4.0 * abs(fine - coarse)
@@ -53,17 +56,31 @@ def test_rates_are_those_of_gauss_steps_and_of_finer_polynomials(contact, change
 
 
 @pytest.mark.parametrize("contact", ["prescribed", "loaded"])
-def test_like_teeth_have_the_multipliers_of_the_mesh_cycle_to_the_28th_power(contact):
+def test_like_teeth_have_the_multipliers_of_the_mesh_cycle_to_the_power_of_the_cycles(contact):
     pair = PAIR.with_({"mesh.contact": contact, "mesh.relief": "static"})
     expected = gear_pair_multipliers(pair)
-    power = np.poly(expected.feedback[:2] ** 28)
-    like = {"pinion.deviations": {"index": [0.0] * 28, "first_order": "steps"}}
+    rate = np.abs(expected.feedback).max()
+    power = np.poly(expected.feedback[:2] ** 20)
+    like = {"pinion.deviations": {"index": [0.0] * 20, "first_order": "steps"}}
     for change in (like, {"pinion.mounting": {"eccentricity": 1e-9}}):  # which makes the cycles' maps differ
         found = revolution_multipliers(pair.with_(change))
-        assert (found.cycles, found.certificate, found.stable) == (28, "proven", True)
-        assert abs(found.rate - expected.spectral_radius) <= found.error + expected.error < 1e-9
+        assert (found.cycles, found.certificate, found.stable) == (20, "proven", True)
+        assert abs(found.rate - rate) <= found.error + expected.error < 1e-9
         assert np.poly(found.multipliers[:2]) == pytest.approx(power, rel=1e-7, abs=0.0)
         assert found.rate == pytest.approx(found.healthy_rate, rel=1e-9)
+
+
+@pytest.mark.xfail(
+    strict=True, reason="revolution_multipliers leaves out the motions y_p and y_g off the line of action"
+)
+def test_the_rate_is_that_of_all_motions_also_off_the_line_of_action():
+    """Light damping of the bearings there: with like teeth these motions fade slowest."""
+    light = {f"bearings.{gear}.oloa_damping_ratio": 0.005 for gear in ("pinion", "gear")}
+    pair = PAIR.with_({"mesh.contact": "prescribed"} | light)
+    expected = gear_pair_multipliers(pair)
+    assert expected.spectral_radius > 1.1 * np.abs(expected.feedback).max()
+    found = revolution_multipliers(pair.with_({"pinion.mounting": {"eccentricity": 1e-9}}))
+    assert found.rate == pytest.approx(expected.spectral_radius, rel=1e-6)
 
 
 def test_all_multipliers_have_the_product_of_the_determinants_of_gauss_steps():
@@ -85,7 +102,7 @@ def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
     monkeypatch.setattr(multipliers, "fast_monodromies", shrunk)
     found = revolution_multipliers(pair)
     moved = exact - found.rate
-    assert moved == pytest.approx(off / 28 * exact, rel=1e-3)
+    assert moved == pytest.approx(off / 20 * exact, rel=1e-3)
     assert moved < found.error < 100.0 * moved
 
 
@@ -97,10 +114,10 @@ def test_pieces_end_where_a_pair_touches_its_damper_is_full_or_its_tip_leaves_th
 
 
 def test_a_softer_tooth_moves_the_rate_by_its_share_of_the_pairs():
-    # To first order a change of one cycle in 28 moves the logarithm by 1/28 of what it does in every cycle.
+    # To first order a change of one cycle in 20 moves the logarithm by 1/20 of what it does in every cycle.
     pair = PAIR.with_({"mesh.contact": "prescribed", "mesh.relief": "ignored"})
-    both = (revolution_multipliers(pair.with_(cracked(*teeth))) for teeth in ([3], range(1, 29)))
+    both = (revolution_multipliers(pair.with_(cracked(*teeth))) for teeth in ([3], range(1, 21)))
     one, every = (np.log(found.rate / found.healthy_rate) for found in both)
     assert abs(every) > 1e-4
-    # What is left is of second order, in proportion to the change itself.
-    assert 28.0 * one == pytest.approx(every, rel=4.0 * abs(every))
+    # What is left is of second order in the stiffness that the crack takes away.
+    assert 20.0 * one == pytest.approx(every, rel=0.01)

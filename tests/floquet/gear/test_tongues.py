@@ -5,8 +5,8 @@ import pytest
 
 from floquet import monodromy, stability_margins
 from floquet.engine.tongues import Tongue, label_tongue, mode_shares
-from lumped import load_gear_pair
 from tests.evidence.floquet.reference_systems import HsuSystem
+from tests.unlike_pairs import unlike_pair
 
 
 def coupled(omega: np.ndarray, coupling: np.ndarray, excitation: float):
@@ -62,20 +62,18 @@ def test_shares_of_a_pure_rotation() -> None:
 
 @pytest.fixture(scope="module")
 def pair():
-    """Default pair without friction and with lightly damped bearings: several kinds of tongues."""
+    """43 teeth drive 22, without friction and with light damping: several kinds of tongues."""
     changes = {f"bearings.{g}.loa_damping_ratio": 0.01 for g in ("pinion", "gear")}
-    return load_gear_pair("nasa_28_28").with_(
-        {"mesh.contact": "prescribed", "mesh.relief": "ignored", "friction.law": "none", **changes}
-    )
+    changes |= {"mesh.contact": "prescribed", "mesh.damping_ratio": 0.004, "friction.law": "none"}
+    return unlike_pair("larger_gear_drives_contact_lost").with_(changes)
 
 
 @pytest.fixture(scope="module")
 def tongues(pair):
-    return stability_margins(pair, (8000.0, 18000.0)).tongues
+    return stability_margins(pair, (9500.0, 17500.0)).tongues
 
 
 def test_labels_of_the_gear_pair(tongues) -> None:
     labels = {tongue.label for tongue in tongues}
-    assert {"2w1/1", "2w3/2", "(w1+w3)/2", "2w3/4", "2w3/3"} <= labels
-    # Mode 2, both gears moving together, leaves the mesh alone: it cannot take part.
-    assert not [label for label in labels if "w2" in label]
+    # On unlike bearings each mode moves the mesh.
+    assert {"(w1+w3)/2", "(w2+w3)/2", "2w3/3", "2w3/2"} <= labels

@@ -268,6 +268,21 @@ def test_errors_of_a_gain_of_either_sign_are_in_the_bound_and_hardly_more(sign: 
         assert error <= bound < 1.5 * error
 
 
+@pytest.mark.parametrize("end", [0, 1, 2, 3])
+def test_errors_at_an_end_count_on_each_side_that_it_has(end: int) -> None:
+    """Of four ends of three pieces: pulses of damping, a thousandth of the period wide, before and behind."""
+    e, width, zero = 1e-6, 1e-3, np.zeros((3, 1, 1))
+    ends, declared = np.array([0.0, 0.3, 0.6, 1.0]), np.zeros((4, 2))
+    declared[end, 1] = e
+    given = replace(driven(4.0), phases=ends, gains=Gains(zero, zero, np.zeros((3, 2)), declared))
+    phases = np.unique(np.clip([*ends, ends[end] - width, ends[end] + width], 0.0, 1.0))
+    pulse = np.abs(0.5 * (phases[1:] + phases[:-1]) - ends[end]) < width
+    wd, none = np.where(pulse, e / width, 0.0)[:, None, None], np.zeros((pulse.size, 1, 1))
+    moved = replace(driven(4.0), phases=phases, gains=Gains(none, wd, np.zeros((pulse.size, 2))))
+    error, bound = error_of(given, exact_matrix(moved))
+    assert error <= bound < 1.5 * error
+
+
 @pytest.mark.parametrize("wd", ["proportional", "not proportional"])
 @pytest.mark.parametrize("w", [-3.0, 3.0])
 def test_signed_gains_of_high_degree_are_inside_their_bounds(w: float, wd: str) -> None:

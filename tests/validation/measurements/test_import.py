@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-import lumped
 from lumped.errors import ParameterError
 from lumped.outcomes import Absent, Outcome
+from tests.unlike_pairs import unlike_pair
 from validation.measurements import load_measurement
 from validation.measurements.model_error import ModelError, measured_peak_to_peak, model_error
 from validation.measurements.record import Measurement, MeasurementSpec
@@ -118,7 +118,7 @@ def test_a_cell_that_is_no_number_is_named_by_value_row_and_column(tmp_path, cel
         load_measurement(description(path))
 
 
-PAIR = lumped.load_gear_pair("nasa_28_28")
+PAIR = unlike_pair("larger_gear_drives_contact_lost")
 #: Of the record: two waves, whose peak to peak is known, and noise [m].
 AMPLITUDES, NOISE, CYCLES, SAMPLES = (2e-6, 0.5e-6), 0.1e-6, 40, 60.3
 PHASES = np.arange(4096) / 4096
