@@ -59,7 +59,13 @@ Range = Annotated[
 Law = Annotated[str | None, typer.Option("--law", help="Friction law: I to V, none, or a name: coulomb.")]
 SupportsName = Literal["springs", "shafts"]
 Supports = Annotated[
-    SupportsName, typer.Option(help="The springs of 'bearings', or the elastic shafts of 'shafts'.")
+    SupportsName | None,
+    typer.Option(
+        "--supports",
+        help="What holds the gears: springs, the four of 'bearings', or the elastic 'shafts'. "
+        "Default: shafts where the file has them.",
+        show_default=False,
+    ),
 ]
 Settings = Annotated[
     list[str] | None,

@@ -45,7 +45,7 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
     near the linear motion, nor where a run settles that starts there. Then the second value says why a motion
     is compared in which teeth pull; else it is empty.
     """
-    motion = lumped.steady_state(pair, samples_per_cycle=512)
+    motion = lumped.steady_state(pair, samples_per_cycle=512, supports="springs")
     least = -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     if float(motion["normal_load"].min()) >= least:
         return None, ""
@@ -101,6 +101,7 @@ def periodic_motion(
                 effects=None if orbit is None else CONTACT_LOSS[fidelity],
                 rtol=rtol,
                 friction_velocity=velocity,
+                supports="springs",
             )
         except NumericalError:
             continue

@@ -18,6 +18,7 @@ import lumped
 from lumped.arguments import of_type, one_of, real_number, whole_number
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import supports_of
 from lumped.typing import BoolArray, FloatArray
 from validation.signals.orders import Harmonics, harmonics
 
@@ -200,7 +201,8 @@ def indicators(
     draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
     found = harmonics(result, variable, derivative)
     samples = max(2 * (found.values.size - 1) // found.cycles, 8)
-    healthy = lumped.steady_state(found.pair.healthy, samples_per_cycle=samples)
+    supports = supports_of(found.pair, result.attrs.get("supports"))
+    healthy = lumped.steady_state(found.pair.healthy, samples_per_cycle=samples, supports=supports)
     twin = harmonics(healthy, variable, derivative)
     averages = [_average(found, shaft), _average(twin, shaft)]
     averages = [one + floor * draw.standard_normal(one.size) for one in averages]
