@@ -361,10 +361,15 @@ class Results:
         return tuple(f for f in self.flags if f.state == "violated" and f.key not in skip)
 
     @property
+    def in_place_of_shafts(self) -> str:
+        """Added to what is said of a pair with shafts where it is computed on springs."""
+        return "" if self.pair.shafts is None else ", on the springs of [bearings]"
+
+    @property
     def on_springs(self) -> str:
         """Added to what is said of stability and jumps of a pair with shafts, or with teeth that differ."""
         like = "" if self.teeth is None else ", with like teeth"
-        return like if self.pair.shafts is None else f"{like}, on the springs of [bearings]"
+        return f"{like}{self.in_place_of_shafts}"
 
     @property
     def second_words(self) -> str:
