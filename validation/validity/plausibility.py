@@ -95,8 +95,8 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     ratio, springs, static = max(found)
     if ratio > math.log(_FAR):
         yield (
-            f"Jumps, and what else is computed on the springs of [bearings], is not of the shafts: the {springs} "
-            f"the line of action there, on its shaft {static:.3g} N/m. lumped.condensed_bearings gives "
+            "Jumps, and what else is computed on the springs of [bearings], is not of the shafts: "
+            f"the {springs} the line of action there, on its shaft {static:.3g} N/m. lumped.condensed_bearings gives "
             "springs that stand for the shafts."
         )
 
