@@ -96,8 +96,8 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     if ratio > math.log(_FAR):
         yield (
             "Jumps, and what else is computed on the springs of [bearings], is not of the shafts: "
-            f"the {springs} the line of action there, on its shaft {static:.3g} N/m. lumped.condensed_bearings gives "
-            "springs that stand for the shafts."
+            f"the {springs} the line of action there, on its shaft {static:.3g} N/m. "
+            "lumped.condensed_bearings gives springs that stand for the shafts."
         )
 
 
