@@ -37,8 +37,8 @@ def unmatched(computed: np.ndarray, reference: np.ndarray) -> float:
 def test_block_and_closed_form_equal_the_ten_states(name: str) -> None:
     """Each pair has a law, a stiffness model and four bearings of its own."""
     one = unlike_pair(name)
-    parts = gear_pair_multipliers(one)
-    whole = monodromy(gear_pair_system(one, "elastic"))
+    parts = gear_pair_multipliers(one, supports="springs")
+    whole = monodromy(gear_pair_system(one, "elastic", supports="springs"))
     assert parts.multipliers.shape == (10,)
     # 1e-8: both runs at rtol 1e-10; where bearings make two multipliers coincide, rounding is magnified.
     assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
