@@ -37,7 +37,7 @@ from lumped.arguments import of_type, one_of, real_number
 from lumped.errors import LawRangeWarning, refuse
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.periodic_system import Supports
-from lumped.schema.files import AnyPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, IntArray, Progress
 
 if TYPE_CHECKING:
@@ -418,7 +418,8 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
     -------
     regions, the largest first; of more than 200 the largest 200
     """
-    variation = GearVariation.of(pair, chart.attrs.get("supports"))
+    source = pair if isinstance(pair, GearVariation) else load_gear_pair(pair)
+    variation = GearVariation.of(source, chart.attrs.get("supports"))
     radius = chart["spectral_radius"]
     names = list(map(str, radius.dims))
     values = np.where(chart["known"].to_numpy(), radius.to_numpy(), -np.inf)

@@ -57,7 +57,8 @@ def on_springs(pair: GearPair, supports: Supports | None, what: str) -> GearPair
     """The pair without shafts, for ``what`` is on springs alone; refused unless these are asked for."""
     if supports_of(pair, supports) == "shafts":
         allowed = f'"springs" for {what}, which cannot be computed on shafts'
-        raise refuse("supports", "shafts", allowed, 'Give supports="springs".')
+        given = "left out for a pair with shafts" if supports is None else supports
+        raise refuse("supports", given, allowed, 'Give supports="springs".')
     return without_shafts(pair)
 
 
