@@ -66,7 +66,7 @@ def line(*cells: object) -> None:
 def motion(pair: lumped.GearPair, form: str) -> xr.Dataset:
     """Motion in one of ``FORMS``."""
     contact, touch = FORMS[form]
-    return lumped.steady_state(pair.with_(mesh__contact=contact), touch=touch, samples_per_cycle=64)
+    return lumped.steady_state(pair.with_(mesh__contact=contact), contact=touch, samples_per_cycle=64)
 
 
 def forms() -> None:
@@ -121,7 +121,7 @@ def faults() -> None:
     force = UNLIKE.operating.pinion_torque / UNLIKE.geometry.base_radius_pinion
     for name, changes in CASES.items():
         start = time.process_time()
-        run = lumped.steady_state(UNLIKE.with_(changes))
+        run = lumped.steady_state(UNLIKE.with_(changes), contact="unilateral")
         took = time.process_time() - start
         turns = run.attrs["period_cycles"] // 19
         size = 2e9 * np.abs(np.fft.rfft(run.dte.values)) / run.dte.size
@@ -140,7 +140,7 @@ def times() -> None:
             took = []
             for _ in range(6):
                 start = time.perf_counter(), time.process_time()
-                lumped.steady_state(pair.with_(mesh__contact=contact), touch=touch)
+                lumped.steady_state(pair.with_(mesh__contact=contact), contact=touch)
                 took.append((time.perf_counter() - start[0], time.process_time() - start[1]))
             line(f"{teeth[0]}/{teeth[1]}", contact, touch, *map(min, zip(*took, strict=True)))
 
@@ -150,7 +150,7 @@ def seeds() -> None:
     pair, found = new_pair("19/41", 2.5, 20.0, 1450.0, 80.0), []
     start = time.process_time()
     for seed in range(1, 129, 2):
-        run = lumped.steady_state(pair.with_(classed(6, seed)), touch="linear", samples_per_cycle=32)
+        run = lumped.steady_state(pair.with_(classed(6, seed)), contact="linear", samples_per_cycle=32)
         row = {"peak to peak, um": 1e6 * run.attrs["dte_peak_to_peak"]}
         mesh = np.fft.rfft(run["dte"].to_numpy())[run.attrs["period_cycles"]]
         row["mesh order, um"] = 2e6 * float(np.abs(mesh)) / run.sizes["time"]

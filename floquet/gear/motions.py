@@ -87,6 +87,12 @@ class GearOrbit:
         return self.orbit.run.least, self.orbit.run.most
 
     @property
+    def peak_to_peak(self) -> float:
+        """Of the transmission error [m]."""
+        low, high = self.dte_range
+        return high - low
+
+    @property
     def largest_load(self) -> float:
         """Largest normal load of a tooth pair [N]."""
         return self.orbit.run.largest_load
@@ -177,7 +183,7 @@ class GearOrbit:
             "stable": int(self.stable),
             "brake_torque": self.brake_torque,
             "dte_rms": self.dte_rms,
-            "dte_peak_to_peak": float(np.diff(self.dte_range)[0]),
+            "dte_peak_to_peak": self.peak_to_peak,
         }
         return labelled(time, values, attributes, {"normal_load_back": back})
 

@@ -29,7 +29,8 @@ RIPPLE = record(
 WORK = record(
     sliding="that friction takes",
     tooth_dampers="that the dampers of the pairs take",
-    supports="that bearings and shafts take",
+    bearings="that bearings take",
+    shafts="that shafts and couplings take",
     teeth="that the normal loads do on the vibration of the gears",
 )
 
@@ -44,7 +45,8 @@ class Body(NamedTuple):
     deflection : (m,) delta = deflection . z
     per_normal, per_friction, per_friction_moment, per_separating : (m,) acceleration per unit of FORCE
     per_moment, per_torque : (2, m) per unit moment on, and torque of, pinion and gear
-    supports : (m, m) form of the rates that is the power of the supports
+    bearings, shafts : (m, m) forms of the rates that are the powers of the bearings, and of shafts with
+        couplings; (0, m) without shafts
     turning : (2, m) rates of the rotation of pinion and gear per rate of z
     off_line : (m,) y_p' - y_g' per rate of z
     speeds : (2,) nominal speeds of pinion and gear [rad/s]
@@ -60,7 +62,8 @@ class Body(NamedTuple):
     per_separating: FloatArray
     per_moment: FloatArray
     per_torque: FloatArray
-    supports: FloatArray
+    bearings: FloatArray
+    shafts: FloatArray
     turning: FloatArray
     off_line: FloatArray
     speeds: FloatArray
@@ -126,6 +129,15 @@ def dot(row: FloatArray, values: FloatArray, first: int) -> float:
 
 
 @inlined
+def form(matrix: FloatArray, values: FloatArray, first: int) -> float:
+    """Quadratic form of as many values from ``first`` on as the matrix has rows; 0 for a matrix of none."""
+    total = 0.0
+    for j in range(matrix.shape[0]):
+        total += values[first + j] * dot(matrix[j], values, first)
+    return total
+
+
+@inlined
 def add_work(
     time: float, state: FloatArray, closing: float, force: MeshForce, line: Record, body: Body, work: Record
 ) -> None:
@@ -140,12 +152,10 @@ def add_work(
     # The moments of eccentric gears work on the vibration too.
     by_moments = line.moment_pinion * pinion + line.moment_gear * gear
     teeth = force.normal * (closing - line.gap_rate - by_moments) + force.separating * off_line
-    supports = 0.0
-    for j in range(m):
-        supports += state[m + j] * dot(body.supports[j], state, m)
     work.sliding += time * sliding
     work.tooth_dampers += time * force.damper_power
-    work.supports += time * supports
+    work.bearings += time * form(body.bearings, state, m)
+    work.shafts += time * form(body.shafts, state, m)
     work.teeth += time * teeth
 
 

@@ -157,7 +157,7 @@ def linear_motion(
     states = without_drift(system, time, states, 0.0)
     g, torque, brake = pair.geometry, system.pinion_torque + float(weights[1]), float(weights[2])
     # The first law gives what slides.
-    lost = powers["tooth_dampers"] + powers["supports"] - powers["rolling"]
+    lost = powers["tooth_dampers"] + powers["bearings"] - powers["rolling"]
     powers["sliding"] = torque * g.omega_pinion - brake * g.omega_gear - lost
     largest = np.abs(cycles[:, :m] @ relative.T).max()
     closure = float(np.abs(relative @ (cycles[-1] - cycles[0])[:m]).max() / largest)
@@ -235,5 +235,5 @@ def _inside(
     outputs, loads, work = zip(*in_threads(block_of, form.cycles), strict=True)
     duration = tables.period * system.period
     dampers, moved, supports = (float(value) for value in np.sum(work, axis=0) / duration)
-    powers = {"tooth_dampers": dampers, "supports": supports, "rolling": dampers - moved}
+    powers = {"tooth_dampers": dampers, "bearings": supports, "rolling": dampers - moved}
     return np.concatenate(outputs), np.concatenate(loads, axis=1), powers

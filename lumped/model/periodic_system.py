@@ -125,7 +125,7 @@ class LTVSystem:
         *,
         as_printed: Collection[int] = (),
         cycle: MeshCycle | None = None,
-        supports: Supports = "springs",
+        supports: Supports,
     ) -> Self:
         """The system of a gear pair; arguments as ``periodic_system``."""
         one_of("form", form, get_args(Form))

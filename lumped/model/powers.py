@@ -63,7 +63,7 @@ class MeanPowers:
 
     @property
     def efficiency(self) -> float:
-        """Share of the driving power that reaches the brake when it balances all losses [-]."""
+        """Share of the driving power that is not lost [-], 1 - losses / input."""
         return 1.0 - self.lost / self.driving
 
 
@@ -75,14 +75,13 @@ def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> 
     solution : periodic motion of the "full" system
     conservative : whether the brake balances every loss, and not only moments; default that of the contact
     """
-    g = solution.system.pair.geometry
-    brake_torque = solution.brake_torque
+    powers, brake_torque = mean_powers(solution), solution.brake_torque
     if contact_of(solution.system.pair).conservative if conservative is None else conservative:
-        brake_torque -= mean_powers(solution).energy_residual / g.omega_gear
+        brake_torque -= powers.energy_residual / solution.system.pair.geometry.omega_gear
     return {
         "brake_torque": brake_torque,
         "pinion_torque": solution.pinion_torque,
-        "mesh_efficiency": brake_torque * g.omega_gear / (solution.pinion_torque * g.omega_pinion),
+        "mesh_efficiency": powers.efficiency,
     }
 
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 _MOST_SAMPLES, _LEAST_SAMPLES, _ALL_SAMPLES = 512, 32, 65536
 
 
+#: Argument ``contact``: teeth that are tied to the linear form, or that only push.
+Contact = Literal["linear", "unilateral"]
+
+
 class Touch(Enum):
     """How the teeth touch in a motion; the value is how a result says it."""
 
@@ -38,6 +42,18 @@ class Touch(Enum):
     WINDOWS = "fixed windows of contact, unilateral"
     MOMENTARY = "own gaps and tip corners, unilateral"
     LINEAR = "linear about the own static state of every pair"
+
+    @property
+    def contact(self) -> Contact:
+        """Which argument ``contact`` asks for it."""
+        return "linear" if self in (Touch.TIED, Touch.LINEAR) else "unilateral"
+
+
+class Origin(Enum):
+    """How a motion was found; the value is how a result says it."""
+
+    LINEAR = "near the linear motion"
+    SETTLED = "a run settles to it"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,11 +69,14 @@ class RevolutionMotion:
     states : (k, n)
     load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
     pinion_torque, brake_torque : mean torques that hold the mean speed against moments [N m]
-    powers : mean power of sliding, tooth dampers, supports, and of the gap that closes as the teeth roll [W]
+    powers : mean power of sliding, tooth dampers, bearings, shafts, and of the gap that closes as the teeth
+        roll [W]; {} where it is not known
     closure : mismatch of the state after the period, over the largest displacement
     error : difference of the dynamic transmission error to that of steps four times longer, over its
         largest value
-    spectral_radius : of the healthy twin
+    spectral_radius : of the motion itself where teeth are alike, else of the healthy twin
+    origin : how a motion with unilateral contact was found
+    first : number of the mesh cycle of the first time
     """
 
     pair: GearPair
@@ -73,23 +92,37 @@ class RevolutionMotion:
     closure: float
     error: float
     spectral_radius: float
+    origin: Origin | None = None
+    first: int = 0
 
     @property
     def period(self) -> int:
         """Mesh cycles."""
         return self.tables.period
 
+    @property
+    def losses(self) -> dict[str, float]:
+        """Place -> mean power that is lost there [W]."""
+        return {
+            place: self.powers[place] for place in ("sliding", "tooth_dampers", *self.system.supports.places)
+        }
+
     def balance(self, conservative: bool) -> dict[str, float]:
-        """Torques that hold the mean speed [N m] and efficiency, as of ``lumped.model.powers.balance``."""
+        """Torques that hold the mean speed [N m], and efficiency, as of ``lumped.model.powers.balance``.
+
+        Where the powers are not known there is no efficiency.
+        """
+        if not self.powers:
+            return {"brake_torque": self.brake_torque, "pinion_torque": self.pinion_torque}
         g, torque = self.pair.geometry, self.pinion_torque
         brake = self.brake_torque - (self.powers["rolling"] / g.omega_gear if conservative else 0.0)
-        efficiency = brake * g.omega_gear / (torque * g.omega_pinion)
+        efficiency = 1.0 - sum(self.losses.values()) / (torque * g.omega_pinion)
         return {"brake_torque": brake, "pinion_torque": torque, "mesh_efficiency": efficiency}
 
     @cached_property
     def number(self) -> IntArray:
         """Number of the pair in each place at each output, (pairs, k)."""
-        cycle = np.arange(self.time.size) // self.tables.outputs.sum()
+        cycle = self.first + np.arange(self.time.size) // self.tables.outputs.sum()
         return np.asarray(cycle - self.tables.ahead[:, None], dtype=np.int64)
 
     @cached_property
@@ -129,24 +162,30 @@ def default_samples(period: int) -> int:
 def labelled_motion(
     motion: RevolutionMotion, attributes: dict[str, Any], *, periodic: bool = True
 ) -> xr.Dataset:
-    """A motion under the names of ``lumped.model.results.VARIABLES``, with the teeth of each pair.
+    """A motion under the names of ``lumped.model.results.VARIABLES``; of teeth that differ with their names.
 
     Not ``periodic``: a transient, about which the attributes of the periodic motion say nothing.
     """
     system = motion.system
     values = response(system, motion.time, motion.states, motion.load, motion.pairs)
-    further: dict[str, Variable] = {
-        f"{name}_tooth": (("pair", "time"), teeth + 1, "1", f"tooth of the {name}, counted from 1")
-        for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
-    }
+    further: dict[str, Variable] = {}
+    alike = motion.pair.healthy is motion.pair
+    if not alike:
+        further = {
+            f"{name}_tooth": (("pair", "time"), teeth + 1, "1", f"tooth of the {name}, counted from 1")
+            for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
+        }
     attributes = attributes | motion.balance(contact_of(motion.pair).conservative)
     attributes |= {
         "model": "lumped",
+        "contact": motion.touch.contact,
         "period_cycles": motion.period,
-        "teeth": "as given",
+        "teeth": "alike" if alike else "as given",
         "touch": motion.touch.value,
         "spectral_radius": motion.spectral_radius,
     }
+    if motion.origin is not None:
+        attributes["origin"] = motion.origin.value
     if periodic:
         attributes |= _of_period(motion, values)
     run = labelled(motion.time, values, attributes, further)
@@ -156,9 +195,7 @@ def labelled_motion(
 def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[str, float]:
     """Mean powers, errors and ranges of a motion that closes."""
     found = {
-        "power_sliding": motion.powers["sliding"],
-        "power_tooth_dampers": motion.powers["tooth_dampers"],
-        "power_bearings": motion.powers["supports"],
+        **{f"power_{place}": power for place, power in motion.losses.items()},
         "power_energy_residual": 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"],
         "closure": motion.closure,
         "error_estimate": motion.error,

@@ -5,27 +5,32 @@ Sources: docs/theory/equations.md, "Run-up".
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from lumped.arguments import real_number, real_numbers
+from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
-from lumped.model.periodic_system import Supports
+from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
 from lumped.model.results import VARIABLES, labelled, response
-from lumped.model.steady import balanced_start, sample_times
+from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch
+from lumped.model.steady import balanced_start, periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
+from lumped.model.tooth_laws import ToothLaws
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.pair import LARGEST_SPEED
+from lumped.schema.pair import LARGEST_SPEED, GearPair
 from lumped.typing import FloatArray, IntArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: The variables of a result: those that depend on time alone.
+_NAMES = [name for name, (dimensions, *_) in VARIABLES.items() if dimensions == ("time",)]
 #: Most output times.
 _MOST = 3_000_000
 #: Share by which the speed may change while the coefficients stay, where that is more than one mesh cycle.
@@ -38,8 +43,9 @@ def run_up(
     speeds_rpm: tuple[float, float],
     seconds: float,
     *,
+    contact: Contact = "linear",
+    supports: Supports | None = None,
     samples_per_cycle: int = 32,
-    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Motion while the speed goes evenly from one value to another (docs/theory/equations.md, "Run-up").
@@ -54,8 +60,8 @@ def run_up(
     pair : the gear pair; its speed is replaced
     speeds_rpm : pinion speed at the start and at the end [rpm]; a lower end is a run-down
     seconds : duration [s]; the run ends with the last whole mesh cycle
+    contact, supports : as of `lumped.simulate`
     samples_per_cycle : output times per mesh cycle, even over the angle: 32 resolve 16 mesh orders
-    supports : as of `lumped.simulate`
     progress : called with the finished fraction
 
     Returns
@@ -70,6 +76,8 @@ def run_up(
     NumericalError : a speed on the way has no periodic motion, or the motion overflows
     """
     pair = load_gear_pair(pair)
+    one_of("contact", contact, get_args(Contact))
+    supports = supports_of(pair, supports)
     advice = "Give the speed at the start and at the end: (500, 3000)."
     ends = real_numbers("speeds_rpm", speeds_rpm, 0.0, LARGEST_SPEED, above=True, unit="rpm", action=advice)
     if ends.size != 2:
@@ -88,23 +96,19 @@ def run_up(
     groups = list(_groups(begins))
     hertz = ((last - first) / (begins[last] - begins[first]) for first, last in groups)
     pairs = (pair.with_({"operating.pinion_speed": float(60.0 / pair.pinion.teeth * f)}) for f in hertz)
-    names = [name for name, (dimensions, *_) in VARIABLES.items() if dimensions == ("time",)]
-    state: FloatArray | None = None
-    times, parts = [], []
-    for (first, last), system in zip(groups, systems_over_speed(pairs, supports), strict=True):
-        grid = sample_times(system.period, samples_per_cycle)
-        maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
-        start, weights = balanced_start(system, *maps.over_all)
-        state = start if state is None else state
-        for cycle in range(last - first):
-            states = maps.states(state, weights)
-            state = states[-1]
-            values = response(system, grid, states[:-1])
-            parts.append(np.stack([values[name] for name in names]))
-            times.append(begins[first] + cycle * system.period + grid)
+    if contact == "linear" and pair.healthy is pair:
+        parts = _linear(pairs, groups, supports, samples_per_cycle)
+    else:
+        parts = _unilateral(pairs, groups, supports, samples_per_cycle)
+    times, values = [], []
+    for (first, last), (period, part) in zip(groups, parts, strict=True):
+        times.append(
+            begins[first] + np.arange((last - first) * samples_per_cycle) * period / samples_per_cycle
+        )
+        values.append(part)
         if progress is not None:
             progress(last / cycles)
-    time, found = np.concatenate(times), np.concatenate(parts, axis=1)
+    time, found = np.concatenate(times), np.concatenate(values, axis=1)
     if not np.isfinite(found).all():
         raise NumericalError("The motion grows beyond all numbers: raise the damping, or avoid the speed.")
     speed = ends[0] + (ends[1] - ends[0]) * time / duration
@@ -115,8 +119,73 @@ def run_up(
     }
     attributes = provenance(
         pair, speeds_rpm=tuple(ends.tolist()), seconds=duration, samples_per_cycle=samples_per_cycle
-    ) | {"model": "lumped", "supports": supports, "turns": cycles / pair.pinion.teeth}
-    return labelled(time, dict(zip(names, found, strict=True)), attributes, further)
+    ) | {"model": "lumped", "contact": contact, "supports": supports, "turns": cycles / pair.pinion.teeth}
+    return labelled(time, dict(zip(_NAMES, found, strict=True)), attributes, further)
+
+
+def _of_time(values: Mapping[str, FloatArray]) -> FloatArray:
+    """Variables that depend on time alone, (names, k)."""
+    return np.stack([values[name] for name in _NAMES])
+
+
+def _linear(
+    pairs: Iterable[GearPair], groups: Sequence[tuple[int, int]], supports: Supports, samples: int
+) -> Iterator[tuple[float, FloatArray]]:
+    """Period of a mesh cycle [s] and variables of every group of cycles of like teeth, by maps."""
+    state: FloatArray | None = None
+    for (first, last), system in zip(groups, systems_over_speed(pairs, supports), strict=True):
+        grid = sample_times(system.period, samples)
+        maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
+        start, weights = balanced_start(system, *maps.over_all)
+        state, found = start if state is None else state, []
+        for _ in range(last - first):
+            states = maps.states(state, weights)
+            state = states[-1]
+            found.append(_of_time(response(system, grid, states[:-1])))
+        yield system.period, np.concatenate(found, axis=1)
+
+
+def _unilateral(
+    pairs: Iterable[GearPair], groups: Sequence[tuple[int, int]], supports: Supports, samples: int
+) -> Iterator[tuple[float, FloatArray]]:
+    """Period of a mesh cycle [s] and variables of every group of cycles, by momentary load.
+
+    Drive and brake have the torques of the linear motion of like teeth, and what the common rotation of the
+    group before was short of.
+    """
+    state: FloatArray | None = None
+    missing = 0.0
+    for (first, last), pair in zip(groups, pairs, strict=True):
+        system = LTVSystem.of(pair.healthy, "full", supports=supports)
+        linear = periodic_solution(system, np.zeros(1), estimate_error=False)
+        state, weights = linear.states[0] if state is None else state, system.supports.common_weights
+        tables = momentary_tables(ToothLaws(pair), system, 1.0 / steps_of(system), samples)
+        m, duration = weights.size, (last - first) * system.period
+        per_torque = float(weights @ system.torque_gear[m:])
+        rate = float(weights @ state[m:])
+        brake = linear.brake_torque + (missing - rate / duration) / per_torque
+        torques = linear.pinion_torque * system.torque_pinion + brake * system.torque_gear
+        run_of_group = run(pair, tables, system, first, last - first, last - first, state, torques)
+        state = run_of_group.end
+        # The rate that the torque did not bring to zero is what the next group has to supply.
+        missing -= float(weights @ state[m:]) / duration
+        motion = RevolutionMotion(
+            pair=pair,
+            system=system,
+            tables=tables,
+            touch=Touch.WINDOWS if tables.law.windows else Touch.MOMENTARY,
+            time=(first + np.arange((last - first) * samples) / samples) * system.period,
+            states=run_of_group.states,
+            load=run_of_group.loads,
+            pinion_torque=linear.pinion_torque,
+            brake_torque=brake,
+            powers={},
+            closure=np.nan,
+            error=np.nan,
+            spectral_radius=linear.spectral_radius,
+            first=first,
+        )
+        yield system.period, _of_time(response(system, motion.time, motion.states, motion.load, motion.pairs))
 
 
 def _groups(begins: FloatArray) -> Iterator[tuple[int, int]]:

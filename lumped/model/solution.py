@@ -6,7 +6,7 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,7 @@ from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.powers import power_attributes
 from lumped.model.propagation import STEP_ANGLE, step_maps
 from lumped.model.results import dataset
-from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
@@ -65,11 +65,23 @@ def transient(
         initial=initial if isinstance(initial, str) else "given",
         as_printed=tuple(as_printed),
     )
-    attributes |= power_attributes(balance) | {"model": "lumped"}
+    attributes |= power_attributes(balance) | {"model": "lumped", "contact": "linear"}
     return dataset(system, time, states, attributes)
 
 
-def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: PeriodicSolution) -> FloatArray:
+class Balanced(Protocol):
+    """A periodic motion, as far as a start needs it."""
+
+    @property
+    def states(self) -> FloatArray:
+        """(k, n) from the start of the cycle on."""
+
+    @property
+    def pinion_torque(self) -> float:
+        """Mean driving torque [N m]."""
+
+
+def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: Balanced) -> FloatArray:
     """Return the states at t = 0 for ``initial`` as ``simulate`` takes it."""
     if isinstance(initial, str):
         if initial == "static":
@@ -121,6 +133,7 @@ def steady_cycle(
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
     attributes |= power_attributes(solution) | {
         "model": "lumped",
+        "contact": "linear",
         "closure": solution.closure,
         "spectral_radius": solution.spectral_radius,
     }

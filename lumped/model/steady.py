@@ -52,13 +52,18 @@ class PeriodicSolution:
         """Largest mismatch of state and state one cycle later, over the largest displacement or rate."""
         return _closure(self.system, self.cycle_states)
 
+    @property
+    def over_cycle(self) -> tuple[FloatArray, FloatArray]:
+        """Map (n, n) of the states over the cycle, and (n, 3) by the own forcing, extra T_p and T_g."""
+        return self._maps.over_all
+
     @cached_property
     def spectral_radius(self) -> float:
         """Largest modulus of the Floquet multipliers, the rigid rotation taken out.
 
         Above 1 the motion is unstable, and a pair leaves it.
         """
-        return relative_spectral_radius(self.system, self._maps.over_all[0])
+        return relative_spectral_radius(self.system, self.over_cycle[0])
 
     @cached_property
     def peak_to_peak(self) -> dict[str, float]:

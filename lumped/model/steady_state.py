@@ -6,82 +6,90 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque"; docs/
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, get_args
 
 from lumped.arguments import one_of, whole_number
 from lumped.errors import refuse
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import linear_motion
-from lumped.model.momentary_load import settled_motion
-from lumped.model.periodic_system import Supports
-from lumped.model.revolution_motion import default_samples, labelled_motion
+from lumped.model.periodic_system import Supports, supports_of
+from lumped.model.revolution_motion import Contact, default_samples, labelled_motion
 from lumped.model.solution import steady_cycle
+from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: How the teeth touch in the motion over a period of teeth that differ.
-Touch = Literal["unilateral", "linear"]
-
 
 def steady_state(
     pair: AnyPair,
     *,
+    contact: Contact = "linear",
+    supports: Supports | None = None,
     samples_per_cycle: int | None = None,
     as_printed: Collection[int] = (),
-    supports: Supports = "springs",
-    touch: Touch = "unilateral",
 ) -> xr.Dataset:
     """Periodic motion over one mesh cycle without settling, or over the whole period of teeth that differ.
 
     Teeth differ by deviations, an eccentric mounting or faults; a ripple of a torque has a period of its own
-    too. Then the motion is that over a revolution or the hunting period, see ``revolution``: every meeting
-    pair has unilateral contact with its own gap, tip corners and stiffness. It is settled from
-    the motion of like teeth; the linear form is closed over the period by the maps of its mesh cycles.
+    too. Then the motion is that over a revolution or the hunting period, see ``revolution``, and every
+    meeting pair has its own gap, tip corners and stiffness. What ``contact`` says holds for teeth that are
+    alike and that differ.
 
     Parameters
     ----------
     pair : a validated gear pair
+    contact : "linear", about the static state of every pair (with prescribed contact: in its fixed windows),
+        in which teeth may pull: the form that stability charts rest on; or "unilateral", by momentary load:
+        teeth only push
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them. On these ``bearing_force`` over ``bearing`` and ``direction`` is
+        the force of each bearing on its shaft, and ``power_shafts`` what the shafts' damping takes [W]
     samples_per_cycle : output times in each mesh cycle; default 512, fewer where the period has many cycles
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; of like teeth alone
-    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; then
-        ``bearing_force`` over ``bearing`` and ``direction`` is the force of each bearing on its shaft, and
-        ``power_shafts`` what the shafts' damping takes [W]
-    touch : of teeth that differ: "unilateral", or "linear", the linear form about the own static state of
-        every pair (with prescribed contact: in its fixed windows), which stability and sweeps rest on
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; of linear contact and like teeth
 
     Returns
     -------
     xarray.Dataset as of ``simulate`` over the period; the attributes carry ``brake_torque`` and
-    ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
-    the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W],
-    ``power_energy_residual``, what of them no torque balances with prescribed contact [W],
-    ``error_estimate``, the relative error of the dynamic transmission error, ``dte_peak_to_peak`` [m], its
-    peak to peak whatever the sampling (and so for the translations), and ``spectral_radius``, the
-    largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it.
-    Of teeth that differ also ``pinion_tooth`` and ``gear_tooth`` of each ``pair`` and time, counted from 1,
-    and the attributes ``period_cycles`` [mesh cycles] and ``touch``, the form of contact that was used;
-    ``error_estimate`` is then the difference to longer steps, and ``spectral_radius`` that of
-    the twin with like teeth
+    ``pinion_torque`` [N m] that hold the mean speed, the mean losses ``power_sliding``,
+    ``power_tooth_dampers`` and ``power_bearings`` [W], ``mesh_efficiency``, one less all losses over the
+    driving power, ``power_energy_residual``, what of the losses no torque balances with prescribed contact
+    [W], ``error_estimate``, the relative error of the dynamic transmission error, ``dte_peak_to_peak`` [m],
+    its peak to peak whatever the sampling (and so for the translations), ``spectral_radius``, the largest
+    modulus of the Floquet multipliers (above 1 the motion is unstable, and a pair leaves it; of teeth that
+    differ it is that of the twin with like teeth), ``contact`` and ``supports``.
+    With unilateral contact or teeth that differ also ``period_cycles`` [mesh cycles], after which the motion
+    repeats, ``touch``, in words how the teeth touch, and ``error_estimate`` is the difference to longer
+    steps; with unilateral contact ``origin`` says how the motion was found. Of teeth that differ
+    ``pinion_tooth`` and ``gear_tooth`` are those of each ``pair`` and time, counted from 1
 
     Raises
     ------
-    NumericalError : the speed sits on a stability boundary, where no periodic motion exists; teeth that
-        differ have no motion with their period, or one that settles too slowly
+    ParameterError : arguments out of range
+    NumericalError : the speed sits on a stability boundary, where no periodic motion exists; with unilateral
+        contact no run settles to a motion that repeats; teeth that differ have no motion with their period,
+        or one that settles too slowly
     """
     pair = load_gear_pair(pair)
+    one_of("contact", contact, get_args(Contact))
+    supports = supports_of(pair, supports)
     if samples_per_cycle is not None:
         samples_per_cycle = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
-    if pair.healthy is pair:
+    check_printed(pair, contact, as_printed)
+    if contact == "linear" and pair.healthy is pair:
         return steady_cycle(
             pair, 512 if samples_per_cycle is None else samples_per_cycle, as_printed, supports
         )
-    if as_printed:
-        raise refuse("as_printed", list(as_printed), "() where teeth differ", "Use pair.healthy.")
-    one_of("touch", touch, ("unilateral", "linear"))
-    cycles = period_of(pair)
-    count = default_samples(cycles) if samples_per_cycle is None else samples_per_cycle
-    motion = (linear_motion if touch == "linear" else settled_motion)(pair, count, supports)
-    return labelled_motion(motion, provenance(pair, samples_per_cycle=count, touch=touch))
+    count = default_samples(period_of(pair)) if samples_per_cycle is None else samples_per_cycle
+    motion = (linear_motion if contact == "linear" else unilateral_motion)(pair, count, supports)
+    return labelled_motion(motion, provenance(pair, samples_per_cycle=count, contact=contact))
+
+
+def check_printed(pair: AnyPair, contact: Contact, as_printed: Collection[int]) -> None:
+    """Refuse printed signs where the equations are not those of the publication."""
+    pair = load_gear_pair(pair)
+    if as_printed and (contact != "linear" or pair.healthy is not pair):
+        allowed = "() with unilateral contact, and where teeth differ"
+        raise refuse("as_printed", list(as_printed), allowed, "Use contact='linear' and pair.healthy.")

@@ -7,19 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from lumped.arguments import real_numbers
+from lumped.arguments import one_of, real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.periodic_system import LTVSystem, Supports
+from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
+from lumped.model.revolution_motion import Contact
 from lumped.model.steady import periodic_solution, sample_times
+from lumped.model.steady_state import steady_state
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.elements import MeshElements
 from lumped.ranges import warned_once
@@ -49,8 +51,9 @@ def speed_sweep(
     pair: AnyPair,
     speeds_rpm: Iterable[float],
     *,
+    contact: Contact = "linear",
+    supports: Supports | None = None,
     samples_per_cycle: int = 128,
-    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Periodic motion over pinion speed.
@@ -59,8 +62,8 @@ def speed_sweep(
     ----------
     pair : a validated gear pair; its speed is replaced
     speeds_rpm : pinion speeds [rpm], positive
+    contact, supports : as of `lumped.steady_state`
     samples_per_cycle : times per cycle; peak to peak takes in extremes between them
-    supports : of the gears, as of `lumped.steady_state`
     progress : called with the finished fraction
 
     Returns
@@ -76,6 +79,8 @@ def speed_sweep(
     ParameterError : a speed or the number of samples is out of range, before any work starts
     """
     pair = load_gear_pair(pair)
+    one_of("contact", contact, get_args(Contact))
+    supports = supports_of(pair, supports)
     speeds = running_speeds(speeds_rpm)
     pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
     names = ("dte", "x_p", "x_g", "y_p", "y_g")
@@ -91,31 +96,61 @@ def speed_sweep(
         )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
-    for j, system in enumerate(systems_over_speed(pairs, supports)):
-        times = sample_times(system.period, samples_per_cycle)
-        try:
-            solution = periodic_solution(system, times, estimate_error=False)
-        except NumericalError:
+    if contact == "linear" and pair.healthy is pair:
+        motions = _linear_motions(pairs, supports, samples_per_cycle)
+    else:
+        motions = _motions(pairs, contact, supports, samples_per_cycle)
+    for j, motion in enumerate(motions):
+        if progress is not None:
+            progress((j + 1) / speeds.size)
+        if motion is None:
             continue
-        finally:
-            if progress is not None:
-                progress((j + 1) / speeds.size)
         periodic[j] = True
-        run = solution.values
+        run, numbers = motion
         for name in names:
-            table[f"{name}_peak_to_peak"][j] = solution.peak_to_peak[name]
+            table[f"{name}_peak_to_peak"][j] = numbers[f"{name}_peak_to_peak"]
             table[f"{name}_rms"][j] = np.std(run[name])
         found = load_range(pair, run["normal_load"], run["contact"])
         table["normal_load_max"][j], table["normal_load_min"][j] = found
         table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
-        table["mesh_efficiency"][j] = balance(solution)["mesh_efficiency"]
-        table["spectral_radius"][j] = solution.spectral_radius
+        for name in ("mesh_efficiency", "spectral_radius"):
+            table[name][j] = numbers[name]
     variables = {name: ("speed", values, *_label(name)) for name, values in table.items()}
     return labelled_dataset(
         variables | {"periodic": ("speed", periodic, "1", "whether a periodic motion exists")},
         {"speed": (speeds, "rpm", "pinion speed")},
-        provenance(pair) | {"model": "lumped", "supports": supports},
+        provenance(pair) | {"model": "lumped", "contact": contact, "supports": supports},
     )
+
+
+#: A periodic motion: variables of ``VARIABLES`` and numbers as of the attributes of ``steady_state``.
+_Motion = tuple[Mapping[str, FloatArray], Mapping[str, float]]
+
+
+def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int) -> Iterator[_Motion | None]:
+    """Linear motions of like teeth; None where there is none."""
+    for system in systems_over_speed(pairs, supports):
+        try:
+            solution = periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
+        except NumericalError:
+            yield None
+            continue
+        numbers = {f"{name}_peak_to_peak": value for name, value in solution.peak_to_peak.items()}
+        numbers |= {"spectral_radius": solution.spectral_radius}
+        yield solution.values, numbers | {"mesh_efficiency": balance(solution)["mesh_efficiency"]}
+
+
+def _motions(
+    pairs: Iterable[GearPair], contact: Contact, supports: Supports, samples: int
+) -> Iterator[_Motion | None]:
+    """Motions of `lumped.steady_state`; None where there is none."""
+    for pair in pairs:
+        try:
+            found = steady_state(pair, contact=contact, supports=supports, samples_per_cycle=samples)
+        except NumericalError:
+            yield None
+            continue
+        yield {str(name): values.to_numpy() for name, values in found.data_vars.items()}, found.attrs
 
 
 def _label(name: str) -> tuple[str, str]:

@@ -7,58 +7,69 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.arguments import whole_number
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import one_of, whole_number
+from lumped.errors import NumericalError
 from lumped.labelling import provenance
-from lumped.model.momentary_load import run, settled_motion
-from lumped.model.periodic_system import Supports
-from lumped.model.revolution_motion import labelled_motion
+from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.periodic_system import LTVSystem, Supports, supports_of
+from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch, labelled_motion
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution
+from lumped.model.steady_state import check_printed
+from lumped.model.tooth_laws import ToothLaws
+from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.typing import Progress
 
 if TYPE_CHECKING:
     import xarray as xr
+
+#: Mesh cycles between two words on progress.
+_BLOCK = 200
 
 
 def simulate(
     pair: AnyPair,
     cycles: int = 20,
     *,
+    contact: Contact = "linear",
+    supports: Supports | None = None,
     samples_per_cycle: int = 256,
     initial: Initial | ArrayLike = "static",
     as_printed: Collection[int] = (),
-    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Transient of the lumped model (docs/theory/equations.md, eqs. 1 to 9).
 
-    Of like teeth it is that of the linear time-varying model: the maps of the periodic motion take the state
-    from output to output, steps end at every switch, and each is exact to about 1e-12. Teeth that differ
-    have unilateral contact, as in ``steady_state``, under torques that keep the mean speed over their period.
+    With linear contact it is that of the linear time-varying model: the maps of the periodic motion take the
+    state from output to output, steps end at every switch, and each is exact to about 1e-12. With unilateral
+    contact teeth only push, and stiffness and dampers follow the momentary load. The torques keep the mean
+    speed of the periodic motion.
 
     Parameters
     ----------
     pair : a validated gear pair
     cycles : mesh cycles, 1 to 100000
+    contact : "linear" or "unilateral", as of ``steady_state``
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them
     samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
     initial : "static" (at rest relative to nominal rotation, mesh wound up by the mean load), "periodic"
         (the periodic motion at t = 0) or 12 states in SI (on shafts, those of ``LTVSystem.state_names``)
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; of like teeth alone
-    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; of linear contact and like teeth
     progress : called with the finished fraction
 
     Returns
     -------
     xarray.Dataset over ``time`` [s] and ``pair``, see ``lumped.model.results.VARIABLES``; the attributes
-    carry the balanced brake torque and the provenance. Of teeth that differ also ``pinion_tooth`` and
-    ``gear_tooth`` of each pair and time, counted from 1
+    carry the balanced brake torque, ``contact``, ``supports`` and the provenance. Of teeth that differ also
+    ``pinion_tooth`` and ``gear_tooth`` of each pair and time, counted from 1
 
     Raises
     ------
@@ -68,27 +79,76 @@ def simulate(
     """
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
-    if pair.healthy is pair:
-        return transient(pair, cycles, samples_per_cycle, initial, as_printed, supports, progress)
-    if as_printed:
-        raise refuse("as_printed", list(as_printed), "() where teeth differ", "Use pair.healthy.")
     samples = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
-    steady = settled_motion(pair, samples, supports)
-    system = steady.system
-    twin = periodic_solution(system, np.zeros(1), estimate_error=False)
-    twin = replace(twin, states=steady.states[:1], pinion_torque=steady.pinion_torque)
-    torques = steady.pinion_torque * system.torque_pinion + steady.brake_torque * system.torque_gear
-    start = initial_state(system, initial, twin)
-    # One cycle more gives the end of the last one.
-    states, load, _, _ = run(pair, steady.tables, system, 0, cycles + 1, cycles + 1, start, torques)
-    count = cycles * samples + 1
-    if not np.isfinite(states[:count]).all():
-        raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")
-    if progress is not None:
-        progress(1.0)
-    time = np.arange(count, dtype=np.float64) * (system.period / samples)
-    found = replace(steady, time=time, states=states[:count], load=load[:, :count])
+    one_of("contact", contact, get_args(Contact))
+    supports = supports_of(pair, supports)
+    check_printed(pair, contact, as_printed)
+    if contact == "linear" and pair.healthy is pair:
+        return transient(pair, cycles, samples, initial, as_printed, supports, progress)
+    motion = _unilateral_run
     given = initial if isinstance(initial, str) else "given"
-    return labelled_motion(
-        found, provenance(pair, cycles=cycles, samples_per_cycle=samples, initial=given), periodic=False
+    attributes = provenance(pair, cycles=cycles, samples_per_cycle=samples, initial=given, contact=contact)
+    found = motion(pair, cycles, samples, initial, supports, progress)
+    if not np.isfinite(found.states).all():
+        raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")
+    return labelled_motion(found, attributes, periodic=False)
+
+
+def _unilateral_run(
+    pair: GearPair,
+    cycles: int,
+    samples: int,
+    initial: Initial | ArrayLike,
+    supports: Supports,
+    progress: Progress | None,
+) -> RevolutionMotion:
+    """Motion by momentary load under the torques of the periodic motion, or of the linear one."""
+    system = LTVSystem.of(pair.healthy, "full", supports=supports)
+    periodic = isinstance(initial, str) and initial == "periodic"
+    try:
+        steady = unilateral_motion(pair, samples, supports, settles=periodic)
+    except NumericalError:
+        if periodic:
+            raise
+        steady = _linear_balance(pair, system, samples)
+    torques = steady.pinion_torque * system.torque_pinion + steady.brake_torque * system.torque_gear
+    state = initial_state(system, initial, steady)
+    states, loads = [], []
+    # One cycle more gives the end of the last one.
+    for first in range(0, cycles + 1, _BLOCK):
+        count = min(_BLOCK, cycles + 1 - first)
+        found = run(pair, steady.tables, system, first, count, count, state, torques)
+        states.append(found.states)
+        loads.append(found.loads)
+        state = found.end
+        if progress is not None:
+            progress(min((first + count) / cycles, 1.0))
+    kept = cycles * samples + 1
+    return replace(
+        steady,
+        time=np.asarray(np.arange(kept) * (system.period / samples), dtype=np.float64),
+        states=np.concatenate(states)[:kept],
+        load=np.concatenate(loads, axis=1)[:, :kept],
+        origin=None,
+    )
+
+
+def _linear_balance(pair: GearPair, system: LTVSystem, samples: int) -> RevolutionMotion:
+    """The linear motion of like teeth: its torques stand in where there is no other periodic motion."""
+    linear = periodic_solution(system, np.zeros(1), estimate_error=False)
+    tables = momentary_tables(ToothLaws(pair), system, 1.0 / steps_of(system), samples)
+    return RevolutionMotion(
+        pair=pair,
+        system=system,
+        tables=tables,
+        touch=Touch.WINDOWS if tables.law.windows else Touch.MOMENTARY,
+        time=linear.time,
+        states=linear.states,
+        load=np.zeros((tables.ahead.size, 1)),
+        pinion_torque=linear.pinion_torque,
+        brake_torque=linear.brake_torque,
+        powers={},
+        closure=np.nan,
+        error=np.nan,
+        spectral_radius=linear.spectral_radius,
     )

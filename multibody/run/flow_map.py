@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of, whole_number
 from lumped.errors import NumericalError
+from lumped.model.closing import close_period
 from lumped.model.periodic_system import Supports, on_springs, supports_of
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -127,14 +128,14 @@ class Orbit:
     state : (12,) lumped states at t = 0; on shafts (2n,) coordinates and velocities
     machine : numbers of the pair, with the brake torque that balances this motion
     flow, closure : its flow map, and the largest change of the state over it, relative to its scale
-    matrix : of the step that found it; near the motion, of the steps to others near by
+    derivatives : of what is left after the cycles, as of `close_period`; near the motion, those of others
     """
 
     state: FloatArray
     machine: Machine
     flow: Flow
     closure: float
-    matrix: FloatArray
+    derivatives: FloatArray
 
 
 def find_orbit(
@@ -142,9 +143,8 @@ def find_orbit(
 ) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    Broyden's method (Math. Comp. 19 (1965) 577-593) starts from the monodromy matrix of the lumped model, on
-    shafts from that of the model's own linear mesh. Each step runs the cycles and corrects the matrix along
-    the way it went; the motion found does not depend on the matrix.
+    `close_period` starts from the monodromy matrix of the lumped model, on shafts from that of the model's
+    own linear mesh.
 
     near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
     near : motion of the pair with other effects, to start from with its matrix
@@ -153,32 +153,35 @@ def find_orbit(
     machine, scale = setup.machine, state_scale(setup.machine, setup.deflection)
     if near is None:
         state = _packed(machine, setup.q, setup.v)
-        matrix = _first_matrix(setup, state, scale, cycles, near_lumped)
+        derivatives = -_first_matrix(setup, state, scale, cycles, near_lumped)
     else:
-        state, matrix = near.state, near.matrix
+        state, derivatives = near.state, near.derivatives
         machine = replace(machine, torque_gear=near.machine.torque_gear)
-    best, age = Orbit(state, machine, Flow(setup, machine, cycles), np.inf, matrix), 0
-    change = np.zeros(state.size + 1)
-    for step in range(_ITERATIONS + 1):
-        flow = Flow(setup, machine, cycles)
-        mismatch = np.append((flow(state) - state) / scale, 0.0)
-        closure = float(np.abs(mismatch).max())
-        if closure < best.closure:
-            best, age = Orbit(state, machine, flow, closure, matrix), step
-        if closure < _CLOSED * setup.rtol or step - age > _PATIENCE:
-            break
-        if step > 0:  # Broyden: along the last change the matrix must explain all of the mismatch left
-            matrix = matrix - np.outer(mismatch, change) / (change @ change)
-        change = np.linalg.solve(matrix, mismatch)
-        state = state + change[:-1] * scale
-        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[-1])))
-    if not best.closure < _ACCEPTED:
+    torque = machine.torque_gear
+
+    def over_cycles(unknowns: FloatArray) -> tuple[FloatArray, Flow]:
+        """What is left of the state after the cycles; the free rotation stays where it is."""
+        flow = Flow(setup, replace(machine, torque_gear=float(unknowns[-1])), cycles)
+        return np.append((flow(unknowns[:-1]) - unknowns[:-1]) / scale, 0.0), flow
+
+    best = close_period(
+        over_cycles,
+        np.append(state, torque),
+        np.append(scale, torque),
+        derivatives,
+        closed=_CLOSED * setup.rtol,
+        most=_ITERATIONS,
+        patience=_PATIENCE,
+    )
+    if not best.left < _ACCEPTED:
         raise NumericalError(
             f"No periodic multibody motion near the {'lumped one' if near_lumped else 'start'} (mismatch "
-            f"{best.closure:.1e}): the pair may separate or sit on a stability boundary. Change the speed or "
+            f"{best.left:.1e}): the pair may separate or sit on a stability boundary. Change the speed or "
             "the torque, or run multibody.simulate."
         )
-    return best
+    flow = best.passed
+    machine = replace(machine, torque_gear=float(best.unknowns[-1]))
+    return Orbit(best.unknowns[:-1], machine, flow, best.left, best.derivatives)
 
 
 def _first_matrix(

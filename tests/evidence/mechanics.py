@@ -44,7 +44,7 @@ def mechanics(pair: GearPair) -> Iterator[Check]:
 def _orders(pair: GearPair) -> Check:
     phase = 2.0 * np.pi * np.arange(64) / 64
     values = 3.0 + 2.0 * np.cos(phase + 0.4) + 0.5 * np.sin(3.0 * phase)
-    motion = Prediction(pair, Motion.LINEAR, xr.Dataset({"dte": ("time", values)}), 0.0, True, 1, 1.0)
+    motion = Prediction(pair, Motion.UNILATERAL, xr.Dataset({"dte": ("time", values)}), 0.0, True, 1, 1.0)
     both = list(zip(motion.orders_of("dte")[:4] + 1.0, (3.0, 1.0, 1.5, 1.0), strict=True))
     return rows("amplitudes by mesh order", "those of a sum of cosines", 1e-12, both)
 

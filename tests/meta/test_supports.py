@@ -218,12 +218,8 @@ WITHOUT |= {
     "lumped.static_sharing": lambda pair: lumped.static_sharing(pair),
     "lumped.quasi_static.mesh_positions": lambda pair: PUBLIC["lumped.quasi_static.mesh_positions"](pair),
 }
-#: Computed on springs still; each leaves this set with its own change.
+#: Take no supports yet; each leaves this set with its own change.
 PENDING = {
-    "lumped.run_up",
-    "lumped.simulate",
-    "lumped.speed_sweep",
-    "lumped.steady_state",
     "validation.dynamic_factor",
     "validation.predict",
 }

@@ -28,6 +28,7 @@ def simulate(
     steady: bool = False,
     run_up: str | None = None,
     seconds: float = 2.0,
+    contact: Literal["linear", "unilateral"] = "linear",
     supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
@@ -52,7 +53,10 @@ def simulate(
     steady : Only the periodic motion over one mesh cycle (lumped).
     run_up FROM..TO : Speed that rises or falls evenly, rpm (lumped).
     seconds : Duration of --run-up.
+    contact : Linear, in which teeth may pull, or unilateral, in which they only push (lumped).
     """
+    import numpy as np
+
     import lumped
     from lumped.errors import refuse
     from lumped.model.periodic_system import supports_of
@@ -66,6 +70,7 @@ def simulate(
         ("--steady", steady and exact, "without --model multibody"),
         ("--run-up", rising and (steady or exact), "without --steady and --model multibody"),
         ("--seconds", seconds != 2.0 and not rising, "with --run-up"),
+        ("--contact", contact != "linear" and exact, "without --model multibody"),
         ("--fidelity", fidelity != "exact" and not exact, "with --model multibody"),
         ("--cycles", cycles != 20 and (steady or rising), "without --steady and --run-up"),
         ("--initial", initial != "static" and (steady or rising), "without --steady and --run-up"),
@@ -78,15 +83,15 @@ def simulate(
             if not end:
                 raise refuse("--run-up", run_up, "two speeds FROM..TO", "For example 500..6000.")
             ends = (opt.number_in("--run-up", begin, "rpm"), opt.number_in("--run-up", end, "rpm"))
-            result = lumped.run_up(pair, ends, seconds, supports=held, progress=tell)
+            result = lumped.run_up(pair, ends, seconds, contact=contact, supports=held, progress=tell)
         _show_run_up(pair.name, held, result, as_json=as_json)
         return files.write(result)
     with progress_bar(f"{model} model") as tell:
         common: dict[str, Any] = {"samples_per_cycle": samples, "supports": held}
         if steady:
-            result = lumped.steady_state(pair, **common)
+            result = lumped.steady_state(pair, contact=contact, **common)
         elif model == "lumped":
-            result = lumped.simulate(pair, cycles, initial=initial, progress=tell, **common)
+            result = lumped.simulate(pair, cycles, contact=contact, initial=initial, progress=tell, **common)
         else:
             import multibody
 
@@ -98,14 +103,13 @@ def simulate(
     largest, smallest = load_range(pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
     dte = cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None)
     factor = largest / (pair.operating.pinion_torque / g.base_radius_pinion)
-    efficiency = f"mesh efficiency{'' if form.conservative else ', sliding alone'}"
     numbers = {
         "dte_peak_to_peak": ("transmission error, peak to peak", dte, "m", 3),
         "dte_mean": ("transmission error, mean", float(last["dte"][:samples].mean()), "m", 4),
         "normal_load_max": ("largest load of a tooth pair", largest, "N", 3),
         "normal_load_min": (f"smallest load of {form.pressed}", smallest, "N", 3),
         "load_factor": ("largest load over static load", factor, "1", 3),
-        "mesh_efficiency": (efficiency, float(result.attrs["mesh_efficiency"]), "%", 4),
+        "mesh_efficiency": ("mesh efficiency", float(result.attrs.get("mesh_efficiency", np.nan)), "%", 4),
         "brake_torque": ("brake torque that holds the speed", float(result.attrs["brake_torque"]), "N m", 6),
     }
     # Where energy is not conserved the brake torque balances sliding alone.
@@ -123,10 +127,11 @@ def simulate(
         )
         show(f"{pair.name} on {held}, last mesh cycle", "quantity | >value", rows)
     separation = contact_loss(pair, g, last)
-    if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
+    linear = contact == "linear" if model == "lumped" else fidelity == "linear"
+    if separation.state != "ok" and linear:
         note(
             f"contact loss: {separation.detail}. Here the teeth pull instead, so the motion is not to be "
-            "relied on. Use --model multibody, or more torque or damping."
+            "relied on. Use --contact unilateral, or more torque or damping."
         )
     if (radius := float(result.attrs.get("spectral_radius", 0.0))) > 1.0:
         note(

@@ -27,6 +27,7 @@ from validation.cross_check.losses import LossAgreement, loss_agreement, sliding
 from validation.cross_check.motions import (
     CONTACT_LOSS,
     integration_tolerances,
+    momentary_motion,
     periodic_motion,
     repeated,
     unilateral_orbit,
@@ -34,7 +35,6 @@ from validation.cross_check.motions import (
 from validation.cross_check.own_teeth import both_motions
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit_of
-from validation.prediction.motion import by_momentary_load, losses, losses_of
 
 #: Cycles at the end of a run that are compared where the exact model has no periodic motion.
 _COMPARED_CYCLES = 4
@@ -249,12 +249,8 @@ def _compared(
             supports="springs",
             progress=part(0),
         )
-        best, lost = reference, losses_of(reference)
     else:
         stable, reference = True, repeated(orbit.sampled(samples), cycles)
-        momentary = by_momentary_load(orbit, samples)
-        best = reference if momentary is None else repeated(momentary, cycles)
-        lost = losses(pair, orbit.sampled(samples)) if momentary is None else losses_of(momentary)
     cycle = reference.isel(time=slice(-samples - 1, -1))
     rtol = integration_tolerances({name: cycle[name].to_numpy() for name in QUANTITIES})
     results: dict[Fidelity, xr.Dataset] = {}
@@ -281,6 +277,9 @@ def _compared(
             supports="springs",
             progress=part(done),
         )
+    # A periodic motion with exact contact is compared with the prediction, in which no pair pulls.
+    momentary = None if exact is None or pulling else momentary_motion(pair, cycle, samples)
+    best = reference if momentary is None else repeated(momentary, cycles)
     compared = min(_COMPARED_CYCLES, cycles // 2) if exact is None else 1
     end = slice(-compared * samples - 1, None)
     agreements = []
@@ -300,6 +299,6 @@ def _compared(
         conservation=checks,
         powers=powers,
         orbit=orbit,
-        loss=None if exact is None else loss_agreement(lost, exact),
+        loss=None if exact is None else loss_agreement(best, exact),
         pulling=pulling,
     )

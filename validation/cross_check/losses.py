@@ -63,13 +63,10 @@ class LossAgreement:
         return Judgement("exact: loss", self.difference, self.limit, _REASON)
 
 
-def loss_agreement(lumped: Mapping[str, float], multibody: xr.Dataset) -> LossAgreement | None:
-    """Compare the losses of a lumped motion with those that a periodic multibody motion carries.
-
-    None where the multibody motion is a run, which carries none.
-    """
-    found = losses_of(multibody)
-    return LossAgreement(dict(lumped), found) if found else None
+def loss_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
+    """Compare the losses that a motion of each model carries; None where one of them carries none."""
+    own, other = losses_of(lumped), losses_of(multibody)
+    return LossAgreement(own, other) if own and other else None
 
 
 def sliding_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement:

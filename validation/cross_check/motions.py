@@ -6,10 +6,12 @@ Sources: docs/theory/validity.md, "Beyond contact loss".
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 
 import numpy as np
 import xarray as xr
 
+import floquet
 import lumped
 import multibody
 from floquet.gear.motions import GearOrbit
@@ -19,7 +21,6 @@ from lumped.model.results import LOAD_NOISE
 from lumped.typing import FloatArray
 from validation.cross_check.agreement import COMPANION, Fidelity, is_constant
 from validation.cross_check.verdict import SAME_EQUATIONS
-from validation.prediction.motion import unilateral_motion
 
 #: Tolerances of the integrations: far below the limits they are used to check, where a motion has an ordinary
 #: size: the smallest limit over the deflection, as a share of that of the transmission error.
@@ -29,6 +30,8 @@ _ORDINARY = 0.2
 _TIGHTER = 0.001
 #: Velocity over which friction changes its sign where the integrator cannot follow the model's own one [m/s].
 _BLUNT = 0.01
+#: Change of the peak to peak by momentary loads, at most, that is still the same motion.
+_NEAR = 0.25
 #: Effects of the multibody model where contact is lost.
 CONTACT_LOSS: Mapping[Fidelity, Mapping[str, bool] | Sequence[str]] = {
     "linear": ["contact_loss"],
@@ -45,12 +48,12 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
     near the linear motion, nor where a run settles that starts there. Then the second value says why a motion
     is compared in which teeth pull; else it is empty.
     """
-    motion = lumped.steady_state(pair, samples_per_cycle=512, supports="springs")
+    motion = lumped.steady_state(pair, supports="springs", samples_per_cycle=512)
     least = -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     if float(motion["normal_load"].min()) >= least:
         return None, ""
     try:
-        orbit, _ = unilateral_motion(pair)
+        orbit = settled_orbit(pair)
     except NumericalError:
         return None, f"{_PULL} no periodic motion with contact loss was found. {_ADVICE}"
     if not orbit.stable or orbit.n > 1:
@@ -62,6 +65,38 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
             f"{backlash}. State the real mesh.backlash if that is too little. {_ADVICE}"
         )
     return orbit, ""
+
+
+def settled_orbit(pair: GearPair) -> GearOrbit:
+    """The motion with unilateral contact, tangents and dampers those of the static load, that a run comes to.
+
+    It is the one that Newton's method finds from the linear motion, if that is stable; else the one to which
+    a run settles. A NumericalError says that the motion does not repeat, or does not stay bounded.
+    """
+    with suppress(NumericalError):
+        orbit = floquet.periodic_orbit(pair)
+        if orbit.stable:
+            return orbit
+    settled = floquet.long_run(pair)
+    if settled.orbit is None:
+        raise NumericalError(
+            f"The motion with unilateral contact does not repeat: {settled.kind}. Read its branches over "
+            "speed: spurcheck response."
+        )
+    return GearOrbit(pair, settled.orbit)
+
+
+def momentary_motion(pair: GearPair, linear: xr.Dataset, samples: int) -> xr.Dataset | None:
+    """The lumped motion by momentary load over one mesh cycle, on springs; None where none is near the other.
+
+    ``linear`` has the tangents and dampers of the static load.
+    """
+    with suppress(NumericalError):
+        found = lumped.steady_state(pair, contact="unilateral", supports="springs", samples_per_cycle=samples)
+        swings = float(np.ptp(found["dte"].to_numpy())), float(np.ptp(linear["dte"].to_numpy()))
+        if found.attrs["period_cycles"] == 1 and abs(swings[0] - swings[1]) <= _NEAR * swings[1]:
+            return found
+    return None
 
 
 def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]:

@@ -48,7 +48,7 @@ def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr
             {"mesh.first_teeth": [(n - 1 + start) % z + 1 for n, z in zip(first, teeth, strict=True)]}
         )
     samples = min(samples, default_samples(period))
-    motion = lumped.steady_state(pair, samples_per_cycle=samples, supports="springs")
+    motion = lumped.steady_state(pair, contact="unilateral", supports="springs", samples_per_cycle=samples)
     number = np.arange((_FORGOTTEN + compared) * samples + 1)
     reference = motion.isel(time=number % motion.sizes["time"])
     time = reference["time"].to_numpy()[1] * np.arange(number.size)

@@ -159,8 +159,13 @@ def _rows(known: Known) -> Iterator[Row]:
     )
     size, note = (np.nan, "the second program did not run") if same is None else (same * own.peak_to_peak, "")
     yield Row("programs", "same equations in two programs", "numerics", (size, np.nan, np.nan), note)
-    notes = {Motion.LINEAR: "the prediction is this motion", Motion.SHAFTS: "on springs, not on the shafts"}
-    note = _note(linear, notes.get(own.motion, _linear_contact(pair, linear)))
+    notes = [
+        _linear_contact(pair, linear),
+        *([] if pair.shafts is None else ["on springs, not on the shafts"]),
+    ]
+    if own.motion is Motion.LINEAR:
+        notes[0] = "the prediction is this motion"
+    note = _note(linear, "; ".join(notes))
     yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
     exact = (
         "the pair has it" if pair.mesh.stiffness.model == "finite_elements" else "left out of a quick report"

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -20,7 +19,6 @@ from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
-from lumped.model.solution import steady_cycle
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -49,10 +47,6 @@ TEETH = {
 _TEETH_SAMPLES = 32
 #: Samples of them beside those of like teeth, and mesh cycles of all together.
 _LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = 8, 32, 30_000
-#: Of a sample nobody asks for the error of the integration, and steps twice as long add 4e-6
-#: of a result at most (shafts of 108 states, and 570 vibrations in a cycle; none with less than 40).
-_MOTION = partial(steady_cycle, estimate_error=False)
-_SAMPLE = partial(_MOTION, step_angle=STEP)
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 
 
@@ -250,7 +244,7 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             varied = _varied(pair, changes)
-            found, own = predicted(varied.healthy, _SAMPLE if changes else _MOTION), _of_teeth(varied)
+            found, own = predicted(varied.healthy), _of_teeth(varied)
     except SpurcheckError:
         return None
     orders = np.zeros(ORDERS)
@@ -263,8 +257,7 @@ def _of_teeth(pair: GearPair) -> list[float]:
     """The quantities ``TEETH``; none of like teeth."""
     if pair.healthy is pair:
         return []
-    supports = supports_of(pair, None)
-    motion = lumped.steady_state(pair, samples_per_cycle=_TEETH_SAMPLES, supports=supports, touch="linear")
+    motion = lumped.steady_state(pair, samples_per_cycle=_TEETH_SAMPLES)
     beside = [sidebands(motion, gear, most=3)["ratio"][0].drop_sel(sideband=0) for gear in GEARS]
     return [float(motion.attrs["dte_peak_to_peak"]), max(float(one.max()) for one in beside)]
 

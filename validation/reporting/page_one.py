@@ -225,11 +225,9 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
         return Verdict.OUTSIDE, f"{Verdict.OUTSIDE.value}: {first}.", "; ".join(others)
     if reason := _hazard(results, prediction):
         return Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {reason[0]}.", reason[1]
-    if prediction.contact_lost:
-        text = (
-            "In the linear motion on the shafts teeth pull. In the second program they only push, and contact"
-        )
-        return Verdict.COMPARE, Verdict.COMPARE.value, f"{text} is kept: its numbers are the better ones."
+    if prediction.reason:
+        text = f"No motion with unilateral contact was found: {prediction.reason}"
+        return Verdict.COMPARE, Verdict.COMPARE.value, f"{text} The numbers are those of the linear motion."
     calm = _calm(results)
     found = results.uncertainty
     given, assumed, word = results.inputs
@@ -268,19 +266,35 @@ def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
         rises = (
             f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times the static one."
         )
-        words = f"{rises} {_jump_words(results)} {_attractor_words(results)}"
+        others = f"{_other_motions(results)}." if results.other_motions else ""
+        words = f"{rises} {others} {_jump_words(results)} {_attractor_words(results)}"
         return f"the teeth lose contact{place}", " ".join(words.split())
     if results.teeth_apart:
         what = f"the teeth as given lose contact, at {results.teeth_apart} pairs of teeth that meet"
         return what, "The numbers below are those of like teeth, which keep it."
     if not prediction.stable:
         return "the motion is unstable", "A small disturbance grows until contact is lost."
+    if results.other_motions:
+        what = f"the pair can move in {len(results.other_motions) + 1} ways at this speed"
+        return (
+            what,
+            f"{_other_motions(results)}. How the speed was reached decides. {_jump_words(results)}".strip(),
+        )
     if near:
         return (
             what,
             f"The operating speed is {_rpm(results.operating_rpm)}. {_attractor_words(results)}".strip(),
         )
     return None
+
+
+def _other_motions(results: Results) -> str:
+    """The transmission errors of all stable motions at the operating speed, the predicted one first."""
+    sizes = [results.prediction.peak_to_peak, *(one.peak_to_peak for one in results.other_motions)]
+    first, *others = (quantity(size, "m", 3) for size in sizes)
+    return (
+        f"Stable are motions with a transmission error of {first}, as predicted, and {' and '.join(others)}"
+    )
 
 
 def _jump_words(results: Results) -> str:

@@ -15,6 +15,7 @@ import floquet
 import lumped
 import multibody
 from floquet.gear.axes import chart_axes, operating_rpm, speed_range
+from floquet.gear.motions import GearOrbit
 from floquet.gear.response import ResponseBranches
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
@@ -44,6 +45,8 @@ from validation.validity.plausibility import parameter_warnings
 _SLACK = 1e-9
 #: A curve over speed passes through the table's value within this share: it is computed with other samples.
 _SAME = 2e-3
+#: Share of its peak to peak by which another motion differs from the prediction at least.
+_APART = 0.25
 #: Speeds of the motions beyond contact loss, over the operating speed.
 BRANCH_SPEEDS = (0.8, 1.25)
 #: Speeds an octave at which runs settle, to find beats and chaos.
@@ -231,14 +234,18 @@ class Results:
 
     @property
     def contact_lost(self) -> bool:
-        """Whether contact is lost at the operating point.
+        """Whether contact is lost at the operating point."""
+        return self.prediction.contact_lost
 
-        On the shafts, where the linear motion lets teeth pull, by the second program if it has a motion.
-        """
-        lost = self.prediction.contact_lost
-        if not lost or self.pair.shafts is None or isinstance(self.second, Absent):
-            return lost
-        return self.second.contact_lost
+    @cached_property
+    def other_motions(self) -> tuple[GearOrbit, ...]:
+        """Further stable motions that were found at the operating speed, by size; see ``branches``."""
+        if not isinstance(self.branches, ResponseBranches) or self.pair.shafts is not None:
+            return ()  # branches are those on springs
+        own = self.prediction.peak_to_peak
+        stable = [one for one in self.branches.at(self.operating_rpm) if one.stable]
+        others = [one for one in stable if abs(one.peak_to_peak / own - 1.0) > _APART]
+        return tuple(sorted(others, key=lambda one: one.peak_to_peak))
 
     @property
     def teeth_apart(self) -> int:

@@ -18,7 +18,6 @@ import lumped
 from lumped.arguments import of_type, one_of, real_number, whole_number
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
-from lumped.model.periodic_system import supports_of
 from lumped.typing import BoolArray, FloatArray
 from validation.signals.orders import Harmonics, harmonics
 
@@ -201,8 +200,12 @@ def indicators(
     draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
     found = harmonics(result, variable, derivative)
     samples = max(2 * (found.values.size - 1) // found.cycles, 8)
-    supports = supports_of(found.pair, result.attrs.get("supports"))
-    healthy = lumped.steady_state(found.pair.healthy, samples_per_cycle=samples, supports=supports)
+    healthy = lumped.steady_state(
+        found.pair.healthy,
+        contact=result.attrs.get("contact", "unilateral"),
+        supports=result.attrs.get("supports"),
+        samples_per_cycle=samples,
+    )
     twin = harmonics(healthy, variable, derivative)
     averages = [_average(found, shaft), _average(twin, shaft)]
     averages = [one + floor * draw.standard_normal(one.size) for one in averages]

@@ -43,9 +43,11 @@ class TeethFindings:
             )
             raise refuse("pinion", "teeth that are alike", "teeth that differ", action)
         self.pair, self.supports = pair, supports_of(pair, supports)
-        self.motion = lumped.steady_state(pair, supports=self.supports)
+        self.motion = lumped.steady_state(pair, contact="unilateral", supports=self.supports)
         samples = self.motion.sizes["time"] // self.period
-        self.twin = lumped.steady_state(pair.healthy, samples_per_cycle=samples, supports=self.supports)
+        self.twin = lumped.steady_state(
+            pair.healthy, contact="unilateral", supports=self.supports, samples_per_cycle=samples
+        )
 
     @property
     def period(self) -> int:

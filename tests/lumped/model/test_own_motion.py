@@ -153,7 +153,7 @@ OWN = {
 @pytest.mark.parametrize("name", OWN)
 def test_first_law_holds_over_the_period_with_the_moment_of_eccentric_gears(name):
     pair = unlike_pair(name).with_(OWN[name])
-    pushed = lumped.steady_state(pair, samples_per_cycle=8)
+    pushed = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
     g, found = pair.geometry, pushed.attrs
     driving, braking = pair.operating.pinion_torque * g.omega_pinion, found["brake_torque"] * g.omega_gear
     lost = found["power_sliding"] + found["power_tooth_dampers"] + found["power_bearings"]
@@ -163,10 +163,10 @@ def test_first_law_holds_over_the_period_with_the_moment_of_eccentric_gears(name
 
 def test_linear_form_has_the_losses_of_the_unilateral_motion_where_every_pair_pushes():
     pair = unlike_pair("unlike_teeth_finite_elements")
-    pushed = lumped.steady_state(pair, samples_per_cycle=8)
+    pushed = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
     # The linear form integrates dampers and supports, and has sliding from the first law; the moments of the
     # eccentric gears turn both.
-    tied = lumped.steady_state(pair, samples_per_cycle=8, touch="linear")
+    tied = lumped.steady_state(pair, samples_per_cycle=8, contact="linear")
     for name, near in (("brake_torque", 1e-5), ("power_sliding", 1e-3), ("power_bearings", 0.02)):
         assert tied.attrs[name] == pytest.approx(pushed.attrs[name], rel=near), name
     assert np.ptp(tied.theta_p.values) == pytest.approx(np.ptp(pushed.theta_p.values), rel=0.01)
@@ -177,10 +177,10 @@ def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(name):
     first = {} if "mounting" in str(OWN[name]) else {"mesh.first_teeth": [3, 1]}
     pair = unlike_pair(name).with_(OWN[name] | first)
     period, cycles = lumped.revolution(pair), 150
-    steady = lumped.steady_state(pair, samples_per_cycle=8)
+    steady = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
     size, force = np.ptp(steady.dte.values), pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     for initial, left in (("periodic", 0), ("static", 100)):
-        run = lumped.simulate(pair, cycles, samples_per_cycle=8, initial=initial)
+        run = lumped.simulate(pair, cycles, contact="unilateral", samples_per_cycle=8, initial=initial)
         assert (run.sizes["time"], run.attrs["teeth"]) == (cycles * 8 + 1, "as given")
         tooth = (
             "gear_tooth" if period == pair.gear.teeth else "pinion_tooth"
@@ -265,7 +265,7 @@ class TestOfEveryPair:
 
     def test_dampers_begin_together_with_the_elastic_load(self, loaded):
         pair = loaded.with_({"pinion.deviations": steps(3.0 * ERRORS), "operating.pinion_speed": 4000})
-        run = lumped.steady_state(pair, samples_per_cycle=64)
+        run = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=64)
         gap, inner, k = inside(pair, run)
         elastic = k * (run.dte.values - gap)
         part = np.clip(elastic / FULL_DAMPING / (56.5 / pair.geometry.base_radius_pinion), 0.0, 1.0)
@@ -319,8 +319,8 @@ def test_ripple_of_the_torque_is_carried_to_the_other_shaft(loaded, form):
     (contact, touch), still = form.split(), {"friction.coefficient": 0.0}
     pair = loaded.with_({"operating.torque_ripple": ripple, "mesh.contact": contact, **still})
     with pytest.raises(lumped.ParameterError, match="Add the inertia of motor"):  # swings by centimetres
-        lumped.steady_state(pair.with_(operating__pinion_speed=200), touch=touch)
-    run = lumped.steady_state(pair, samples_per_cycle=512, touch=touch)
+        lumped.steady_state(pair.with_(operating__pinion_speed=200), contact=touch)
+    run = lumped.steady_state(pair, samples_per_cycle=512, contact=touch)
     load = run.normal_load.sum("pair").values
     first = 2.0 * np.fft.rfft(load)[5] / load.size * pair.geometry.base_radius_pinion
     near = 5e-3 if contact == "loaded" else 0.1  # in fixed windows the load rings after each change

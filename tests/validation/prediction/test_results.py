@@ -14,11 +14,6 @@ from validation.prediction.motion import Motion, predicted
 PRESCRIBED = {
     f"{name}, prescribed": name for name in UNLIKE if unlike_pair(name).healthy is unlike_pair(name)
 }
-#: Motions with unilateral contact: of pairs with loaded contact on springs, teeth alike or not.
-UNILATERAL = (
-    "contact_ratio_1_1_large_shifts", "heavily_relieved_under_load", "larger_gear_drives_contact_lost",
-    "rack_25_degrees_always_pushing", "unlike_teeth_finite_elements",
-)  # fmt: skip
 CASES = (*UNLIKE, *PRESCRIBED)
 
 
@@ -37,9 +32,10 @@ def prediction():
 
 
 def test_the_cases_hold_every_kind_of_motion(prediction):
-    kinds = {name: prediction(name).motion for name in (*UNLIKE, *PRESCRIBED)}
-    assert set(kinds.values()) == {Motion.LINEAR, Motion.SHAFTS, Motion.UNILATERAL}
-    assert {name for name, kind in kinds.items() if kind is Motion.UNILATERAL} == set(UNILATERAL)
+    found = [prediction(name) for name in CASES]
+    assert {one.motion for one in found} == {Motion.UNILATERAL}
+    assert {one.cycle.attrs["supports"] for one in found} == {"springs", "shafts"}
+    assert {one.cycle.attrs["teeth"] for one in found} == {"alike", "as given"}
     assert prediction("larger_gear_drives_contact_lost").contact_lost
 
 

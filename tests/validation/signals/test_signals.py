@@ -91,7 +91,7 @@ def test_errors_of_the_gear_leave_the_average_of_the_pinion_in_fixed_contacts_al
         lists = {"index": list(errors - errors.mean()), "first_order": "steps"}
         healthy, found = (
             time_synchronous_average(
-                lumped.steady_state(one, touch=touch, samples_per_cycle=8), variable="dte", derivative=0
+                lumped.steady_state(one, contact=touch, samples_per_cycle=8), variable="dte", derivative=0
             )["average"].to_numpy()
             for one in (pair, pair.with_({"gear.deviations": lists}))
         )

@@ -67,7 +67,7 @@ def write(results: Results) -> Content:
                     "stable": ("stable", lambda o: o.stable),
                     "size": (
                         "transmission error, peak to peak",
-                        lambda o: Quantity(float(np.ptp(o.dte_range)), "m"),
+                        lambda o: Quantity(o.peak_to_peak, "m"),
                     ),
                     "load": ("largest tooth load", lambda o: Quantity(o.largest_load, "N")),
                 },
