@@ -87,7 +87,7 @@ CHANGES: dict[str, Any] = {
 
 def compared(pair: GearPair) -> CrossCheck:
     """Only what decides between "agrees" and "differs"."""
-    return crosscheck(pair, cycles=6, fidelities=("exact",))
+    return crosscheck(pair, cycles=6, fidelities=("exact",), supports="springs")
 
 
 def cause(check: CrossCheck) -> tuple[str, str]:

@@ -9,7 +9,6 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +22,7 @@ from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, Fri
 from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.periodic_system import Supports
+from lumped.model.periodic_system import Supports, supports_of
 from lumped.path_of_contact.friction import contact_path, fit_law, reads_average, violations_of
 from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -50,15 +49,21 @@ class GearVariation:
     pair: GearPair
     friction_mean: float | None = None
     stiffness_variation: float = 1.0
-    supports: Supports = "springs"
+    supports: Supports = field(kw_only=True)
 
     @classmethod
-    def of(cls, source: AnyPair | GearVariation, supports: Supports = "springs") -> GearVariation:
-        """A pair as it is on these supports, or a variation of one, which names its own."""
-        if isinstance(source, GearVariation):
-            return source
-        one_of("supports", supports, get_args(Supports))
-        return cls(load_gear_pair(source), supports=supports)
+    def of(cls, source: AnyPair | GearVariation, supports: Supports | None = None) -> GearVariation:
+        """A pair as it is on these supports, by default on its shafts if it has them; or a variation of one.
+
+        A variation names its own supports: others are refused.
+        """
+        if not isinstance(source, GearVariation):
+            pair = load_gear_pair(source)
+            return cls(pair, supports=supports_of(pair, supports))
+        if supports not in (None, source.supports):
+            allowed = f'"{source.supports}", those of the variation'
+            raise refuse("supports", supports, allowed, "Leave them out, or give the pair.")
+        return source
 
     @property
     def friction_scale(self) -> float:
@@ -99,6 +104,12 @@ class GearAxis(ChartAxis):
 
 def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
     return lambda variation, value: replace(variation, pair=variation.pair.with_(dict.fromkeys(paths, value)))
+
+
+def _bearings(variation: GearVariation, value: float) -> GearVariation:
+    """One stiffness of all four springs, which must hold the gears."""
+    _check_springs(variation.supports)
+    return _SPRINGS(variation, value)
 
 
 def _friction(variation: GearVariation, value: float) -> GearVariation:
@@ -146,6 +157,7 @@ def operating_rpm(pair: GearPair) -> float:
     return float(pair.operating.pinion_speed * 30.0 / np.pi)
 
 
+_SPRINGS = _field(*(f"bearings.{g}.{d}_stiffness" for g in ("pinion", "gear") for d in ("loa", "oloa")))
 GEAR_AXES: Mapping[str, GearAxis] = {
     "speed_rpm": GearAxis(
         "rpm", "pinion speed", _field("operating.pinion_speed"), operating_rpm, low=0.0, open_low=True
@@ -171,27 +183,32 @@ GEAR_AXES: Mapping[str, GearAxis] = {
         lambda pair: pair.geometry.contact_ratio, low=1.0, high=3.0,
     ),
     "bearing_stiffness": GearAxis(
-        "N/m", "stiffness of all bearings, LOA and OLOA",
-        _field(*(f"bearings.{g}.{d}_stiffness" for g in ("pinion", "gear") for d in ("loa", "oloa"))),
+        "N/m", "stiffness of all bearings, LOA and OLOA", _bearings,
         lambda pair: pair.bearings.pinion.loa_stiffness, low=0.0, open_low=True,
     ),
 }  # fmt: skip
 """Axis name -> what it varies."""
 
 
-def gear_grid(axes: Axes, supports: Supports = "springs") -> dict[str, FloatArray]:
+def gear_grid(axes: Axes, supports: Supports) -> dict[str, FloatArray]:
     """Axes of gear-pair parameters as 1-D arrays, or the refusal of names, values or supports."""
     grid = checked_axes(axes)
     for name, values in grid.items():
         GEAR_AXES[one_of("axes", name, GEAR_AXES)].check(name, values)
-    if supports == "shafts" and "bearing_stiffness" in grid:
-        action = "Set shafts.pinion.bearings.1.loa_stiffness and so on."
-        raise refuse("axes", "bearing_stiffness", "not with shafts", action)
+    if "bearing_stiffness" in grid:
+        _check_springs(supports)
     return grid
 
 
+def _check_springs(supports: Supports) -> None:
+    """Refuse to vary springs that hold nothing."""
+    if supports == "shafts":
+        action = 'Set shafts.pinion.bearings.1.loa_stiffness and so on, or give supports="springs".'
+        raise refuse("axes", "bearing_stiffness", "not with shafts", action)
+
+
 def vary(
-    pair: GearPair | GearVariation, point: Mapping[str, float], supports: Supports = "springs"
+    pair: GearPair | GearVariation, point: Mapping[str, float], supports: Supports | None = None
 ) -> GearVariation:
     """Return the pair at one point of a chart."""
     variation = GearVariation.of(pair, supports)

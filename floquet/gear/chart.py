@@ -37,7 +37,7 @@ from lumped.arguments import of_type, one_of, real_number
 from lumped.errors import LawRangeWarning, refuse
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.periodic_system import Supports
-from lumped.schema.files import AnyPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, IntArray, Progress
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def stability_chart(
     prove: bool = False,
     rtol: float = 1e-10,
     store: Literal["all", "radius"] = "radius",
-    supports: Supports = "springs",
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Stability chart of a gear pair.
@@ -86,7 +86,8 @@ def stability_chart(
     rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
     store : "radius"; or "all" for the multipliers too, which every node must be evaluated for: 258 bytes a
         point instead of 19
-    supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most
+    supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most; by default
+        the shafts of a pair that has them
     progress : told the finished fraction
 
     Returns
@@ -111,7 +112,7 @@ def stability_chart(
         A point fails; the message names it.
     """
     variation = GearVariation.of(pair, supports)
-    grid = gear_grid(chart_axes(variation.pair) if axes is None else axes, supports)
+    grid = gear_grid(chart_axes(variation.pair) if axes is None else axes, variation.supports)
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
@@ -134,7 +135,7 @@ def stability_chart(
     for name in grid:
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
-    dataset = dataset.assign_attrs(title=title, friction_law=law, supports=supports, rtol=rtol)
+    dataset = dataset.assign_attrs(title=title, friction_law=law, supports=variation.supports, rtol=rtol)
     rpm, teeth = operating_rpm(variation.pair), variation.pair.pinion.teeth
     dataset = dataset.assign_attrs(operating_speed_rpm=rpm, mesh_cycles_per_revolution=teeth)
     return with_regions(variation, dataset)
@@ -380,7 +381,7 @@ class ChartSlice:
 
 def label_variation(variation: GearVariation) -> Tongue:
     """Label the fastest growing motion of a pair by its mode shape, see `label_tongue`."""
-    block = gear_block(variation, supports=variation.supports)
+    block = gear_block(variation)
     matrix = fast_monodromies(block).matrices[0]
     return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
 
@@ -410,16 +411,15 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
 
     Parameters
     ----------
-    pair : the pair of the chart, with the friction law of the chart
+    pair : the pair of the chart, with the friction law of the chart; the chart names its supports
     chart : dataset of `stability_chart` over any axes
 
     Returns
     -------
     regions, the largest first; of more than 200 the largest 200
     """
-    variation = GearVariation.of(pair)
-    if variation is not pair:
-        variation = replace(variation, supports=chart.attrs.get("supports", "springs"))
+    source = pair if isinstance(pair, GearVariation) else load_gear_pair(pair)
+    variation = GearVariation.of(source, chart.attrs.get("supports"))
     radius = chart["spectral_radius"]
     names = list(map(str, radius.dims))
     values = np.where(chart["known"].to_numpy(), radius.to_numpy(), -np.inf)

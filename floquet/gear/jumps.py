@@ -26,6 +26,7 @@ from lumped.arguments import one_of, real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
 from lumped.labelling import Variable, labelled_dataset
+from lumped.model.periodic_system import Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -98,7 +99,7 @@ JUMP_AXES: Mapping[str, GearAxis] = {
 
 
 def pair_at(pair: GearPair, axis: str, value: float) -> GearPair:
-    return JUMP_AXES[axis].apply(GearVariation(pair), value).pair
+    return JUMP_AXES[axis].apply(GearVariation(pair, supports="springs"), value).pair
 
 
 @warned_once()
@@ -108,6 +109,7 @@ def jump_map(
     periods: Collection[int] = (1, 2),
     *,
     seeds: int = 0,
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Map of the motions with unilateral contact, and of the jumps between them, over speed and another axis.
@@ -123,6 +125,7 @@ def jump_map(
         tip_relief, the amount [um], of all gears that have it; at most a million points
     periods : mesh cycles after which motions repeat
     seeds : speeds at which runs settle for each value, to find isolated branches
+    supports : "springs", on which alone it is computed; needed for a pair with shafts
     progress : told the finished fraction
 
     Returns
@@ -136,9 +139,10 @@ def jump_map(
 
     Raises
     ------
-    ParameterError : unknown axis, values outside its range, too many points, a pair without tip relief
+    ParameterError : unknown axis, values outside its range, too many points, a pair without tip relief,
+        or shafts
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "jump_map")
     name, grid = _checked(pair, axes)
     wanted = sorted({whole_number("periods", n, 1, 64) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)

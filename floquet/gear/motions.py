@@ -26,7 +26,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.periodic_system import LTVSystem
+from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
 from lumped.quasi_static.elements import MeshElements
@@ -54,7 +54,7 @@ class GearOrbit:
 
     Attributes
     ----------
-    pair : the gear pair at this speed
+    pair : the gear pair at this speed, without shafts
     orbit : the motion in (q, x_p, x_g) and their phase rates; with y_p, y_g where the back sides may strike
     """
 
@@ -171,7 +171,7 @@ class GearOrbit:
         phases = np.arange(samples_per_cycle) / samples_per_cycle
         run = o.system.run(o.start, o.period, o.n, o.parameter, samples=phases)
         states = _absolute_states(self.pair, cycle, o, run)
-        system = LTVSystem.of(self.pair, "full", cycle=cycle)
+        system = LTVSystem.of(self.pair, "full", cycle=cycle, supports="springs")
         time, drive = run.phases * o.period, cycle.offsets.size
         values = response(system, time, states, run.loads[:, :drive].T)
         values["contact"] = (values["normal_load"] > 0.0).astype(float)
@@ -201,7 +201,7 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
     The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
     friction by the trapezoidal rule.
     """
-    g, support = pair.geometry, LTVSystem.of(pair, "elastic", cycle=cycle).supports
+    g, support = pair.geometry, LTVSystem.of(pair, "elastic", cycle=cycle, supports="springs").supports
     time, torques = run.phases * orbit.period, _torques(pair, orbit.parameter)
     steps = np.diff(time, append=orbit.n * orbit.period)
 
@@ -227,7 +227,12 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
 
 
 def periodic_orbit(
-    pair: AnyPair, n: int = 1, start: ArrayLike | GearOrbit | None = None, *, back_side: bool = False
+    pair: AnyPair,
+    n: int = 1,
+    start: ArrayLike | GearOrbit | None = None,
+    *,
+    back_side: bool = False,
+    supports: Supports | None = None,
 ) -> GearOrbit:
     """One periodic motion of the gear pair with unilateral contact.
 
@@ -241,13 +246,14 @@ def periodic_orbit(
     start : 12 states at t = 0 as ``lumped.simulate`` takes them, or another motion, from which Newton's
         method starts; None: the motion of the linear model
     back_side : whether the back sides of the teeth touch after the backlash
+    supports : "springs", on which alone it is computed; needed for a pair with shafts
 
     Raises
     ------
-    ParameterError : a start that is no state
+    ParameterError : a start that is no state, or shafts
     NumericalError : no periodic motion was found from the start
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "periodic_orbit")
     n = whole_number("n", n, 1, MOST_CYCLES)
     form = form_with(back_side=back_side)
     state, parameter = start_of(pair, start, form)
@@ -262,6 +268,7 @@ def long_run(
     settle_cycles: int = 400,
     cycles: int = 800,
     back_side: bool = False,
+    supports: Supports | None = None,
 ) -> runs.LongRun:
     """Say what a run of the unilateral gear pair settles to: a periodic motion, beats or chaos.
 
@@ -272,12 +279,13 @@ def long_run(
     settle_cycles : mesh cycles before the observation
     cycles : mesh cycles of the observation, over which the Lyapunov exponent is a mean
     back_side : whether the back sides of the teeth touch after the backlash
+    supports : "springs", on which alone it is computed; needed for a pair with shafts
 
     Raises
     ------
-    ParameterError : a start that is no state
+    ParameterError : a start that is no state, or shafts
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "long_run")
     form = form_with(back_side=back_side)
     state, parameter = start_of(pair, start, form)
     return runs.long_run(
@@ -323,7 +331,7 @@ def start_of(
     balanced = operating.brake_torque == "balanced"
     torque = operating.pinion_torque * (g.omega_pinion / g.omega_gear if balanced else 1.0)
     cycle = MeshCycle.of(pair) if elements is None else MeshCycle(g, elements)
-    absolute = LTVSystem.of(pair, "full", cycle=cycle)
+    absolute = LTVSystem.of(pair, "full", cycle=cycle, supports="springs")
     if start is not None:
         states = real_array("start", start)
         if states.shape != (12,):

@@ -140,7 +140,7 @@ def importance(system: LTVSystem) -> FloatArray:
 
 
 def gear_block(
-    source: AnyPair | GearVariation, rtol: float = 1e-11, *, supports: Supports = "springs"
+    source: AnyPair | GearVariation, rtol: float = 1e-11, *, supports: Supports | None = None
 ) -> RankOneSystem:
     """Return z = (q, x_p, x_g) of a gear pair, or on shafts modes: z'' + D z' + L z + w v.z + wd v.z' = 0.
 
@@ -153,7 +153,7 @@ def gear_block(
     ----------
     source : a gear pair, or a variation from a chart
     rtol : error of the fitted polynomials relative to the largest gain; it becomes part of the error bounds
-    supports : of a pair: "springs", its ``bearings``, or its "shafts"
+    supports : of a pair: "springs", its ``bearings``, or its "shafts"; by default the shafts if it has them
     """
     rtol = real_number("rtol", rtol, 1e-14, 0.1)
     variation = GearVariation.of(source, supports)
@@ -222,7 +222,7 @@ class GearPairMultipliers(Spectrum):
 
 
 def gear_pair_system(
-    source: AnyPair | GearVariation, form: Form = "elastic", *, supports: Supports = "springs"
+    source: AnyPair | GearVariation, form: Form = "elastic", *, supports: Supports | None = None
 ) -> PeriodicSystem:
     """Return the gear pair (or a variation of it) as a `PeriodicSystem`.
 
@@ -231,7 +231,7 @@ def gear_pair_system(
     source : the pair
     form : "elastic" (10 states), "mesh" (6) or "full" (12), as in ``lumped.periodic_system``; on
         shafts more, and "mesh" with the modes that count only, see `gear_pair_multipliers`
-    supports : of a pair: "springs", its ``bearings``, or its "shafts"
+    supports : of a pair: "springs", its ``bearings``, or its "shafts"; by default the shafts if it has them
     """
     variation = GearVariation.of(source, supports)
     one_of("form", form, get_args(Form))
@@ -314,7 +314,7 @@ def gear_pair_multipliers(
     rtol: float = 1e-10,
     *,
     method: str | Propagator = "taylor",
-    supports: Supports = "springs",
+    supports: Supports | None = None,
 ) -> GearPairMultipliers:
     """Floquet multipliers of a gear pair over one mesh cycle.
 
@@ -329,7 +329,7 @@ def gear_pair_multipliers(
     rtol : wanted error of the monodromy matrix relative to its norm, 1e-13 to 1e-1
     method : "taylor", the compiled kernel, whose bound is proven; or a method of `monodromy` on A(t) as a
         callable, for an independent estimate
-    supports : of a pair: "springs", its ``bearings``, or its "shafts"
+    supports : of a pair: "springs", its ``bearings``, or its "shafts"; by default the shafts if it has them
 
     Returns
     -------
@@ -401,7 +401,7 @@ class RevolutionMultipliers:
 
 
 def revolution_multipliers(
-    pair: AnyPair, rtol: float = 1e-10, *, supports: Supports = "springs"
+    pair: AnyPair, rtol: float = 1e-10, *, supports: Supports | None = None
 ) -> RevolutionMultipliers:
     """Multipliers over a revolution or hunting period of teeth that differ: docs/theory/teeth.md.
 
@@ -414,7 +414,8 @@ def revolution_multipliers(
     ----------
     pair : a validated gear pair
     rtol : wanted error of the map of a mesh cycle relative to its norm, 1e-11 to 1e-1
-    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them
 
     Raises
     ------
@@ -422,8 +423,7 @@ def revolution_multipliers(
     NumericalError : at some position no tooth pair can carry the load
     """
     pair, rtol = load_gear_pair(pair), real_number("rtol", rtol, 1e-11, 0.1)
-    one_of("supports", supports, ("springs", "shafts"))
-    feedback = feedback_system(GearVariation(pair.healthy, supports=supports))
+    feedback = feedback_system(GearVariation.of(pair.healthy, supports))
     like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
     cycles, laws = period_of(pair), ToothLaws(pair, every=True)
     # Errors of the teeth force prescribed contact and do not change it.

@@ -40,7 +40,7 @@ from lumped.arguments import whole_number
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import averaged_matrix
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.periodic_system import LTVSystem
+from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -109,7 +109,7 @@ class ResponseBranches:
 
     Attributes
     ----------
-    pair : the gear pair
+    pair : the gear pair, without shafts
     speeds_rpm : slowest and fastest speed [rpm]
     back_side : whether the back sides of the teeth touch
     response : what the search found, over the period
@@ -301,6 +301,7 @@ def response_branches(
     *,
     seeds: int = 20,
     back_side: bool = False,
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
@@ -318,13 +319,14 @@ def response_branches(
         repeat; 0: none
     back_side : whether the back sides of the teeth touch after the backlash; motions that need it say so
         without it (``GearOrbit.reaches_back_side``)
+    supports : "springs", on which alone they are computed; needed for a pair with shafts
     progress : called with the finished fraction
 
     Raises
     ------
-    ParameterError : speeds that are no range
+    ParameterError : speeds that are no range, or shafts
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "response_branches")
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
@@ -387,4 +389,5 @@ def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") 
 
 def _natural_frequency(pair: GearPair) -> float:
     """The fastest one of the averaged pair while contact holds [Hz]."""
-    return float(np.abs(np.linalg.eigvals(averaged_matrix(LTVSystem.of(pair, "mesh")))).max() / (2.0 * np.pi))
+    matrix = averaged_matrix(LTVSystem.of(pair, "mesh", supports="springs"))
+    return float(np.abs(np.linalg.eigvals(matrix)).max() / (2.0 * np.pi))

@@ -35,7 +35,7 @@ from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset, provenance
-from lumped.model.periodic_system import Supports
+from lumped.model.periodic_system import Supports, on_springs
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
@@ -59,7 +59,9 @@ _EDGE_ROWS, _EDGE_SPEEDS, _EDGE_ROUNDS = 25, 49, 14
 _MOST = 20_000  # speeds of the grid of a search
 
 
-def predicted_lines(pair: AnyPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
+def predicted_lines(
+    pair: AnyPair | GearVariation, orders: int = 12, *, supports: Supports | None = None
+) -> dict[Tongue, float]:
     """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
 
     omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
@@ -68,8 +70,9 @@ def predicted_lines(pair: AnyPair | GearVariation, orders: int = 12) -> dict[Ton
     ----------
     pair : the gear pair
     orders : largest k
+    supports : of a pair: "springs", its ``bearings``, or its "shafts"; by default the shafts if it has them
     """
-    variation = GearVariation.of(pair)
+    variation = GearVariation.of(pair, supports)
     orders = whole_number("orders", orders, 1, 1000)
     omega = gear_block(variation).modal().omega
     per_rpm = variation.pair.pinion.teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
@@ -89,7 +92,7 @@ def stability_boundaries(
     orders: int = 12,
     xtol: float = 1e-8,
     rtol: float = 1e-9,
-    supports: Supports = "springs",
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
@@ -108,7 +111,8 @@ def stability_boundaries(
     orders : largest k of the clusters
     xtol : relative accuracy of the boundaries
     rtol : of the monodromy matrices
-    supports : "springs", the pair's ``bearings``, or its "shafts"; labels then number the modes that count
+    supports : "springs", the pair's ``bearings``, or its "shafts", where labels number the modes that count;
+        by default the shafts of a pair that has them
     progress : told the finished fraction
 
     Returns
@@ -129,7 +133,7 @@ def stability_boundaries(
     low, high = checked_range("speed_rpm", speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
     xtol, rtol = real_number("xtol", xtol, 1e-15, 0.1), real_number("rtol", rtol, 1e-13, 1e-3)
-    checked = gear_grid(axes, supports) if axes is not None else {}
+    checked = gear_grid(axes, own.supports) if axes is not None else {}
     if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
         raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
     name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
@@ -149,7 +153,7 @@ def stability_boundaries(
             intervals.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)
-    result = _boundaries_dataset(own.pair, intervals, name, values, complete).assign_attrs(supports=supports)
+    result = _boundaries_dataset(own, intervals, name, values, complete)
     return result if axes else result.isel({name: 0}, drop=True)
 
 
@@ -170,7 +174,7 @@ def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArr
 
 
 def _boundaries_dataset(
-    pair: GearPair,
+    own: GearVariation,
     result: dict[Tongue, dict[int, list[UnstableInterval]]],
     name: str,
     values: FloatArray,
@@ -204,12 +208,22 @@ def _boundaries_dataset(
             "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
         {name: (values, axis.units, axis.long_name) if axis else (values, "1", "value")},
-        {"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
+        {
+            "title": f"stability boundaries of {own.pair.name}",
+            "friction_law": own.pair.friction.law,
+            "supports": own.supports,
+        },
     ).assign_coords(tongue_coordinates("tongue", tongues))
 
 
 def campbell(
-    pair: AnyPair, speeds_rpm: npt.ArrayLike, *, mesh_orders: int = 6, orders: int = 6, rtol: float = 1e-9
+    pair: AnyPair,
+    speeds_rpm: npt.ArrayLike,
+    *,
+    mesh_orders: int = 6,
+    orders: int = 6,
+    rtol: float = 1e-9,
+    supports: Supports | None = None,
 ) -> xr.Dataset:
     """Frequencies of the Floquet solutions over speed, against mesh orders and predicted tongues.
 
@@ -225,6 +239,7 @@ def campbell(
     mesh_orders : multiples of the mesh frequency to list
     orders : largest order k of the predicted lines (omega_i +- omega_j)/k
     rtol : of the monodromy matrices
+    supports : "springs", on which alone it is computed; needed for a pair with shafts
 
     Returns
     -------
@@ -236,11 +251,12 @@ def campbell(
 
     Raises
     ------
-    ParameterError : speeds that are not increasing
+    ParameterError : speeds that are not increasing, or shafts
     NumericalError
         A speed so low that a multiplier is too small for a number.
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "campbell")
+    variation = GearVariation.of(pair)
     speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
     mesh_orders = whole_number("mesh_orders", mesh_orders, 1, 1000)
     rtol = real_number("rtol", rtol, 1e-13, 1e-3)
@@ -251,7 +267,7 @@ def campbell(
     frequency, decay = np.empty((speeds.size, modes.size)), np.empty((speeds.size, modes.size))
     radius = np.empty(speeds.size)
     for index, speed in enumerate(speeds):
-        block = gear_block(vary(pair, {"speed_rpm": float(speed)}))
+        block = gear_block(vary(variation, {"speed_rpm": float(speed)}))
         matrix = fast_monodromies(block, tolerance=0.01 * rtol).matrices[0]
         omega = block.modal().omega
         exponents = _exponents_by_mode(matrix, omega, block.period)
@@ -393,7 +409,9 @@ class StabilityMargins:
         ).assign_coords(label=("tongue", np.array([t.label for t in tongues], dtype=object)))
 
 
-def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> StabilityMargins:
+def stability_margins(
+    pair: AnyPair, speed_rpm: tuple[float, float], *, supports: Supports | None = None
+) -> StabilityMargins:
     """Find every tongue over speed and its distance to the operating point, in speed and in damping.
 
     Friction is constant at its mean over the path of contact: it moves tongues by far less than their width,
@@ -403,13 +421,14 @@ def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> Stabilit
     ----------
     pair : the gear pair
     speed_rpm : pinion speeds searched [rpm]
+    supports : "springs", on which alone they are computed; needed for a pair with shafts
 
     Raises
     ------
-    ParameterError : not two increasing positive speeds
+    ParameterError : not two increasing positive speeds, or shafts
     NumericalError : a monodromy matrix cannot be computed; the text says what to try
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "stability_margins")
     low, high = checked_range("speed_rpm", speed_rpm)
     rpm, here = operating_rpm(pair), pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))
@@ -446,7 +465,7 @@ def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> Stabilit
 
 def _radius(pair: GearPair) -> Radius:
     """Spectral radius over speed and mesh damping ratio, from one fit; friction must not depend on speed."""
-    block = gear_block(vary(pair, {"damping_ratio": _LARGEST_DAMPING}), rtol=0.1 * _RTOL)
+    block = gear_block(vary(GearVariation.of(pair), {"damping_ratio": _LARGEST_DAMPING}), rtol=0.1 * _RTOL)
 
     def radius(speeds: npt.ArrayLike, dampings: npt.ArrayLike) -> FloatArray:
         rpm, zeta = np.broadcast_arrays(np.asarray(speeds, dtype=float), np.asarray(dampings, dtype=float))
@@ -482,8 +501,9 @@ def _tongue(
     else:
         tip = tongue_tip(excess, window, (0.0, _LARGEST_DAMPING))
     damping, left, right = _edges(radius, interval, window, tip)
+    undamped = vary(GearVariation.of(pair), {"damping_ratio": 0.0, "speed_rpm": interval.peak})
     return TongueMargin(
-        label=str(label_variation(vary(pair, {"damping_ratio": 0.0, "speed_rpm": interval.peak}))),
+        label=str(label_variation(undamped)),
         lower=interval.lower,
         upper=interval.upper,
         radius=interval.peak_radius,

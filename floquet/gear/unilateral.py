@@ -41,7 +41,7 @@ _SAME = 1e-13
 def unilateral_system(
     pair: GearPair, cycle: MeshCycle | None = None, form: ContactForm = "mesh"
 ) -> ContactSystem:
-    """Return a gear pair with one unilateral contact for each tooth pair.
+    """Return a gear pair on springs with one unilateral contact for each tooth pair.
 
     A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and that is positive. Relief is
     clearance e. Friction acts with its nominal sign. With loaded contact the contact is the tangent at the
@@ -53,7 +53,7 @@ def unilateral_system(
     other element laws than ``contact_cycle``.
     """
     cycle = cycle or contact_cycle(pair)
-    base = LTVSystem.of(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle)
+    base = LTVSystem.of(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle, supports="springs")
     s, g = base.structure, pair.geometry
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
@@ -187,7 +187,8 @@ def unilateral_family(
         system = unilateral_system(pair, form=form)
         return Family(lambda period: system, constant=True)
     speeds = np.linspace(slowest_rpm, fastest_rpm, _SPEEDS)
-    families = [_Parts(pair, family, form) for family in friction_families(GearVariation(pair), speeds)]
+    variation = GearVariation(pair, supports="springs")
+    families = [_Parts(pair, family, form) for family in friction_families(variation, speeds)]
     cycle_at_1_rpm = pair.geometry.mesh_period * operating_rpm(pair)
 
     @lru_cache(maxsize=16)

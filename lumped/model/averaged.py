@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import LTVSystem
+from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -33,7 +33,7 @@ def averaged_matrix(system: LTVSystem) -> FloatArray:
 
 
 def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.StateSpace:
-    """Time-averaged linear model from the torques T_p, T_g to the transmission error and the LOA motions.
+    """Time-averaged linear model on springs from the torques T_p, T_g to the transmission error, x_p and x_g.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.Stat
     import control  # takes longer to import than all else of lumped; modes do without
 
     one_of("form", form, ("elastic", "mesh"), "The rigid rotation has no steady response.")
-    system = LTVSystem.of(pair, form)
+    system = LTVSystem.of(pair, form, supports="springs")
     m = len(system.coordinates)
     b = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     c = np.zeros((3, system.size))
@@ -78,7 +78,8 @@ class Mode:
     natural_frequency : undamped [Hz]
     damping_ratio : [-]
     resonant_speed : pinion speed at which the mesh frequency meets it [rpm]
-    shape : coordinate -> real amplitude relative to the largest; q, x_p, x_g, y_p, y_g
+    shape : coordinate -> real amplitude relative to the largest; q, x_p, x_g, y_p, y_g, on shafts the modes
+        of the shafts with the teeth apart
     """
 
     natural_frequency: float
@@ -87,26 +88,28 @@ class Mode:
     shape: dict[str, float]
 
 
-def natural_frequencies(pair: AnyPair) -> FloatArray:
+def natural_frequencies(pair: AnyPair, *, supports: Supports | None = None) -> FloatArray:
     """Return the natural frequencies of the pair with its mean mesh stiffness, increasing [Hz].
 
     Parameters
     ----------
     pair : gear pair, preset name or parameter file
+    supports : "springs" or "shafts", as of ``periodic_system``; by default the shafts of a pair that has them
 
     Raises
     ------
-    ParameterError : a refused parameter
+    ParameterError : a refused parameter, or shafts that the pair does not have
     NumericalError : a mode is overdamped, so it has no natural frequency
 
     Sources: docs/theory/equations.md, the state matrix averaged over one mesh cycle.
     """
-    return np.array([mode.natural_frequency for mode in modes(load_gear_pair(pair))])
+    pair = load_gear_pair(pair)
+    return np.array([mode.natural_frequency for mode in modes(pair, supports_of(pair, supports))])
 
 
-def modes(pair: GearPair) -> tuple[Mode, ...]:
+def modes(pair: GearPair, supports: Supports = "springs") -> tuple[Mode, ...]:
     """Natural frequencies, damping and shapes of the averaged pair, by increasing frequency."""
-    system = LTVSystem.of(pair, "elastic")
+    system = LTVSystem.of(pair, "elastic", supports=supports)
     m = len(system.coordinates)
     values, vectors = np.linalg.eig(averaged_matrix(system))
     found = []

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
+from lumped.errors import refuse
 from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, Records
 from lumped.model.equations import Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, PairState
@@ -21,6 +22,7 @@ from lumped.model.supports import SUPPORTS, Form
 from lumped.model.supports import Supports as _Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
+from lumped.shafts.pair import supported_shafts
 from lumped.typing import FloatArray
 
 #: What holds the gears: springs of their own, or the elastic shafts of the parameter file in their bearings.
@@ -33,6 +35,31 @@ def supports_of(pair: GearPair, supports: Supports | None) -> Supports:
         return "springs" if pair.shafts is None else "shafts"
     one_of("supports", supports, get_args(Supports))
     return supports
+
+
+def without_shafts(pair: GearPair) -> GearPair:
+    """The pair on the springs of ``bearings`` alone; ranges of its shafts' values go with the shafts."""
+    if pair.shafts is None:
+        return pair
+    ranges = {path: spread for path, spread in pair.uncertainty if path.split(".")[0] != "shafts"}
+    return pair.with_({"shafts": None, "uncertainty": ranges})
+
+
+def with_supports(pair: GearPair, supports: Supports | None) -> GearPair:
+    """The pair whose own supports are those that are asked for: without its shafts for "springs"."""
+    if supports_of(pair, supports) == "springs":
+        return without_shafts(pair)
+    supported_shafts(pair)  # refused for a pair that has none
+    return pair
+
+
+def on_springs(pair: GearPair, supports: Supports | None, what: str) -> GearPair:
+    """The pair without shafts, for ``what`` is on springs alone; refused unless these are asked for."""
+    if supports_of(pair, supports) == "shafts":
+        allowed = f'"springs" for {what}, which cannot be computed on shafts'
+        given = "left out for a pair with shafts" if supports is None else supports
+        raise refuse("supports", given, allowed, 'Give supports="springs".')
+    return without_shafts(pair)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +125,7 @@ class LTVSystem:
         *,
         as_printed: Collection[int] = (),
         cycle: MeshCycle | None = None,
-        supports: Supports = "springs",
+        supports: Supports,
     ) -> Self:
         """The system of a gear pair; arguments as ``periodic_system``."""
         one_of("form", form, get_args(Form))

@@ -20,11 +20,12 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, whole_number
 from lumped.errors import NumericalError
 from lumped.model.closing import close_period
+from lumped.model.periodic_system import Supports, on_springs, supports_of
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import kinematics as kn
-from multibody.contact.machine import Machine, Supports
+from multibody.contact.machine import Machine
 from multibody.run.integration import Segment, keep_inside
 from multibody.run.linear_motion import bordered, state_scale
 from multibody.run.model import build, from_lumped_state, to_lumped_state
@@ -91,6 +92,7 @@ def monodromy(
     fidelity: Fidelity = "exact",
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float | None = None,
+    supports: Supports | None = None,
 ) -> FlowMap:
     """Monodromy matrix by perturbed runs over one mesh cycle, about the model's own periodic motion.
 
@@ -100,14 +102,16 @@ def monodromy(
     fidelity, effects : as ``multibody.simulate``
     rtol : relative tolerance of the runs; default 1e-9, at fidelity "exact" 1e-10. The map errs by some times
         as much, at "exact" by as much over 1e-3
+    supports : "springs", on which alone it is computed; needed for a pair with shafts
 
     Raises
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "multibody.monodromy")
     one_of("fidelity", fidelity, get_args(Fidelity))
-    setup = prepare(pair, fidelity, "periodic", effects, _RTOL[fidelity] if rtol is None else rtol)
+    tolerance = _RTOL[fidelity] if rtol is None else rtol
+    setup = prepare(pair, fidelity, "periodic", effects, tolerance, supports="springs")
     orbit = find_orbit(setup)
     end = orbit.flow(orbit.state) if fidelity == "linear" else None
     scale = state_scale(orbit.machine, setup.deflection)
@@ -217,7 +221,7 @@ def steady_state(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-9,
     friction_velocity: float | None = None,
-    supports: Supports = "springs",
+    supports: Supports | None = None,
 ) -> xr.Dataset:
     """Periodic motion, stable or not, without settling: the counterpart of ``lumped.steady_state``.
 
@@ -244,6 +248,7 @@ def steady_state(
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 64)
     start = "periodic" if initial is None else initial
+    supports = supports_of(pair, supports)
     setup = prepare(pair, fidelity, start, effects, rtol, friction_velocity, supports)
     orbit = find_orbit(setup, cycles, near_lumped=initial is None and cycles == 1)
     return cycles_of(orbit, samples_per_cycle, cycles)

@@ -117,7 +117,7 @@ def prepare(
     friction_velocity: float | None = None,
     supports: Supports = "springs",
 ) -> Setup:
-    """Build the model and its initial state; arguments as ``simulate``."""
+    """Build the model and its initial state; arguments as ``simulate``, but for supports that are chosen."""
     one_of("fidelity", fidelity, get_args(Fidelity))
     one_of("supports", supports, get_args(Supports))
     rtol = real_number("rtol", rtol, 1e-12, 1e-3)
@@ -136,7 +136,7 @@ def prepare(
     if flags & kn.LINEAR and pair.healthy is not pair:
         allowed = "'exact' where teeth differ"
         raise refuse("fidelity", fidelity, allowed, "Use it with its effects, or pair.healthy.")
-    system = LTVSystem.of(pair.healthy, "full")
+    system = LTVSystem.of(pair.healthy, "full", supports="springs")
     numbers = machine(pair, flags, supports, system.cycle)
     call_limit = _call_limit(numbers)
     if pair.mesh.contact == "loaded":
@@ -197,7 +197,7 @@ def _on_springs(
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
     if pair.healthy is not pair:
-        own = settled_motion(pair, 8)
+        own = settled_motion(pair, 8, "springs")
         balance = replace(balance, states=own.states[:1])
         mean_balance = own.balance(conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]

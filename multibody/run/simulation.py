@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
 from lumped.labelling import labelled_dataset, provenance
+from lumped.model.periodic_system import Supports, on_springs, supports_of
 from lumped.model.results import cycle_peak_to_peak, labelled
 from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
@@ -22,7 +23,6 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 from multibody.contact import kinematics as kn
-from multibody.contact.machine import Supports
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state, from_lumped_state, to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
@@ -170,7 +170,7 @@ def simulate(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
-    supports: Supports = "springs",
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Transient of the gear pair as an exudyn multibody system.
@@ -192,7 +192,7 @@ def simulate(
         once; None chooses, and the attribute ``friction_velocity_reason`` says why (see
         ``multibody.run.setup``)
     supports : "springs" of ``pair.bearings``, or the elastic "shafts" of ``pair.shafts`` with their own
-        bearings, motor and load
+        bearings, motor and load; by default the shafts of a pair that has them
     progress : called with the finished fraction
 
     Returns
@@ -216,6 +216,7 @@ def simulate(
     """
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
+    supports = supports_of(pair, supports)
     setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, supports)
     run, _, _ = record(setup, cycles, samples_per_cycle, progress=progress)
     return run
@@ -265,7 +266,7 @@ def at_mean_speed(
     """
     names = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
     state = np.array([float(reference[name][0]) for name in names])
-    setup = prepare(pair, initial=state)
+    setup = prepare(pair, initial=state, supports="springs")
     p, inertia = setup.machine.parameters, setup.machine.inertia
     radii = p[[kn.RADIUS_P, kn.RADIUS_G]]
     mass, period = float((inertia / radii**2).sum()), setup.machine.period
@@ -310,6 +311,7 @@ def speed_sweep(
     fidelity: Fidelity = "exact",
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-7,
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Response over speed with the state carried from one speed to the next, in the order given.
@@ -322,6 +324,7 @@ def speed_sweep(
     cycles : mesh cycles over which it is taken
     samples_per_cycle : output times per mesh cycle
     fidelity, effects, rtol : as ``multibody.simulate``
+    supports : "springs", on which alone a state is carried on; needed for a pair with shafts
     progress : called with the finished fraction
 
     Returns
@@ -333,7 +336,7 @@ def speed_sweep(
     ------
     ParameterError, NumericalError : as ``multibody.simulate``
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "multibody.speed_sweep")
     speeds = running_speeds(speeds_rpm)
     settle = whole_number("settle", settle, 0, MOST_CYCLES)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
@@ -342,7 +345,7 @@ def speed_sweep(
     for j, rpm in enumerate(speeds):
         at = pair.with_({"operating.pinion_speed": float(rpm)})
         initial = "periodic" if state is None else state
-        setup = prepare(at, fidelity, initial, effects, rtol)
+        setup = prepare(at, fidelity, initial, effects, rtol, supports="springs")
         run, q, v = record(setup, settle + cycles, samples_per_cycle, first_cycle=settle)
         # Whole cycles end at the phase they started with, so the deviations carry over as they are.
         state = to_lumped_state(q, v)

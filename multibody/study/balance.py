@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
-from lumped.model.periodic_system import LTVSystem
+from lumped.errors import refuse
+from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.model.solution import Initial
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -83,15 +84,18 @@ def power_balance(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
+    supports: Supports | None = None,
 ) -> PowerBalance:
-    """Power balance of a run on springs; arguments as ``multibody.simulate``.
+    """Power balance of a run; arguments as ``multibody.simulate``.
 
+    It is computed on springs alone: a pair with shafts needs ``supports="springs"``.
     The powers are integrated over every step of the integrator by four-point Gauss quadrature on its dense
     output.
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "multibody.power_balance")
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
-    return balance_of(prepare(pair, fidelity, initial, effects, rtol, friction_velocity), cycles)
+    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, "springs")
+    return balance_of(setup, cycles)
 
 
 def motion_balance(pair: GearPair, motion: xr.Dataset, rtol: float = 1e-8) -> PowerBalance:
@@ -104,9 +108,14 @@ def motion_balance(pair: GearPair, motion: xr.Dataset, rtol: float = 1e-8) -> Po
     rtol : relative tolerance of the run
     """
     start, about = motion.isel(time=0), motion.attrs
-    state = np.array([float(start[name]) for name in LTVSystem.of(pair, "full").state_names])
+    if about["supports"] == "shafts":
+        action = 'Compute the motion with supports="springs".'
+        raise refuse("supports", "shafts", '"springs" for multibody.motion_balance', action)
+    names = LTVSystem.of(pair, "full", supports="springs").state_names
+    state = np.array([float(start[name]) for name in names])
     effects = [name for name in about["effects"].split(", ") if name]
-    setup = prepare(pair, about["fidelity"], state, effects, rtol, float(about["friction_velocity"]))
+    velocity = float(about["friction_velocity"])
+    setup = prepare(pair, about["fidelity"], state, effects, rtol, velocity, "springs")
     return balance_of(setup.with_torques(setup.machine.torque_pinion, float(about["brake_torque"])), 1)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
+from lumped.model.periodic_system import Supports, supports_of
 from lumped.model.results import needs_pull
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
@@ -28,7 +29,9 @@ _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
 _KINDS = {"alone": "by this cause", "without": "all causes but this"}
 
 
-def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Dataset:
+def attribution(
+    pair: AnyPair, *, supports: Supports | None = None, progress: Progress | None = None
+) -> xr.Dataset:
     """How much each finite-motion effect changes the periodic motion, and the momentary load in friction.
 
     Each motion has the brake torque that balances it: in a run from the same state every effect that changes
@@ -37,6 +40,8 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     Parameters
     ----------
     pair : a validated gear pair
+    supports : "springs" or "shafts", as of ``multibody.simulate``; by default the shafts of a pair that has
+        them
     progress : called with the finished fraction
 
     Returns
@@ -57,6 +62,7 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     NumericalError : the lumped motion needs teeth that pull, or a motion is not found
     """
     pair = load_gear_pair(pair)
+    supports = supports_of(pair, supports)
     orbits: dict[frozenset[str], tuple[Orbit, xr.Dataset]] = {}
 
     def motion(effects: set[str], near: set[str] | None = None) -> xr.Dataset:
@@ -64,7 +70,8 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
         names = frozenset(effects)
         if names not in orbits:
             start = None if near is None else orbits[frozenset(near)][0]
-            orbit = find_orbit(prepare(pair, "exact", "periodic", effects, _RTOL), near=start)
+            setup = prepare(pair, "exact", "periodic", effects, _RTOL, supports=supports)
+            orbit = find_orbit(setup, near=start)
             orbits[names] = orbit, cycles_of(orbit, _SAMPLES)
         return orbits[names][1]
 
@@ -105,5 +112,5 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
             "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
         provenance(pair, samples_per_cycle=_SAMPLES)
-        | {"largest": list(parts)[int(np.nanargmax(table["alone"][: len(parts), 0]))]},
+        | {"supports": supports, "largest": list(parts)[int(np.nanargmax(table["alone"][: len(parts), 0]))]},
     )

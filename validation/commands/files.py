@@ -144,6 +144,7 @@ def export(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
+    supports: opt.Supports = None,
     force: opt.Force = False,
 ) -> None:
     """Write a gear pair or a result for another program.
@@ -151,7 +152,8 @@ def export(
     REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in; 'spurcheck init
     --from-rexs' reads it. The linear model is the pair averaged over a mesh cycle: matrices A, B, C, D from
     the torques to the transmission error and the displacements, for MATLAB (.mat) and for python-control or
-    SciPy (.npz). A result is any .nc file that spurcheck wrote.
+    SciPy (.npz); it is of a pair on the springs of 'bearings', and one with shafts needs --supports springs.
+    A result is any .nc file that spurcheck wrote.
 
     [bold]Examples[/bold]
     spurcheck export nasa_28_28 -o pair.rexs
@@ -169,7 +171,14 @@ def export(
     from validation.files.output import DATA_SUFFIXES, check_file
 
     if source.lower().endswith(".nc"):
-        for option, value in {"--speed": speed, "--torque": torque, "--law": law, "--set": settings}.items():
+        given = {
+            "--speed": speed,
+            "--torque": torque,
+            "--law": law,
+            "--set": settings,
+            "--supports": supports,
+        }
+        for option, value in given.items():
             if value is not None:
                 raise refuse(option, "with a result file", "a gear pair", "Leave it out.")
         check_file(output, DATA_SUFFIXES, force=force)
@@ -184,7 +193,9 @@ def export(
         pair = opt.gear_pair(source, speed, torque, law, settings)
         check_file(output, (*FORMS, *STATE_SPACE_SUFFIXES), force=force)
         if output.suffix.lower() in STATE_SPACE_SUFFIXES:
-            write_state_space(pair, output, force=force)
+            write_state_space(pair, output, force=force, supports=supports)
+        elif supports is not None:
+            raise refuse("--supports", supports, "with a linear model, .mat or .npz", "Leave it out.")
         else:
             write_rexs(pair, output, force=force)
             kept = "bearings, shafts, damping, friction law, stiffness model and inertia"

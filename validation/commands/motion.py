@@ -29,7 +29,7 @@ def simulate(
     run_up: str | None = None,
     seconds: float = 2.0,
     contact: Literal["linear", "unilateral"] = "linear",
-    supports: opt.Supports = "springs",
+    supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
     """Simulate a gear pair: transmission error, tooth loads, friction and motions in time.
@@ -41,7 +41,7 @@ def simulate(
     spurcheck simulate my_pair.toml --model multibody --cycles 50 -o run.csv
     spurcheck simulate --steady --law coulomb -o steady.png
     spurcheck simulate my_pair.toml --run-up 500..6000 --seconds 5 -o waterfall.png
-    spurcheck simulate my_pair.toml --supports shafts -o on_shafts.nc
+    spurcheck simulate my_pair.toml --supports springs -o on_springs.nc
 
     Parameters
     ----------
@@ -59,10 +59,12 @@ def simulate(
 
     import lumped
     from lumped.errors import refuse
+    from lumped.model.periodic_system import supports_of
     from lumped.model.results import cycle_peak_to_peak, load_range
     from lumped.quasi_static.contacts import contact_of
     from validation.validity.flags import contact_loss
 
+    held = supports_of(pair, supports)
     rising, exact = run_up is not None, model == "multibody"
     for option, wrong, allowed in (
         ("--steady", steady and exact, "without --model multibody"),
@@ -81,11 +83,11 @@ def simulate(
             if not end:
                 raise refuse("--run-up", run_up, "two speeds FROM..TO", "For example 500..6000.")
             ends = (opt.number_in("--run-up", begin, "rpm"), opt.number_in("--run-up", end, "rpm"))
-            result = lumped.run_up(pair, ends, seconds, contact=contact, supports=supports, progress=tell)
-        _show_run_up(pair.name, result, as_json=as_json)
+            result = lumped.run_up(pair, ends, seconds, contact=contact, supports=held, progress=tell)
+        _show_run_up(pair.name, held, result, as_json=as_json)
         return files.write(result)
     with progress_bar(f"{model} model") as tell:
-        common: dict[str, Any] = {"samples_per_cycle": samples, "supports": supports}
+        common: dict[str, Any] = {"samples_per_cycle": samples, "supports": held}
         if steady:
             result = lumped.steady_state(pair, contact=contact, **common)
         elif model == "lumped":
@@ -117,13 +119,13 @@ def simulate(
         numbers["power_energy_residual"] = (words, residual, "W", 4)
     if as_json:
         values = {key: value for key, (_, value, *_) in numbers.items()}
-        print_json({"gear_pair": pair.name, "model": model, "supports": supports} | values)
+        print_json({"gear_pair": pair.name, "model": model, "supports": held} | values)
     else:
         rows = (
             (words, quantity(100.0 * value if unit == "%" else value, unit, digits, measured=True))
             for words, value, unit, digits in numbers.values()
         )
-        show(f"{pair.name} on {supports}, last mesh cycle", "quantity | >value", rows)
+        show(f"{pair.name} on {held}, last mesh cycle", "quantity | >value", rows)
     separation = contact_loss(pair, g, last)
     linear = contact == "linear" if model == "lumped" else fidelity == "linear"
     if separation.state != "ok" and linear:
@@ -139,7 +141,7 @@ def simulate(
     files.write(result)
 
 
-def _show_run_up(name: str, result: xr.Dataset, *, as_json: bool) -> None:
+def _show_run_up(name: str, supports: opt.SupportsName, result: xr.Dataset, *, as_json: bool) -> None:
     """Print where each mesh order is largest."""
     from validation.signals import waterfall
 
@@ -148,15 +150,21 @@ def _show_run_up(name: str, result: xr.Dataset, *, as_json: bool) -> None:
     sizes, speeds = amplitude.max("speed_rpm").to_numpy(), amplitude.idxmax("speed_rpm").to_numpy()
     if as_json:
         largest = dict(zip(orders, zip(sizes.tolist(), speeds.tolist(), strict=True), strict=True))
-        print_json({"gear_pair": name, "variable": "dte", "largest": largest})
+        print_json({"gear_pair": name, "supports": supports, "variable": "dte", "largest": largest})
     else:
         rows = ((f"{n}", (size, "m"), rpm) for n, size, rpm in zip(orders, sizes, speeds, strict=True))
         columns = ">mesh order | >largest amplitude | >at speed [rpm]"
-        show(f"{name}, run-up: transmission error", columns, rows)
+        show(f"{name} on {supports}, run-up: transmission error", columns, rows)
 
 
 @guarded
-def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: int = 1) -> None:
+def uncertainty(
+    pair: opt.Pair,
+    files: opt.DataFiles,
+    samples: int = 128,
+    seed: int = 1,
+    supports: opt.Supports = None,
+) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
     Inputs vary as the section \[uncertainty] of the file states, and by documented defaults where the source
@@ -178,13 +186,17 @@ def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: 
     from validation.prediction.uncertainty import uncertainty as run
 
     with progress_bar("uncertain inputs") as tell:
-        found = run(pair, samples, seed, progress=tell)
+        found = run(pair, samples, seed, supports=supports, progress=tell)
     rows = (
         (words, *((float(v), unit) for v in (found.attrs[f"given_{name}"], *found[f"{name}_percentile"])))
         for name, (unit, words) in (QUANTITIES | TEETH).items()
         if f"given_{name}" in found.attrs
     )
-    show(f"{pair.name}: results", "result | >as given | >5 % | >50 % | >95 %", rows)
+    show(
+        f"{pair.name} on {found.attrs['supports']}: results",
+        "result | >as given | >5 % | >50 % | >95 %",
+        rows,
+    )
     name = transmission_error(found)
     swing, correlation = (found[f"{name}_{one}"].to_numpy() for one in ("swing", "rank_correlation"))
     moves = [
@@ -201,7 +213,7 @@ def uncertainty(pair: opt.Pair, files: opt.DataFiles, samples: int = 128, seed: 
 
 
 @guarded
-def teeth(pair: opt.Pair, files: opt.DataFiles) -> None:
+def teeth(pair: opt.Pair, files: opt.DataFiles, supports: opt.Supports = None) -> None:
     r"""Show what teeth that differ do: loads, sidebands, indicators, beside the twin with like teeth.
 
     Teeth differ by sections of the parameter file:
@@ -220,9 +232,9 @@ def teeth(pair: opt.Pair, files: opt.DataFiles) -> None:
     from validation.signals.findings import GEARS, NOISE, TeethFindings, deviations_table, rpm_and_period
 
     with progress_bar("motion over the period of the teeth"):
-        found = TeethFindings(pair)
+        found = TeethFindings(pair, supports)
     console = stdout()
-    console.print(f"{pair.name}: at {rpm_and_period(found)}")
+    console.print(f"{pair.name} on {found.supports}: at {rpm_and_period(found)}")
     console.print(f"contact: {found.motion.attrs['touch']}")
     given = deviations_table(pair).to_dataframe()
     columns = "gear | >index deviations | >largest step | >eccentricity | >ISO 1328-1 class"
@@ -255,20 +267,24 @@ def interactive(
     output: Annotated[Path, opt.output("Page to write, .html; its numbers go beside it as .nc.")] = Path(
         "interactive.html"
     ),
+    supports: opt.Supports = None,
     force: opt.Force = False,
 ) -> None:
     """Write a page to explore stability over speed and damping, and the response over speed.
 
     One HTML file that opens in any browser, without network: point at a chart for values, zoom, move the
-    sliders, or use the keyboard alone. Every number of it is also written as NetCDF.
+    sliders, or use the keyboard alone. Every number of it is also written as NetCDF. It is of a pair on the
+    springs of 'bearings'; one with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck interactive -o page.html
     spurcheck interactive my_pair.toml --set mesh.damping_ratio=0.02 -o low_damping.html
     """
+    from lumped.model.periodic_system import on_springs
     from validation.files.output import check_file
     from validation.interactive import write_interactive_page
 
+    pair = on_springs(pair, supports, "the interactive page")
     check_file(output, (".html",), force=force)
     data = check_file(output.with_suffix(".nc"), (".nc",), force=force)
     with progress_bar("interactive page") as tell:

@@ -59,7 +59,13 @@ Range = Annotated[
 Law = Annotated[str | None, typer.Option("--law", help="Friction law: I to V, none, or a name: coulomb.")]
 SupportsName = Literal["springs", "shafts"]
 Supports = Annotated[
-    SupportsName, typer.Option(help="The springs of 'bearings', or the elastic shafts of 'shafts'.")
+    SupportsName | None,
+    typer.Option(
+        "--supports",
+        help="What holds the gears: springs, the four of 'bearings', or the elastic 'shafts'. "
+        "Default: shafts where the file has them.",
+        show_default=False,
+    ),
 ]
 Settings = Annotated[
     list[str] | None,
@@ -110,6 +116,8 @@ def gear_pair(
             law = "friction.composite_roughness is given" if given else f"the law is {varied.friction.law}"
             why = f"mesh.relief is '{varied.mesh.relief}'" if "relief" in path else law
             note(f"{option} = {text} changes nothing in the motion: {why}.")
+        if varied.shafts is not None and fields_of(path)[0].startswith("bearings."):
+            note(f"{option} = {text} changes nothing on the shafts, which hold the gears: see --supports.")
     for warning in parameter_warnings(varied):
         note(warning)
     return varied

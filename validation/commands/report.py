@@ -39,7 +39,7 @@ def report(
     record: Path | None = None,
     compare: Path | None = None,
     tolerance: str = "0.1%",
-    supports: opt.SupportsName | None = None,
+    supports: opt.Supports = None,
     force: opt.ForceFolder = False,
 ) -> None:
     """Write the verification report of a gear pair.
@@ -61,20 +61,14 @@ def report(
     record TOML : Description of a measured transmission error at this speed and torque, to compare with.
     compare OLD : report.json of an earlier report, or its folder: show changes, exit 1 past tolerances.
     tolerance : With --compare: relative change of a number that passes: 1%.
-    supports : springs: leave shafts out. Default: shafts where they are given.
     """
     from lumped.arguments import some_of
-    from lumped.shafts.pair import supported_shafts
     from validation.files.folder import check_target
     from validation.reporting import report as write
 
     required = some_of("--require", require or (), ("holds", "stable", "contact"))
     check_target(output, force=force)
     name, gear_pair = pair
-    if supports == "shafts":
-        supported_shafts(gear_pair)  # refuses a pair that has none
-    if supports == "springs" and gear_pair.shafts is not None:
-        gear_pair = gear_pair.with_(shafts=None)
     with progress_bar("report") as bar, compiling(bar) as tell:
         written = write(
             gear_pair,
@@ -85,6 +79,7 @@ def report(
             compare=compare,
             tolerance=opt.number_in("--tolerance", tolerance, "1"),
             name=name,
+            supports=supports,
             progress=tell,
             early=_show_early,
         )
@@ -136,6 +131,7 @@ def crosscheck(
     limit: str = "5%",
     cycles: int = 40,
     samples: int = 256,
+    supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
     """Check the lumped model against the independent multibody model.
@@ -143,7 +139,8 @@ def crosscheck(
     At fidelity linear both models hold the same equations and must agree to integration error, and both must
     satisfy conservation laws. At fidelity exact the gears turn through finite angles with true involute
     contact; the difference shows what the lumped model leaves out. Teeth that differ are compared over a
-    revolution, or round the tooth that carries most.
+    revolution, or round the tooth that carries most. Both models are on the springs of 'bearings'; a pair
+    with shafts needs --supports springs.
 
     Exit codes: 0 [bold]agrees[/bold], every difference is within its limit; 4 [bold]differs[/bold], one is
     not; 1 [bold]fails[/bold], the program is not in order; 0 [bold]not checked[/bold], the multibody model
@@ -165,12 +162,14 @@ def crosscheck(
 
     share = opt.number_in("--limit", limit, "1")
     with progress_bar("cross-check") as bar, compiling(bar) as tell:
-        check = run(pair, cycles=cycles, samples_per_cycle=samples, limit=share, progress=tell)
+        check = run(
+            pair, cycles=cycles, samples_per_cycle=samples, limit=share, supports=supports, progress=tell
+        )
     if as_json:
         agreements = [asdict(one) | {"within": one.within} for one in check.agreements]
         loss = None if check.loss is None else asdict(check.loss) | {"within": check.loss.within}
         found = {"failures": check.failures, "agreements": agreements, "loss": loss}
-        print_json({"verdict": check.verdict.word, **found})
+        print_json({"verdict": check.verdict.word, "supports": "springs", **found})
     else:
         _print(check)
     files.write(check.lumped, lambda: _figure(check))
@@ -207,7 +206,7 @@ def _print(check: CrossCheck) -> None:
     for title, checks in judged.items():
         words = {True: Text("within", "green"), False: Text("outside", "red")}
         rows = ((what, number(j.value, 3), number(j.limit, 3), words[j.within]) for what, j in checks)
-        show(f"{name}: {title}", "check | >value | >limit | verdict", rows)
+        show(f"{name} on springs: {title}", "check | >value | >limit | verdict", rows)
     console.print(MEASURES)
     if check.pulling:
         console.print(check.pulling)

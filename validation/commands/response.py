@@ -31,6 +31,7 @@ def response(
     map_: str | None = None,
     speeds: int = 800,
     back_side: bool = False,
+    supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
     """Follow all motions over speed, stable and unstable, with unilateral contact.
@@ -41,6 +42,8 @@ def response(
 
     With --map the same over speed and torque, mesh damping or tip relief: where contact is lost, where
     several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
+
+    All of it is of a pair on the springs of 'bearings'; one with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck response my_pair.toml --range 200..3000 -o response.png
@@ -62,7 +65,9 @@ def response(
     import lumped
     from floquet.gear.axes import operating_rpm
     from lumped.arguments import whole_number
+    from lumped.model.periodic_system import on_springs
 
+    pair = on_springs(pair, supports, "the response with unilateral contact")
     if map_ is not None:
         whole_number("--speeds", speeds, 2, 5000)
         _map(pair, map_, speeds, seeds or 0, files, as_json)
@@ -73,7 +78,7 @@ def response(
         found = floquet.response_branches(pair, None, cycles, seeds=many, back_side=back_side, progress=tell)
     if as_json:
         lists = {name: getattr(found, name) for name in ("jumps", "attractors", "gaps", "bifurcations")}
-        about = {"gear_pair": pair.name, "speeds_rpm": list(found.speeds_rpm)}
+        about = {"gear_pair": pair.name, "supports": "springs", "speeds_rpm": list(found.speeds_rpm)}
         print_json(about | lists | {"basins": _basins(found)})
     else:
         _print(pair, found)
@@ -106,7 +111,7 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         for jump in found.jumps
     ]
     if rows:
-        show(f"{pair.name}: jumps", "pinion speed | running | from | to", rows)
+        show(f"{pair.name} on springs: jumps", "pinion speed | running | from | to", rows)
     lines = [] if rows else ["no jumps: one stable motion leads to the next"]
     if found.contact_kept:
         runs = found.response.runs
@@ -152,7 +157,7 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, a
     jumps = jumps.rename(columns=lambda column: column.removeprefix("jump_"))
     files.write(found)
     if as_json:
-        about = {"gear_pair": pair.name, "axis": name, "values": values.tolist()}
+        about = {"gear_pair": pair.name, "supports": "springs", "axis": name, "values": values.tolist()}
         print_json(about | {"jumps": jumps.to_dict("records"), "removed_by": removed})
         return
     unit = found[name].attrs["units"].removeprefix("1")
@@ -162,7 +167,8 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, a
         here = jumps[jumps[name] == value].groupby(jumps["rising"].astype(bool))["speed_rpm"]
         ways = {way: ", ".join(number(rpm, 5) for rpm in speeds) for way, speeds in here}
         rows.append((value, ways.get(True, ""), ways.get(False, ""), f"{100.0 * share:.0f} %"))
-    title = f"{pair.name}: jumps over {found[name].attrs['long_name']}; share of speeds with several motions"
+    axis_name = found[name].attrs["long_name"]
+    title = f"{pair.name} on springs: jumps over {axis_name}; share of speeds with several motions"
     show(title, f">{name}{unit and f' [{unit}]'} | up at [rpm] | down at [rpm] | >share", rows)
     if not removed:
         stdout().print("the pair itself has no folds: nothing is to be removed")

@@ -40,7 +40,7 @@ def stability(
     axis: list[str] | None = None,
     tongues: bool = False,
     prove: bool = False,
-    supports: opt.Supports = "springs",
+    supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
     """Decide whether the motion is stable, at the operating point and over a chart.
@@ -54,7 +54,7 @@ def stability(
     --tongues -o chart.nc -o chart.pdf
     spurcheck stability my_pair.toml --prove -o proven.png
     spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
-    spurcheck stability my_pair.toml --supports shafts --axis speed_rpm=500:20000:1000 -o on_shafts.png
+    spurcheck stability my_pair.toml --supports springs --axis speed_rpm=500:20000:1000 -o on_springs.png
 
     Parameters
     ----------
@@ -71,15 +71,17 @@ def stability(
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.multipliers import gear_pair_multipliers
     from floquet.gear.tongues import campbell
+    from lumped.model.periodic_system import supports_of
 
+    held = supports_of(pair, supports)
     grid = opt.axes_values(axis, GEAR_AXES)
-    _check(view, grid, files, tongues, prove, supports)
-    found = gear_pair_multipliers(pair, supports=supports)
+    _check(view, grid, files, tongues, prove, held)
+    found = gear_pair_multipliers(pair, supports=held)
     margin = 1.0 - found.spectral_radius
     if as_json:
         point = {"verdict": found.verdict, "spectral_radius": found.spectral_radius, "error": found.error}
         point |= {"certificate": found.certificate, "margin": margin}
-        print_json({"gear_pair": pair.name, "supports": supports} | point)
+        print_json({"gear_pair": pair.name, "supports": held} | point)
     else:
         rows = {
             "verdict": found.verdict,
@@ -87,14 +89,15 @@ def stability(
             "bound on its error": f"{number(found.error, 2)} ({found.certificate})",
             "margin, 1 - largest multiplier": margin,
         }
-        show(f"{pair.name} on {supports}: operating point", "quantity | >value", rows.items())
+        show(f"{pair.name} on {held}: operating point", "quantity | >value", rows.items())
     if files.paths or axis or tongues or prove or view != "chart":
         if view == "chart":
-            files.write(*_chart(pair, grid, tongues, supports, prove))
+            files.write(*_chart(pair, grid, tongues, held, prove))
         elif view == "boundaries":
-            files.write(_boundaries(pair, grid, supports))
+            files.write(_boundaries(pair, grid, held))
         else:
-            files.write(campbell(pair, grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])))
+            speeds = grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
+            files.write(campbell(pair, speeds, supports=held))
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 
@@ -124,7 +127,8 @@ def _check(
         (figure and view == "chart" and len(axes) > 2, "--output", figure,
          "a chart of one or two axes for a figure", "Write .nc or .csv."),
         (shafts and (tongues or view == "campbell"), "--supports", supports,
-         "springs for --tongues and --view campbell", "Or trace tongues over one axis: --view boundaries."),
+         "springs for --tongues and --view campbell",
+         "Give --supports springs, or trace tongues over one axis: --view boundaries."),
         (prove and axes and set(axes) != _BOTH, "--prove", named, "the axes speed_rpm and damping_ratio",
          "Name both or none."),
     ):  # fmt: skip
@@ -162,7 +166,11 @@ def _chart(
         from validation.plots.stability import stability_figure
 
         at = {name: GEAR_AXES[name].own(pair) for name in grid}
-        lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()} if regions else {}
+        lines = (
+            {str(tongue): rpm for tongue, rpm in predicted_lines(pair, supports=supports).items()}
+            if regions
+            else {}
+        )
         return stability_figure(chart, at, regions, lines)
 
     return data, draw
@@ -185,7 +193,8 @@ def _tongues(pair: GearPair, chart: xr.Dataset) -> tuple[xr.Dataset, Sequence[To
         show("unstable regions, by mode shape (w: natural frequencies)", columns, rows)
         return chart, regions
     with progress_bar("tongues"):
-        found = stability_margins(pair, (float(chart["speed_rpm"].min()), float(chart["speed_rpm"].max())))
+        ends = float(chart["speed_rpm"].min()), float(chart["speed_rpm"].max())
+        found = stability_margins(pair, ends, supports="springs")
     edges = found.dataset.rename(damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper")
     if (above := found.above) is not None:
         stdout().print(

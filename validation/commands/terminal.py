@@ -120,6 +120,15 @@ class Group(NamedTuple):
     make: Callable[..., Any]
 
 
+def _by_options(action: str, options: Mapping[str, str]) -> str:
+    """What to do next, with each argument NAME="VALUE" of a function as the option that it comes from."""
+
+    def option(found: re.Match[str]) -> str:
+        return f"{options[found[1]]} {found[2]}" if found[1] in options else found[0]
+
+    return re.sub(r'\b(\w+)="(\w+)"', option, action)
+
+
 def guarded(command: Callable[..., None]) -> Callable[..., None]:
     """Turn errors into one message and an exit code, warnings into notes; add the option --quiet.
 
@@ -182,7 +191,10 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
                 }
                 command(**made, **kwargs)
         except ParameterError as error:
-            problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
+            problems = [
+                replace(p, field=options.get(p.field, p.field), action=_by_options(p.action, options))
+                for p in error.problems
+            ]
             fail(str(ParameterError(problems, error.source)), REFUSED)
         except SpurcheckError as error:
             fail(str(error), NUMERICAL)

@@ -16,6 +16,7 @@ from floquet.gear.motions import GearOrbit
 from lumped import GearPair
 from lumped.arguments import real_number, some_of, whole_number
 from lumped.errors import SpurcheckError, refuse
+from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
@@ -50,7 +51,8 @@ class CrossCheck:
 
     Attributes
     ----------
-    pair : the gear pair; of teeth that differ counted from the first tooth of the cycles that were run
+    pair : the gear pair, without shafts; of teeth that differ counted from the first tooth of the cycles that
+        were run
     agreements : one per quantity and fidelity
     lumped : dataset of the lumped model that "exact" is compared with
     multibody : fidelity -> dataset of the multibody model, at the same times
@@ -122,6 +124,7 @@ def crosscheck(
     fidelities: Sequence[Fidelity] = FIDELITIES,
     limit: float = LOAD_LIMIT,
     variant: bool = True,
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> CrossCheck:
     """Compare the lumped model with the multibody model of the same pair in periodic motion.
@@ -149,6 +152,7 @@ def crosscheck(
     limit : largest difference that agrees, over the peak to peak, of the transmission error, the tooth load
         and the motions along the line of action; that of what friction drives is 0.2
     variant : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
+    supports : "springs", on which alone both models are compared; needed for a pair with shafts
     progress : called with the finished fraction
 
     Returns
@@ -157,7 +161,7 @@ def crosscheck(
 
     Raises
     ------
-    ParameterError : arguments out of range
+    ParameterError : arguments out of range, or shafts
     NumericalError : a model fails; the text says what to try
     """
     whole_number("cycles", cycles, 6, 100_000)
@@ -166,7 +170,7 @@ def crosscheck(
     chosen = some_of("fidelities", fidelities, FIDELITIES)
     if not chosen or len(set(chosen)) != len(chosen):
         raise refuse("fidelities", ", ".join(chosen), "at least one, each once", "Correct the list.")
-    given = load_gear_pair(pair)
+    given = on_springs(load_gear_pair(pair), supports, "crosscheck")
     pair = given.healthy
     other = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
     share = 0.75 if other is not None else 1.0
@@ -238,7 +242,12 @@ def _compared(
         # Where mu(xi) is steep the periodic solution may be off by some 1e-6, which a run from it forgets.
         stable = own[0].spectral_radius <= UNSTABLE
         reference = lumped.simulate(
-            pair, cycles, samples_per_cycle=samples, initial="periodic", progress=part(0)
+            pair,
+            cycles,
+            samples_per_cycle=samples,
+            initial="periodic",
+            supports="springs",
+            progress=part(0),
         )
     else:
         stable, reference = True, repeated(orbit.sampled(samples), cycles)
@@ -265,6 +274,7 @@ def _compared(
             effects=None if orbit is None else CONTACT_LOSS[fidelity],
             fidelity=fidelity,
             rtol=rtol[fidelity],
+            supports="springs",
             progress=part(done),
         )
     # A periodic motion with exact contact is compared with the prediction, in which no pair pulls.

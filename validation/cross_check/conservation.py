@@ -110,7 +110,7 @@ def conservation(
 
 def lumped_motion(pair: GearPair) -> tuple[PeriodicSolution, FloatArray]:
     """Lumped periodic motion at the times of ``quadrature``, and their weights."""
-    system = LTVSystem.of(pair, "full")
+    system = LTVSystem.of(pair, "full", supports="springs")
     times, weights = quadrature(system)
     return periodic_solution(system, times, estimate_error=False), weights
 

@@ -136,6 +136,7 @@ def periodic_motion(
                 effects=None if orbit is None else CONTACT_LOSS[fidelity],
                 rtol=rtol,
                 friction_velocity=velocity,
+                supports="springs",
             )
         except NumericalError:
             continue

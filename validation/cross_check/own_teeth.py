@@ -53,7 +53,8 @@ def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr
     reference = motion.isel(time=number % motion.sizes["time"])
     time = reference["time"].to_numpy()[1] * np.arange(number.size)
     # What friction adds over many turns of a free train is no phase of the lumped contact.
-    followed = swing(swinging(mesh_tables(ToothLaws(pair), 1.0, 1), LTVSystem.of(pair.healthy, "full")), time)
+    system = LTVSystem.of(pair.healthy, "full", supports="springs")
+    followed = swing(swinging(mesh_tables(ToothLaws(pair), 1.0, 1), system), time)
     exact = at_mean_speed(pair, reference, followed, samples, _FORGOTTEN // 2)
     kept = slice(_FORGOTTEN * samples, None)
     exact = exact.isel(time=kept)

@@ -144,6 +144,7 @@ def _without(check: CrossCheck, quantity: str, effect: str) -> float:
             samples_per_cycle=samples,
             initial=None if orbit is None else orbit.states[0],
             effects={effect: False} | ({} if orbit is None else {"clearance": True}),
+            supports="springs",
         )
     except NumericalError:
         return np.inf

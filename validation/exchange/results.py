@@ -12,6 +12,7 @@ import xarray as xr
 from lumped.arguments import file_path, of_type
 from lumped.errors import ParameterError, refuse, shown
 from lumped.model.averaged import averaged_state_space
+from lumped.model.periodic_system import Supports, on_springs
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
 from validation.files.output import (
@@ -131,7 +132,12 @@ def _check_content(path: Path) -> None:
 
 
 def write_state_space(
-    pair: AnyPair, path: str | Path, form: Form = "elastic", *, force: bool = False
+    pair: AnyPair,
+    path: str | Path,
+    form: Form = "elastic",
+    *,
+    force: bool = False,
+    supports: Supports | None = None,
 ) -> Path:
     """Write the time-averaged pair as a file of its matrices.
 
@@ -144,6 +150,7 @@ def write_state_space(
     path : .mat (MATLAB 5) or .npz (NumPy, without pickled objects)
     form : "elastic" (10 states) or "mesh" (6 states)
     force : overwrite an existing file
+    supports : "springs", on which alone it is written; needed for a pair with shafts
 
     Returns
     -------
@@ -152,9 +159,9 @@ def write_state_space(
 
     Raises
     ------
-    ParameterError : form "full", an unknown suffix, or an existing file without ``force``
+    ParameterError : form "full", shafts, an unknown suffix, or an existing file without ``force``
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "write_state_space")
     path = check_file(file_path("path", path), STATE_SPACE_SUFFIXES, force=force)
     plant = averaged_state_space(pair, form)
     matlab = path.suffix.lower() == ".mat"

@@ -15,7 +15,7 @@ import lumped
 from lumped.arguments import real_array
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
-from lumped.model.periodic_system import LTVSystem
+from lumped.model.periodic_system import Supports, periodic_system
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -74,18 +74,22 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
     return _compared("ross", rows, pair)
 
 
-def compare_matrices(pair: AnyPair, M: npt.ArrayLike, K: npt.ArrayLike) -> xr.Dataset:
+def compare_matrices(
+    pair: AnyPair, M: npt.ArrayLike, K: npt.ArrayLike, *, supports: Supports | None = None
+) -> xr.Dataset:
     """Compare mass and stiffness matrices of one's own model of a gear pair with the model here.
 
     What is compared does not depend on the coordinates: the natural frequencies of the mean stiffness and,
-    over the mesh cycle, their sum of squares, the trace of M^-1 K. Both are without friction and damping, on
-    the springs of ``bearings``. Source: docs/theory/equations.md.
+    over the mesh cycle, their sum of squares, the trace of M^-1 K. Both are without friction and damping.
+    Source: docs/theory/equations.md.
 
     Parameters
     ----------
     pair : the gear pair, with its bearings
     M : (n, n) mass matrix of any coordinates and units that make M^-1 K a matrix in 1/s^2
     K : (n, n) stiffness matrix, or (m, n, n) at m equal steps of a mesh cycle that begins with a pair at A
+    supports : "springs", the four of ``bearings``, or "shafts", with their modes up to
+        ``shafts.max_frequency``; by default the shafts of a pair that has them
 
     Returns
     -------
@@ -101,7 +105,7 @@ def compare_matrices(pair: AnyPair, M: npt.ArrayLike, K: npt.ArrayLike) -> xr.Da
     if mass.shape != (n, n) or stiffness.shape[-2] != n or np.linalg.matrix_rank(mass) < n:
         shapes = f"M {mass.shape}, K {np.shape(K)}"
         raise refuse("M, K", shapes, "M (n, n), regular, and K (n, n) or (m, n, n)", "Correct the shapes.")
-    system = LTVSystem.of(pair, "elastic")
+    system = periodic_system(pair, "elastic", supports=supports)
     m, count = len(system.coordinates), len(stiffness) if len(stiffness) > 1 else 512
     ours = -system.matrices(np.arange(count) * (system.period / count))[:, m:, :m]
     theirs = np.linalg.solve(mass, stiffness)

@@ -16,6 +16,7 @@ from lumped import GearPair, load_gear_pair
 from lumped.arguments import file_path, of_type
 from lumped.errors import refuse
 from lumped.friction.registry import law_of
+from lumped.model.periodic_system import Supports, on_springs
 from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import payload, script_json
@@ -32,6 +33,7 @@ def write_interactive_page(
     data: str | Path | None = None,
     new: bool = False,
     sampling: Sampling = FINE,
+    supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Write the interactive page of a gear pair and, as NetCDF, every number on it.
@@ -43,6 +45,7 @@ def write_interactive_page(
     data : the data file, ``.nc``; default beside the page, with its name
     new : whether files of these names that are there when all is computed stay; else they are replaced
     sampling : how finely
+    supports : "springs", on which alone it is computed; needed for a pair with shafts
     progress : called with the finished fraction and what is being done
 
     Returns
@@ -51,11 +54,11 @@ def write_interactive_page(
 
     Raises
     ------
-    ParameterError : a refused parameter
+    ParameterError : a refused parameter, or shafts
     NumericalError : a computation fails; the text says what to try
     StorageError : a file cannot be written, or with ``new`` is there already
     """
-    pair = load_gear_pair(pair)
+    pair = on_springs(load_gear_pair(pair), supports, "write_interactive_page")
     of_type("sampling", sampling, Sampling, "a Sampling")
     page = file_path("path", path)
     values = page.with_suffix(".nc") if data is None else file_path("data", data)

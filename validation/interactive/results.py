@@ -101,7 +101,7 @@ class PageResults:
 
 
 def compute(pair: GearPair, sampling: Sampling = FINE, progress: Progress | None = None) -> PageResults:
-    """Compute the content of the page."""
+    """Compute the content of the page, of a pair without shafts."""
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
         found = modes(pair)

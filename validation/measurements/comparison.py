@@ -16,6 +16,7 @@ from lumped import Geometry, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import Supports, supports_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -86,20 +87,23 @@ class Prediction:
         return found
 
 
-def predict(pair: AnyPair, *, recurrence: int | None = None) -> Prediction:
+def predict(pair: AnyPair, *, recurrence: int | None = None, supports: Supports | None = None) -> Prediction:
     """Predict the periodic motion of a pair; between samples it is interpolated linearly.
 
     Parameters
     ----------
     pair : a validated gear pair, at the operating point of the record: ``Measurement.at``
     recurrence : see ``Prediction``; default the pinion's number of teeth
+    supports : "springs" or "shafts", as of ``lumped.steady_state``; by default the shafts of a pair that has
+        them
     """
     pair = load_gear_pair(pair)
     again = pair.pinion.teeth
     if recurrence is not None:  # no fewer than the pairs in contact at once
         advice = "Count the mesh cycles until the same labelled pair is in contact again."
         again = whole_number("recurrence", recurrence, pair.geometry.pairs, 1_000_000, advice)
-    return Prediction(pair, steady_state(pair, samples_per_cycle=_SAMPLES), again)
+    motion = steady_state(pair, samples_per_cycle=_SAMPLES, supports=supports_of(pair, supports))
+    return Prediction(pair, motion, again)
 
 
 @dataclass(frozen=True, eq=False)

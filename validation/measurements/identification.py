@@ -29,6 +29,7 @@ from lumped.arguments import some_of
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
 from lumped.friction.registry import file_name, laws_with_friction
+from lumped.model.periodic_system import Supports
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
@@ -98,7 +99,12 @@ class Evaluation:
 
 
 def evaluate(
-    measurement: Measurement, pair: AnyPair, *, identify: Sequence[str] = (), shift: float | None = None
+    measurement: Measurement,
+    pair: AnyPair,
+    *,
+    identify: Sequence[str] = (),
+    shift: float | None = None,
+    supports: Supports | None = None,
 ) -> Evaluation:
     """Align a record, compare it with its prediction, and identify friction from it.
 
@@ -108,6 +114,7 @@ def evaluate(
     pair : the gear pair; speed and torque are the record's, the friction law is the pair's
     identify : "mu" for a constant coefficient, or the name of a friction law for a scale on it
     shift : a known mesh phase [mesh cycles]; default: found from the record
+    supports : of the prediction: "springs" or "shafts"; by default the shafts of a pair that has them
 
     Raises
     ------
@@ -118,7 +125,8 @@ def evaluate(
     laws = list(laws_with_friction(pair.friction))
     advice = "Name mu, a constant coefficient, or a law to scale."
     wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)
-    prediction = predict(measurement.at(pair), recurrence=measurement.spec.recurrence)
+    recurrence = measurement.spec.recurrence
+    prediction = predict(measurement.at(pair), recurrence=recurrence, supports=supports)
     phase = align(measurement, prediction, shift=shift)
     found = (
         identify_friction(measurement, prediction, phase, law=None if name == CONSTANT else name)

@@ -48,9 +48,14 @@ def _static(result: xr.Dataset) -> Figure:
     return _curves([result.sel(torque=one) for one in torques], None, [f"{one:g} N m" for one in torques])
 
 
+def _waterfall(result: xr.Dataset) -> Figure:
+    supports = result.attrs.get("supports")
+    return waterfall_figure(result, natural_frequencies(_pair(result), supports=supports))
+
+
 def _spectrum(result: xr.Dataset) -> Figure:
     if "speed_rpm" in result.dims:
-        return waterfall_figure(result, natural_frequencies(_pair(result)))
+        return _waterfall(result)
     within = result["frequency"] < (_MESH_ORDERS + 0.5) * _pair(result).geometry.mesh_frequency
     shown = result.sel(order=within & (result["order"] > 0.0))  # the mean would dwarf the rest
     figure, ax = one_panel(2.7)
@@ -68,7 +73,7 @@ _MESH_ORDERS = 10
 #: Variable that no kind of result below has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "contact_kept": jump_map_figure,
-    "running_speed": lambda result: waterfall_figure(waterfall(result), natural_frequencies(_pair(result))),
+    "running_speed": lambda result: _waterfall(waterfall(result)),
     "branch": response_figure,
     "measured": overlay_figure,
     "dte": lambda result: history_figure(_pair(result).geometry, result),

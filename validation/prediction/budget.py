@@ -7,7 +7,7 @@ model matters. The range of the inputs and the measurement say how far the model
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,6 +16,7 @@ import xarray as xr
 
 from lumped.errors import SpurcheckError
 from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import without_shafts
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from validation.prediction.motion import Motion, Prediction, measured, predicted, pulls
@@ -126,8 +127,13 @@ def _varied(known: Known, changes: dict[str, object] | str) -> Prediction | Abse
     """The prediction of a variation of the pair; a text says why there is none."""
     if isinstance(changes, str):
         return Absent(Outcome.FAILED, changes)
+    return _predicted(lambda pair: pair.with_(changes), known.pair)
+
+
+def _predicted(vary: Callable[[GearPair], GearPair], pair: GearPair) -> Prediction | Absent:
+    """The prediction of a pair that is varied; absent where that is refused or has no motion."""
     try:
-        return predicted(known.pair.with_(changes))
+        return predicted(vary(pair))
     except SpurcheckError as error:
         return Absent(Outcome.FAILED, str(error))
 
@@ -171,7 +177,8 @@ def _rows(known: Known) -> Iterator[Row]:
          _varied(known, {"mesh.contact": contact})),
         ("second", "exact contact and finite motions", "by the multibody model", known.second),
         ("supports", "springs in place of shafts", "without the modes of the shafts",
-         _varied(known, "no shafts are given" if pair.shafts is None else {"shafts": None})),
+         Absent(Outcome.FAILED, "no shafts are given") if pair.shafts is None else
+         _predicted(without_shafts, pair)),
         ("stiffness", "tooth stiffness by finite elements", "plane finite elements of the whole gears",
          _varied(known, {"mesh.stiffness": {"model": "finite_elements"}} if fine else exact)),
     )  # fmt: skip

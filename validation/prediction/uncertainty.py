@@ -18,6 +18,7 @@ import lumped
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
+from lumped.model.periodic_system import Supports, supports_of, with_supports
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -50,7 +51,12 @@ _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 
 
 def uncertainty(
-    pair: AnyPair, samples: int = 128, seed: int = 1, *, progress: Progress | None = None
+    pair: AnyPair,
+    samples: int = 128,
+    seed: int = 1,
+    *,
+    supports: Supports | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return how the prediction varies when every uncertain input takes any value of its range.
 
@@ -60,6 +66,7 @@ def uncertainty(
         source of a value says that it is assumed
     samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
     seed : of the scrambled Sobol points
+    supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
     progress : called with the finished fraction
 
     Returns
@@ -77,7 +84,7 @@ def uncertainty(
     ParameterError : a spread that cannot be read, or no uncertain input
     NumericalError : fewer than half of the samples have a prediction
     """
-    pair = load_gear_pair(pair)
+    pair = with_supports(load_gear_pair(pair), supports)
     samples = whole_number("samples", samples, 16, 65536)
     inputs = uncertain_inputs(pair)
     if not inputs:
@@ -110,7 +117,8 @@ def uncertainty(
     names = (name for name in found.data_vars if found[name].dims == ("sample",))
     found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
     found.attrs |= {"refused": samples - len(table), "seed": seed}
-    return found.assign_attrs(provenance(pair, samples=samples, seed=seed))
+    held = {"supports": supports_of(pair, None)}
+    return found.assign_attrs(provenance(pair, samples=samples, seed=seed) | held)
 
 
 def transmission_error(found: xr.Dataset) -> str:
@@ -121,7 +129,7 @@ def transmission_error(found: xr.Dataset) -> str:
 def speed_band(
     pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, samples: int = 32, step_angle: float = STEP
 ) -> xr.Dataset:
-    """Return 5 and 95 % of the linear peak to peak, ``low`` and ``high`` [m], over ``speed_rpm``.
+    """Return 5 and 95 % of the linear peak to peak on springs, ``low`` and ``high`` [m], over ``speed_rpm``.
 
     ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
     ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
@@ -170,7 +178,7 @@ def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatAr
     """Peak to peak of the linear transmission error at speeds, NaN where no motion is found [m]."""
     pairs = [pair.at_speed(float(rpm)) for rpm in speeds_rpm]
     found = np.full(len(pairs), np.nan)
-    for j, system in enumerate(systems_over_speed(pairs, warn=False)):
+    for j, system in enumerate(systems_over_speed(pairs, "springs", warn=False)):
         times = sample_times(system.period, _TIMES)
         try:
             motion = periodic_solution(system, times, estimate_error=False, step_angle=step_angle)

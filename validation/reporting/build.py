@@ -18,6 +18,7 @@ import xarray as xr
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
 from lumped.labelling import source_hash
+from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
@@ -69,6 +70,7 @@ def report(
     compare: str | Path | None = None,
     tolerance: float = TOLERANCE,
     name: str = "",
+    supports: Supports | None = None,
     progress: Progress | None = None,
     early: Callable[[str, Sequence[Number]], None] | None = None,
 ) -> Report:
@@ -88,6 +90,8 @@ def report(
     compare : report.json of an earlier report, or its folder
     tolerance : relative change of a number that passes in this comparison
     name : how commands name the pair, its file or preset; default the pair's name
+    supports : "springs" leaves shafts out; by default the shafts of a pair that has them, where a chapter
+        does not say that it is about springs
     progress : called with the finished fraction and what is being done
     early : called with the title and the numbers that need neither samples nor charts, once they are known
 
@@ -99,7 +103,7 @@ def report(
     started = time.perf_counter()
     source_hash()  # of the source that runs: an edit of it meanwhile makes no other one of it
     tell: Progress = progress or (lambda fraction, stage="", /: None)
-    gear_pair = load_gear_pair(pair)
+    gear_pair = with_supports(load_gear_pair(pair), supports)
     named = name or (str(pair) if isinstance(pair, (str, Path)) else gear_pair.name)
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)

@@ -20,7 +20,7 @@ from floquet.gear.response import ResponseBranches
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
-from lumped.model.periodic_system import LTVSystem
+from lumped.model.periodic_system import LTVSystem, without_shafts
 from lumped.model.propagation import fastest_frequency
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import resolved_sweep, systems_over_speed
@@ -88,7 +88,8 @@ class Results:
     Parameters
     ----------
     pair : the gear pair; where its teeth differ, ``teeth`` has what that does, and all else is about its twin
-        with like teeth
+        with like teeth. Prediction, second program, uncertainty and teeth are on the shafts of a pair that
+        has them; all else is on the springs of ``bearings``, of ``pair_on_springs``
     effort : how finely
     name : how a command names the pair: its file, or the preset
     progress : called with the finished fraction of the present computation and its name
@@ -108,6 +109,7 @@ class Results:
         record: Measurement | None = None,
     ) -> None:
         self.given, self.pair = pair, pair.healthy
+        self.pair_on_springs = without_shafts(self.pair)
         self.record = record
         self.effort = effort
         self.name = name or pair.name
@@ -148,15 +150,15 @@ class Results:
     def linear(self) -> xr.Dataset | Absent:
         """The linear motion on springs, whose stability and response over speed are charted."""
         try:
-            return lumped.steady_state(self.pair)
+            return lumped.steady_state(self.pair_on_springs)
         except NumericalError as error:
             return Absent(Outcome.FAILED, str(error))
 
     @cached_property
     def check(self) -> CrossCheck | Absent:
-        """The second program beside the lumped model; absent at a speed that it refuses as too slow."""
+        """The second program beside the lumped model on springs; absent at a speed that it refuses."""
         try:
-            return crosscheck(self.pair, cycles=6, progress=self.stage("second program"))
+            return crosscheck(self.pair_on_springs, cycles=6, progress=self.stage("second program"))
         except ParameterError as error:
             return Absent(Outcome.FAILED, str(error))
 
@@ -195,7 +197,7 @@ class Results:
     @cached_property
     def vibrations(self) -> float:
         """Bound on the vibrations of the fastest mode, on springs, in a mesh cycle."""
-        system = LTVSystem.of(self.pair, "full")
+        system = LTVSystem.of(self.pair, "full", supports="springs")
         return fastest_frequency(system) * system.period / (2.0 * math.pi)
 
     @cached_property
@@ -205,13 +207,13 @@ class Results:
 
     @cached_property
     def sweep(self) -> xr.Dataset:
-        """Linear motion over speed."""
-        stage = self.stage("response over speed")
-        return resolved_sweep(self.pair, self.speeds, most=self.effort.sweep_speeds, progress=stage)
+        """Linear motion on springs over speed."""
+        stage, most = self.stage("response over speed"), self.effort.sweep_speeds
+        return resolved_sweep(self.pair_on_springs, self.speeds, most=most, progress=stage)
 
     @cached_property
     def band(self) -> xr.Dataset | Absent:
-        """Range of the transmission error over speed with the uncertain inputs."""
+        """Range of the transmission error on springs over speed with the uncertain inputs."""
         if isinstance(self.uncertainty, Absent):
             return self.uncertainty
         self.stage("range over speed")
@@ -220,7 +222,7 @@ class Results:
         slow, count = self.vibrations > _MANY, self.effort.band_speeds
         speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
         step = LONG_STEP if slow else STEP
-        return speed_band(self.pair, speeds, self.uncertainty, self.effort.band_samples, step)
+        return speed_band(self.pair_on_springs, speeds, self.uncertainty, self.effort.band_samples, step)
 
     @cached_property
     def teeth_band(self) -> FloatArray | None:
@@ -263,7 +265,7 @@ class Results:
 
     @cached_property
     def branches(self) -> ResponseBranches | Absent:
-        """Motions with unilateral contact about the operating speed."""
+        """Motions on springs with unilateral contact about the operating speed."""
         if not self.loses_contact:
             return Absent(Outcome.CONTACT_NOT_LOST)
         if not self.effort.full and not self.prediction.contact_lost:
@@ -273,23 +275,23 @@ class Results:
         try:
             seeds = _SEEDS if self.effort.full else 0
             return floquet.response_branches(
-                self.pair, ends, seeds=seeds, progress=self.stage("contact loss")
+                self.pair_on_springs, ends, seeds=seeds, progress=self.stage("contact loss")
             )
         except (NumericalError, ParameterError) as error:
             return Absent(Outcome.FAILED, str(error))
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
-        """Modes of the averaged pair; empty where one is overdamped and has no natural frequency."""
+        """Modes of the averaged pair on springs; empty where one is overdamped: it has no frequency."""
         try:
-            return modes(self.pair)
+            return modes(self.pair, "springs")
         except NumericalError:
             return ()
 
     @cached_property
     def multipliers(self) -> floquet.GearPairMultipliers:
-        """Floquet multipliers of the linear motion at the operating point."""
-        return floquet.gear_pair_multipliers(self.pair)
+        """Floquet multipliers of the linear motion on springs at the operating point."""
+        return floquet.gear_pair_multipliers(self.pair, supports="springs")
 
     @property
     def stability_line(self) -> IntArray:
@@ -299,18 +301,19 @@ class Results:
 
     @cached_property
     def chart(self) -> xr.Dataset:
-        """Stability over speed and mesh damping."""
+        """Stability on springs over speed and mesh damping."""
         axes = chart_axes(self.pair, self.effort.chart_speeds, self.effort.chart_dampings)
-        return floquet.stability_chart(self.pair, axes, progress=self.stage("stability chart"))
+        tell = self.stage("stability chart")
+        return floquet.stability_chart(self.pair, axes, supports="springs", progress=tell)
 
     @cached_property
     def orders_over_speed(self) -> xr.Dataset:
-        """Amplitudes of the pinion's bearing force by mesh order over speed, linear motion."""
+        """Amplitudes of the pinion's bearing force by mesh order over speed, linear motion on springs."""
         self.stage("orders over speed")
         speeds = np.linspace(*self.speeds, self.effort.orders_speeds)
         pairs = [self.pair.at_speed(float(rpm)) for rpm in speeds]
         rows = np.full((speeds.size, ORDERS), np.nan)
-        for row, system in zip(rows, systems_over_speed(pairs, warn=False), strict=True):
+        for row, system in zip(rows, systems_over_speed(pairs, "springs", warn=False), strict=True):
             times = sample_times(system.period, 128)
             with suppress(NumericalError):
                 run = periodic_solution(system, times, estimate_error=False).values
@@ -365,10 +368,15 @@ class Results:
         return tuple(f for f in self.flags if f.state == "violated" and f.key not in skip)
 
     @property
+    def in_place_of_shafts(self) -> str:
+        """Added to what is said of a pair with shafts where it is computed on springs."""
+        return "" if self.pair.shafts is None else ", on the springs of [bearings]"
+
+    @property
     def on_springs(self) -> str:
         """Added to what is said of stability and jumps of a pair with shafts, or with teeth that differ."""
         like = "" if self.teeth is None else ", with like teeth"
-        return like if self.pair.shafts is None else f"{like}, on the springs of [bearings]"
+        return f"{like}{self.in_place_of_shafts}"
 
     @property
     def second_words(self) -> str:

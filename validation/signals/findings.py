@@ -15,6 +15,7 @@ import lumped
 from lumped.errors import refuse
 from lumped.fields.units import to_stated
 from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import Supports, supports_of
 from lumped.schema.meeting_teeth import own_teeth
 from lumped.schema.pair import GearPair
 from lumped.schema.tolerances import flank_tolerances
@@ -30,18 +31,23 @@ GEARS: tuple[Gear, Gear] = ("pinion", "gear")
 
 
 class TeethFindings:
-    """Motion of a pair whose teeth differ, and of its twin with like teeth; refused where teeth are alike."""
+    """Motion of a pair whose teeth differ, and of its twin with like teeth; refused where teeth are alike.
 
-    def __init__(self, pair: GearPair) -> None:
+    ``supports``: of both, by default the shafts of a pair that has them.
+    """
+
+    def __init__(self, pair: GearPair, supports: Supports | None = None) -> None:
         if pair.healthy is pair:
             action = (
                 "Give [pinion.deviations], [pinion.mounting] or [[pinion.faults]]: spurcheck teeth --help."
             )
             raise refuse("pinion", "teeth that are alike", "teeth that differ", action)
-        self.pair = pair
-        self.motion = lumped.steady_state(pair, contact="unilateral")
+        self.pair, self.supports = pair, supports_of(pair, supports)
+        self.motion = lumped.steady_state(pair, contact="unilateral", supports=self.supports)
         samples = self.motion.sizes["time"] // self.period
-        self.twin = lumped.steady_state(pair.healthy, contact="unilateral", samples_per_cycle=samples)
+        self.twin = lumped.steady_state(
+            pair.healthy, contact="unilateral", supports=self.supports, samples_per_cycle=samples
+        )
 
     @property
     def period(self) -> int:
@@ -77,7 +83,7 @@ class TeethFindings:
     @cached_property
     def rates(self) -> tuple[float, float]:
         """Growth of a perturbation in one mesh cycle, |multiplier|^(1/cycles), of the pair and its twin."""
-        found = floquet.revolution_multipliers(self.pair)
+        found = floquet.revolution_multipliers(self.pair, supports=self.supports)
         return found.rate, found.healthy_rate
 
     def spectrum(self, gear: Gear, variable: str = "dte") -> xr.Dataset:

@@ -37,6 +37,9 @@ class Settings(Section):
         1, description="last mesh cycles that the outputs are taken from (multibody)"
     )
     fidelity: Literal["linear", "exact"] = Field("exact", description="contact kinematics (multibody)")
+    supports: Literal["springs", "shafts"] | None = Field(
+        None, description="what holds the gears; default the shafts of a pair that has them"
+    )
     rtol: Annotated[float | None, Quantity("1", at_least=1e-13, at_most=1e-2, optional=True)] = Field(
         None, description="relative tolerance (multibody, floquet); default that of the analysis"
     )
@@ -109,7 +112,8 @@ def _geometry(variation: GearVariation, settings: Settings) -> Values:
 
 
 def _lumped(variation: GearVariation, settings: Settings) -> Values:
-    run = steady_state(variation.pair, samples_per_cycle=settings.samples_per_cycle)
+    samples = settings.samples_per_cycle
+    run = steady_state(variation.pair, samples_per_cycle=samples, supports=variation.supports)
     return _motion(variation.pair, run) | {
         "mesh_efficiency": run.attrs["mesh_efficiency"],
         "brake_torque": run.attrs["brake_torque"],
@@ -129,6 +133,7 @@ def _multibody(variation: GearVariation, settings: Settings) -> Values:
         fidelity=settings.fidelity,
         samples_per_cycle=samples,
         initial="periodic",
+        supports=variation.supports,
         **tolerance,
     )
     # The grid ends on the last cycle's end, which is the first sample of a cycle that is not there.

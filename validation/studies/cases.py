@@ -127,7 +127,9 @@ class StudyEvaluator:
                     charted.append((path, float(value)))
                 else:
                     changes[path] = value
-        variation = GearVariation(self.pair.with_(dict(changes)) if changes else self.pair)
+        variation = GearVariation.of(
+            self.pair.with_(dict(changes)) if changes else self.pair, self.settings.supports
+        )
         for name, number in charted:
             variation = GEAR_AXES[name].apply(variation, number)
         return variation

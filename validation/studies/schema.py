@@ -17,6 +17,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.fields.refusals import translated
 from lumped.fields.section import Section, Text
 from lumped.fields.text_file import parse_toml, read_text
+from lumped.model.periodic_system import supports_of, with_supports
 from lumped.schema.files import load_gear_pair, preset_names
 from lumped.schema.pair import GearPair
 from validation.studies.analyses import ANALYSES, AnalysisName, Settings
@@ -91,7 +92,7 @@ class Study(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        problems = _output_problems(self) + _axis_problems(self)
+        problems = _output_problems(self) + _axis_problems(self) + _support_problems(self)
         if problems:
             raise ParameterError(problems)
         return self
@@ -136,12 +137,23 @@ def _output_problems(study: Study) -> list[FieldProblem]:
     return problems
 
 
+def _support_problems(study: Study) -> list[FieldProblem]:
+    """The refusal of shafts that the pair does not have."""
+    try:
+        with_supports(study.gear_pair, study.settings.supports)
+    except ParameterError as error:
+        return [replace(problem, field=f"settings.{problem.field}") for problem in error.problems]
+    return []
+
+
 def _axis_problems(study: Study) -> list[FieldProblem]:
     """Reasons why the axes do not fit each other, the design or the analysis."""
     labels = [axis.label for axis in study.axes]
     paths = [path for axis in study.axes for path in axis.field]
     taken = {*study.outputs, *NAMES}
     grid, floquet = study.design.method == "grid", study.analysis == "floquet"
+    on_shafts = supports_of(study.gear_pair, study.settings.supports) == "shafts"
+    springs = 'Give settings.supports = "springs", or vary a field of shafts.'
     vary = "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead."
     problems: list[FieldProblem] = []
     for j, axis in enumerate(study.axes):
@@ -157,6 +169,7 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
             cases += [
                 (twice, "field", repr(path), "a field that no other axis changes", "Remove one."),
                 (charted and not floquet, "field", repr(path), "an axis of analysis = 'floquet'", vary),
+                (on_shafts and path.startswith("bearing"), "field", repr(path), "not on shafts", springs),
             ]
         found = [FieldProblem(*problem) for wrong, *problem in cases if wrong]
         try:

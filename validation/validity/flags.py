@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from lumped import GearPair, Geometry
 from lumped.arguments import of_type
+from lumped.errors import refuse
 from lumped.friction.registry import law_of
 from lumped.model.results import LOAD_NOISE, farthest_reversal
 from lumped.path_of_contact import contact_path, law_range_violations
@@ -83,7 +84,7 @@ def validity_flags(
     ----------
     pair : the gear pair
     motion : dataset of ``lumped.steady_state``, or of a ``simulate``, over whole mesh cycles
-    multipliers : Floquet multipliers of the pair, where they are known
+    multipliers : Floquet multipliers of the pair on the same supports, where they are known
     """
     pair = load_gear_pair(pair)
     of_type("motion", motion, xr.Dataset, "a dataset, as steady_state returns it")
@@ -105,7 +106,12 @@ def validity_flags(
         from floquet.gear.multipliers import GearPairMultipliers
 
         what = "what gear_pair_multipliers returns"
-        flags.append(stability(of_type("multipliers", multipliers, GearPairMultipliers, what)))
+        own = of_type("multipliers", multipliers, GearPairMultipliers, what)
+        held = own.variation.supports
+        if held != (wanted := motion.attrs.get("supports", held)):
+            action = f'Give those of gear_pair_multipliers(pair, supports="{wanted}").'
+            raise refuse("multipliers", f"on {held}", f"on {wanted}, as the motion", action)
+        flags.append(stability(own))
     return tuple(flags)
 
 

@@ -95,9 +95,9 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     ratio, springs, static = max(found)
     if ratio > math.log(_FAR):
         yield (
-            f"Stability, jumps and curves over speed are those of the springs of [bearings]: the {springs} "
-            f"the line of action there, on its shaft {static:.3g} N/m. lumped.condensed_bearings gives "
-            "springs that stand for the shafts."
+            "Jumps, and what else is computed on the springs of [bearings], is not of the shafts: "
+            f"the {springs} the line of action there, on its shaft {static:.3g} N/m. "
+            "lumped.condensed_bearings gives springs that stand for the shafts."
         )
 
 

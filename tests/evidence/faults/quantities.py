@@ -111,11 +111,11 @@ def _path(pair: GearPair) -> dict[str, FloatArray]:
 
 
 def _motion(pair: GearPair) -> dict[str, FloatArray]:
-    """Periodic motion, transient, transmission error at rest."""
-    motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
+    """Periodic motion and transient on springs, transmission error at rest."""
+    motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES, supports="springs")
     found = _numbers(motion, "motion") | _attributes(motion, "motion", "mesh_efficiency", "brake_torque")
     found["share of power lost"] = 1.0 - found["motion mesh_efficiency"]
-    run = lumped.simulate(pair, 2, samples_per_cycle=SAMPLES)
+    run = lumped.simulate(pair, 2, samples_per_cycle=SAMPLES, supports="springs")
     found |= _numbers(run[["dte", "x_p", "theta_g_dot"]], "transient")
     still = lumped.static_transmission_error(pair)
     return found | _numbers(still, "at rest")
@@ -138,8 +138,9 @@ def _report(pair: GearPair) -> dict[str, FloatArray]:
 
 
 def _stability(pair: GearPair) -> dict[str, FloatArray]:
-    """Multipliers by both routes, and the bound of the compiled one."""
-    general, compiled = gear_pair_multipliers(pair, 1e-9), fast_multipliers(gear_block(pair))
+    """Multipliers on springs by both routes, and the bound of the compiled one."""
+    general = gear_pair_multipliers(pair, 1e-9, supports="springs")
+    compiled = fast_multipliers(gear_block(pair, supports="springs"))
     return {
         "decay per cycle": 1.0 - np.sort(np.abs(general.multipliers)),
         "decay per cycle, compiled": 1.0 - np.sort(np.abs(compiled.multipliers[0])),
@@ -148,7 +149,13 @@ def _stability(pair: GearPair) -> dict[str, FloatArray]:
 
 
 def _multibody(fidelity: str, pair: GearPair) -> dict[str, FloatArray]:
-    motion = multibody.steady_state(pair, fidelity=fidelity, samples_per_cycle=SAMPLES, rtol=1e-8)  # type: ignore[arg-type]
+    motion = multibody.steady_state(
+        pair,
+        fidelity=fidelity,  # type: ignore[arg-type]
+        samples_per_cycle=SAMPLES,
+        rtol=1e-8,
+        supports="springs",
+    )
     names = [
         "dte", "x_p", "y_p", "y_g", "normal_load", "friction_force", "sliding_velocity", "bearing_force_y_g",
     ]  # fmt: skip

@@ -99,7 +99,7 @@ def _row(pair: GearPair, name: str) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
         try:
-            check = crosscheck(pair, cycles=8, samples_per_cycle=128)
+            check = crosscheck(pair, cycles=8, samples_per_cycle=128, supports="springs")
         except (NumericalError, ParameterError) as error:
             return {
                 "name": name,

@@ -20,7 +20,7 @@ def with_law(law: str, **changes: object) -> GearVariation:
     """Of a pair whose gears and finishes differ."""
     pair = unlike_pair("heavily_relieved_under_load")
     one = {"friction.law": law, "friction.coefficient": None, "friction.sharpness": None}
-    return GearVariation(pair.with_(one | {"mesh.contact": "prescribed"} | changes))
+    return GearVariation(pair.with_(one | {"mesh.contact": "prescribed"} | changes), supports="springs")
 
 
 #: Laws whose value goes with the speed, each on its own pair and on one that has another path of contact.
@@ -38,7 +38,7 @@ WITH_LAW = {
 @pytest.mark.parametrize(("name", "law"), [(name, law) for name, laws in WITH_LAW.items() for law in laws])
 def test_families_give_the_law_of_every_speed(name: str, law: str) -> None:
     pair = unlike_pair(name).healthy
-    variation = GearVariation(pair.with_(mesh__contact="prescribed", friction__law=law))
+    variation = GearVariation(pair.with_(mesh__contact="prescribed", friction__law=law), supports="springs")
     families = friction_families(variation, SPEEDS)
     seen = np.concatenate([family.members for family in families])
     assert sorted(seen) == list(range(SPEEDS.size))  # every speed once
@@ -99,7 +99,7 @@ def test_charts_are_proven_and_share_the_polynomials_of_single_speeds(name) -> N
     assert chart.certificate == "proven"
     for speed in SPEEDS[[0, 3, 4]]:
         there = friction_path_function(pair.with_(operating__pinion_speed=float(speed)))
-        (family,) = friction_families(GearVariation(pair), SPEEDS)
+        (family,) = friction_families(GearVariation(pair, supports="springs"), SPEEDS)
         here = friction_path_function(vary(pair, {"speed_rpm": family.speed_rpm}).pair)
         factor = family.factors[speed == SPEEDS, 0].item()
         np.testing.assert_array_equal(there.breaks, here.breaks)
@@ -158,6 +158,6 @@ def test_a_table_of_one_speed_is_told_at_either_end_of_the_speeds(far):
         "coefficient": [0.05] * 9,
     }  # fmt: skip
     pair = unlike_pair("rack_25_degrees_always_pushing").with_(friction={"law": "table", "table": table})
-    variation = GearVariation(pair.with_(speed=1000.0))
+    variation = GearVariation(pair.with_(speed=1000.0), supports="springs")
     with pytest.warns(LawRangeWarning, match="speed"):
         friction_families(variation, np.array([1000.0, 1000.0 * far]))

@@ -27,7 +27,7 @@ def mesh_of(name: str, factor: float = 1.0, error: float = 0.0, levels: tuple[fl
             "mesh.damping_ratio": 0.03, "friction.law": "coulomb", "friction.coefficient": 0.06,
         }
     )  # fmt: skip
-    feedback = feedback_system(GearVariation(pair))
+    feedback = feedback_system(GearVariation(pair, supports="springs"))
     misfit = np.full(feedback.misfit.shape, error)
     return MeshGains(feedback.system, feedback.metric, misfit, factor, levels)
 

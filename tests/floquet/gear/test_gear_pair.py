@@ -38,8 +38,8 @@ def unmatched(computed: np.ndarray, reference: np.ndarray) -> float:
 def test_block_and_closed_form_equal_the_ten_states(name: str) -> None:
     """Each pair has a law, a stiffness model and four bearings of its own."""
     one = unlike_pair(name)
-    parts = gear_pair_multipliers(one)
-    whole = monodromy(gear_pair_system(one, "elastic"))
+    parts = gear_pair_multipliers(one, supports="springs")
+    whole = monodromy(gear_pair_system(one, "elastic", supports="springs"))
     assert parts.multipliers.shape == (10,)
     # 1e-8: both runs at rtol 1e-10; where bearings make two multipliers coincide, rounding is magnified.
     assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
@@ -64,7 +64,8 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
     edges = system.cycle.edges
     times = np.concatenate([a + (b - a) * (np.arange(400) + 0.5) / 400 for a, b in pairwise(edges)])
     weights = np.repeat(np.diff(edges) / 400, 400)
-    total = -gear_pair_system(GearVariation(pair, stiffness_variation=factor), "mesh").evaluate(times)
+    varied = GearVariation(pair, stiffness_variation=factor, supports="springs")
+    total = -gear_pair_system(varied, "mesh").evaluate(times)
     # Row of x_p: m_p x_p'' = -sum N_i, so the q column holds k(t)/m_p whatever the friction.
     k = total[:, 4, 0] * system.structure.mass[2]
     mean = system.cycle.mean_stiffness
@@ -81,7 +82,7 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
 def test_stiffness_variation_keeps_the_damping_law(pair) -> None:
     # c_i goes with sqrt(k_i): scaling every k_i by f scales every c_i by sqrt(f), in the same row of x_p.
     given = gear_pair_system(pair, "mesh")
-    varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4), "mesh")
+    varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4, supports="springs"), "mesh")
     times = np.array([0.1, 0.5, 0.9]) * given.period
     before, after = given.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
     f = after[:, 0] / before[:, 0]
@@ -170,7 +171,9 @@ def test_bearings_at_critical_damping_are_within_their_bound(ratio: float) -> No
     )
     system = periodic_system(pair, "elastic")
     T = np.array([system.period])
-    values, errors = OffLineOfAction.of(feedback_system(GearVariation(pair))).multipliers(T)
+    values, errors = OffLineOfAction.of(feedback_system(GearVariation(pair, supports="springs"))).multipliers(
+        T
+    )
     omega = np.sqrt(system.structure.stiffness[4] / system.structure.mass[4])
     zeta = min(ratio, 1.0)
     root = np.emath.sqrt(zeta**2 - 1.0)

@@ -33,7 +33,7 @@ def cracked(*teeth):
 
 def by_gauss_steps(pair, times, rate):
     """Rate, near ``rate``, and mean log of the determinants of the linear form, its steps so much shorter."""
-    system = LTVSystem.of(pair.healthy, "mesh")
+    system = LTVSystem.of(pair.healthy, "mesh", supports="springs")
     maps = CycleSteps(pair, system, 1, times * linear_steps(system)).cycle_maps()[..., :6]
     largest = np.abs(np.linalg.eigvals(reduce(lambda product, one: one @ product, maps / rate))).max()
     return rate * largest ** (1.0 / len(maps)), np.linalg.slogdet(maps)[1].mean()
@@ -108,7 +108,9 @@ def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
 
 def test_pieces_end_where_a_pair_touches_its_damper_is_full_or_its_tip_leaves_the_line():
     pair = PAIR.with_({"mesh.contact": "loaded", "mesh.relief": "ignored"} | CLASS_6)
-    gains = OwnGains(own_tables(ToothLaws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh"), 5, 8)
+    gains = OwnGains(
+        own_tables(ToothLaws(pair, every=True)), LTVSystem.of(pair.healthy, "mesh", supports="springs"), 5, 8
+    )
     # Else pieces are halved around every kink, down to the tolerance: 115 of a cycle.
     assert fit_pieces(gains, gains.edges, np.ones(3), rtol=1e-11)[0].size < 27 * 8
 

@@ -118,7 +118,7 @@ def test_bounds_of_the_polynomial_hold_where_it_is_bad() -> None:
 @pytest.mark.parametrize("terms", [(8, 4), (3, 1)])
 def test_bounds_hold_everywhere_in_boxes(terms, monkeypatch) -> None:
     """Of the polynomial, of the moduli of its entries, and none of them is loose; its error counts."""
-    variation = GearVariation(load_gear_pair("nasa_art_25_31"))
+    variation = GearVariation(load_gear_pair("nasa_art_25_31"), supports="springs")
     block = fitted_block(feedback_system(variation), 1.0, 1e-11, [0.0])
 
     def factors(T):

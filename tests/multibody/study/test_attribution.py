@@ -35,7 +35,7 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
         return xr.Dataset(dict.fromkeys(("dte", "x_p", "y_p", "theta_p"), ("time", values)))
 
     monkeypatch.setattr(
-        "multibody.study.causes.prepare", lambda pair, fidelity, initial, effects, rtol: effects
+        "multibody.study.causes.prepare", lambda pair, fidelity, initial, effects, rtol, supports: effects
     )
     monkeypatch.setattr("multibody.study.causes.find_orbit", lambda effects, *, near: effects)
     monkeypatch.setattr("multibody.study.causes.cycles_of", motion)

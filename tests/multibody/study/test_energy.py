@@ -28,7 +28,7 @@ OPTIONS = {
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_power_balance_closes(name):
-    balance = multibody.power_balance(prescribed(name), 5, **OPTIONS[name])
+    balance = multibody.power_balance(prescribed(name), 5, supports="springs", **OPTIONS[name])
     # rtol 1e-8 per step over some thousand steps; required is 1e-6 of the input, and friction is 0.3 to
     # 1.5 % of the input.
     assert abs(balance.residual) < 1e-8 * balance.driving
@@ -40,7 +40,7 @@ def test_power_balance_closes(name):
 
 def test_the_first_law_holds_without_a_source(unlike):
     """Driving power is braking power, stored energy and losses; no energy residual."""
-    balance = multibody.power_balance(unlike, 3, rtol=1e-10, friction_velocity=0.05)
+    balance = multibody.power_balance(unlike, 3, rtol=1e-10, friction_velocity=0.05, supports="springs")
     assert abs(balance.residual) < 1e-9 * balance.driving
     assert balance.energy_residual == 0.0
     # The energy does not jump: contact begins and ends where the teeth carry nothing.
@@ -71,7 +71,7 @@ def test_without_path_work_and_tip_contact_the_balance_needs_a_source(name):
 @pytest.mark.parametrize("name", LIKE_TEETH)
 def test_the_balance_of_the_linear_mesh_in_the_loaded_form_closes(name):
     """Its springs follow the tangent's error its dampers the gap; with Hertz's contact these differ."""
-    balance = multibody.power_balance(unlike_pair(name), 3, fidelity="linear", rtol=1e-11)
+    balance = multibody.power_balance(unlike_pair(name), 3, fidelity="linear", rtol=1e-11, supports="springs")
     assert abs(balance.residual) < 1e-10 * balance.driving
     # Work that goes into no energy, ten thousand times the residual: stiffness varies along each path.
     assert abs(balance.energy_residual) > 1e-6 * balance.driving
@@ -97,7 +97,7 @@ def test_nominal_friction_would_feed_energy_in(name):
 @pytest.mark.parametrize("name", LIKE_TEETH)
 def test_the_balance_of_a_periodic_motion_has_its_own_brake_torque_and_stores_nothing(name):
     pair = unlike_pair(name)
-    motion, g = multibody.steady_state(pair), pair.geometry
+    motion, g = multibody.steady_state(pair, supports="springs"), pair.geometry
     found = multibody.motion_balance(pair, motion, 1e-10)
     # A motion that closes to 1e-8 has the nominal mean speed; the torques of both models differ by more.
     assert found.braking == pytest.approx(

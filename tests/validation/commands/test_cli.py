@@ -165,7 +165,7 @@ def test_options_reach_the_report(asked, tmp_path, shafted_file):
     assert asked | expected == asked
     for supports in ((), ("--supports", "springs")):
         assert run("report", shafted_file, "-o", out, *supports).exit_code == 0
-        assert (asked["pair"].shafts is None) == bool(supports)
+        assert asked["supports"] == (supports[1] if supports else None)
 
 
 @pytest.mark.parametrize("bad", [(), ("conservation: efficiency, lumped",)])

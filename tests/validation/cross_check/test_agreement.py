@@ -121,8 +121,9 @@ def test_periodic_motion_is_found_where_friction_holds_the_teeth(stiffness):
 
 def steady_difference(pair):
     """Periodic motions compared, each with the brake torque that balances it: no transient, no drift."""
-    run = multibody.steady_state(pair, samples_per_cycle=128, effects={"contact_loss": False})
-    reference = lumped.steady_state(pair, samples_per_cycle=128)
+    springs = {"samples_per_cycle": 128, "supports": "springs"}
+    run = multibody.steady_state(pair, effects={"contact_loss": False}, **springs)
+    reference = lumped.steady_state(pair, **springs)
     return {name: difference(run, reference, name) for name in ("dte", "x_p", "x_g", "theta_p", "theta_g")}
 
 

@@ -47,7 +47,7 @@ def test_the_loaded_form_and_the_exact_contact_differ_by_finite_motions_alone(na
 @pytest.fixture(scope="module")
 def with_variant():
     """The cross-check of a loaded pair, with that of its twin."""
-    return crosscheck(unlike_pair("contact_ratio_2_3_on_shafts"), **QUICK)
+    return crosscheck(unlike_pair("contact_ratio_2_3_on_shafts"), **QUICK, supports="springs")
 
 
 @pytest.mark.parametrize("name", NAMES)

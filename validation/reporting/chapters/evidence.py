@@ -31,7 +31,7 @@ def write(results: Results) -> Content:
     blocks: list[Block] = [
         table_of(
             "assumptions",
-            "Assumptions of the linear model, checked at the operating point.",
+            f"Assumptions of the linear model, checked at the operating point{results.in_place_of_shafts}.",
             results.flags,
             {
                 "name": ("assumption", lambda f: f.name),

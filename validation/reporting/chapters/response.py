@@ -18,7 +18,7 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    pair, prediction = results.pair, results.prediction
+    pair, prediction, springs = results.pair, results.prediction, results.in_place_of_shafts
     cycle = prediction.cycle
     period = pair.geometry.mesh_period
     time = labelled_dataset(
@@ -70,8 +70,8 @@ def write(results: Results) -> Content:
         orders,
         Picture(
             "orders_over_speed",
-            "Force on the pinion bearings by mesh order over speed, linear motion. Red: where an order meets "
-            "a natural frequency. Dashed: the operating speed.",
+            f"Force on the pinion bearings by mesh order over speed, linear motion{springs}. Red: where an "
+            "order meets a natural frequency. Dashed: the operating speed.",
             results.orders_over_speed,
             partial(
                 orders_map_figure,
@@ -84,7 +84,7 @@ def write(results: Results) -> Content:
         blocks.append(
             Table(
                 "modes",
-                "Natural frequencies of the time-averaged pair.",
+                f"Natural frequencies of the time-averaged pair{springs}.",
                 {
                     "frequency": "frequency",
                     "damping": "damping ratio",

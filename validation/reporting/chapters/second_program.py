@@ -19,7 +19,7 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    check, second = results.check, results.second
+    check, second, springs = results.check, results.second, results.in_place_of_shafts
     if isinstance(check, Absent):
         return Content("The second program does not run here.", (Text(check.detail),))
     blocks: list[Block] = []
@@ -35,7 +35,7 @@ def write(results: Results) -> Content:
     blocks.append(
         table_of(
             "agreement",
-            "Largest difference of the second program, as a share.",
+            f"Largest difference of the second program, as a share{springs}.",
             check.agreements,
             {
                 "quantity": ("quantity", lambda a: a.long_name),
@@ -48,11 +48,12 @@ def write(results: Results) -> Content:
         )
     )
     if check.loss is not None:
-        blocks.append(_losses(check.loss))
+        blocks.append(_losses(check.loss, springs))
     blocks.append(
         table_of(
             "conservation",
-            "Conservation laws, checked on both programs: of each the check that uses most of its limit.",
+            f"Conservation laws, checked on both programs{springs}: of each the check that uses most of its "
+            "limit.",
             worst_of_each(check.conservation),
             {
                 "check": ("check", lambda j: j.check),
@@ -67,13 +68,13 @@ def write(results: Results) -> Content:
     return Content(results.second_words, tuple(blocks))
 
 
-def _losses(loss: LossAgreement) -> Table:
-    """Mean losses of both programs, place by place."""
+def _losses(loss: LossAgreement, springs: str) -> Table:
+    """Mean losses of both programs, place by place; ``springs`` is added where shafts are left out."""
     both = [*((PLACES[p], loss.lumped[p], loss.multibody.get(p, 0.0)) for p in loss.lumped)]
     both.append(("all places", loss.total, loss.total_multibody))
     return table_of(
         "losses_of_both",
-        f"Power lost in both programs. Their sums differ by {percent(loss.difference)}, limit "
+        f"Power lost in both programs{springs}. Their sums differ by {percent(loss.difference)}, limit "
         f"{percent(loss.limit)}: {'they agree' if loss.within else 'they do not agree'}.",
         both,
         {
