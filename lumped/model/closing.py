@@ -66,7 +66,10 @@ def close_period(
     for _ in range(most):
         if not (best.left > closed and age <= patience and np.isfinite(left).all()):
             break
-        change = np.linalg.solve(derivatives, -left)
+        try:
+            change = np.linalg.solve(derivatives, -left)
+        except np.linalg.LinAlgError:
+            break
         unknowns = unknowns + change * scale
         left, passed = over_period(unknowns)
         # Along this change the derivatives must explain all that is still left.

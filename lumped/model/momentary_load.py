@@ -24,6 +24,9 @@ from lumped.typing import FloatArray
 #: Steps in a period of the fastest vibration, and least steps in a mesh cycle: where a pair touches inside a
 #: step, 256 cost 0.1 % of a motion with contact loss.
 _STEPS, _LEAST_STEPS = 40, 512
+#: Where a mesh cycle has so many steps, each vibration gets fewer, but no fewer than these: a slow pair has
+#: damped them within a small part of the cycle. Most steps in a mesh cycle: a second for each of its passes.
+_MANY_STEPS, _FEWEST, _MOST_STEPS = 16_384, 8, 65_536
 #: What a start is to have faded to before it is recorded, and most cycles for that.
 _FADED, _MOST_SETTLING = 1e-11, 20_000
 #: Largest mismatch after the period, over the largest displacement, that is called periodic.
@@ -31,9 +34,17 @@ _CLOSED = 1e-4
 
 
 def steps_of(system: LTVSystem) -> int:
-    """Steps in a mesh cycle, by the fastest vibration."""
+    """Steps in a mesh cycle, by the fastest vibration; a NumericalError says that they are too many."""
     swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
-    return max(_LEAST_STEPS, math.ceil(_STEPS * swings))
+    if _FEWEST * swings > _MOST_STEPS:
+        rpm = system.pair.operating.pinion_speed * 30.0 / math.pi
+        least = rpm * _FEWEST * swings / _MOST_STEPS
+        raise NumericalError(
+            f"At {rpm:.4g} rpm a mesh cycle lasts {swings:.0f} vibrations of the fastest mode, too many to "
+            f"follow one by one: contact='unilateral' needs {least:.3g} rpm or more. "
+            "Use contact='linear', or static_transmission_error: so slow a pair hardly vibrates."
+        )
+    return max(_LEAST_STEPS, math.ceil(min(_STEPS * swings, max(_MANY_STEPS, _FEWEST * swings))))
 
 
 def momentary_tables(laws: ToothLaws, system: LTVSystem, step: float, outputs: int) -> MeshTables:

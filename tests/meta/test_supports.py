@@ -218,11 +218,6 @@ WITHOUT |= {
     "lumped.static_sharing": lambda pair: lumped.static_sharing(pair),
     "lumped.quasi_static.mesh_positions": lambda pair: PUBLIC["lumped.quasi_static.mesh_positions"](pair),
 }
-#: Take no supports yet; each leaves this set with its own change.
-PENDING = {
-    "validation.dynamic_factor",
-    "validation.predict",
-}
 
 
 def _page_one(pair, folder, **held):
@@ -254,21 +249,13 @@ def test_every_function_that_takes_a_pair_has_one_row():
 
 @pytest.mark.parametrize("name", sorted({*COMPUTED, *REFUSED} - {"validation.studies.run_sweep"}))
 def test_supports_are_a_keyword_whose_default_is_none(name):
-    if name in PENDING:
-        pytest.skip("not yet")
     parameter = inspect.signature(PUBLIC[name]).parameters["supports"]
     assert parameter.default is None
     assert parameter.kind is inspect.Parameter.KEYWORD_ONLY
     assert "supports" in inspect.getdoc(PUBLIC[name])
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.xfail(strict=True) if name in PENDING else ())
-        for name in COMPUTED
-    ],
-)
+@pytest.mark.parametrize("name", COMPUTED)
 def test_shafts_of_the_file_hold_the_gears_by_default(name, tmp_path):
     call = COMPUTED[name]
     found = {}
@@ -281,7 +268,7 @@ def test_shafts_of_the_file_hold_the_gears_by_default(name, tmp_path):
     assert found[0].shape != found[2].shape or not np.allclose(found[0], found[2], rtol=1e-6)
 
 
-@pytest.mark.parametrize("name", [name for name in COMPUTED if name not in PENDING])
+@pytest.mark.parametrize("name", COMPUTED)
 def test_shafts_that_a_pair_does_not_have_are_refused(name, tmp_path):
     with pytest.raises(ParameterError) as caught:
         COMPUTED[name](without_shafts(SMALL), tmp_path, supports="shafts")

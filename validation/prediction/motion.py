@@ -20,6 +20,7 @@ import xarray as xr
 
 import lumped
 from lumped.errors import NumericalError
+from lumped.model.periodic_system import Supports, with_supports
 from lumped.model.results import cycle_peak_to_peak
 from lumped.model.revolution_motion import Origin
 from lumped.model.steady import UNSTABLE
@@ -178,7 +179,7 @@ QUANTITIES = {
 }
 
 
-def predict(pair: AnyPair) -> Prediction:
+def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
     """Return the best motion that the program has for a pair at its operating point, and its numbers.
 
     The motion with unilateral contact by momentary load, of teeth that differ over their whole period, on the
@@ -188,6 +189,8 @@ def predict(pair: AnyPair) -> Prediction:
     Parameters
     ----------
     pair : gear pair, preset name or parameter file
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them
 
     Returns
     -------
@@ -198,12 +201,12 @@ def predict(pair: AnyPair) -> Prediction:
     ParameterError : a refused parameter
     NumericalError : no motion was found, or it does not stay bounded
     """
-    return predicted(load_gear_pair(pair))
+    return predicted(with_supports(load_gear_pair(pair), supports))
 
 
-def dynamic_factor(pair: AnyPair) -> float:
-    """Return the largest mesh force of ``predict`` over the static one [-]; the same errors."""
-    return predict(pair).dynamic_factor
+def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
+    """Return the largest mesh force of ``predict`` over the static one [-]; arguments and errors as there."""
+    return predict(pair, supports=supports).dynamic_factor
 
 
 def predicted(pair: GearPair) -> Prediction:

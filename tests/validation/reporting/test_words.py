@@ -386,12 +386,7 @@ def test_more_information_never_gives_a_worse_verdict(what):
     assert all(f"{on_springs}." in chapter.write(more).result for chapter in (contact_loss, stability))
     assert first.sure[0].startswith(poorer.sure[0][:-1])
     assert first.numbers[0].value != less.prediction.peak_to_peak
-    assert min(more.prediction.least_force, more.second.least_force) > 0.0
-    # Teeth that pull in the linear motion alone lose no contact.
-    vars(more.prediction)["mesh_force"] = np.append(more.prediction.mesh_force, -1.0)
-    assert page_one(more).verdict is Verdict.COMPARE
-    assert page_one(more).reason.startswith("In the linear motion on the shafts teeth pull.")
-    assert "contact" not in findings(more)
-    vars(more.second)["mesh_force"] = np.append(more.second.mesh_force, -1.0)
+    assert more.prediction.least_force > 0.0
+    vars(more.prediction)["mesh_force"] = np.append(more.prediction.mesh_force, 0.0)
     assert page_one(more).headline == "Do not run here: the teeth lose contact."
     assert "contact" in findings(more)
