@@ -21,9 +21,9 @@ from lumped.mesh.statics import corner_gaps
 from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
-from lumped.quasi_static.elements import MeshElements
+from lumped.quasi_static.elements import MeshElements, at_rest
 from lumped.quasi_static.load_sharing import coupled
-from lumped.quasi_static.loaded import StaticMesh
+from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.meeting_teeth import OwnTeeth, first_teeth, own_teeth, period_of, ripples
@@ -46,9 +46,12 @@ class ToothLaws:
         self.mesh = StaticMesh(self.healthy)
         self.loaded = contact_of(pair).name == "loaded"
         self.elements: MeshElements | None = None
-        if not self.loaded:
+        touched = (g.L_XA, g.L_XD)
+        if self.loaded:  # friction also of tip corners beyond A and D, as far as like teeth touch there
+            touched = loaded_contact(at_rest(pair)).stiffness.interval
+        else:
             self.elements = contact_of(pair).elements(self.healthy)
-        self.friction = friction_path_function(self.healthy)
+        self.friction = friction_path_function(self.healthy, interval=touched)
         self.kinds, self.faults = self._kinds()
         reach = 0.4 if self.loaded else 0.0  # as of the loaded contact of like teeth
         self.low, self.high = g.L_XA - reach * g.base_pitch, g.L_XD + reach * g.base_pitch
@@ -79,7 +82,7 @@ class ToothLaws:
         found = [g.L_XA, g.L_XD, g.L_XP, self.low, self.high]
         if (e := self.elements) is None:
             laws = [self.friction, self.mesh.stiffness.law, *self.mesh.neighbours]
-            found += [*relief_starts(self.healthy)]
+            found += [*relief_starts(self.healthy), *self.friction.interval]
         else:
             laws = [self.friction, e.stiffness, e.damping, e.error]
             found += [end for law in laws[1:] for end in law.interval]
@@ -118,10 +121,11 @@ class ToothLaws:
         if more.any():
             whole, k = k, k / (1.0 + more * k)
             c = c * np.sqrt(k / np.where(whole > 0.0, whole, 1.0))
+        first, last = self.friction.interval
         near = _INSIDE * g.base_pitch
         found = np.zeros(xi.shape, LAWS)
         found["stiffness"], found["damping"], found["gap"] = k, c, gap
-        found["friction"] = self.friction(np.clip(xi, g.L_XA + near, g.L_XD - near))
+        found["friction"] = self.friction(np.clip(xi, first + near, last - near))
         return found
 
     def _dampers(self, k: FloatArray) -> FloatArray:
