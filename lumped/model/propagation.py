@@ -223,8 +223,9 @@ class FreeSteps(NamedTuple):
 
     Attributes
     ----------
-    along : (k, wide, s + 2m) p, then the end, without forces, of unit states and forcings
-    by_force : (k, s, forces, s + 2m) what p, then the end take from each force at each stage
+    along : (k, wide, rows) p (s), then the end (2m), without forces, of unit states and forcings; further
+        rows, where asked for, are the rates (s, m) of all coordinates at the stages
+    by_force : (k, s, forces, rows) what they take from each force at each stage
     by_p : (k, 2s, s) deflection at the stages, then its rate, by p
     reach : (k, s) time from the start to each stage [s]
     """
@@ -241,8 +242,13 @@ def without_mesh(
     extra: FloatArray,
     gauss: tuple[FloatArray, FloatArray, FloatArray],
     directions: FloatArray,
+    *,
+    with_rates: bool = False,
 ) -> FreeSteps:
-    """What ``propagate`` needs of step lengths h (k,), of forces with the ``directions`` (forces, m)."""
+    """What ``propagate`` needs of step lengths h (k,), of forces with the ``directions`` (forces, m).
+
+    ``with_rates``: the rates of all coordinates at the stages are further rows.
+    """
     a, b, c = gauss
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
     stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
@@ -261,13 +267,18 @@ def without_mesh(
     end[:, :, : 2 * m] += np.eye(2 * m)
     end[:, :m, m : 2 * m] += h * np.eye(m)
     p = np.einsum("m,ksmx->ksx", u, accelerations)
-    by_feedback = np.zeros((k, s, m, s + 2 * m))
-    by_feedback[..., :s] = np.einsum("m,krmsi->ksir", u, inverse)
+    along = [p, end]
     moves = np.einsum("kdr,krmsi->ksidm", to_end, inverse)
-    by_feedback[..., s:] = moves.reshape(k, s, m, 2 * m)
+    by_feedback = [np.einsum("m,krmsi->ksir", u, inverse), moves.reshape(k, s, m, 2 * m)]
+    if with_rates:
+        rates = h[..., None] * np.einsum("jr,krmx->kjmx", a, accelerations)
+        rates[..., m : 2 * m] += np.eye(m)
+        along.append(rates.reshape(k, s * m, columns))
+        moves = h[..., None, None] * np.einsum("jr,krmsi->ksijm", a, inverse)
+        by_feedback.append(moves.reshape(k, s, m, s * m))
     return FreeSteps(
-        along=np.ascontiguousarray(np.concatenate([p, end], axis=1).swapaxes(1, 2)),
-        by_force=np.einsum("fm,ksmr->ksfr", directions, by_feedback),
+        along=np.ascontiguousarray(np.concatenate(along, axis=1).swapaxes(1, 2)),
+        by_force=np.einsum("fm,ksmr->ksfr", directions, np.concatenate(by_feedback, axis=3)),
         by_p=np.concatenate([h**2 * (a @ a), h * a], axis=1),
         reach=np.multiply.outer(lengths, c),
     )

@@ -53,7 +53,8 @@ class RevolutionMotion:
     states : (k, n)
     load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
     pinion_torque, brake_torque : mean torques that hold the mean speed against moments [N m]
-    powers : mean power of sliding, tooth dampers, supports, and of the gap that closes as the teeth roll [W]
+    powers : mean power of sliding, tooth dampers, supports (all together, or each of their ``places``), and
+        of the gap that closes as the teeth roll [W]
     closure : mismatch of the state after the period, over the largest displacement
     error : difference of the dynamic transmission error to that of steps four times longer, over its
         largest value
@@ -158,11 +159,13 @@ def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[
     found = {
         "power_sliding": motion.powers["sliding"],
         "power_tooth_dampers": motion.powers["tooth_dampers"],
-        "power_bearings": motion.powers["supports"],
+        "power_bearings": motion.powers["bearings" if "bearings" in motion.powers else "supports"],
         "power_energy_residual": 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"],
         "closure": motion.closure,
         "error_estimate": motion.error,
     }
+    if "shafts" in motion.powers:
+        found["power_shafts"] = motion.powers["shafts"]
     closed = np.append(motion.time, motion.period * motion.system.period)
     for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
         one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))

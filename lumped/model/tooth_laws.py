@@ -34,6 +34,7 @@ from lumped.typing import FloatArray, IntArray
 _INSIDE = 1e-11
 #: Share of the gap of a tip's corner that is left when the line of action is longer or shorter.
 _LEAST_GAP = 0.8
+_NO_PHASES = np.empty(0)
 
 
 class ToothLaws:
@@ -194,7 +195,11 @@ def _of_teeth(teeth: OwnTeeth) -> Records:
 
 
 def mesh_tables(
-    laws: ToothLaws, largest_step: float, outputs: int, nodes: FloatArray | tuple[float, ...] = (0.0,)
+    laws: ToothLaws,
+    largest_step: float,
+    outputs: int,
+    nodes: FloatArray | tuple[float, ...] = (0.0,),
+    ends: FloatArray = _NO_PHASES,
 ) -> MeshTables:
     """Tables on steps that end at outputs and wherever a law jumps or has a kink.
 
@@ -204,11 +209,12 @@ def mesh_tables(
     largest_step : in mesh cycles
     outputs : evenly spaced in a cycle, the first at its start
     nodes : places in a step, rising from 0 to 1
+    ends : further phases at which steps end, in mesh cycles
     """
     g, pair = laws.geometry, laws.pair
     phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
     even = np.arange(outputs + 1) / outputs
-    marks = np.unique(np.concatenate([even, phases]))
+    marks = np.unique(np.concatenate([even, phases, ends]))
     nearest = even[np.clip(np.round(marks * outputs).astype(np.int64), 0, outputs)]
     marks = np.where(np.abs(marks - nearest) < _INSIDE, nearest, marks)
     marks = marks[np.diff(marks, prepend=-1.0) > _INSIDE]
