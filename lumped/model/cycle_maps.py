@@ -213,6 +213,7 @@ def linear_motion(
     return RevolutionMotion(
         *(pair, system, outer, touch, time, flat, load, torque, brake, powers, closure, float(error)),
         twin.spectral_radius,
+        twin.between,
     )
 
 

@@ -6,7 +6,7 @@ Sources: docs/theory/teeth.md, "Motion", "Brake torque".
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -59,6 +59,7 @@ class RevolutionMotion:
     error : difference of the dynamic transmission error to that of steps four times longer, over its
         largest value
     spectral_radius : of the healthy twin
+    between : variable -> how much the outputs miss of its peak to peak with like teeth [m]
     """
 
     pair: GearPair
@@ -74,6 +75,7 @@ class RevolutionMotion:
     closure: float
     error: float
     spectral_radius: float
+    between: dict[str, float] = field(default_factory=dict)
 
     @property
     def period(self) -> int:
@@ -169,5 +171,5 @@ def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[
     closed = np.append(motion.time, motion.period * motion.system.period)
     for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
         one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
-        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
+        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate) + motion.between.get(name, 0.0)
     return found

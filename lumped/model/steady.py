@@ -66,6 +66,13 @@ class PeriodicSolution:
         """Variable -> its peak to peak over the cycle [m], with switches and extremes between samples."""
         return _peaks(self.system, self.cycle_time, self.cycle_states)
 
+    @property
+    def between(self) -> dict[str, float]:
+        """Variable -> how much of its peak to peak the times miss, with cubics between them [m]."""
+        times, states = np.append(self.time, self.system.period), np.vstack([self.states, self.states[:1]])
+        seen = _peaks(self.system, times, states)
+        return {name: whole - seen[name] for name, whole in self.peak_to_peak.items()}
+
     @cached_property
     def energy_residual(self) -> float:
         """Mean power that the normal loads leave, see ``StepMaps.energy_residual`` [W]."""
