@@ -18,7 +18,7 @@ import numpy as np
 from lumped.compiler import in_threads
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, FORCE
+from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, EXACT, FORCE
 from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, static_loads
 from lumped.mesh.tables import MeshTables
@@ -43,8 +43,10 @@ _LEAST_STEPS = 32
 _LONGER = 1.25
 #: Mesh cycles that are worked on together, and those by which the error of the steps is estimated.
 _BLOCK, _ESTIMATED = 64, 32
-#: Forces of the mesh and torques of which ``CycleSteps.strength`` has the strengths.
-NORMAL, MOMENT_PINION, MOMENT_GEAR, FRICTION, FRICTION_MOMENT, SEPARATING, TORQUE_PINION, TORQUE_GEAR = range(8)
+#: Forces of which ``CycleSteps.strength`` has the strengths: fields of FORCE, then, where gears are eccentric
+#: or a torque has a ripple, the moments of N on both gears, and both torques.
+NORMAL, FRICTION, FRICTION_MOMENT, SEPARATING = range(4)
+MOMENT_PINION, MOMENT_GEAR, TORQUE_PINION, TORQUE_GEAR = range(4, 8)
 
 
 def linear_steps(system: LTVSystem) -> int:
@@ -71,10 +73,12 @@ class CycleSteps:
         self.tables = mesh_tables(self.laws, 1.0 / steps, samples, tableau[2], ends)
         if system.form == "full":
             self.tables = swinging(self.tables, system)
+        self.tables = self.tables._replace(law=self.tables.law._replace(converged=EXACT))
         self.lengths = np.diff(self.tables.edges) * system.period
+        self.turns = bool(self.tables.turning["amplitude"].any())
         first, which = distinct_lengths(system, self.lengths)
         self.which, self.distinct = which[None], self.lengths[first]
-        self.free = self._without_mesh()
+        self.free = self.free_steps()
         self.width = self.free.along.shape[1]
         count = self.tables.period if most is None else min(most, self.tables.period)
         self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
@@ -83,12 +87,13 @@ class CycleSteps:
         self.form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
         in_threads(lambda block: fill_linear_form(self.tables, block[0], self.part(*block)), self.cycles)
 
-    def _without_mesh(self, *, with_rates: bool = False) -> FreeSteps:
+    def free_steps(self, *, with_rates: bool = False) -> FreeSteps:
         """``without_mesh`` for all forces of ``strength``."""
         system, m = self.system, len(self.system.coordinates)
         torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-        forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
-        forces = np.vstack([forces, torques[m:].T])
+        forces = system.directions
+        if self.turns:
+            forces = np.vstack([forces, moments(system), torques[m:].T])
         extra, tableau = padded(system, torques), gauss_tableau(STAGES)
         return without_mesh(system, self.distinct, extra, tableau, forces, with_rates=with_rates)
 
@@ -112,19 +117,15 @@ class CycleSteps:
         return LinearForm(*(part[first : first + count] for part in self.form))
 
     def strength(self, first: int, form: LinearForm) -> FloatArray:
-        """Strengths (cycles, steps, stages, 3, 8) of the forces in cycles from one on, for ``propagate``.
-
-        The forces are N, its moments on both gears, F, F xi, that of tip corners, and both torques' ripples.
-        """
+        """Strengths (cycles, steps, stages, 3, forces) in cycles from one on, for ``propagate``."""
         forces, states, tables = form.forces, form.states, self.tables
+        of_mesh = forces.view(np.float64).reshape(*forces.shape, -1)
+        if not self.turns:
+            return of_mesh
         found = np.zeros((*forces.shape, 8))
-        normal = forces["normal"]
-        found[..., NORMAL] = normal
-        found[..., MOMENT_PINION] = normal * states["moment_pinion"][..., None]
-        found[..., MOMENT_GEAR] = normal * states["moment_gear"][..., None]
-        found[..., FRICTION] = forces["friction"]
-        found[..., FRICTION_MOMENT] = forces["friction_moment"]
-        found[..., SEPARATING] = forces["separating"]
+        found[..., :MOMENT_PINION] = of_mesh
+        found[..., MOMENT_PINION] = forces["normal"] * states["moment_pinion"][..., None]
+        found[..., MOMENT_GEAR] = forces["normal"] * states["moment_gear"][..., None]
         phase = tables.edges[:-1, None] + tables.nodes * np.diff(tables.edges)[:, None]
         time = first + np.arange(len(forces))[:, None, None] + phase
         for ripple in torque_ripples(self.pair):
@@ -152,7 +153,7 @@ class CycleSteps:
         units = np.zeros((1, 2 * fed + 3, self.width))
         units[0, : 2 * fed, :n], units[0, 2 * fed :, n : n + 3] = back.T, np.eye(3)
         others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
-        nothing = np.zeros((1, self.lengths.size, STAGES, 3, 8))
+        nothing = np.zeros((1, self.lengths.size, STAGES, 3, self.free.by_force.shape[2]))
         still = self.along(others[None], 0, nothing, self.free).ends[0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
@@ -203,6 +204,7 @@ def linear_motion(
     starts = own.cycles[:, :m]
     error = np.abs((starts[: len(other)] - other[:, :m]) @ dte).max() / np.abs(starts @ dte).max()
     outer = swinging(mesh_tables(form.laws, 1.0, samples), system)
+    outer = outer._replace(law=form.tables.law)
     load = _loads(form, outer, states)
     time = np.arange(load.shape[1]) / samples * system.period
     torque, brake = system.pinion_torque + float(weights[1]), float(weights[2])
@@ -244,12 +246,10 @@ def _inside(
 
     Gauss steps keep the first law: over a period the powers of all forces at the stages, so weighted, cancel.
     """
-    system, tables, g = form.system, form.tables, form.pair.geometry
-    m, b, places = len(system.coordinates), gauss_tableau(STAGES)[1], system.supports.places
-    # y_p' - y_g', and the rates of both rotations.
-    turning = np.vstack([system.gears[4] - system.gears[5], system.gears[:2]])
-    free = form._without_mesh(with_rates=True)
-    weight = form.lengths[:, None] * b
+    system, tables, steps = form.system, form.tables, form.lengths.size
+    m, weight = len(system.coordinates), form.lengths[:, None] * gauss_tableau(STAGES)[1]
+    places, (per_rate, nominal) = system.supports.places, _velocities(form)
+    free = form.free_steps(with_rates=True)
 
     def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
         first, count = block
@@ -259,30 +259,47 @@ def _inside(
         start[:, 0, 2 * m : 2 * m + weights.size] = weights
         strength = form.strength(first, part)
         _, states, inside = form.along(start, 1, strength, free)
-        inside = inside[:, :, 0]
-        deflection, closing = inside[..., : b.size], inside[..., b.size : 2 * b.size]
-        rates = inside[..., 2 * b.size :].reshape(*deflection.shape, m)
-        forces = strength[..., BY_APPROACH, :] * deflection[..., None]
-        forces += strength[..., BY_RATE, :] * closing[..., None] + strength[..., AT_REST, :]
-        off_line, pinion, gear = np.moveaxis(rates @ turning.T, -1, 0)
-        speed_pinion, speed_gear = g.omega_pinion + pinion, g.omega_gear + gear
-        sliding = forces[..., FRICTION_MOMENT] * (speed_pinion + speed_gear)
-        sliding -= forces[..., FRICTION] * (speed_gear * g.L_XY + off_line)
+        approach, closing = inside[:, :, 0, :STAGES], inside[:, :, 0, STAGES : 2 * STAGES]
+        rates = inside[:, :, 0, 2 * STAGES :].reshape(-1, m)
+        velocities = (rates @ per_rate + nominal).reshape(*closing.shape, -1)
+        forces = strength[..., BY_APPROACH, : nominal.size] * approach[..., None]
+        forces += strength[..., BY_RATE, : nominal.size] * closing[..., None]
+        forces += strength[..., AT_REST, : nominal.size]
+        forces *= velocities
+        work = weight.ravel() @ forces.sum(axis=0).reshape(-1, nominal.size)
         mesh = part.states
-        dampers = (mesh["damper_by_square"] * closing + mesh["damper_by_rate"]) * closing
-        dampers += mesh["damper_at_rest"]
-        teeth = forces[..., NORMAL] * closing + forces[..., SEPARATING] * off_line
-        teeth -= forces[..., MOMENT_PINION] * speed_pinion + forces[..., MOMENT_GEAR] * speed_gear
-        outside = system.supports.powers(rates.reshape(-1, m))
-        powers = [sliding, dampers, *(outside[place].reshape(dampers.shape) for place in places), dampers - teeth]
-        work = [float((power.sum(axis=0) * weight).sum()) for power in powers]
-        return states[:, tables.outputs == 1, 0], np.array(work)
+        taken = (mesh["damper_by_square"] * closing + mesh["damper_by_rate"]) * closing
+        dampers = float(((taken + mesh["damper_at_rest"]).sum(axis=0) * weight).sum())
+        # Powers of the supports are quadratic: that of few rates with the same sum of squares and products.
+        weighted = (rates.reshape(count, -1, m) * weight.reshape(-1, 1)).reshape(-1, m)
+        size, axes = np.linalg.eigh(rates.T @ weighted)
+        outside = system.supports.powers((axes * np.sqrt(np.maximum(size, 0.0))).T)
+        sliding = work[FRICTION] + work[FRICTION_MOMENT]
+        taken_outside = [outside[place].sum() for place in places]
+        of_block = [sliding, dampers, *taken_outside, dampers - (work.sum() - sliding)]
+        return states[:, tables.outputs == 1, 0], np.array(of_block)
 
     outputs, work = zip(*in_threads(block_of, form.cycles), strict=True)
     duration = (len(cycles) - 1) * system.period
     names = ("sliding", "tooth_dampers", *places, "rolling")
     powers = dict(zip(names, (np.sum(work, axis=0) / duration).tolist(), strict=True))
     return np.concatenate(outputs), powers
+
+
+def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
+    """Velocity on which each force of the mesh works, per rate of the coordinates (m, forces), and nominal.
+
+    Friction: what it takes by sliding, (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi) - (y_p' - y_g').
+    The others: what they do on the vibration.
+    """
+    gears, g = form.system.gears, form.pair.geometry
+    off_line, pinion, gear = gears[4] - gears[5], gears[0], gears[1]
+    per_rate = [form.system.deflection, -(g.L_XY * gear + off_line), pinion + gear, off_line]
+    nominal = [0.0, -g.L_XY * g.omega_gear, g.omega_pinion + g.omega_gear, 0.0]
+    if form.turns:
+        per_rate += [-pinion, -gear]
+        nominal += [-g.omega_pinion, -g.omega_gear]
+    return np.stack(per_rate, axis=1), np.array(nominal)
 
 
 def _loads(form: CycleSteps, outer: MeshTables, states: FloatArray) -> FloatArray:
