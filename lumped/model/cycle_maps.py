@@ -42,7 +42,7 @@ _LEAST_STEPS = 32
 #: Steps are so much longer than asked for where they then end at every output.
 _LONGER = 1.25
 #: Mesh cycles that are worked on together, and those by which the error of the steps is estimated.
-_BLOCK, _ESTIMATED = 64, 32
+_BLOCK, _ESTIMATED = 64, 16
 #: Forces of which ``CycleSteps.strength`` has the strengths: fields of FORCE, then, where gears are eccentric
 #: or a torque has a ripple, the moments of N on both gears, and both torques.
 NORMAL, FRICTION, FRICTION_MOMENT, SEPARATING = range(4)
@@ -259,20 +259,19 @@ def _inside(
         start[:, 0, 2 * m : 2 * m + weights.size] = weights
         strength = form.strength(first, part)
         _, states, inside = form.along(start, 1, strength, free)
-        approach, closing = inside[:, :, 0, :STAGES], inside[:, :, 0, STAGES : 2 * STAGES]
+        # One-dimensional: numpy takes rows of four numbers slowly.
+        approach, closing = inside[:, :, 0, : 2 * STAGES].reshape(-1, 2, STAGES).swapaxes(0, 1).reshape(2, -1)
         rates = inside[:, :, 0, 2 * STAGES :].reshape(-1, m)
-        velocities = (rates @ per_rate + nominal).reshape(*closing.shape, -1)
-        forces = strength[..., BY_APPROACH, : nominal.size] * approach[..., None]
-        forces += strength[..., BY_RATE, : nominal.size] * closing[..., None]
-        forces += strength[..., AT_REST, : nominal.size]
-        forces *= velocities
-        work = weight.ravel() @ forces.sum(axis=0).reshape(-1, nominal.size)
-        mesh = part.states
+        times, velocities = np.tile(weight.ravel(), count), per_rate @ rates.T + nominal[:, None]
+        work = np.empty(nominal.size)
+        for force, parts in enumerate(strength.reshape(-1, 3, strength.shape[-1]).T[: nominal.size]):
+            load = parts[BY_APPROACH] * approach + parts[BY_RATE] * closing + parts[AT_REST]
+            work[force] = (load * velocities[force]) @ times
+        mesh = part.states.reshape(-1)
         taken = (mesh["damper_by_square"] * closing + mesh["damper_by_rate"]) * closing
-        dampers = float(((taken + mesh["damper_at_rest"]).sum(axis=0) * weight).sum())
+        dampers = float((taken + mesh["damper_at_rest"]) @ times)
         # Powers of the supports are quadratic: that of few rates with the same sum of squares and products.
-        weighted = (rates.reshape(count, -1, m) * weight.reshape(-1, 1)).reshape(-1, m)
-        size, axes = np.linalg.eigh(rates.T @ weighted)
+        size, axes = np.linalg.eigh((rates.T * times) @ rates)
         outside = system.supports.powers((axes * np.sqrt(np.maximum(size, 0.0))).T)
         sliding = work[FRICTION] + work[FRICTION_MOMENT]
         taken_outside = [outside[place].sum() for place in places]
@@ -287,7 +286,7 @@ def _inside(
 
 
 def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
-    """Velocity on which each force of the mesh works, per rate of the coordinates (m, forces), and nominal.
+    """Velocity on which each force of the mesh works, per rate of the coordinates (forces, m), and nominal.
 
     Friction: what it takes by sliding, (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi) - (y_p' - y_g').
     The others: what they do on the vibration.
@@ -299,7 +298,7 @@ def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     if form.turns:
         per_rate += [-pinion, -gear]
         nominal += [-g.omega_pinion, -g.omega_gear]
-    return np.stack(per_rate, axis=1), np.array(nominal)
+    return np.stack(per_rate), np.array(nominal)
 
 
 def _loads(form: CycleSteps, outer: MeshTables, states: FloatArray) -> FloatArray:
