@@ -44,12 +44,14 @@ class Steps:
     ----------
     length : (k,) [s]
     maps : (k, n, n + columns) transition, then forced for each forcing, then columns of zeros
-    inside : (k, n + columns, 2 s) maps to the dynamic transmission error at the stages, and to its rate
+    moving : columns of the maps that move the teeth; steps of one length have all others alike
+    inside : (k, moving, 2 s) maps of these to the dynamic transmission error at the stages, and to its rate
     teeth : (5, pairs, k, s) k, c, e, e' and ``closing`` there, as in ``PairState``
     """
 
     length: FloatArray
     maps: FloatArray
+    moving: IntArray
     inside: FloatArray
     teeth: FloatArray
 
@@ -95,11 +97,8 @@ class StepMaps:
         state, work = initial, 0.0
         for steps in self.steps():
             states = states_along(steps.maps, state, weights)
-            count, columns, _ = steps.inside.shape
-            held = np.zeros((count, 1, columns))
-            held[:, 0, : state.size] = states[:-1]
-            held[:, 0, state.size : state.size + weights.size] = weights
-            dte, rate = np.split((held @ steps.inside)[:, 0], 2, axis=1)
+            given = np.column_stack([states[:-1], np.broadcast_to(weights, (len(states) - 1, weights.size))])
+            dte, rate = np.split((given[:, None, steps.moving] @ steps.inside)[:, 0], 2, axis=1)
             k, c, e, e_rate, closing = steps.teeth
             power = (k * (dte - e)).sum(axis=0) * rate
             power += (c * (rate - e_rate) * (rate - closing * (rate - e_rate))).sum(axis=0)
@@ -192,20 +191,26 @@ def _steps(
         n_i = g_k,i delta_i + g_c,i delta'_i + g_0,i.
 
     The part without n depends on h alone, and few lengths differ. W reaches n through the numbers p_i = u.W_i
-    only, so each step solves s equations instead of s m, for all unit states and forcings together.
+    only, so each step solves s equations instead of s m, for all unit states and forcings together that move
+    the teeth.
     """
     n, k, (_, stages) = system.size, h.size, free.reach.shape
     times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
     forces, pairs = system.mesh_forces(times, np.repeat(segment, stages))
     strength = forces.view(np.float64).reshape(k, 1, stages, 3, -1)
-    width = free.along.shape[1]
-    units = np.tile(np.eye(width), (k, 1, 1))
-    found = propagate(units, width, strength, which[:, None], *free, system.deflection)
+    units = np.eye(free.along.shape[1])
+    # A column with an approach at its start, or an acceleration along it, or the forces without motion.
+    moves = (free.along[:, :, :stages] != 0.0).any(axis=(0, 2))
+    moves[:n] |= np.tile(system.deflection != 0.0, 2)
+    moves[n] = True
+    moving = np.flatnonzero(moves)
+    columns = np.ascontiguousarray(np.broadcast_to(units[moving], (k, moving.size, units.shape[0])))
+    found = propagate(columns, moving.size, strength, which[:, None], *free, system.deflection)
     closing = np.ones_like(pairs.damping) if pairs.closing is None else pairs.closing
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate, closing])
-    maps = np.ascontiguousarray(found.ends.swapaxes(1, 2))
-    assert maps.shape[1] == n
-    return Steps(h, maps, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
+    maps = np.ascontiguousarray(free.along[:, :, stages:].swapaxes(1, 2))[which]
+    maps[:, :, moving] = found.ends.swapaxes(1, 2)
+    return Steps(h, maps, moving, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
 
 
 def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArray]:
