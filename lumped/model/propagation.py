@@ -283,7 +283,9 @@ def without_mesh(
         by_feedback.append(moves.reshape(k, s, m, s * m))
     return FreeSteps(
         along=np.ascontiguousarray(np.concatenate(along, axis=1).swapaxes(1, 2)),
-        by_force=np.einsum("fm,ksmr->ksfr", directions, np.concatenate(by_feedback, axis=3)),
+        by_force=np.ascontiguousarray(
+            np.einsum("fm,ksmr->ksfr", directions, np.concatenate(by_feedback, axis=3))
+        ),
         by_p=np.concatenate([h**2 * (a @ a), h * a], axis=1),
         reach=np.multiply.outer(lengths, c),
     )

@@ -85,11 +85,11 @@ class ToothLaws:
         found = [g.L_XA, g.L_XD, g.L_XP, self.low, self.high]
         if (e := self.elements) is None:
             laws = [self.friction, self.mesh.stiffness.law, *self.mesh.neighbours]
-            found += [*relief_starts(self.healthy), *self.friction.interval]
+            found += [*relief_starts(self.healthy)]
         else:
             laws = [self.friction, e.stiffness, e.damping, e.error]
             found += [end for law in laws[1:] for end in law.interval]
-        found += [place for law in laws for place in (law.breaks if self.every else law.switches)]
+        found += [place for law in laws for place in (law.breaks[1:-1] if self.every else law.switches)]
         for of_gears in self.faults:
             for which, faults in enumerate(of_gears):
                 for fault in faults:
