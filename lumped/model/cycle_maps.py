@@ -24,9 +24,9 @@ from lumped.mesh.places import fill_linear_form, static_loads
 from lumped.mesh.tables import MeshTables
 from lumped.model.kernels import Propagated, chained, propagate, states_along
 from lumped.model.periodic_system import LTVSystem, Supports
+from lumped.model.powers import mean_powers
 from lumped.model.propagation import FreeSteps, distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.revolution_motion import RevolutionMotion, Touch
-from lumped.model.powers import mean_powers
 from lumped.model.steady import balanced_start, periodic_solution, sample_times
 from lumped.model.swing import moments, swinging
 from lumped.model.tooth_laws import ToothLaws, mesh_tables, torque_ripples
@@ -239,14 +239,12 @@ def _closed(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     return states_along(maps, start + moved.ravel(), weights), weights
 
 
-def _inside(
-    form: CycleSteps, cycles: FloatArray, weights: FloatArray
-) -> tuple[FloatArray, dict[str, float]]:
+def _inside(form: CycleSteps, cycles: FloatArray, weights: FloatArray) -> tuple[FloatArray, dict[str, float]]:
     """States (cycles, samples, n) at the outputs, and mean powers [W] by the stages of the steps.
 
     Gauss steps keep the first law: over a period the powers of all forces at the stages, so weighted, cancel.
     """
-    system, tables, steps = form.system, form.tables, form.lengths.size
+    system, tables = form.system, form.tables
     m, weight = len(system.coordinates), form.lengths[:, None] * gauss_tableau(STAGES)[1]
     places, (per_rate, nominal) = system.supports.places, _velocities(form)
     free = form.free_steps(with_rates=True)
@@ -288,8 +286,8 @@ def _inside(
 def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     """Velocity on which each force of the mesh works, per rate of the coordinates (forces, m), and nominal.
 
-    Friction: what it takes by sliding, (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi) - (y_p' - y_g').
-    The others: what they do on the vibration.
+    Friction takes power by the sliding, (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi)
+    - (y_p' - y_g'). The other forces work on the vibration.
     """
     gears, g = form.system.gears, form.pair.geometry
     off_line, pinion, gear = gears[4] - gears[5], gears[0], gears[1]

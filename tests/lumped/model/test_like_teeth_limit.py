@@ -48,7 +48,10 @@ def test_without_deviation_every_quantity_is_that_of_like_teeth(name, contact, s
     options = {"samples_per_cycle": SAMPLES, "supports": supports}
     like = lumped.steady_state(pair, **options)
     own = lumped.steady_state(with_deviation(pair, 0.0), touch="linear", **options)
-    swing, force = like.attrs["dte_peak_to_peak"], pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    swing, force = (
+        like.attrs["dte_peak_to_peak"],
+        pair.operating.pinion_torque / pair.geometry.base_radius_pinion,
+    )
 
     def moved(variable):
         found = own[variable].values.reshape(-1, SAMPLES)
@@ -58,11 +61,16 @@ def test_without_deviation_every_quantity_is_that_of_like_teeth(name, contact, s
         assert moved(variable) < 1e-10 * swing, variable
         peak = f"{variable}_peak_to_peak"
         assert own.attrs[peak] == pytest.approx(like.attrs[peak], abs=1e-10 * swing)
-    for variable, arm in (("theta_p", pair.geometry.base_radius_pinion), ("theta_g", pair.geometry.base_radius_gear)):
+    for variable, arm in (
+        ("theta_p", pair.geometry.base_radius_pinion),
+        ("theta_g", pair.geometry.base_radius_gear),
+    ):
         assert moved(variable) * arm < 1e-9 * swing, variable  # both grow with the angle that friction swings
     loads = (one["normal_load"].sum("pair").values for one in (own, like))
     own_load, like_load = loads
-    assert own_load.reshape(-1, SAMPLES) == pytest.approx(np.tile(like_load, (own_load.size // SAMPLES, 1)), abs=1e-9 * force)
+    assert own_load.reshape(-1, SAMPLES) == pytest.approx(
+        np.tile(like_load, (own_load.size // SAMPLES, 1)), abs=1e-9 * force
+    )
     driving = like.attrs["pinion_torque"] * pair.geometry.omega_pinion
     powers = [key for key in like.attrs if key.startswith("power_")]
     assert set(powers) == {key for key in own.attrs if key.startswith("power_")}
@@ -89,7 +97,9 @@ def test_long_steps_alone_are_near_the_motion_of_like_teeth(name):
     like = periodic_solution(system, sample_times(system.period, SAMPLES), estimate_error=False)
     steps = CycleSteps(with_deviation(pair, 0.0), system, SAMPLES, linear_steps(system), 1)
     long = stepped_motion(steps.with_like_teeth())
-    dte = [states[:, : len(system.coordinates)] @ system.deflection for states in (long.states[0], like.states)]
+    dte = [
+        states[:, : len(system.coordinates)] @ system.deflection for states in (long.states[0], like.states)
+    ]
     assert dte[0] == pytest.approx(dte[1], abs=1e-3 * np.ptp(dte[1]))
     expected = mean_powers(like).by_place
     for place, power in long.powers.items():
