@@ -63,6 +63,8 @@ PAIR_LOAD = record(
 #: damper, ways of the contact beyond the start and the end of the flanks. The last two are kinks of a slope.
 COMPRESSION, FULL_DAMPER, BEFORE_START, BEHIND_END = range(4)
 SIGNS = 4
+#: A kink so near to an end of a step, over the step, does not lie inside it.
+_AT_END = 1e-7
 #: Relative error of the static approach.
 _SETTLED = 1e-12
 
@@ -383,11 +385,16 @@ def find_kink(
     state: Record,
     kinks: Kinks,
 ) -> None:
-    """Find the phase where a number of a pair is zero between two phases, by the rule of Illinois."""
+    """Find the phase where a number of a pair is zero between two phases, by the rule of Illinois.
+
+    An end of a step between them is looked at first: kinks of like teeth are there.
+    """
     (low, high), (at_low, at_high), edges, last = ends, values, tables.edges, -1
     root, here = 0.0, step
     for left in range(rounds, -1, -1):
         root = (low * at_high - high * at_low) / (at_high - at_low)
+        if left == rounds and low < edges[step + 1] < high:
+            root = edges[step + 1]
         here = step + 1 if step < edges.size - 2 and root >= edges[step + 1] else step
         if left == 0:
             break
@@ -518,6 +525,10 @@ def linear_cycles(
         kink = first
         while fills and kink < kinks.known[0]:
             step = kinks.step[kink]
+            x = (kinks.phase[kink] - edges[step]) / (edges[step + 1] - edges[step])
+            if x < _AT_END or x > 1.0 - _AT_END:
+                kink += 1
+                continue
             kink = fill_moments(
                 step, kink, kinks, tables, mesh, at, one.forces, one.states[0],
                 form.forces[cycle, step], form.states[cycle, step],

@@ -181,17 +181,22 @@ def turn_line(
 
 @inlined
 def look_up(step: int, node: int, shift: float, tables: MeshTables) -> tuple[int, int, int, float]:
-    """Step, node and whole pitches of the tables next to a shifted place, and the way from there [m]."""
+    """Step, node and whole pitches of the tables next to a shifted place, and the way from there [m].
+
+    The step is that of the shifted middle of the own one: all nodes of a step see a law from the same side of
+    its jumps, and a shift that vanishes changes nothing.
+    """
     edges, nodes = tables.edges, tables.nodes
-    pitch = tables.law.rolling_speed * tables.duration
-    phase = edges[step] + nodes[node] * (edges[step + 1] - edges[step]) + shift / pitch
-    whole = math.floor(phase)
-    phase -= whole
+    pitch, length = tables.law.rolling_speed * tables.duration, edges[step + 1] - edges[step]
+    middle = edges[step] + 0.5 * length + shift / pitch
+    whole = math.floor(middle)
+    middle -= whole
     at = step
-    while at < edges.size - 2 and phase >= edges[at + 1]:
+    while at < edges.size - 2 and middle >= edges[at + 1]:
         at += 1
-    while phase < edges[at]:
+    while middle < edges[at]:
         at -= 1
+    phase = edges[step] + nodes[node] * length + shift / pitch - whole
     near, way = 0, math.inf
     for other in range(nodes.size):
         left = pitch * (phase - edges[at] - nodes[other] * (edges[at + 1] - edges[at]))

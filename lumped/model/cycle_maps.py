@@ -1,27 +1,34 @@
 """The linear form of teeth that differ: maps of mesh cycles about the own static state, and its motion.
 
+The steps are long. What own teeth change is the difference of two motions by the same steps, that of the own
+teeth and that of like teeth; it is added to the motion of like teeth, which short steps give. The error that
+both have by the length of the steps cancels.
+
 Sources: docs/theory/teeth.md, "The linear form", "Stability".
 """
 
 from __future__ import annotations
 
+import copy
 import math
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from lumped.compiler import in_threads
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, FORCE
+from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, EXACT, FORCE
 from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, static_loads
 from lumped.mesh.tables import MeshTables
 from lumped.model.kernels import Propagated, chained, propagate, states_along
-from lumped.model.momentary_load import without_drift
 from lumped.model.periodic_system import LTVSystem, Supports
-from lumped.model.propagation import distinct_lengths, fastest_frequency, padded, without_mesh
+from lumped.model.powers import mean_powers
+from lumped.model.propagation import FreeSteps, distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.revolution_motion import RevolutionMotion, Touch
-from lumped.model.steady import balanced_start, periodic_solution
+from lumped.model.steady import balanced_start, periodic_solution, sample_times
 from lumped.model.swing import moments, swinging
 from lumped.model.tooth_laws import ToothLaws, mesh_tables, torque_ripples
 from lumped.schema.pair import GearPair
@@ -29,14 +36,18 @@ from lumped.typing import FloatArray
 
 #: Stages of the Gauss steps.
 STAGES = 4
-#: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of that vibration, less
-#: than the touches of pairs inside steps do.
+#: Largest angle of the fastest vibration in a step [rad]: order 8 errs by some 1e-5 of the change of that
+#: vibration by own teeth, less than the touches of pairs inside steps do.
 _STEP_ANGLE = 2.4
 _LEAST_STEPS = 32
 #: Steps are so much longer than asked for where they then end at every output.
 _LONGER = 1.25
-#: Mesh cycles that are worked on together.
-_BLOCK = 64
+#: Mesh cycles that are worked on together, and those by which the error of the steps is estimated.
+_BLOCK, _ESTIMATED = 64, 16
+#: Forces of which ``CycleSteps.strength`` has the strengths: fields of FORCE, then, where gears are eccentric
+#: or a torque has a ripple, the moments of N on both gears, and both torques.
+NORMAL, FRICTION, FRICTION_MOMENT, SEPARATING = range(4)
+MOMENT_PINION, MOMENT_GEAR, TORQUE_PINION, TORQUE_GEAR = range(4, 8)
 
 
 def linear_steps(system: LTVSystem) -> int:
@@ -47,69 +58,99 @@ def linear_steps(system: LTVSystem) -> int:
 class CycleSteps:
     """Gauss steps through every mesh cycle of the period, in blocks of cycles, a thread a block.
 
-    ``system`` gives the coordinates, of any form; ``steps`` is the least number in a cycle, ``most`` ends
-    the form after so many cycles.
+    ``system`` gives the coordinates, of any form; ``steps`` is the least number in a cycle, ``only`` the
+    cycles of the form, where it is not that of the whole period. Steps end wherever a law of like teeth is
+    not smooth, so that own teeth alone bring kinks inside steps.
     """
 
     def __init__(
-        self, pair: GearPair, system: LTVSystem, samples: int, steps: int, most: int | None = None
+        self, pair: GearPair, system: LTVSystem, samples: int, steps: int, only: range | None = None
     ) -> None:
         self.pair, self.system = pair, system
         self.laws = ToothLaws(pair)
         tableau = gauss_tableau(STAGES)
         steps = samples if samples <= steps <= _LONGER * samples else steps
-        self.tables = mesh_tables(self.laws, 1.0 / steps, samples, tableau[2])
+        ends = system.cycle.bends / system.period
+        self.tables = mesh_tables(self.laws, 1.0 / steps, samples, tableau[2], ends)
         if system.form == "full":
             self.tables = swinging(self.tables, system)
+        self.tables = self.tables._replace(law=self.tables.law._replace(converged=EXACT))
         self.lengths = np.diff(self.tables.edges) * system.period
-        torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-        extra = padded(system, torques)
+        self.turns = bool(self.tables.turning["amplitude"].any())
         first, which = distinct_lengths(system, self.lengths)
-        lengths = self.lengths[first]
-        m = len(system.coordinates)
-        forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
-        forces = np.vstack([forces, torques[m:].T])
-        self.which, self.free = which[None], without_mesh(system, lengths, extra, tableau, forces)
+        self.which, self.distinct = which[None], self.lengths[first]
+        self.free = self.free_steps()
         self.width = self.free.along.shape[1]
-        count = self.tables.period if most is None else min(most, self.tables.period)
-        self.cycles = [(first, min(_BLOCK, count - first)) for first in range(0, count, _BLOCK)]
+        numbers = range(self.tables.period) if only is None else only
+        self.first, count = numbers.start, len(numbers)
+        self.cycles = [(first, min(_BLOCK, numbers.stop - first)) for first in numbers[::_BLOCK]]
         # At the stages; large arrays, for the system gives many small ones slowly.
         shape = (count, self.lengths.size, STAGES)
         self.form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
+        in_threads(lambda block: fill_linear_form(self.tables, block[0], self.part(*block)), self.cycles)
+
+    def free_steps(self, *, with_rates: bool = False) -> FreeSteps:
+        """``without_mesh`` for all forces of ``strength``."""
+        system, m = self.system, len(self.system.coordinates)
+        torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
+        forces = system.directions
+        if self.turns:
+            forces = np.vstack([forces, moments(system), torques[m:].T])
+        extra, tableau = padded(system, torques), gauss_tableau(STAGES)
+        return without_mesh(system, self.distinct, extra, tableau, forces, with_rates=with_rates)
+
+    def with_like_teeth(self) -> CycleSteps:
+        """The same steps through the one mesh cycle of like teeth, by their laws."""
+        system, tables = self.system, self.tables
+        low, high = tables.edges[:-1] * system.period, tables.edges[1:] * system.period
+        segment = np.searchsorted(system.cycle.edges, 0.5 * (low + high)) - 1
+        times = low[:, None] + (high - low)[:, None] * tables.nodes
+        forces, pairs = system.mesh_forces(times.ravel(), np.repeat(segment, STAGES))
+        states = np.zeros(times.size, STATE)
+        square, rate, rest = pairs.damper_power
+        states["damper_by_square"], states["damper_by_rate"], states["damper_at_rest"] = square, rate, rest
+        like = copy.copy(self)
+        like.pair, like.first, like.cycles = self.pair.healthy, 0, [(0, 1)]
+        like.form = LinearForm(forces.reshape(1, *times.shape, 3), states.reshape(1, *times.shape))
+        return like
+
+    @cached_property
+    def tables_of_outputs(self) -> MeshTables:
+        """Tables whose steps start at the outputs, for loads there."""
+        samples = int(self.tables.outputs.sum())
+        return swinging(mesh_tables(self.laws, 1.0, samples), self.system)._replace(law=self.tables.law)
 
     def part(self, first: int, count: int) -> LinearForm:
         """The form of so many cycles from one on."""
-        return LinearForm(*(part[first : first + count] for part in self.form))
+        low = first - self.first
+        return LinearForm(*(part[low : low + count] for part in self.form))
 
     def strength(self, first: int, form: LinearForm) -> FloatArray:
-        """Strengths (cycles, steps, stages, 3, 8) of the forces in cycles from one on, for ``propagate``.
-
-        The forces are N, its moments on both gears, F, F xi, that of tip corners, and both torques' ripples.
-        """
+        """Strengths (cycles, steps, stages, 3, forces) in cycles from one on, for ``propagate``."""
         forces, states, tables = form.forces, form.states, self.tables
+        of_mesh = forces.view(np.float64).reshape(*forces.shape, -1)
+        if not self.turns:
+            return of_mesh
         found = np.zeros((*forces.shape, 8))
-        normal = forces["normal"]
-        found[..., 0] = normal
-        found[..., 1], found[..., 2] = (
-            normal * states[f"moment_{gear}"][..., None] for gear in ("pinion", "gear")
-        )
-        found[..., 3], found[..., 4] = forces["friction"], forces["friction_moment"]
-        found[..., 5] = forces["separating"]
+        found[..., :MOMENT_PINION] = of_mesh
+        found[..., MOMENT_PINION] = forces["normal"] * states["moment_pinion"][..., None]
+        found[..., MOMENT_GEAR] = forces["normal"] * states["moment_gear"][..., None]
         phase = tables.edges[:-1, None] + tables.nodes * np.diff(tables.edges)[:, None]
         time = first + np.arange(len(forces))[:, None, None] + phase
         for ripple in torque_ripples(self.pair):
             turn = ripple["angle"] * np.mod(time, ripple["cycles"]) + ripple["start"]
-            found[..., AT_REST, 6 + int(ripple["shaft"])] += ripple["amplitude"] * np.cos(turn)
+            of_shaft = TORQUE_PINION + int(ripple["shaft"])
+            found[..., AT_REST, of_shaft] += ripple["amplitude"] * np.cos(turn)
         return found
 
-    def along(self, columns: FloatArray, kept: int, strength: FloatArray) -> Propagated:
+    def along(self, columns: FloatArray, kept: int, strength: FloatArray, free: FreeSteps) -> Propagated:
         """``propagate`` of a block of cycles."""
         deflection = np.ascontiguousarray(self.system.deflection)
-        found: Propagated = propagate(columns, kept, strength, self.which, *self.free, deflection)
+        found: Propagated = propagate(columns, kept, strength, self.which, *free, deflection)
         return found
 
     def cycle_maps(self) -> FloatArray:
-        """Affine map of each mesh cycle, (cycles, n, n + 3); fills ``form``.
+        """Affine map of each mesh cycle, (cycles, n, n + 3).
 
         States that move no tooth, of which all cycles make the same, are followed once.
         """
@@ -121,18 +162,33 @@ class CycleSteps:
         units = np.zeros((1, 2 * fed + 3, self.width))
         units[0, : 2 * fed, :n], units[0, 2 * fed :, n : n + 3] = back.T, np.eye(3)
         others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
-        nothing = np.zeros((1, self.lengths.size, STAGES, 3, 8))
-        still = self.along(others[None], 0, nothing).ends[0].T
+        nothing = np.zeros((1, self.lengths.size, STAGES, 3, self.free.by_force.shape[2]))
+        still = self.along(others[None], 0, nothing, self.free).ends[0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
             first, count = block
-            form = self.part(first, count)
-            fill_linear_form(self.tables, first, form)
-            strength = self.strength(first, form)
-            ends = self.along(np.tile(units, (count, 1, 1)), 0, strength).ends.swapaxes(1, 2)
+            strength = self.strength(first, self.part(first, count))
+            ends = self.along(np.tile(units, (count, 1, 1)), 0, strength, self.free).ends.swapaxes(1, 2)
             return np.concatenate([ends[..., : 2 * fed] @ to + still, ends[..., 2 * fed :]], axis=2)
 
         return np.concatenate(in_threads(maps, self.cycles))
+
+
+class SteppedMotion(NamedTuple):
+    """Periodic motion by long steps.
+
+    Attributes
+    ----------
+    cycles : (cycles + 1, n) states at the starts of the mesh cycles
+    weights : (3,) of the forcings: the own one, and torques beyond that of pinion and gear [N m]
+    states : (cycles, samples, n) at the outputs
+    powers : mean powers [W]: "sliding", "tooth_dampers", each place of the supports, "rolling"
+    """
+
+    cycles: FloatArray
+    weights: FloatArray
+    states: FloatArray
+    powers: dict[str, float]
 
 
 def linear_motion(
@@ -143,29 +199,62 @@ def linear_motion(
     Parameters as of ``push_motion``.
     """
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
-    twin = periodic_solution(system, np.zeros(1), estimate_error=False)
+    twin = periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
     steps = linear_steps(system) if steps is None else steps
     m, dte, relative = len(system.coordinates), system.deflection, system.supports.relative
-    coarse = CycleSteps(pair, system, 1, -(-steps // 2), _BLOCK)
     form = CycleSteps(pair, system, samples, steps)
-    cycles, weights = _closed(form)
-    other = states_along(coarse.cycle_maps(), cycles[0], weights)
-    error = np.abs((cycles[: len(other)] - other)[:, :m] @ dte).max() / np.abs(cycles[:, :m] @ dte).max()
-    outer = swinging(mesh_tables(form.laws, 1.0, samples), system)
-    states, load, powers = _inside(form, outer, cycles, weights)
-    time = np.arange(states.shape[0]) / samples * system.period
-    states = without_drift(system, time, states, 0.0)
-    g, torque, brake = pair.geometry, system.pinion_torque + float(weights[1]), float(weights[2])
-    # The first law gives what slides.
-    lost = powers["tooth_dampers"] + powers["bearings"] - powers["rolling"]
-    powers["sliding"] = torque * g.omega_pinion - brake * g.omega_gear - lost
-    largest = np.abs(cycles[:, :m] @ relative.T).max()
-    closure = float(np.abs(relative @ (cycles[-1] - cycles[0])[:m]).max() / largest)
+    own, like = stepped_motion(form), stepped_motion(form.with_like_teeth())
+    states = own.states + (twin.states - like.states[0])
+    weights = own.weights + (twin.weights - like.weights)
+    of_twin = mean_powers(twin).by_place
+    powers = {name: own.powers[name] + (of_twin[name] - like.powers[name]) for name in own.powers}
+    coarse = CycleSteps(pair, system, 1, -(-steps // 2), range(min(_ESTIMATED, form.tables.period)))
+    other = states_along(coarse.cycle_maps(), own.cycles[0], own.weights)
+    starts = own.cycles[:, :m]
+    error = np.abs((starts[: len(other)] - other[:, :m]) @ dte).max() / np.abs(starts @ dte).max()
+    outer = form.tables_of_outputs
+
+    def loads(block: tuple[int, int]) -> FloatArray:
+        first, count = block
+        return loads_of(form, outer, first, states[first : first + count])
+
+    load = np.concatenate(in_threads(loads, form.cycles), axis=1)
+    time = np.arange(load.shape[1]) / samples * system.period
+    torque, brake = system.pinion_torque + float(weights[1]), float(weights[2])
+    largest = np.abs(starts @ relative.T).max()
+    closure = float(np.abs(relative @ (starts[-1] - starts[0])).max() / largest)
     touch = Touch.TIED if form.tables.law.windows else Touch.LINEAR
+    flat = states.reshape(-1, system.size)
     return RevolutionMotion(
-        *(pair, system, outer, touch, time, states, load, torque, brake, powers, closure, float(error)),
+        *(pair, system, outer, touch, time, flat, load, torque, brake, powers, closure, float(error)),
         twin.spectral_radius,
+        between=twin.between,
     )
+
+
+def stepped_run(
+    form: CycleSteps, first: int, count: int, state: FloatArray, weights: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """States (count, samples, n) at the outputs of so many mesh cycles from one on, and that at their end.
+
+    ``state`` (n,) at the start; ``weights`` (3,) of the forcings, as of ``SteppedMotion``. After the cycles
+    of the form its first one follows again.
+    """
+    kept, known = form.tables.outputs == 1, sum(number for _, number in form.cycles)
+    start, found = np.zeros((1, 1, form.width)), []
+    for cycle in range(first, first + count):
+        start[0, 0, : state.size], start[0, 0, state.size : state.size + weights.size] = state, weights
+        at = form.first + (cycle - form.first) % known
+        ends, states, _ = form.along(start, 1, form.strength(at, form.part(at, 1)), form.free)
+        found.append(states[0, kept, 0])
+        state = ends[0, 0, : state.size]
+    return np.stack(found), state
+
+
+def stepped_motion(form: CycleSteps) -> SteppedMotion:
+    """Periodic motion by the steps of a form alone."""
+    cycles, weights = _closed(form)
+    return SteppedMotion(cycles, weights, *_inside(form, cycles, weights))
 
 
 def _closed(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
@@ -182,58 +271,71 @@ def _closed(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     return states_along(maps, start + moved.ravel(), weights), weights
 
 
-def _inside(
-    form: CycleSteps, outer: MeshTables, cycles: FloatArray, weights: FloatArray
-) -> tuple[FloatArray, FloatArray, dict[str, float]]:
-    """States and loads (pairs, k) at the outputs, and mean powers that the motion inside steps tells [W]."""
-    system, tables, dte, kept = form.system, form.tables, form.system.deflection, outer.outputs == 1
-    m, gears, b = len(system.coordinates), system.gears, gauss_tableau(STAGES)[1]
-    rates = np.vstack([gears[:2], gears[5] - gears[4]])
-    g = form.pair.geometry
+def _inside(form: CycleSteps, cycles: FloatArray, weights: FloatArray) -> tuple[FloatArray, dict[str, float]]:
+    """States (cycles, samples, n) at the outputs, and mean powers [W] by the stages of the steps.
 
-    def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    Gauss steps keep the first law: over a period the powers of all forces at the stages, so weighted, cancel.
+    """
+    system, tables = form.system, form.tables
+    m, weight = len(system.coordinates), form.lengths[:, None] * gauss_tableau(STAGES)[1]
+    places, (per_rate, nominal) = system.supports.places, _velocities(form)
+    free = form.free_steps(with_rates=True)
+
+    def block_of(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
         first, count = block
         part = form.part(first, count)
         start = np.zeros((count, 1, form.width))
-        start[:, 0, : 2 * m], start[:, 0, 2 * m : 2 * m + weights.size] = (
-            cycles[first : first + count],
-            weights,
-        )
-        _, states, inside = form.along(start, 1, form.strength(first, part))
-        states, inside = states[:, :, 0], inside[:, :, 0]
-        delta, closing = np.moveaxis(inside.reshape(*inside.shape[:2], 2, b.size), 2, 0)
+        start[:, 0, : 2 * m] = cycles[first : first + count]
+        start[:, 0, 2 * m : 2 * m + weights.size] = weights
+        strength = form.strength(first, part)
+        _, states, inside = form.along(start, 1, strength, free)
+        # One-dimensional: numpy takes rows of four numbers slowly.
+        approach, closing = inside[:, :, 0, : 2 * STAGES].reshape(-1, 2, STAGES).swapaxes(0, 1).reshape(2, -1)
+        rates = inside[:, :, 0, 2 * STAGES :].reshape(-1, m)
+        times, velocities = np.tile(weight.ravel(), count), per_rate @ rates.T + nominal[:, None]
+        work = np.empty(nominal.size)
+        for force, parts in enumerate(strength.reshape(-1, 3, strength.shape[-1]).T[: nominal.size]):
+            load = parts[BY_APPROACH] * approach + parts[BY_RATE] * closing + parts[AT_REST]
+            work[force] = (load * velocities[force]) @ times
+        mesh = part.states.reshape(-1)
+        taken = (mesh["damper_by_square"] * closing + mesh["damper_by_rate"]) * closing
+        dampers = float((taken + mesh["damper_at_rest"]) @ times)
+        # Powers of the supports are quadratic: that of few rates with the same sum of squares and products.
+        size, axes = np.linalg.eigh((rates.T * times) @ rates)
+        outside = system.supports.powers((axes * np.sqrt(np.maximum(size, 0.0))).T)
+        sliding = work[FRICTION] + work[FRICTION_MOMENT]
+        taken_outside = [outside[place].sum() for place in places]
+        of_block = [sliding, dampers, *taken_outside, dampers - (work.sum() - sliding)]
+        return states[:, tables.outputs == 1, 0], np.array(of_block)
 
-        def force(name: str) -> FloatArray:
-            of = part.forces[name]
-            return np.asarray(of[..., BY_APPROACH] * delta + of[..., BY_RATE] * closing + of[..., AT_REST])
+    outputs, work = zip(*in_threads(block_of, form.cycles), strict=True)
+    duration = (len(cycles) - 1) * system.period
+    names = ("sliding", "tooth_dampers", *places, "rolling")
+    powers = dict(zip(names, (np.sum(work, axis=0) / duration).tolist(), strict=True))
+    return np.concatenate(outputs), powers
 
-        mesh = part.states
-        taken = (mesh["damper_by_square"] * closing + mesh["damper_by_rate"]) * closing + mesh[
-            "damper_at_rest"
-        ]
-        flat = np.vstack([states.reshape(-1, 2 * m), cycles[first + count]])[:, m:]
-        turning = flat @ rates.T
-        along = (turning[:-1, None] + tables.nodes[:, None] * np.diff(turning, axis=0)[:, None]).reshape(
-            *delta.shape, 3
-        )
-        late = mesh["moment_pinion"] * (g.omega_pinion + along[..., 0])
-        late += mesh["moment_gear"] * (g.omega_gear + along[..., 1])
-        load, corners = force("normal"), force("separating") * along[..., 2]
-        outside = np.sum(list(system.supports.powers(flat).values()), axis=0)
-        lengths = np.tile(form.lengths, count)
-        work = [
-            float(((taken @ b) @ form.lengths).sum()),
-            float((((load * (closing - late) - corners) @ b) @ form.lengths).sum()),
-            0.5 * float(lengths @ (outside[1:] + outside[:-1])),
-        ]
-        at = states[:, tables.outputs == 1]
-        loads = static_loads(outer, first, count)[1][:, kept]
-        place, rate = (at[..., :m] @ dte)[..., None], (at[..., m:] @ dte)[..., None]
-        carried = loads["by_approach"] * place + loads["by_rate"] * rate + loads["at_rest"]
-        return at.reshape(-1, 2 * m), carried.reshape(-1, carried.shape[-1]).T, np.array(work)
 
-    outputs, loads, work = zip(*in_threads(block_of, form.cycles), strict=True)
-    duration = tables.period * system.period
-    dampers, moved, supports = (float(value) for value in np.sum(work, axis=0) / duration)
-    powers = {"tooth_dampers": dampers, "bearings": supports, "rolling": dampers - moved}
-    return np.concatenate(outputs), np.concatenate(loads, axis=1), powers
+def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
+    """Velocity on which each force of the mesh works, per rate of the coordinates (forces, m), and nominal.
+
+    Friction takes power by the sliding, (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi)
+    - (y_p' - y_g'). The other forces work on the vibration.
+    """
+    gears, g = form.system.gears, form.pair.geometry
+    off_line, pinion, gear = gears[4] - gears[5], gears[0], gears[1]
+    per_rate = [form.system.deflection, -(g.L_XY * gear + off_line), pinion + gear, off_line]
+    nominal = [0.0, -g.L_XY * g.omega_gear, g.omega_pinion + g.omega_gear, 0.0]
+    if form.turns:
+        per_rate += [-pinion, -gear]
+        nominal += [-g.omega_pinion, -g.omega_gear]
+    return np.stack(per_rate), np.array(nominal)
+
+
+def loads_of(form: CycleSteps, outer: MeshTables, first: int, states: FloatArray) -> FloatArray:
+    """Loads (pairs, k) at states (k, n) at the outputs of mesh cycles from one on [N]."""
+    m, dte, kept = len(form.system.coordinates), form.system.deflection, outer.outputs == 1
+    here = states.reshape(-1, int(kept.sum()), states.shape[-1])
+    loads = static_loads(outer, first, len(here))[1][:, kept]
+    approach, rate = (here[..., :m] @ dte)[..., None], (here[..., m:] @ dte)[..., None]
+    carried = loads["by_approach"] * approach + loads["by_rate"] * rate + loads["at_rest"]
+    return np.asarray(carried.reshape(-1, carried.shape[-1]).T, dtype=np.float64)

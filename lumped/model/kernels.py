@@ -20,7 +20,7 @@ class Propagated(NamedTuple):
     ----------
     ends : (runs, columns, 2m) states at the ends of the runs
     states : (runs, steps, kept, 2m) at the start of every step
-    inside : (runs, steps, kept, 2s) deflection at the stages, then its rate
+    inside : (runs, steps, kept, 2s + further) deflection at the stages, then its rate, then the further rows
     """
 
     ends: FloatArray
@@ -93,19 +93,21 @@ def propagate(
     ----------
     columns : (runs, columns, wide) states at the starts (2m), then the weights of the forcings; the forces
         without motion have that of the first one
-    kept : how many columns are kept at every step
+    kept : how many columns are kept at every step; with none, further rows are not computed
     strength : (runs, steps, s, 3, forces) of each force per deflection, per its rate and without motion
     which : (runs or 1, steps) the length of each step, a row of the next four
-    free : (k, wide, s + 2m) p, the stage accelerations along the deflection, and end without forces
-    by_force, by_p : of ``lumped.model.propagation.without_mesh``, (k, s, forces, s + 2m) and (k, 2s, s)
+    free : (k, wide, s + 2m + further) p, the stage accelerations along the deflection, end, and further rows
+        of a step without forces
+    by_force, by_p : of ``lumped.model.propagation.without_mesh``, (k, s, forces, as many) and (k, 2s, s)
     reach : (k, s) time from the start to each stage [s]
     deflection : (m,)
     """
     runs, count, wide = columns.shape
     steps, stages, m = strength.shape[1], strength.shape[2], deflection.size
-    n, rows = 2 * m, stages + 2 * m
+    n, rows = 2 * m, free.shape[2] if kept > 0 else stages + 2 * m
+    further = rows - stages - n
     ends, states = np.empty((runs, count, n)), np.empty((runs, steps, kept, n))
-    inside = np.empty((runs, steps, kept, 2 * stages))
+    inside = np.empty((runs, steps, kept, 2 * stages + further))
     fours = -(-2 * stages // 4) * 4  # as ``add_rows`` takes them
     to, fixed, found = np.zeros((fours, rows)), np.empty(rows), np.empty(rows)
     at_stages, p = np.zeros(fours), np.empty(stages)
@@ -149,6 +151,8 @@ def propagate(
                     for row in range(2 * stages):
                         inside[run, step, column, row] = at_stages[row]
                 add_rows(found, at_stages, to, stages)
+                for row in range(further if column < kept else 0):
+                    inside[run, step, column, 2 * stages + row] = found[stages + n + row]
                 for row in range(n):
                     x[row] = found[stages + row]
         for column in range(count):

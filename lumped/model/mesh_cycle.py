@@ -61,6 +61,13 @@ class PairState:
         share = 1.0 if self.closing is None else self.closing
         return np.asarray(share * self.damping * (rate - self.error_rate) ** 2)
 
+    @property
+    def damper_power(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """``taken`` of all pairs over the square of the rate of the approach, over the rate, and the rest."""
+        damping = self.damping if self.closing is None else self.closing * self.damping
+        by_rate = -2.0 * damping * self.error_rate
+        return damping.sum(axis=0), by_rate.sum(axis=0), (damping * self.error_rate**2).sum(axis=0)
+
     def load(self, approach: FloatArray, rate: FloatArray) -> FloatArray:
         """Normal load (pairs, k) [N] of the linear form, at an approach [m] and its rate [m/s]."""
         closing = rate - self.error_rate

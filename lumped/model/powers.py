@@ -62,6 +62,12 @@ class MeanPowers:
         return self.sliding + self.tooth_dampers + self.bearings + self.shafts
 
     @property
+    def by_place(self) -> dict[str, float]:
+        """Losses by place and the energy residual, under the names of ``RevolutionMotion.powers``."""
+        places = ("sliding", "tooth_dampers", "bearings", "shafts")
+        return {place: getattr(self, place) for place in places} | {"rolling": self.energy_residual}
+
+    @property
     def efficiency(self) -> float:
         """Share of the driving power that is not lost [-], 1 - losses / input."""
         return 1.0 - self.lost / self.driving

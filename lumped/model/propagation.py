@@ -44,12 +44,14 @@ class Steps:
     ----------
     length : (k,) [s]
     maps : (k, n, n + columns) transition, then forced for each forcing, then columns of zeros
-    inside : (k, n + columns, 2 s) maps to the dynamic transmission error at the stages, and to its rate
+    moving : columns of the maps that move the teeth; steps of one length have all others alike
+    inside : (k, moving, 2 s) maps of these to the dynamic transmission error at the stages, and to its rate
     teeth : (5, pairs, k, s) k, c, e, e' and ``closing`` there, as in ``PairState``
     """
 
     length: FloatArray
     maps: FloatArray
+    moving: IntArray
     inside: FloatArray
     teeth: FloatArray
 
@@ -95,11 +97,8 @@ class StepMaps:
         state, work = initial, 0.0
         for steps in self.steps():
             states = states_along(steps.maps, state, weights)
-            count, columns, _ = steps.inside.shape
-            held = np.zeros((count, 1, columns))
-            held[:, 0, : state.size] = states[:-1]
-            held[:, 0, state.size : state.size + weights.size] = weights
-            dte, rate = np.split((held @ steps.inside)[:, 0], 2, axis=1)
+            given = np.column_stack([states[:-1], np.broadcast_to(weights, (len(states) - 1, weights.size))])
+            dte, rate = np.split((given[:, None, steps.moving] @ steps.inside)[:, 0], 2, axis=1)
             k, c, e, e_rate, closing = steps.teeth
             power = (k * (dte - e)).sum(axis=0) * rate
             power += (c * (rate - e_rate) * (rate - closing * (rate - e_rate))).sum(axis=0)
@@ -192,20 +191,26 @@ def _steps(
         n_i = g_k,i delta_i + g_c,i delta'_i + g_0,i.
 
     The part without n depends on h alone, and few lengths differ. W reaches n through the numbers p_i = u.W_i
-    only, so each step solves s equations instead of s m, for all unit states and forcings together.
+    only, so each step solves s equations instead of s m, for all unit states and forcings together that move
+    the teeth.
     """
     n, k, (_, stages) = system.size, h.size, free.reach.shape
     times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
     forces, pairs = system.mesh_forces(times, np.repeat(segment, stages))
     strength = forces.view(np.float64).reshape(k, 1, stages, 3, -1)
-    width = free.along.shape[1]
-    units = np.tile(np.eye(width), (k, 1, 1))
-    found = propagate(units, width, strength, which[:, None], *free, system.deflection)
+    units = np.eye(free.along.shape[1])
+    # A column with an approach at its start, or an acceleration along it, or the forces without motion.
+    moves = (free.along[:, :, :stages] != 0.0).any(axis=(0, 2))
+    moves[:n] |= np.tile(system.deflection != 0.0, 2)
+    moves[n] = True
+    moving = np.flatnonzero(moves)
+    columns = np.ascontiguousarray(np.broadcast_to(units[moving], (k, moving.size, units.shape[0])))
+    found = propagate(columns, moving.size, strength, which[:, None], *free, system.deflection)
     closing = np.ones_like(pairs.damping) if pairs.closing is None else pairs.closing
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate, closing])
-    maps = np.ascontiguousarray(found.ends.swapaxes(1, 2))
-    assert maps.shape[1] == n
-    return Steps(h, maps, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
+    maps = np.ascontiguousarray(free.along[:, :, stages:].swapaxes(1, 2))[which]
+    maps[:, :, moving] = found.ends.swapaxes(1, 2)
+    return Steps(h, maps, moving, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
 
 
 def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArray]:
@@ -223,8 +228,9 @@ class FreeSteps(NamedTuple):
 
     Attributes
     ----------
-    along : (k, wide, s + 2m) p, then the end, without forces, of unit states and forcings
-    by_force : (k, s, forces, s + 2m) what p, then the end take from each force at each stage
+    along : (k, wide, rows) p (s), then the end (2m), without forces, of unit states and forcings; further
+        rows, where asked for, are the rates (s, m) of all coordinates at the stages
+    by_force : (k, s, forces, rows) what they take from each force at each stage
     by_p : (k, 2s, s) deflection at the stages, then its rate, by p
     reach : (k, s) time from the start to each stage [s]
     """
@@ -241,8 +247,13 @@ def without_mesh(
     extra: FloatArray,
     gauss: tuple[FloatArray, FloatArray, FloatArray],
     directions: FloatArray,
+    *,
+    with_rates: bool = False,
 ) -> FreeSteps:
-    """What ``propagate`` needs of step lengths h (k,), of forces with the ``directions`` (forces, m)."""
+    """What ``propagate`` needs of step lengths h (k,), of forces with the ``directions`` (forces, m).
+
+    ``with_rates``: the rates of all coordinates at the stages are further rows.
+    """
     a, b, c = gauss
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
     stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
@@ -261,13 +272,20 @@ def without_mesh(
     end[:, :, : 2 * m] += np.eye(2 * m)
     end[:, :m, m : 2 * m] += h * np.eye(m)
     p = np.einsum("m,ksmx->ksx", u, accelerations)
-    by_feedback = np.zeros((k, s, m, s + 2 * m))
-    by_feedback[..., :s] = np.einsum("m,krmsi->ksir", u, inverse)
+    along = [p, end]
     moves = np.einsum("kdr,krmsi->ksidm", to_end, inverse)
-    by_feedback[..., s:] = moves.reshape(k, s, m, 2 * m)
+    by_feedback = [np.einsum("m,krmsi->ksir", u, inverse), moves.reshape(k, s, m, 2 * m)]
+    if with_rates:
+        rates = h[..., None] * np.einsum("jr,krmx->kjmx", a, accelerations)
+        rates[..., m : 2 * m] += np.eye(m)
+        along.append(rates.reshape(k, s * m, columns))
+        moves = h[..., None, None] * np.einsum("jr,krmsi->ksijm", a, inverse)
+        by_feedback.append(moves.reshape(k, s, m, s * m))
     return FreeSteps(
-        along=np.ascontiguousarray(np.concatenate([p, end], axis=1).swapaxes(1, 2)),
-        by_force=np.einsum("fm,ksmr->ksfr", directions, by_feedback),
+        along=np.ascontiguousarray(np.concatenate(along, axis=1).swapaxes(1, 2)),
+        by_force=np.ascontiguousarray(
+            np.einsum("fm,ksmr->ksfr", directions, np.concatenate(by_feedback, axis=3))
+        ),
         by_p=np.concatenate([h**2 * (a @ a), h * a], axis=1),
         reach=np.multiply.outer(lengths, c),
     )

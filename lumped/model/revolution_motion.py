@@ -6,7 +6,7 @@ Sources: docs/theory/teeth.md, "Motion", "Brake torque".
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -77,6 +77,7 @@ class RevolutionMotion:
     spectral_radius : of the motion itself where teeth are alike, else of the healthy twin
     origin : how a motion with unilateral contact was found
     first : number of the mesh cycle of the first time
+    between : variable -> how much the outputs miss of its peak to peak with like teeth [m]
     """
 
     pair: GearPair
@@ -94,6 +95,7 @@ class RevolutionMotion:
     spectral_radius: float
     origin: Origin | None = None
     first: int = 0
+    between: dict[str, float] = field(default_factory=dict)
 
     @property
     def period(self) -> int:
@@ -203,5 +205,5 @@ def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[
     closed = np.append(motion.time, motion.period * motion.system.period)
     for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
         one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
-        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate)
+        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate) + motion.between.get(name, 0.0)
     return found

@@ -6,6 +6,7 @@ Sources: docs/theory/equations.md, "Run-up".
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import tee
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
@@ -13,6 +14,8 @@ import numpy as np
 from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
+from lumped.mesh.tables import MeshTables
+from lumped.model.cycle_maps import CycleSteps, linear_steps, loads_of, stepped_run
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
@@ -96,10 +99,8 @@ def run_up(
     groups = list(_groups(begins))
     hertz = ((last - first) / (begins[last] - begins[first]) for first, last in groups)
     pairs = (pair.with_({"operating.pinion_speed": float(60.0 / pair.pinion.teeth * f)}) for f in hertz)
-    if contact == "linear" and pair.healthy is pair:
-        parts = _linear(pairs, groups, supports, samples_per_cycle)
-    else:
-        parts = _unilateral(pairs, groups, supports, samples_per_cycle)
+    of_groups = _linear if contact == "linear" else _unilateral
+    parts = of_groups(pairs, groups, supports, samples_per_cycle)
     times, values = [], []
     for (first, last), (period, part) in zip(groups, parts, strict=True):
         times.append(
@@ -131,18 +132,36 @@ def _of_time(values: Mapping[str, FloatArray]) -> FloatArray:
 def _linear(
     pairs: Iterable[GearPair], groups: Sequence[tuple[int, int]], supports: Supports, samples: int
 ) -> Iterator[tuple[float, FloatArray]]:
-    """Period of a mesh cycle [s] and variables of every group of cycles of like teeth, by maps."""
-    state: FloatArray | None = None
-    for (first, last), system in zip(groups, systems_over_speed(pairs, supports), strict=True):
-        grid = sample_times(system.period, samples)
+    """Period of a mesh cycle [s] and variables of every group of cycles, by maps.
+
+    Teeth that differ add the difference of two runs by long steps, see `lumped.model.cycle_maps`.
+    """
+    ends: list[FloatArray] = []
+    given, alike = tee(pairs)
+    systems = systems_over_speed((pair.healthy for pair in alike), supports)
+    for (first, last), pair, system in zip(groups, given, systems, strict=True):
+        grid, count = sample_times(system.period, samples), last - first
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
         start, weights = balanced_start(system, *maps.over_all)
-        state, found = start if state is None else state, []
-        for _ in range(last - first):
-            states = maps.states(state, weights)
-            state = states[-1]
-            found.append(_of_time(response(system, grid, states[:-1])))
-        yield system.period, np.concatenate(found, axis=1)
+        ends = ends or [start, start, start]
+        found = []
+        for _ in range(count):
+            states = maps.states(ends[0], weights)
+            ends[0] = states[-1]
+            found.append(states[:-1])
+        if pair.healthy is pair:
+            yield (
+                system.period,
+                np.concatenate([_of_time(response(system, grid, one)) for one in found], axis=1),
+            )
+            continue
+        form = CycleSteps(pair, system, samples, linear_steps(system), range(first, last))
+        own, ends[1] = stepped_run(form, first, count, ends[1], weights)
+        same, ends[2] = stepped_run(form.with_like_teeth(), first, count, ends[2], weights)
+        flat = np.concatenate(found) + (own - same).reshape(-1, system.size)
+        tables = form.tables_of_outputs
+        motion = _motion_of_group(pair, system, tables, first, flat, loads_of(form, tables, first, flat))
+        yield system.period, _of_time(response(system, motion.time, flat, motion.load, motion.pairs))
 
 
 def _unilateral(
@@ -169,23 +188,36 @@ def _unilateral(
         state = run_of_group.end
         # The rate that the torque did not bring to zero is what the next group has to supply.
         missing -= float(weights @ state[m:]) / duration
-        motion = RevolutionMotion(
-            pair=pair,
-            system=system,
-            tables=tables,
-            touch=Touch.WINDOWS if tables.law.windows else Touch.MOMENTARY,
-            time=(first + np.arange((last - first) * samples) / samples) * system.period,
-            states=run_of_group.states,
-            load=run_of_group.loads,
-            pinion_torque=linear.pinion_torque,
-            brake_torque=brake,
-            powers={},
-            closure=np.nan,
-            error=np.nan,
-            spectral_radius=linear.spectral_radius,
-            first=first,
-        )
+        motion = _motion_of_group(pair, system, tables, first, run_of_group.states, run_of_group.loads)
         yield system.period, _of_time(response(system, motion.time, motion.states, motion.load, motion.pairs))
+
+
+def _motion_of_group(
+    pair: GearPair,
+    system: LTVSystem,
+    tables: MeshTables,
+    first: int,
+    states: FloatArray,
+    load: FloatArray,
+) -> RevolutionMotion:
+    """Mesh cycles from one on, whose times are those of their own speed."""
+    samples = int(tables.outputs.sum())
+    return RevolutionMotion(
+        pair=pair,
+        system=system,
+        tables=tables,
+        touch=Touch.MOMENTARY,
+        time=np.asarray((first + np.arange(len(states)) / samples) * system.period, dtype=np.float64),
+        states=states,
+        load=load,
+        pinion_torque=np.nan,
+        brake_torque=np.nan,
+        powers={},
+        closure=np.nan,
+        error=np.nan,
+        spectral_radius=np.nan,
+        first=first,
+    )
 
 
 def _groups(begins: FloatArray) -> Iterator[tuple[int, int]]:

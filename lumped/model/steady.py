@@ -34,6 +34,7 @@ class PeriodicSolution:
     error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
     cycle_time, cycle_states : (i,) [s], 0, the period and all switches included, and (i, n): close enough to
         resolve the fastest vibration
+    weights : (3,) of the forcings: the own one, and torques beyond that of pinion and gear [N m]
     """
 
     system: LTVSystem
@@ -45,7 +46,7 @@ class PeriodicSolution:
     cycle_time: FloatArray
     cycle_states: FloatArray
     _maps: StepMaps = field(repr=False)
-    _weights: FloatArray = field(repr=False)
+    weights: FloatArray = field(repr=False)
 
     @cached_property
     def closure(self) -> float:
@@ -70,10 +71,17 @@ class PeriodicSolution:
         """Variable -> its peak to peak over the cycle [m], with switches and extremes between samples."""
         return _peaks(self.system, self.cycle_time, self.cycle_states)
 
+    @property
+    def between(self) -> dict[str, float]:
+        """Variable -> how much of its peak to peak the times miss, with cubics between them [m]."""
+        times, states = np.append(self.time, self.system.period), np.vstack([self.states, self.states[:1]])
+        seen = _peaks(self.system, times, states)
+        return {name: whole - seen[name] for name, whole in self.peak_to_peak.items()}
+
     @cached_property
     def energy_residual(self) -> float:
         """Mean power that the normal loads leave, see ``StepMaps.energy_residual`` [W]."""
-        return self._maps.energy_residual(self.cycle_states[0], self._weights)
+        return self._maps.energy_residual(self.cycle_states[0], self.weights)
 
     @property
     def values(self) -> dict[str, FloatArray]:
@@ -118,7 +126,7 @@ def periodic_solution(
         cycle_time=maps.times,
         cycle_states=cycle,
         _maps=maps,
-        _weights=weights,
+        weights=weights,
     )
 
 

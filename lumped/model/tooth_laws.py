@@ -21,9 +21,9 @@ from lumped.mesh.statics import corner_gaps
 from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
-from lumped.quasi_static.elements import MeshElements
+from lumped.quasi_static.elements import MeshElements, at_rest
 from lumped.quasi_static.load_sharing import coupled
-from lumped.quasi_static.loaded import StaticMesh
+from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
 from lumped.schema.meeting_teeth import OwnTeeth, first_teeth, own_teeth, period_of, ripples
@@ -34,6 +34,9 @@ from lumped.typing import FloatArray, IntArray
 _INSIDE = 1e-11
 #: Share of the gap of a tip's corner that is left when the line of action is longer or shorter.
 _LEAST_GAP = 0.8
+#: Way over the base pitch by which slopes are taken: rounding of gaps leaves 1e-10 of a slope of a relief.
+_DIFFERENCE = 2e-6
+_NO_PHASES = np.empty(0)
 
 
 class ToothLaws:
@@ -46,9 +49,12 @@ class ToothLaws:
         self.mesh = StaticMesh(self.healthy)
         self.loaded = contact_of(pair).name == "loaded"
         self.elements: MeshElements | None = None
-        if not self.loaded:
+        touched = (g.L_XA, g.L_XD)
+        if self.loaded:  # friction also of tip corners beyond A and D, as far as like teeth touch there
+            touched = loaded_contact(at_rest(pair)).stiffness.interval
+        else:
             self.elements = contact_of(pair).elements(self.healthy)
-        self.friction = friction_path_function(self.healthy)
+        self.friction = friction_path_function(self.healthy, interval=touched)
         self.kinds, self.faults = self._kinds()
         reach = 0.4 if self.loaded else 0.0  # as of the loaded contact of like teeth
         self.low, self.high = g.L_XA - reach * g.base_pitch, g.L_XD + reach * g.base_pitch
@@ -83,7 +89,7 @@ class ToothLaws:
         else:
             laws = [self.friction, e.stiffness, e.damping, e.error]
             found += [end for law in laws[1:] for end in law.interval]
-        found += [place for law in laws for place in (law.breaks if self.every else law.switches)]
+        found += [place for law in laws for place in (law.breaks[1:-1] if self.every else law.switches)]
         for of_gears in self.faults:
             for which, faults in enumerate(of_gears):
                 for fault in faults:
@@ -118,10 +124,11 @@ class ToothLaws:
         if more.any():
             whole, k = k, k / (1.0 + more * k)
             c = c * np.sqrt(k / np.where(whole > 0.0, whole, 1.0))
+        first, last = self.friction.interval
         near = _INSIDE * g.base_pitch
         found = np.zeros(xi.shape, LAWS)
         found["stiffness"], found["damping"], found["gap"] = k, c, gap
-        found["friction"] = self.friction(np.clip(xi, g.L_XA + near, g.L_XD - near))
+        found["friction"] = self.friction(np.clip(xi, first + near, last - near))
         return found
 
     def _dampers(self, k: FloatArray) -> FloatArray:
@@ -190,7 +197,11 @@ def _of_teeth(teeth: OwnTeeth) -> Records:
 
 
 def mesh_tables(
-    laws: ToothLaws, largest_step: float, outputs: int, nodes: FloatArray | tuple[float, ...] = (0.0,)
+    laws: ToothLaws,
+    largest_step: float,
+    outputs: int,
+    nodes: FloatArray | tuple[float, ...] = (0.0,),
+    ends: FloatArray = _NO_PHASES,
 ) -> MeshTables:
     """Tables on steps that end at outputs and wherever a law jumps or has a kink.
 
@@ -200,11 +211,12 @@ def mesh_tables(
     largest_step : in mesh cycles
     outputs : evenly spaced in a cycle, the first at its start
     nodes : places in a step, rising from 0 to 1
+    ends : further phases at which steps end, in mesh cycles
     """
     g, pair = laws.geometry, laws.pair
     phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
     even = np.arange(outputs + 1) / outputs
-    marks = np.unique(np.concatenate([even, phases]))
+    marks = np.unique(np.concatenate([even, phases, ends]))
     nearest = even[np.clip(np.round(marks * outputs).astype(np.int64), 0, outputs)]
     marks = np.where(np.abs(marks - nearest) < _INSIDE, nearest, marks)
     marks = marks[np.diff(marks, prepend=-1.0) > _INSIDE]
@@ -224,17 +236,22 @@ def mesh_tables(
         -1,
     )
     place = np.asarray(g.L_XA + (tau[..., None] + ahead) * g.base_pitch, dtype=np.float64)
-    moved = 1e-7 * g.base_pitch
+    way = _DIFFERENCE * g.base_pitch
+    # At the ends of a step from inside, both by formulas of second order.
+    one_sided = np.array([-1.5, 2.0, -0.5]) / way
+    inner = np.array([-0.5, 0.0, 0.5]) / way
+    sense = np.where(at < 1.0, 1.0, -1.0)
+    inside = (at > 0.0) & (at < 1.0)
+    offsets = np.where(inside, -way, 0.0) + np.multiply.outer([0.0, way, 2.0 * way], sense)
+    weights_of = np.where(inside, inner[:, None], one_sided[:, None] * sense)
 
     def slope(function: Callable[[FloatArray], Records]) -> Records:
         """Of every field over xi, one-sided at the ends of a step."""
-        before = np.where(at > 0.0, -moved, 0.0)[:, None]
-        after = np.where(at < 1.0, moved, 0.0)[:, None]
-        high, low = function(place + after), function(place + before)
-        found = np.zeros(high.shape, high.dtype)
-        way = (after - before).reshape((1, at.size, 1) + (1,) * (high.ndim - 3))
-        for name in high.dtype.names or ():
-            found[name] = (high[name] - low[name]) / way
+        values = [function(place + offset[:, None]) for offset in offsets]
+        found = np.zeros(values[0].shape, values[0].dtype)
+        shape = (1, at.size, 1) + (1,) * (found.ndim - 3)
+        for name in found.dtype.names or ():
+            found[name] = sum(w.reshape(shape) * one[name] for w, one in zip(weights_of, values, strict=True))
         return found
 
     kinds = range(len(laws.faults))

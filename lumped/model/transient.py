@@ -15,11 +15,13 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
+from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
+from lumped.model.propagation import step_maps
 from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch, labelled_motion
 from lumped.model.solution import Initial, initial_state, transient
-from lumped.model.steady import periodic_solution
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import check_printed
 from lumped.model.tooth_laws import ToothLaws
 from lumped.model.unilateral_motion import unilateral_motion
@@ -85,13 +87,49 @@ def simulate(
     check_printed(pair, contact, as_printed)
     if contact == "linear" and pair.healthy is pair:
         return transient(pair, cycles, samples, initial, as_printed, supports, progress)
-    motion = _unilateral_run
+    motion = _linear_run if contact == "linear" else _unilateral_run
     given = initial if isinstance(initial, str) else "given"
     attributes = provenance(pair, cycles=cycles, samples_per_cycle=samples, initial=given, contact=contact)
     found = motion(pair, cycles, samples, initial, supports, progress)
     if not np.isfinite(found.states).all():
         raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")
     return labelled_motion(found, attributes, periodic=False)
+
+
+def _linear_run(
+    pair: GearPair,
+    cycles: int,
+    samples: int,
+    initial: Initial | ArrayLike,
+    supports: Supports,
+    progress: Progress | None,
+) -> RevolutionMotion:
+    """Motion of the linear form of teeth that differ: like teeth, plus what own teeth change."""
+    steady = linear_motion(pair, samples, supports)
+    system = steady.system
+    form = CycleSteps(pair, system, samples, linear_steps(system))
+    like = form.with_like_teeth()
+    weights = np.array([1.0, steady.pinion_torque - system.pinion_torque, steady.brake_torque])
+    grid = sample_times(system.period, samples)
+    maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
+    own_end = like_end = twin_end = initial_state(system, initial, steady)
+    states, loads = [], []
+    for cycle in range(cycles + 1):
+        own, own_end = stepped_run(form, cycle, 1, own_end, weights)
+        same, like_end = stepped_run(like, cycle, 1, like_end, weights)
+        twin = maps.states(twin_end, weights)
+        twin_end = twin[-1]
+        states.append(own[0] + (twin[:-1] - same[0]))
+        loads.append(loads_of(form, steady.tables, cycle % steady.period, states[-1]))
+        if progress is not None:
+            progress(min((cycle + 1) / cycles, 1.0))
+    kept = cycles * samples + 1
+    return replace(
+        steady,
+        time=np.asarray(np.arange(kept) * (system.period / samples), dtype=np.float64),
+        states=np.concatenate(states)[:kept],
+        load=np.concatenate(loads, axis=1)[:, :kept],
+    )
 
 
 def _unilateral_run(

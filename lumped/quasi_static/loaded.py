@@ -37,7 +37,7 @@ _REACH = 0.4
 #: Breaks closer than this fraction of a base pitch are one.
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
-_TOLERANCE, _LENGTH = 1e-10, 2e-17
+_TOLERANCE, _LENGTH = 1e-11, 2e-17
 #: Fit error of a slope of the gap over the largest one.
 _SLOPE = 1e-8
 #: Fit error of the approach over that of the laws that follow from it.

@@ -164,8 +164,7 @@ def test_first_law_holds_over_the_period_with_the_moment_of_eccentric_gears(name
 def test_linear_form_has_the_losses_of_the_unilateral_motion_where_every_pair_pushes():
     pair = unlike_pair("unlike_teeth_finite_elements")
     pushed = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
-    # The linear form integrates dampers and supports, and has sliding from the first law; the moments of the
-    # eccentric gears turn both.
+    # Both integrate all losses; the moments of the eccentric gears turn both.
     tied = lumped.steady_state(pair, samples_per_cycle=8, contact="linear")
     for name, near in (("brake_torque", 1e-5), ("power_sliding", 1e-3), ("power_bearings", 0.02)):
         assert tied.attrs[name] == pytest.approx(pushed.attrs[name], rel=near), name

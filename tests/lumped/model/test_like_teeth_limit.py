@@ -1,0 +1,119 @@
+"""Does the linear form of teeth that differ become that of like teeth where they do not differ?
+
+Like teeth are followed by laws over the path of contact, in steps that end where a law is not smooth; teeth
+that differ by the static state of every mesh cycle, in long steps. Both are one motion.
+"""
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.model.cycle_maps import CycleSteps, linear_steps, stepped_motion
+from lumped.model.periodic_system import LTVSystem
+from lumped.model.powers import mean_powers
+from lumped.model.steady import periodic_solution, sample_times
+from tests.unlike_pairs import UNLIKE, unlike_pair
+from validation.exchange.new_pair_file import new_pair
+
+SAMPLES = 16
+#: Pair, contact, supports; the second of ISO stiffness, the third of two to three pairs in contact.
+CASES = [
+    ("nasa_28_28", "loaded", "springs"),
+    ("nasa_28_28", "prescribed", "springs"),
+    ("31/57", "loaded", "springs"),
+    ("high_contact_ratio_29_47", "loaded", "springs"),
+    *((name, contact, "springs") for name in UNLIKE for contact in ("loaded", "prescribed")),
+    ("contact_ratio_2_3_on_shafts", "loaded", "shafts"),
+    ("contact_ratio_2_3_on_shafts", "prescribed", "shafts"),
+]
+
+
+def pair_of(name, contact):
+    if name == "31/57":
+        pair = new_pair(name, 3.0, 20.0, 4000.0, 300.0)
+    else:
+        pair = unlike_pair(name) if name in UNLIKE else lumped.load_gear_pair(name)
+    return pair.with_({"mesh.contact": contact}).healthy
+
+
+def with_deviation(pair, error):
+    """The first tooth of the pinion is late by an error [um]."""
+    index = [error] + [0.0] * (pair.pinion.teeth - 1)
+    return pair.with_({"pinion.deviations": {"index": index, "first_order": "steps"}})
+
+
+@pytest.mark.parametrize(("name", "contact", "supports"), CASES)
+def test_without_deviation_every_quantity_is_that_of_like_teeth(name, contact, supports):
+    pair = pair_of(name, contact)
+    options = {"samples_per_cycle": SAMPLES, "supports": supports}
+    like = lumped.steady_state(pair, **options)
+    own = lumped.steady_state(with_deviation(pair, 0.0), touch="linear", **options)
+    swing, force = (
+        like.attrs["dte_peak_to_peak"],
+        pair.operating.pinion_torque / pair.geometry.base_radius_pinion,
+    )
+
+    def moved(variable):
+        found = own[variable].values.reshape(-1, SAMPLES)
+        return np.abs(found - like[variable].values).max()
+
+    for variable in ("dte", "x_p", "x_g", "y_p", "y_g"):
+        assert moved(variable) < 1e-10 * swing, variable
+        peak = f"{variable}_peak_to_peak"
+        assert own.attrs[peak] == pytest.approx(like.attrs[peak], abs=1e-10 * swing)
+    for variable, arm in (
+        ("theta_p", pair.geometry.base_radius_pinion),
+        ("theta_g", pair.geometry.base_radius_gear),
+    ):
+        assert moved(variable) * arm < 1e-9 * swing, variable  # both grow with the angle that friction swings
+    loads = (one["normal_load"].sum("pair").values for one in (own, like))
+    own_load, like_load = loads
+    assert own_load.reshape(-1, SAMPLES) == pytest.approx(
+        np.tile(like_load, (own_load.size // SAMPLES, 1)), abs=1e-9 * force
+    )
+    driving = like.attrs["pinion_torque"] * pair.geometry.omega_pinion
+    powers = [key for key in like.attrs if key.startswith("power_")]
+    assert set(powers) == {key for key in own.attrs if key.startswith("power_")}
+    for key in powers:
+        assert own.attrs[key] == pytest.approx(like.attrs[key], abs=1e-10 * driving, rel=1e-9), key
+    for key in ("mesh_efficiency", "brake_torque", "pinion_torque"):
+        assert own.attrs[key] == pytest.approx(like.attrs[key], rel=1e-10), key
+
+
+def test_a_picometre_moves_everything_by_about_a_picometre():
+    pair = pair_of("nasa_28_28", "loaded")
+    own, like = (
+        lumped.steady_state(with_deviation(pair, error), touch="linear", samples_per_cycle=SAMPLES)
+        for error in (1e-6, 0.0)
+    )
+    assert 1e-13 < np.abs(own.dte.values - like.dte.values).max() < 5e-12
+
+
+@pytest.mark.parametrize("name", UNLIKE)
+def test_long_steps_alone_are_near_the_motion_of_like_teeth(name):
+    """Their error, which the motion of teeth that differ leaves out, is small: a wrong weight is not."""
+    pair = pair_of(name, "loaded")
+    system = LTVSystem.of(pair, "full")
+    like = periodic_solution(system, sample_times(system.period, SAMPLES), estimate_error=False)
+    steps = CycleSteps(with_deviation(pair, 0.0), system, SAMPLES, linear_steps(system), range(1))
+    long = stepped_motion(steps.with_like_teeth())
+    dte = [
+        states[:, : len(system.coordinates)] @ system.deflection for states in (long.states[0], like.states)
+    ]
+    assert dte[0] == pytest.approx(dte[1], abs=1e-3 * np.ptp(dte[1]))
+    expected = mean_powers(like).by_place
+    for place, power in long.powers.items():
+        assert power == pytest.approx(expected[place], rel=1e-3, abs=1e-6 * expected["sliding"]), place
+
+
+@pytest.mark.parametrize("name", UNLIKE)
+@pytest.mark.parametrize("contact", ["loaded", "prescribed"])
+def test_first_law_of_the_steps_holds_to_rounding_with_eccentric_gears(name, contact):
+    changes = {"mesh.contact": contact, "pinion.mounting": {"eccentricity": 3, "phase": 30}}
+    changes |= {"gear.deviations": {"tolerance_class": 5, "seed": 3}}
+    pair = unlike_pair(name).healthy.with_(changes)
+    system, g = LTVSystem.of(pair.healthy, "full"), pair.geometry
+    found = stepped_motion(CycleSteps(pair, system, 1, linear_steps(system)))
+    torque, brake = system.pinion_torque + found.weights[1], found.weights[2]
+    lost = sum(found.powers.values()) - 2.0 * found.powers["rolling"]
+    assert torque * g.omega_pinion - brake * g.omega_gear == pytest.approx(lost, rel=1e-9)
