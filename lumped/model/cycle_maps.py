@@ -196,7 +196,7 @@ def linear_motion(
 ) -> RevolutionMotion:
     """Periodic motion of the linear form over the period of teeth that differ, by the maps of its cycles.
 
-    Parameters as of ``push_motion``.
+    Parameters as of `lumped.model.unilateral_motion.settled_motion`.
     """
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
@@ -214,11 +214,12 @@ def linear_motion(
     error = np.abs((starts[: len(other)] - other[:, :m]) @ dte).max() / np.abs(starts @ dte).max()
     outer = form.tables_of_outputs
 
-    def loads(block: tuple[int, int]) -> FloatArray:
+    def loads(block: tuple[int, int]) -> tuple[FloatArray, FloatArray]:
         first, count = block
         return loads_of(form, outer, first, states[first : first + count])
 
-    load = np.concatenate(in_threads(loads, form.cycles), axis=1)
+    of_blocks, stiffness = zip(*in_threads(loads, form.cycles), strict=True)
+    load = np.concatenate(of_blocks, axis=1)
     time = np.arange(load.shape[1]) / samples * system.period
     torque, brake = system.pinion_torque + float(weights[1]), float(weights[2])
     largest = np.abs(starts @ relative.T).max()
@@ -228,6 +229,7 @@ def linear_motion(
     return RevolutionMotion(
         *(pair, system, outer, touch, time, flat, load, torque, brake, powers, closure, float(error)),
         twin.spectral_radius,
+        stiffness=np.concatenate(stiffness),
         between=twin.between,
     )
 
@@ -331,11 +333,14 @@ def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     return np.stack(per_rate), np.array(nominal)
 
 
-def loads_of(form: CycleSteps, outer: MeshTables, first: int, states: FloatArray) -> FloatArray:
-    """Loads (pairs, k) at states (k, n) at the outputs of mesh cycles from one on [N]."""
+def loads_of(
+    form: CycleSteps, outer: MeshTables, first: int, states: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Loads (pairs, k) [N] and stiffness of the mesh (k,) [N/m] at states (k, n) at outputs from a cycle on."""
     m, dte, kept = len(form.system.coordinates), form.system.deflection, outer.outputs == 1
     here = states.reshape(-1, int(kept.sum()), states.shape[-1])
     loads = static_loads(outer, first, len(here))[1][:, kept]
     approach, rate = (here[..., :m] @ dte)[..., None], (here[..., m:] @ dte)[..., None]
     carried = loads["by_approach"] * approach + loads["by_rate"] * rate + loads["at_rest"]
-    return np.asarray(carried.reshape(-1, carried.shape[-1]).T, dtype=np.float64)
+    carried = np.asarray(carried.reshape(-1, carried.shape[-1]).T, dtype=np.float64)
+    return carried, np.asarray(loads["by_approach"].sum(axis=-1).ravel(), dtype=np.float64)

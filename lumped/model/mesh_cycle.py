@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,7 +23,7 @@ from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import BoolArray, FloatArray
+from lumped.typing import BoolArray, FloatArray, IntArray
 
 #: One-sided limits are taken this fraction of a base pitch inside a segment.
 _INSIDE = 1e-12
@@ -55,6 +55,11 @@ class PairState:
     error_rate: FloatArray
     tilt: FloatArray | None = None
     closing: FloatArray | None = None
+
+    def of_places(self, kept: IntArray) -> PairState:
+        """Those of some places (n,) alone."""
+        arrays: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(self)}
+        return PairState(**{name: None if one is None else one[kept] for name, one in arrays.items()})
 
     def taken(self, rate: FloatArray) -> FloatArray:
         """Power (pairs, k) [W] that the dampers take in the linear form, at a rate of the approach [m/s]."""

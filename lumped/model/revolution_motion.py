@@ -22,7 +22,7 @@ from lumped.model.swing import swing
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.meeting_teeth import numbers
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, IntArray
+from lumped.typing import BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +77,7 @@ class RevolutionMotion:
     spectral_radius : of the motion itself where teeth are alike, else of the healthy twin
     origin : how a motion with unilateral contact was found
     first : number of the mesh cycle of the first time
+    stiffness : (k,) of the mesh in the linear form [N/m]; None: that of the pairs that carry load
     between : variable -> how much the outputs miss of its peak to peak with like teeth [m]
     """
 
@@ -95,6 +96,7 @@ class RevolutionMotion:
     spectral_radius: float
     origin: Origin | None = None
     first: int = 0
+    stiffness: FloatArray | None = None
     between: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -133,14 +135,34 @@ class RevolutionMotion:
         return numbers(self.pair, self.number)
 
     @cached_property
+    def touches(self) -> BoolArray:
+        """Whether the pair in each place can carry load, (pairs, k): in its window, or where it does."""
+        tables, g = self.tables, self.pair.geometry
+        if not tables.law.windows:
+            return np.asarray(self.load != 0.0)
+        step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
+        place = tables.position[step, 0].T  # just inside of the step
+        return np.asarray((place > g.L_XA) & (place < g.L_XD))
+
+    @cached_property
+    def kept(self) -> IntArray:
+        """Places of a result: those of like teeth, and further ones that carry load."""
+        g = self.pair.geometry
+        like = np.round((self.system.cycle.offsets - g.L_XA) / g.base_pitch)
+        return np.flatnonzero(np.isin(self.tables.ahead, like) | (self.load != 0.0).any(axis=1))
+
+    @cached_property
     def pairs(self) -> PairState:
         """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
         tables = self.tables
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
-        pitch, touches = tables.law.rolling_speed * tables.duration, self.load != 0.0
+        pitch, touches = tables.law.rolling_speed * tables.duration, self.touches
         moved = 0.0 * self.time if tables.law.windows else swing(tables, self.time)
-        pitches, phase = np.divmod(tables.edges[step] + moved / pitch, 1.0)
+        # As the integration does: the step is that of the shifted middle of the own one.
+        middle = 0.5 * (tables.edges[step] + tables.edges[step + 1])
+        pitches, phase = np.divmod(middle + moved / pitch, 1.0)
         at = np.searchsorted(tables.edges[1:-1], phase, side="right")
+        phase -= middle - tables.edges[step]
         place, when = np.nonzero(touches)
         place = np.clip(place - pitches[when].astype(np.int64), 0, tables.ahead.size - 1)
         kind, way = tables.kinds[self.teeth][touches], ((phase - tables.edges[at]) * pitch)[when]
@@ -169,12 +191,15 @@ def labelled_motion(
     Not ``periodic``: a transient, about which the attributes of the periodic motion say nothing.
     """
     system = motion.system
-    values = response(system, motion.time, motion.states, motion.load, motion.pairs)
+    pairs, kept = motion.pairs, motion.kept
+    values = response(system, motion.time, motion.states, motion.load[kept], pairs.of_places(kept))
+    if motion.stiffness is not None:
+        values["mesh_stiffness"] = motion.stiffness
     further: dict[str, Variable] = {}
     alike = motion.pair.healthy is motion.pair
     if not alike:
         further = {
-            f"{name}_tooth": (("pair", "time"), teeth + 1, "1", f"tooth of the {name}, counted from 1")
+            f"{name}_tooth": (("pair", "time"), teeth[kept] + 1, "1", f"tooth of the {name}, counted from 1")
             for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
         }
     attributes = attributes | motion.balance(contact_of(motion.pair).conservative)

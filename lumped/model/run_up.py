@@ -160,8 +160,10 @@ def _linear(
         same, ends[2] = stepped_run(form.with_like_teeth(), first, count, ends[2], weights)
         flat = np.concatenate(found) + (own - same).reshape(-1, system.size)
         tables = form.tables_of_outputs
-        motion = _motion_of_group(pair, system, tables, first, flat, loads_of(form, tables, first, flat))
-        yield system.period, _of_time(response(system, motion.time, flat, motion.load, motion.pairs))
+        load, stiffness = loads_of(form, tables, first, flat)
+        motion = _motion_of_group(pair, system, tables, first, flat, load)
+        values = response(system, motion.time, flat, load, motion.pairs) | {"mesh_stiffness": stiffness}
+        yield system.period, _of_time(values)
 
 
 def _unilateral(

@@ -113,14 +113,16 @@ def _linear_run(
     grid = sample_times(system.period, samples)
     maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
     own_end = like_end = twin_end = initial_state(system, initial, steady)
-    states, loads = [], []
+    states, loads, stiffness = [], [], []
     for cycle in range(cycles + 1):
         own, own_end = stepped_run(form, cycle, 1, own_end, weights)
         same, like_end = stepped_run(like, cycle, 1, like_end, weights)
         twin = maps.states(twin_end, weights)
         twin_end = twin[-1]
         states.append(own[0] + (twin[:-1] - same[0]))
-        loads.append(loads_of(form, steady.tables, cycle % steady.period, states[-1]))
+        load, of_mesh = loads_of(form, steady.tables, cycle % steady.period, states[-1])
+        loads.append(load)
+        stiffness.append(of_mesh)
         if progress is not None:
             progress(min((cycle + 1) / cycles, 1.0))
     kept = cycles * samples + 1
@@ -129,6 +131,7 @@ def _linear_run(
         time=np.asarray(np.arange(kept) * (system.period / samples), dtype=np.float64),
         states=np.concatenate(states)[:kept],
         load=np.concatenate(loads, axis=1)[:, :kept],
+        stiffness=np.concatenate(stiffness)[:kept],
     )
 
 

@@ -5,6 +5,7 @@ Sources: docs/theory/teeth.md, "Motion"; docs/theory/validity.md, "Prediction".
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -21,7 +22,6 @@ from lumped.model.momentary_load import (
     mean_powers,
     momentary_tables,
     run,
-    settled_motion,
     steps_of,
     without_drift,
 )
@@ -49,6 +49,11 @@ _NEAR = 0.3
 _SETTLING, _RUNS, _MOST_CYCLES, _LOOKED = 400, 5, 8, 8
 #: Relative change after so many cycles that is called a repetition; outputs in a cycle of such a run.
 _REPEATS, _OUTPUTS = 1e-6, 16
+
+
+#: Of teeth that differ: what a start is to have faded to before it is recorded, most cycles for that, and the
+#: largest mismatch after the period, over the largest displacement, that is called periodic.
+_START_FADED, _MOST_SETTLING, _CALLED_CLOSED = 1e-11, 20_000, 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +225,7 @@ class Shooting:
             tables=self.tables,
             touch=Touch.WINDOWS if self.tables.law.windows else Touch.MOMENTARY,
             time=time,
-            states=without_drift(system, time, whole.states, 0.0),
+            states=without_drift(system, time, whole.states, whole.end, self.cycles * system.period),
             load=whole.loads,
             pinion_torque=driving,
             brake_torque=brake,
@@ -316,3 +321,103 @@ def unilateral_motion(
     if not settles:
         raise NumericalError("No periodic motion that follows the momentary load is near the linear one.")
     return shooting.settled(start)
+
+
+def settled_motion(
+    pair: GearPair, samples: int, supports: Supports = "springs", steps: int | None = None
+) -> RevolutionMotion:
+    """Periodic motion of a pair whose teeth differ, with unilateral contact.
+
+    Started from the motion of the healthy twin, it is followed until the start has faded, then recorded
+    over one period. A first run with coarser steps gives the brake torque, which the common rotation alone
+    feels.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples : outputs a mesh cycle
+    supports : as of ``periodic_system``
+    steps : least number of steps in a mesh cycle; by default by the fastest vibration
+    """
+    touch = Touch.MOMENTARY if pair.mesh.contact == "loaded" else Touch.WINDOWS
+    system = LTVSystem.of(pair.healthy, "full", supports=supports)
+    try:
+        twin: RevolutionMotion | PeriodicSolution = unilateral_motion(
+            pair.healthy, samples, supports, settles=False
+        )
+    except NumericalError:
+        twin = periodic_solution(system, np.zeros(1), estimate_error=False)
+    laws = ToothLaws(pair)
+    steps = steps_of(system) if steps is None else steps
+    settling = _settling(twin.spectral_radius)
+    state, driving, brake = twin.states[0].copy(), twin.pinion_torque, twin.brake_torque
+    weights = system.supports.common_weights
+    m = weights.size
+    coarse = np.zeros(0)
+    for part in (4, 1):
+        tables = momentary_tables(laws, system, part / steps, samples)
+        torques = driving * system.torque_pinion + brake * system.torque_gear
+        count = settling + tables.period
+        found = run(pair, tables, system, -settling, count, tables.period, state, torques)
+        states, end = found.states, found.end
+        if not np.isfinite(end).all():
+            raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
+        duration = tables.period * system.period
+        drift = float(weights @ (end - states[0])[m:]) / duration
+        if part > 1 and isinstance(twin, RevolutionMotion):
+            # The twin balances with the shorter steps already: the drift of its own by these is theirs.
+            drift -= _drift_of_twin(twin, part / steps)
+        if pair.operating.brake_torque == "balanced":
+            brake -= drift / float(weights @ system.torque_gear[m:])
+        else:
+            driving -= drift / float(weights @ system.torque_pinion[m:])
+        # The common rotation has no mean rate of its own: nominal speed is mean speed.
+        common = system.supports.common / float(weights @ system.supports.common)
+        until = (settling + 0.5 * tables.period) * system.period  # to the middle of the record
+        state[m:] -= (float(weights @ (end - states[0])[:m]) / duration - drift * until) * common
+        dte = states[:, :m] @ system.deflection
+        error, coarse = float(np.abs(dte - coarse).max() if coarse.size else np.inf), dte
+    time = (np.arange(states.shape[0]) / samples) * system.period
+    relative = system.supports.relative
+    closure = relative @ (end - states[0])[:m]
+    largest = float(np.abs(states[:, :m] @ relative.T).max())
+    closed = float(np.abs(closure).max()) / largest
+    if closed > _CALLED_CLOSED:
+        raise NumericalError(
+            f"After {tables.period} mesh cycles the motion has not closed ({closed:.1e} of its size): it is "
+            "unstable, not periodic over the period of the teeth, or damped too little."
+        )
+    powers = mean_powers(found, duration)
+    # Sliding at nominal speed: without what a rate of the common rotation that is left adds.
+    rates = system.gears[:2] @ (end - states[0])[:m] / duration
+    powers["sliding"] -= float(driving * rates[0] - brake * rates[1])
+    states = without_drift(system, time, states, end, duration)
+    error /= float(np.abs(coarse).max())
+    return RevolutionMotion(
+        *(pair, system, tables, touch, time, states, found.loads, driving, brake, powers, closed, error),
+        twin.spectral_radius,
+        Origin.SETTLED,
+    )
+
+
+def _drift_of_twin(twin: RevolutionMotion, step: float) -> float:
+    """Weighted rate per time that the common rotation of like teeth gains by long steps."""
+    system, weights = twin.system, twin.system.supports.common_weights
+    tables = momentary_tables(ToothLaws(twin.pair), system, step, int(twin.tables.outputs.sum()))
+    torques = twin.pinion_torque * system.torque_pinion + twin.brake_torque * system.torque_gear
+    settling = _settling(twin.spectral_radius)
+    found = run(twin.pair, tables, system, -settling, settling + 1, 1, twin.states[0], torques)
+    return float(weights @ (found.end - found.states[0])[weights.size :]) / system.period
+
+
+def _settling(radius: float) -> int:
+    """Mesh cycles until a start has faded."""
+    if radius >= 1.0:
+        raise NumericalError(
+            f"The motion of the healthy twin is not stable (multiplier {radius:.6f}), so none settles: raise "
+            "the damping or leave the speed."
+        )
+    found = math.ceil(math.log(_START_FADED) / math.log(radius)) + 2
+    if found > _MOST_SETTLING:
+        raise NumericalError(f"A start fades in {found} mesh cycles, too slowly: raise mesh.damping_ratio.")
+    return found

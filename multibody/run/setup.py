@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
 from lumped.labelling import provenance
-from lumped.model.momentary_load import settled_motion
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
+from lumped.model.unilateral_motion import settled_motion
 from lumped.schema.meeting_teeth import ripples
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray

@@ -12,8 +12,8 @@ from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, kinks, linear_form_at, static_loads
 from lumped.mesh.tables import TURNING
 from lumped.model.cycle_maps import linear_motion
-from lumped.model.momentary_load import settled_motion
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
+from lumped.model.unilateral_motion import settled_motion
 from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
 from tests.lumped.mesh.element_calls import line_at
