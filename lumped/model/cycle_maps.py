@@ -336,7 +336,7 @@ def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
 def loads_of(
     form: CycleSteps, outer: MeshTables, first: int, states: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Loads (pairs, k) [N] and stiffness of the mesh (k,) [N/m] at states (k, n) at outputs from a cycle on."""
+    """Loads (pairs, k) [N], stiffness of the mesh (k,) [N/m] at states (k, n) at outputs from a cycle on."""
     m, dte, kept = len(form.system.coordinates), form.system.deflection, outer.outputs == 1
     here = states.reshape(-1, int(kept.sum()), states.shape[-1])
     loads = static_loads(outer, first, len(here))[1][:, kept]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -59,7 +59,7 @@ class PairState:
     def of_places(self, kept: IntArray) -> PairState:
         """Those of some places (n,) alone."""
         arrays: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(self)}
-        return PairState(**{name: None if one is None else one[kept] for name, one in arrays.items()})
+        return replace(self, **{name: one[kept] for name, one in arrays.items() if one is not None})
 
     def taken(self, rate: FloatArray) -> FloatArray:
         """Power (pairs, k) [W] that the dampers take in the linear form, at a rate of the approach [m/s]."""

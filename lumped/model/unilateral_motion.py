@@ -213,8 +213,9 @@ class Shooting:
             slopes = self.derivatives(found.unknowns)[:-1, :-1]
             radius = float(np.abs(np.linalg.eigvals(slopes + np.eye(2 * m - 2))).max())
         # Powers are those of the mean speed: from a common rate whose mean vanishes.
-        rates = found.passed.states[:, m:] @ weights / (weights @ support.common)
-        whole = self.run(found.unknowns, self.tables, rate=-float(rates.mean()))[1]
+        way = found.passed.end[:m] - found.passed.states[0, :m]
+        rate = float(weights @ way) / float(weights @ support.common) / (self.cycles * system.period)
+        whole = self.run(found.unknowns, self.tables, rate=-rate)[1]
         dte = whole.states[:, :m] @ system.deflection
         other = self.run(found.unknowns, self.coarse)[1].states[:, :m] @ system.deflection
         driving, brake = self.torques(found.unknowns)

@@ -127,3 +127,44 @@ def test_an_unstable_motion_of_one_cycle_is_left_for_the_one_a_run_settles_to():
     assert not floquet.periodic_orbit(pair).stable
     found = predicted(pair)
     assert (found.motion, found.mesh_cycles, found.stable) == (Motion.SETTLED, 2, True)
+
+
+@pytest.mark.parametrize("name", ["heavily_relieved_under_load", "rack_25_degrees_always_pushing"])
+def test_its_stability_is_that_of_the_exact_motion(name):
+    """Multipliers of two programs; far from contact loss those of the linear form may be others.
+
+    A share of every length leaves a share of what finite motions change.
+    """
+    pair = smaller(unlike_pair(name), 0.0625)
+    exact = multibody.monodromy(pair, fidelity="exact").spectral_radius
+    assert predicted(pair).cycle.attrs["spectral_radius"] == pytest.approx(exact, rel=1e-3)
+
+
+def test_a_pair_in_a_tongue_of_the_linear_form_may_be_stable():
+    """Contact begins and ends by the momentary load, above resonance not where it does at rest."""
+    changes = {"friction.law": "none", "mesh.damping_ratio": 0.001, "operating.pinion_speed": "6350 rpm"}
+    pair = loaded("nasa_28_28").with_(changes)
+    assert lumped.steady_state(pair).attrs["spectral_radius"] > 1.05
+    found = predicted(pair)
+    assert found.stable
+    exact = multibody.monodromy(pair, fidelity="exact").spectral_radius
+    assert found.cycle.attrs["spectral_radius"] == pytest.approx(exact, rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "changes", "motion"), [
+    ("nasa_28_28", {"operating.pinion_speed": "20 rpm"}, Motion.UNILATERAL),
+    ("nasa_28_28", {"operating.pinion_speed": "1 rpm"}, Motion.LINEAR),
+    ("fzg_c", {"operating.pinion_speed": "60000 rpm"}, Motion.SETTLED),
+    ("contact_ratio_1_1_large_shifts", {"operating.pinion_torque": 0.01}, Motion.UNILATERAL),
+    ("nasa_28_28", {"operating.pinion_torque": 0.01}, Motion.LINEAR),
+    ("heavily_relieved_under_load", {"mesh.damping_ratio": 0.0}, Motion.SETTLED),
+    ("rack_25_degrees_always_pushing", {"mesh.damping_ratio": 0.0}, Motion.UNILATERAL),
+])  # fmt: skip
+def test_the_motion_of_a_slow_fast_light_or_undamped_pair_is_named(name, changes, motion):
+    """Where none with unilateral contact is found the linear one stands in, and the reason is told."""
+    pair = unlike_pair(name) if name in UNLIKE else lumped.load_gear_pair(name)
+    found = predicted(pair.with_(changes))
+    assert found.motion is motion
+    assert bool(found.reason) == (motion is Motion.LINEAR)
+    assert found.stable
+    assert found.cycle.attrs["contact"] == ("linear" if motion is Motion.LINEAR else "unilateral")

@@ -178,13 +178,20 @@ def test_what_a_class_leaves_open_is_told(monkeypatch) -> None:
     assert f"µm, 1.0 to 9.0\u00a0µm, over {results.teeth.period}" in page_one(results).numbers[0].note
 
 
-def test_like_teeth_have_no_chapter_and_an_unstable_pair_has_none_and_says_so() -> None:
+def test_like_teeth_have_no_chapter_and_an_undamped_pair_has_none_and_says_so() -> None:
     assert chapter.write(Results(PAIR.healthy, QUICK)) is None
-    unstable = lumped.load_gear_pair("nasa_28_28").with_(
-        {"pinion.deviations": {"index": [1.5] + [0.0] * 27, "first_order": "steps"}, "friction.law": "none"}
-        | {"mesh.damping_ratio": 0.001, "operating.pinion_speed": "6350 rpm"}
+    undamped = lumped.load_gear_pair("nasa_28_28").with_(
+        {
+            "pinion.deviations": {"index": [1.5] + [0.0] * 27, "first_order": "steps"},
+            "mesh.damping_ratio": 0.0,
+        }
+        | {
+            f"bearings.{gear}.{line}_damping_ratio": 0.0
+            for gear in ("pinion", "gear")
+            for line in ("loa", "oloa")
+        }
     )
-    results = Results(unstable, QUICK)
+    results = Results(undamped, QUICK)
     assert (results.teeth, "of like teeth" in results.warnings[-1]) == (None, True)
 
 
