@@ -24,7 +24,8 @@ ROOT = TESTS.parent
 #: the other one finds compiled later; short tests come last, for they leave nobody waiting for one long test.
 LONG = (
     (
-        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples", "docs",
+        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "evidence/faults",
+        "examples", "docs",
         "validation/commands", "validation/interactive", "packaging",
         "reproductions", "lumped/friction",
     ),
@@ -48,6 +49,8 @@ def pytest_sessionstart(session):
     """
     if session.config.pluginmanager.hasplugin("dsession"):
         return
+    # By default the collector looks so often, as a kernel compiles, that it takes a tenth of the time.
+    gc.set_threshold(20_000, 10, 10)
     from hypothesis import HealthCheck, settings
 
     fuzz = os.environ.get("SPURCHECK_FUZZ")
@@ -80,12 +83,9 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_collection_finish(session):
-    """Spare the garbage collector what stays until the end: libraries, kernels and 7,000 tests, of which it
-    finds half a million objects alive again and again. That took a tenth of the processor time.
-    """
+    """Spare the garbage collector what stays to the end: half a million objects of libraries and tests."""
     gc.collect()
     gc.freeze()
-    gc.set_threshold(20_000, 10, 10)
 
 
 class FolderWithExamples(pytest.Dir):
