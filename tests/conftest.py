@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 import weakref
@@ -23,7 +24,8 @@ ROOT = TESTS.parent
 #: the other one finds compiled later; short tests come last, for they leave nobody waiting for one long test.
 LONG = (
     (
-        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples", "docs",
+        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "evidence/faults",
+        "examples", "docs",
         "validation/commands", "validation/interactive", "packaging",
         "reproductions", "lumped/friction",
     ),
@@ -47,6 +49,8 @@ def pytest_sessionstart(session):
     """
     if session.config.pluginmanager.hasplugin("dsession"):
         return
+    # By default the collector looks so often, as a kernel compiles, that it takes a tenth of the time.
+    gc.set_threshold(20_000, 10, 10)
     from hypothesis import HealthCheck, settings
 
     fuzz = os.environ.get("SPURCHECK_FUZZ")
@@ -76,6 +80,12 @@ def pytest_collection_modifyitems(items):
     first, second, short = ([item for item in ordered if rank(item)[0] == part] for part in range(3))
     cut = max(0, len(items) // 2 - len(first))
     items[:] = first + short[:cut] + second + short[cut:]
+
+
+def pytest_collection_finish(session):
+    """Spare the garbage collector what stays to the end: half a million objects of libraries and tests."""
+    gc.collect()
+    gc.freeze()
 
 
 class FolderWithExamples(pytest.Dir):

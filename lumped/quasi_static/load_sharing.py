@@ -89,8 +89,12 @@ def share_load(
 
 
 def _rows(values: FloatArray, lead: tuple[int, ...], *inner: int) -> FloatArray:
-    """Values (lead, inner) by broadcasting, as (n, inner) of their own."""
-    return np.array(np.broadcast_to(values, (*lead, *inner)).reshape(-1, *inner), dtype=np.float64)
+    """Values (lead, inner) by broadcasting, as (n, inner) of their own.
+
+    Row by row in memory: the kernel would be compiled again for another order.
+    """
+    wide = np.broadcast_to(values, (*lead, *inner)).reshape(-1, *inner)
+    return np.array(wide, dtype=np.float64, order="C")
 
 
 def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArray) -> FloatArray:

@@ -95,9 +95,13 @@ def done() -> set[str]:
     return set()
 
 
+#: Files that a page says it writes, and a number that it says it prints.
+SAID = {"docs/tutorial/in_python.md": ({"steady.png", "chart.png", "waterfall.png"}, "4875.0")}
+
+
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::lumped.LawRangeWarning")
-def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypatch, belongings, done):
+def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypatch, capsys, belongings, done):
     """Blocks run in order, in one folder and one Python session, as a reader would."""
     if not any(block.language in ("sh", "python") for block in blocks(page)):
         return
@@ -114,6 +118,9 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
                 run(line, root, done)
         elif block.language == "python":
             exec(compile(block.text, str(page), "exec"), session)
+    files, number = SAID.get(page.relative_to(root).as_posix(), (set(), ""))
+    assert files <= {path.name for path in tmp_path.iterdir()}
+    assert number in capsys.readouterr().out
 
 
 def shortened(arguments: list[str]) -> list[str]:

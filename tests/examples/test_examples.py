@@ -189,17 +189,8 @@ def notebook():
     return ["".join(cell["source"]).strip() for cell in cells if cell["cell_type"] == "code"]
 
 
-def test_the_tutorial_runs(tmp_path, monkeypatch, capsys):
-    """And so does the notebook, which is the same by the next test."""
-    monkeypatch.chdir(tmp_path)
-    names = {}
-    for code in tutorial():
-        exec(code, names)
-    assert {path.name for path in tmp_path.iterdir()} == {"steady.png", "chart.png", "waterfall.png"}
-    assert "4875.0" in capsys.readouterr().out
-
-
 def test_the_notebook_is_the_tutorial():
+    """And so runs as the page does, see tests/docs/test_commands.py."""
     assert notebook() == tutorial()
 
 

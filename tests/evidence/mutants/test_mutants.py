@@ -159,7 +159,7 @@ def test_lines_that_move_keep_their_change(tree):
 
 
 def test_the_judge_says_killed_survived_and_time_out(tree, tmp_path_factory):
-    court = Court(tree, tmp_path_factory.mktemp("court"), Limits(test=1.0, wall=60.0))
+    court = Court(tree, tmp_path_factory.mktemp("court"), Limits(test=0.2, wall=60.0))
     killed = court.judge(mutant(tree, "lumped/gears/mass.py", "return a + b", "+, - exchanged"))
     test = "tests/lumped/gears/test_gears.py::test_total"
     assert (killed.verdict, killed.by, killed.tests) == ("killed", test, 1)
@@ -182,7 +182,7 @@ def test_the_judge_says_killed_survived_and_time_out(tree, tmp_path_factory):
 ])  # fmt: skip
 def test_a_test_that_fails_in_the_sound_program_kills_nothing(wrong, why, tree, tmp_path_factory):
     (tree / "tests/lumped/gears/test_gears.py").write_text(TESTS + wrong)
-    court = Court(tree, tmp_path_factory.mktemp("court"), Limits(test=1.0, wall=60.0))
+    court = Court(tree, tmp_path_factory.mktemp("court"), Limits(test=0.2, wall=60.0))
     judged = court.judge(mutant(tree, "lumped/gears/mass.py", "return a * b", "*, / exchanged"))
     assert judged.verdict == "undecided"
     assert why in judged.by

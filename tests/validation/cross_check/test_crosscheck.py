@@ -150,7 +150,8 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
     ],
 )
 def test_the_effect_that_is_named_takes_the_difference_with_it(given, quantity, words, left):
-    found = crosscheck(new_pair(*given), cycles=6, samples_per_cycle=128, variant=False)
+    settings = {"cycles": 6, "samples_per_cycle": 128, "fidelities": ("exact",), "variant": False}
+    found = crosscheck(new_pair(*given), **settings)
     worst = found.worst("exact")
     assert (found.verdict, worst.quantity) == (Verdict.DIFFERS, quantity)
     told = cause_of_difference(found).replace("\u00a0", " ")
@@ -162,9 +163,7 @@ def test_the_effect_that_is_named_takes_the_difference_with_it(given, quantity, 
         inertia = {
             f"{g}.inertia": 10.0 * getattr(bodies(found.pair), f"inertia_{g}") for g in ("pinion", "gear")
         }
-        heavy = crosscheck(
-            found.pair.with_(inertia), cycles=6, samples_per_cycle=128, fidelities=("exact",), variant=False
-        )
+        heavy = crosscheck(found.pair.with_(inertia), **settings)
         assert heavy.of("exact")[0].difference < 0.2 * worst.difference
 
 

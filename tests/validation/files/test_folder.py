@@ -247,7 +247,7 @@ RUNS = """
 import sys
 from validation.cli import main
 for out in sys.argv[1:]:
-    sys.argv = ["spurcheck", "simulate", "--cycles", "1", "-o", out]
+    sys.argv = ["spurcheck", "simulate", "--cycles", "1", "--samples", "64", "-o", out]
     try:
         main()
     except SystemExit as stop:

@@ -3,6 +3,7 @@
 import copy
 import html
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -116,7 +117,7 @@ class TestRelations:
 
 
 def test_a_law_outside_its_range_is_told_on_the_page_and_nowhere_else(tmp_path, monkeypatch, recwarn):
-    monkeypatch.setattr(build, "QUICK", SMALL)
+    monkeypatch.setattr(build, "QUICK", replace(SMALL, sweep_speeds=9, chart_speeds=25))
     changes = {
         "operating.pinion_torque": 0.5,
         "operating.pinion_speed": 20000.0,
