@@ -407,8 +407,8 @@ def revolution_multipliers(
 
     Perturbations see the tangent of the contact about the own static state of every meeting pair. The maps of
     the mesh cycles are multiplied one after the other and scaled, so that a hunting period of thousands of
-    cycles neither overflows nor underflows. On shafts they have the 12 modes of `gear_pair_multipliers` that
-    count most; the others move each by itself and are left out.
+    cycles neither overflows nor underflows. What the mesh does not couple, y_p and y_g off the line of action
+    or on shafts all but the 12 modes of `gear_pair_multipliers` that count most, moves each by itself.
 
     Parameters
     ----------
@@ -435,7 +435,17 @@ def revolution_multipliers(
     values, rates, error = _of_cycles(laws, feedback, like, 1 if alike else cycles, block, rtol)
     with np.errstate(under="ignore"):
         whole = values**cycles if alike else values
-    return RevolutionMultipliers(whole, rates, float(rates[0]), error, cycles, healthy)
+    # What the mesh does not couple has the same multipliers with any teeth.
+    apart = OffLineOfAction.of(feedback)
+    (separate,), (bounds,) = apart.multipliers(np.array([like.period]))
+    sizes = np.abs(separate)
+    high = max(float(rates[0]) + error, float((sizes + bounds).max()))
+    low = max(float(rates[0]) - error, float((sizes - bounds).max()))
+    whole, rates = np.append(whole, separate**cycles), np.append(rates, sizes)
+    order = np.argsort(-rates, kind="stable")
+    rate = float(rates[order[0]])
+    error, healthy = max(high - rate, rate - low), max(healthy, float(sizes.max()))
+    return RevolutionMultipliers(whole[order], rates[order], rate, error, cycles, healthy)
 
 
 def _of_cycles(
