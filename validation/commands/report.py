@@ -106,7 +106,7 @@ def report(
 def _show_early(title: str, numbers: Sequence[Number]) -> None:
     """Print what is known before the range of the inputs, the second program and the charts."""
     console = stderr()
-    console.print(f"{title}\nFirst result, inputs as given, all teeth alike:")
+    console.print(f"{title}\nFirst result, inputs as given:")
     for row in numbers:
         console.print(f"  {row.label}: {row.shown}")
 

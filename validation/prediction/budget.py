@@ -41,7 +41,7 @@ class Known(Protocol):
     pair: GearPair
 
     @property
-    def prediction(self) -> Prediction: ...
+    def like(self) -> Prediction: ...
     @property
     def linear(self) -> xr.Dataset | Absent: ...
     @property
@@ -84,7 +84,7 @@ def error_budget(known: Known) -> xr.Dataset:
     [N] and ``bearing_force`` [N], NaN where a row is not known; attributes ``names``, ``kinds``, ``notes``
     and ``largest``, the key of the largest row that is an error of the prediction itself
     """
-    prediction = known.prediction
+    prediction = known.like
     rows = list(_rows(known))
     sizes = np.array([row.sizes for row in rows])
     share = 100.0 * sizes[:, 0] / prediction.peak_to_peak
@@ -140,7 +140,7 @@ def _predicted(vary: Callable[[GearPair], GearPair], pair: GearPair) -> Predicti
 
 def _rows(known: Known) -> Iterator[Row]:
     """The errors in their order."""
-    own, pair, linear, found = known.prediction, known.pair, known.linear, known.uncertainty
+    own, pair, linear, found = known.like, known.pair, known.linear, known.uncertainty
     share, same = np.nan, known.same_equations
     poorer: Prediction | Absent = (
         linear if isinstance(linear, Absent) else measured(pair, linear, Motion.LINEAR)

@@ -221,13 +221,11 @@ def predicted(pair: GearPair) -> Prediction:
 
 
 def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Prediction:
-    """The linear motion, where it is stable, in place of one with unilateral contact that was not found."""
+    """The linear motion, stable or not, in place of one with unilateral contact that was not found."""
     try:
         found = measured(pair, lumped.steady_state(pair, samples_per_cycle=samples), Motion.LINEAR)
     except NumericalError:
         raise error from None
-    if not found.stable:
-        raise error
     return replace(found, reason=str(error))
 
 

@@ -146,7 +146,7 @@ def report(
 
 def findings(results: Results) -> frozenset[str]:
     """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold"."""
-    lost, unstable = results.contact_lost or results.teeth_apart > 0, not results.prediction.stable
+    lost, unstable = results.contact_lost, not results.prediction.stable
     found = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
     return frozenset(name for name, there in found.items() if there)
 

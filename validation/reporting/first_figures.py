@@ -60,7 +60,7 @@ def bearing_orders(results: Results) -> xr.Dataset:
     text = "force on the pinion bearings"
     variables: dict[str, Variable] = {"amplitude": ("order", amplitude, "N", text)}
     found = results.uncertainty
-    if not isinstance(found, Absent):
+    if results.teeth is None and not isinstance(found, Absent):  # samples are of like teeth
         ends = np.array([found[f"bearing_order_{m}_percentile"].to_numpy()[[0, -1]] for m in order])
         variables["low"] = ("order", ends[:, 0], "N", f"{text}, 5 % of the samples")
         variables["high"] = ("order", ends[:, 1], "N", f"{text}, 95 % of the samples")

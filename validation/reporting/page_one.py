@@ -33,7 +33,10 @@ _ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
 _NOT_MODELLED = "Not modelled: helix; misalignment; housing and sound radiation."
 #: Before it, of a pair whose teeth are alike, and of one whose teeth differ.
 _ALIKE = "All teeth are taken as alike: no pitch errors, no sidebands."
-_OWN = "The numbers and figures above are those of like teeth; the chapter on teeth that differ has the rest."
+_OWN = (
+    "Numbers are those of the teeth as given; ranges but that of the transmission error, the second program, "
+    "curves over speed and stability are of like teeth and stand in their chapters."
+)
 
 
 class Verdict(Enum):
@@ -153,7 +156,9 @@ def six_numbers(results: Results) -> tuple[Number, ...]:
     notes = {"bearing_rms": _orders(results)} | _as_given(results)
     rows = [_row(results, key, note=notes.get(key, "")) for key in _ROWS]
     if prediction.contact_lost:  # six rows: the bearing force gives way
-        of_second = math.nan if isinstance(second, Absent) else second.least_force
+        of_second = math.nan
+        if results.teeth is None and not isinstance(second, Absent):  # it has like teeth
+            of_second = second.least_force
         words = "Smallest mesh force / static", prediction.least_force, "1"
         rows[3] = Number("least_force", *words, second=of_second, note="0 is contact loss")
     hazard, own = results.nearest_hazard, results.operating_rpm
@@ -186,7 +191,11 @@ def _unit(key: str) -> str:
 
 def _row(results: Results, key: str, note: str = "") -> Number:
     prediction, second, found = results.prediction, results.second, results.uncertainty
-    low = high = math.nan
+    low = high = of_second = math.nan
+    if results.teeth is not None:  # samples and second program are of like teeth
+        if key == "dte_peak_to_peak" and results.teeth_band is not None:
+            low, high = results.teeth_band[:, 0].tolist()
+        return Number(key, _ROWS[key], prediction.numbers[key], _unit(key), low, high, note=note)
     if isinstance(found, xr.Dataset):
         low, high = (float(end) for end in found[f"{key}_percentile"].to_numpy()[[0, -1]])
     of_second = math.nan if isinstance(second, Absent) else second.numbers[key]
@@ -205,15 +214,15 @@ def _orders(results: Results) -> str:
 
 
 def _as_given(results: Results) -> dict[str, str]:
-    """What teeth that differ make of two numbers, of which the table has those of like teeth."""
-    teeth, band, words = results.teeth, results.teeth_band, "with the teeth as given"
+    """Of teeth that differ: over how many mesh cycles the numbers are, and what like teeth would have."""
+    teeth, like = results.teeth, results.like.numbers
     if teeth is None:
         return {}
-    ends = (math.nan, math.nan) if band is None else band[:, 0].tolist()
-    swing = Number("", "", float(teeth.motion.attrs["dte_peak_to_peak"]), "m", *ends)
-    within, over = swing.range and f", {swing.range},", f"over {teeth.period} mesh cycles"
-    load = teeth.load(teeth.motion) / teeth.static_force
-    return {"dte_peak_to_peak": f"{words} {swing.shown}{within} {over}", "tooth_load": f"{words} {load:.3g}"}
+    notes = {
+        key: f"like teeth {_printed(like[key], _unit(key), 3)}" for key in ("dynamic_factor", "tooth_load")
+    }
+    swing = _printed(like["dte_peak_to_peak"], "m", 3)
+    return notes | {"dte_peak_to_peak": f"over {teeth.period} mesh cycles; like teeth {swing}"}
 
 
 def _verdict(results: Results) -> tuple[Verdict, str, str]:
@@ -233,7 +242,10 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
     given, assumed, word = results.inputs
     inputs = f"{assumed} of {given + assumed} inputs are {word}"
     half = 0.0
-    if isinstance(found, xr.Dataset):
+    if results.teeth_band is not None:
+        low, high = results.teeth_band[:, 0]
+        half = (high - low) / (high + low)
+    elif isinstance(found, xr.Dataset):
         low, middle, high = found["dte_peak_to_peak_percentile"].to_numpy()
         half = 0.5 * (high - low) / middle
     elif assumed or uncertain_inputs(results.pair):
@@ -258,20 +270,17 @@ def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
     hazard = results.nearest_hazard
     near = hazard is not None and abs(hazard[0] / results.operating_rpm - 1.0) <= NEAR
     what = f"{hazard[1]} at {_rpm(hazard[0])}" if near and hazard else ""
+    if results.teeth_apart:
+        what = f"the teeth lose contact, at {results.teeth_apart} pairs of teeth that meet"
+        return what, f"{_rises(prediction)} {_like_teeth(results)}"
     if results.contact_lost:
         apart = 0.0 if hazard is None else 100.0 * (results.operating_rpm / hazard[0] - 1.0)
         side = "above" if apart > 0.0 else "below"
         kind = "" if hazard is None else _KINDS.get(hazard[1].split()[0].strip(","), "an unstable speed")
         place = f", {abs(apart):.0f} % {side} {kind}" if near else ""
-        rises = (
-            f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times the static one."
-        )
         others = f"{_other_motions(results)}." if results.other_motions else ""
-        words = f"{rises} {others} {_jump_words(results)} {_attractor_words(results)}"
+        words = f"{_rises(prediction)} {others} {_jump_words(results)} {_attractor_words(results)}"
         return f"the teeth lose contact{place}", " ".join(words.split())
-    if results.teeth_apart:
-        what = f"the teeth as given lose contact, at {results.teeth_apart} pairs of teeth that meet"
-        return what, "The numbers below are those of like teeth, which keep it."
     if not prediction.stable:
         return "the motion is unstable", "A small disturbance grows until contact is lost."
     if results.other_motions:
@@ -288,9 +297,17 @@ def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
     return None
 
 
+def _rises(prediction: Prediction) -> str:
+    return f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times the static one."
+
+
+def _like_teeth(results: Results) -> str:
+    return f"Like teeth would {'lose it too' if results.like.contact_lost else 'keep it'}."
+
+
 def _other_motions(results: Results) -> str:
     """The transmission errors of all stable motions at the operating speed, the predicted one first."""
-    sizes = [results.prediction.peak_to_peak, *(one.peak_to_peak for one in results.other_motions)]
+    sizes = [results.like.peak_to_peak, *(one.peak_to_peak for one in results.other_motions)]
     first, *others = (quantity(size, "m", 3) for size in sizes)
     return (
         f"Stable are motions with a transmission error of {first}, as predicted, and {' and '.join(others)}"
@@ -353,7 +370,7 @@ def advice_on_inputs(results: Results) -> list[Action]:
     if isinstance(found, Absent):
         vary = Action("Vary the assumed inputs", f"spurcheck uncertainty {results.name}", "")
         return [vary] if uncertain_inputs(results.pair) else []
-    given = results.prediction.peak_to_peak
+    given = results.like.peak_to_peak
     swing = found["dte_peak_to_peak_swing"].to_numpy()
     actions: dict[str, Action] = {}
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1))):
@@ -397,7 +414,7 @@ def _beyond_the_range(results: Results) -> str:
     if isinstance(found, Absent):
         return ""
     for key, label in _ROWS.items():
-        given, ends = results.prediction.numbers[key], found[f"{key}_percentile"].to_numpy()[[0, -1]]
+        given, ends = results.like.numbers[key], found[f"{key}_percentile"].to_numpy()[[0, -1]]
         if ends[0] * (1.0 - _ROUNDING) <= given <= ends[1] * (1.0 + _ROUNDING):
             continue
         swing = np.nan_to_num(found[f"{key}_swing"].to_numpy(), nan=given)

@@ -56,9 +56,6 @@ _SEEDS = 8
 _MANY = 300.0
 #: Times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
-_NO_MOTION = (
-    "The teeth as given have no settled motion ('spurcheck teeth' says why): all numbers are of like teeth."
-)
 
 
 @dataclass(frozen=True)
@@ -132,19 +129,24 @@ class Results:
 
     @cached_property
     def prediction(self) -> Prediction:
-        """The best motion at the operating point."""
+        """The motion at the operating point of the pair as given."""
+        if self.given is self.pair:
+            return self.like
+        self.stage("teeth that differ")
+        return predicted(self.given)
+
+    @cached_property
+    def like(self) -> Prediction:
+        """The motion at the operating point with like teeth."""
         self.stage("motion")
         return predicted(self.pair)
 
     @cached_property
     def teeth(self) -> TeethFindings | None:
-        """What teeth that differ do; None where they are alike, or no motion of theirs is found."""
+        """What teeth that differ do; None where they are alike."""
         if self.given is self.pair:
             return None
-        self.stage("teeth that differ")
-        with suppress(NumericalError):
-            return TeethFindings(self.given)
-        return None
+        return TeethFindings(self.given, motion=self.prediction.cycle)
 
     @cached_property
     def linear(self) -> xr.Dataset | Absent:
@@ -242,7 +244,7 @@ class Results:
         """Further stable motions that were found at the operating speed, by size; see ``branches``."""
         if not isinstance(self.branches, ResponseBranches) or self.pair.shafts is not None:
             return ()  # branches are those on springs
-        own = self.prediction.peak_to_peak
+        own = self.like.peak_to_peak
         stable = [one for one in self.branches.at(self.operating_rpm) if one.stable]
         others = [one for one in stable if abs(one.peak_to_peak / own - 1.0) > _APART]
         return tuple(sorted(others, key=lambda one: one.peak_to_peak))
@@ -255,7 +257,7 @@ class Results:
     @cached_property
     def loses_contact(self) -> bool:
         """Whether contact is lost at the operating point or, by the linear motion, near it."""
-        if self.prediction.contact_lost:
+        if self.like.contact_lost:
             return True
         speed = self.sweep["speed"].to_numpy()
         near = (speed > BRANCH_SPEEDS[0] * self.operating_rpm) & (
@@ -268,7 +270,7 @@ class Results:
         """Motions on springs with unilateral contact about the operating speed."""
         if not self.loses_contact:
             return Absent(Outcome.CONTACT_NOT_LOST)
-        if not self.effort.full and not self.prediction.contact_lost:
+        if not self.effort.full and not self.like.contact_lost:
             return Absent(Outcome.NOT_ASKED)
         low, high = (factor * self.operating_rpm for factor in BRANCH_SPEEDS)
         ends = max(low, self.speeds[0]), min(high, self.speeds[1])
@@ -337,9 +339,8 @@ class Results:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on given values that hardly can be meant, and on teeth that have no motion."""
-        missing = (_NO_MOTION,) if self.given is not self.pair and self.teeth is None else ()
-        return (*parameter_warnings(self.pair), *missing)
+        """Sentences on given values that hardly can be meant."""
+        return tuple(parameter_warnings(self.pair))
 
     @property
     def finite_elements(self) -> bool:
@@ -384,7 +385,7 @@ class Results:
         words = self._second_words
         if self.pair.shafts is None or isinstance(self.second, Absent):
             return words
-        more = self.second.peak_to_peak / self.prediction.peak_to_peak - 1.0
+        more = self.second.peak_to_peak / self.like.peak_to_peak - 1.0
         size = f"{100.0 * abs(more):.2g} % {'larger' if more > 0.0 else 'smaller'}"
         return f"{words[:-1]} on springs; on the shafts its transmission error is {size}."
 
@@ -471,7 +472,7 @@ def _broken(results: Results) -> Iterator[str]:
             yield "the curve over speed misses the value at the operating speed"
     found = results.uncertainty
     if isinstance(found, xr.Dataset):
-        for name, value in numbers.items():
+        for name, value in results.like.numbers.items():
             if abs(found.attrs[f"given_{name}"] - value) > _SLACK * max(abs(value), 1e-300):
                 yield f"the samples were taken about another {name}"
             low, middle, high = found[f"{name}_percentile"].to_numpy()

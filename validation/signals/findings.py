@@ -33,20 +33,28 @@ GEARS: tuple[Gear, Gear] = ("pinion", "gear")
 class TeethFindings:
     """Motion of a pair whose teeth differ, and of its twin with like teeth; refused where teeth are alike.
 
-    ``supports``: of both, by default the shafts of a pair that has them.
+    ``supports``: of both, by default the shafts of a pair that has them; ``motion``: that of the pair, if it
+    is known.
     """
 
-    def __init__(self, pair: GearPair, supports: Supports | None = None) -> None:
+    def __init__(
+        self, pair: GearPair, supports: Supports | None = None, motion: xr.Dataset | None = None
+    ) -> None:
         if pair.healthy is pair:
             action = (
                 "Give [pinion.deviations], [pinion.mounting] or [[pinion.faults]]: spurcheck teeth --help."
             )
             raise refuse("pinion", "teeth that are alike", "teeth that differ", action)
         self.pair, self.supports = pair, supports_of(pair, supports)
-        self.motion = lumped.steady_state(pair, contact="unilateral", supports=self.supports)
+        if motion is None:
+            motion = lumped.steady_state(pair, contact="unilateral", supports=self.supports)
+        self.motion = motion
         samples = self.motion.sizes["time"] // self.period
         self.twin = lumped.steady_state(
-            pair.healthy, contact="unilateral", supports=self.supports, samples_per_cycle=samples
+            pair.healthy,
+            contact=motion.attrs["contact"],
+            supports=self.supports,
+            samples_per_cycle=samples,
         )
 
     @property

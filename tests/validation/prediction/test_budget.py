@@ -18,7 +18,7 @@ def test_finite_elements_are_computed_where_they_are_asked_for(asked):
     pair = unlike_pair("rack_25_degrees_always_pushing")
     own, none = predicted(pair), Absent(Outcome.NOT_ASKED)
     known = SimpleNamespace(
-        pair=pair, prediction=own, linear=none, second=none, same_equations=None, uncertainty=none,
+        pair=pair, like=own, linear=none, second=none, same_equations=None, uncertainty=none,
         measured_error=None, finite_elements=asked,
     )  # fmt: skip
     budget = error_budget(known)
@@ -43,7 +43,7 @@ def test_it_says_that_teeth_pull_only_where_they_do(pair, note):
     linear, none = lumped.steady_state(pair), Absent(Outcome.NOT_ASKED)
     assert (float(linear["normal_load"].min()) < 0.0) == ("pull" in note)
     known = SimpleNamespace(
-        pair=pair, prediction=predicted(pair), linear=linear, second=none, same_equations=None,
+        pair=pair, like=predicted(pair), linear=linear, second=none, same_equations=None,
         uncertainty=none, measured_error=None, finite_elements=False,
     )  # fmt: skip
     budget = error_budget(known)

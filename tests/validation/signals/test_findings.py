@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from dataclasses import replace
 from functools import cache
 
@@ -15,6 +16,7 @@ import lumped
 from lumped.schema.tolerances import flank_tolerances
 from tests.unlike_pairs import unlike_pair
 from tests.validation.commands.conftest import refused, run
+from validation.prediction.motion import Motion
 from validation.reporting.build import findings
 from validation.reporting.chapters import teeth as chapter
 from validation.reporting.page_one import Verdict, page_one
@@ -172,9 +174,12 @@ def test_page_1_judges_the_teeth_as_given(results) -> None:
     assert ("the teeth lose contact" in first.headline) == (lost > 0)
     assert ("contact" in findings(results)) == (lost > 0)
     swing, load = values(results_table(results))[:2]
-    words = "with the teeth as given"
-    assert first.numbers[0].note == f"{words} {swing * 1e6:.3g}\u00a0µm over {found.period} mesh cycles"
-    assert first.numbers[2].note == f"{words} {load:.3g}"
+    assert [first.numbers[n].value for n in (0, 2)] == pytest.approx([swing, load])
+    like = results.like.numbers
+    beside = f"like teeth {like['dte_peak_to_peak'] * 1e6:.3g}\u00a0µm"
+    assert first.numbers[0].note == f"over {found.period} mesh cycles; {beside}"
+    assert first.numbers[2].note == f"like teeth {like['tooth_load']:.3g}"
+    assert not any(math.isfinite(one.second) for one in first.numbers)  # the second program has like teeth
     assert first.numbers[5].note.endswith(", with like teeth")
 
 
@@ -187,24 +192,18 @@ def test_what_a_class_leaves_open_is_told() -> None:
     vars(results)["teeth_band"] = np.array([[1e-6, 0.02], [9e-6, 0.03]])
     spread = chapter.write(results).blocks[4].text
     assert "is 1 to 9 µm and the largest sideband 2 to 3 %" in spread
-    assert f"µm, 1.0 to 9.0\u00a0µm, over {results.teeth.period}" in page_one(results).numbers[0].note
+    first = page_one(results).numbers
+    assert first[0].range == "1.0 to 9.0\u00a0µm"
+    assert not any(one.range for one in first[1:])  # samples of the other numbers are of like teeth
 
 
-def test_like_teeth_have_no_chapter_and_an_undamped_pair_has_none_and_says_so() -> None:
+def test_like_teeth_have_no_chapter_and_teeth_that_do_not_settle_have_the_linear_motion() -> None:
     assert chapter.write(Results(PAIR.healthy, QUICK)) is None
-    undamped = lumped.load_gear_pair("nasa_28_28").with_(
-        {
-            "pinion.deviations": {"index": [1.5] + [0.0] * 27, "first_order": "steps"},
-            "mesh.damping_ratio": 0.0,
-        }
-        | {
-            f"bearings.{gear}.{line}_damping_ratio": 0.0
-            for gear in ("pinion", "gear")
-            for line in ("loa", "oloa")
-        }
-    )
-    results = Results(undamped, QUICK)
-    assert (results.teeth, "of like teeth" in results.warnings[-1]) == (None, True)
+    light = unlike_pair("unlike_teeth_finite_elements").with_({"operating.pinion_torque": 0.01})
+    results = Results(light, FEW)
+    assert results.prediction.motion is Motion.LINEAR
+    assert results.teeth.motion.attrs["contact"] == "linear"
+    assert "has not closed" in results.prediction.reason
 
 
 def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:

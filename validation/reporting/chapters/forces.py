@@ -11,6 +11,7 @@ from lumped.labelling import Variable, labelled_dataset
 from lumped.path_of_contact import contact_path
 from validation.files.formatting import number, quantity
 from validation.plots.axes import cycle_figure, two_panels_figure
+from validation.prediction.motion import Prediction
 from validation.reporting.blocks import Content, Picture, quantities
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -21,6 +22,10 @@ _BEARINGS = {
     "bearing_force_x_g": "gear, along the line of action",
     "bearing_force_y_g": "gear, off it",
 }
+
+
+#: Most mesh cycles that a figure shows.
+_MOST_SHOWN = 8
 
 
 def write(results: Results) -> Content:
@@ -34,8 +39,9 @@ def write(results: Results) -> Content:
     at = np.clip(place[touching], path.L_XA, path.L_XD)
     share = load[touching] / prediction.static_force
     pressure = float((path.hertz_pressure(at) * np.sqrt(share)).max())
+    drawn = shown(prediction)
     bearings = _over_cycle(
-        results, {name: (cycle[name].to_numpy(), "N", words) for name, words in _BEARINGS.items()}
+        drawn, results, {name: (drawn[name].to_numpy(), "N", words) for name, words in _BEARINGS.items()}
     )
     table = quantities(
         "forces",
@@ -90,19 +96,31 @@ def write(results: Results) -> Content:
 
 def tooth_forces(results: Results) -> xr.Dataset:
     """Mesh force, and load and friction of every pair, over time in mesh cycles."""
-    cycle = results.prediction.cycle
-    found: dict[str, tuple[np.ndarray, str, str]] = {
-        "mesh_force": (results.prediction.mesh_force, "N", "all pairs")
-    }
+    cycle = shown(results.prediction)
+    total = cycle["normal_load"].sum("pair").to_numpy()
+    found: dict[str, tuple[np.ndarray, str, str]] = {"mesh_force": (total, "N", "all pairs")}
     for kind, name in (("load", "normal_load"), ("friction", "friction_force")):
         for i, row in enumerate(cycle[name].to_numpy()):
             if np.any(cycle["normal_load"].to_numpy()[i] > 0.0):
                 found[f"{kind}_{i}"] = (row, "N", f"pair {i}")
-    return _over_cycle(results, found)
+    return _over_cycle(cycle, results, found)
 
 
-def _over_cycle(results: Results, values: dict[str, tuple[np.ndarray, str, str]]) -> xr.Dataset:
-    time = results.prediction.cycle["time"].to_numpy() / results.pair.geometry.mesh_period
+def shown(prediction: Prediction) -> xr.Dataset:
+    """The motion as figures show it: of many mesh cycles those about the largest mesh force."""
+    cycle = prediction.cycle
+    if prediction.mesh_cycles <= _MOST_SHOWN:
+        return cycle
+    samples = cycle.sizes["time"] // prediction.mesh_cycles
+    last = prediction.mesh_cycles - _MOST_SHOWN
+    first = min(max(int(prediction.mesh_force.argmax()) // samples - _MOST_SHOWN // 2, 0), last)
+    return cycle.isel(time=slice(first * samples, (first + _MOST_SHOWN) * samples))
+
+
+def _over_cycle(
+    cycle: xr.Dataset, results: Results, values: dict[str, tuple[np.ndarray, str, str]]
+) -> xr.Dataset:
+    time = cycle["time"].to_numpy() / results.pair.geometry.mesh_period
     variables: dict[str, Variable] = {
         name: ("cycles", array, unit, words) for name, (array, unit, words) in values.items()
     }

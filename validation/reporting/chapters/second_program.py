@@ -95,7 +95,7 @@ def overlay(results: Results) -> xr.Dataset:
     period = results.pair.geometry.mesh_period
     phase = np.arange(257) / 256.0
     curves = {}
-    for name, motion in (("prediction", results.prediction), ("second", second)):
+    for name, motion in (("prediction", results.like), ("second", second)):
         time = motion.cycle["time"].to_numpy() / period
         curves[name] = np.interp(
             phase, np.mod(time, 1.0) if motion is second else time, motion.cycle["dte"].to_numpy(), period=1.0
