@@ -86,13 +86,14 @@ def test_a_ripple_is_that_of_motor_or_load_in_both_models(shaft, order, other):
     one = {"shaft": shaft, "order": order, "amplitude": 8.0, "phase": 40}
     more = {"mesh.contact": "loaded", "mesh.stiffness": "rectangular", "friction.coefficient": 0.0}
     more |= {"operating.pinion_speed": 1450, "shafts.max_frequency": 2e3}  # far above the ripples
+    more |= {"shafts.damping_ratio": 0.1}  # both motions settle sooner
     pair = PAIR.with_(more | {"operating.torque_ripple": [one]})
     exact = record(prepare(pair, "exact", "periodic", supports="shafts"), 9, 16)[0].dte.values[48:]
     # The lumped motion is the quick one to compute, so it is the one with another ripple.
     for wrong in {}, {"phase": 70}, {"order": order + 1}, {"shaft": other}:
         other_pair = pair.with_({"operating.torque_ripple": [one | wrong]})
         run = lumped.steady_state(other_pair, supports="shafts", samples_per_cycle=16).dte.values[48:145]
-        # Finite rotations leave 2.5 and 3.6 %, the least of the others 7.8 %.
+        # Finite rotations leave 2.5 and 2.9 %, the least of the others 7.8 %.
         assert (np.abs(exact - run).max() < 0.04 * np.ptp(exact)) == (not wrong), wrong
 
 

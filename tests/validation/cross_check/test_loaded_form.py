@@ -5,6 +5,7 @@ import pytest
 
 import multibody
 from tests.unlike_pairs import UNLIKE, unlike_pair
+from tests.validation.cross_check.checked import checked
 from validation.cross_check.comparison import crosscheck
 from validation.prediction.motion import predicted
 
@@ -53,7 +54,7 @@ def with_variant():
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sound_pair_does_not_fail_and_its_transmission_error_is_near_the_exact_one(name):
     """Up to 12 % where vibration turns the sliding or contact is lost, below 1 % with relief alone."""
-    check = crosscheck(unlike_pair(name), **QUICK, variant=False)
+    check = checked(name)
     assert check.failures == ()
     dte = next(a for a in check.of("exact") if a.quantity == "dte")
     assert dte.difference < (0.01 if "relieved" in name else 0.13)
