@@ -205,7 +205,7 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
-    """Return the largest mesh force of ``predict`` over the static one [-]; arguments and errors as there."""
+    """Return the largest mesh force of ``predict`` over the static one [-]; ``supports``, errors as there."""
     return predict(pair, supports=supports).dynamic_factor
 
 
@@ -216,7 +216,7 @@ def predicted(pair: GearPair) -> Prediction:
         cycle = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=samples)
     except NumericalError as error:
         return _stand_in(pair, samples, error)
-    settled = pair.healthy is pair and cycle.attrs["origin"] == Origin.SETTLED.value
+    settled = pair.healthy is pair and cycle.attrs.get("origin") == Origin.SETTLED.value
     return measured(pair, cycle, Motion.SETTLED if settled else Motion.UNILATERAL)
 
 

@@ -69,7 +69,7 @@ def test_factors_follow_the_equations() -> None:
     assert family.factors[:, 0] == pytest.approx((SPEEDS / family.speed_rpm) ** -0.100601, rel=1e-11)
     # Of a light load, where the bound of law II is nowhere in force at these speeds.
     light = load_gear_pair("nasa_28_28").with_(mesh__contact="prescribed", friction__law="benedict_kelley")
-    (family,) = friction_families(GearVariation(light), SPEEDS)
+    (family,) = friction_families(GearVariation(light, supports="springs"), SPEEDS)
     assert family.factors[:, 0] == pytest.approx(1.0, rel=1e-12)
     slope = np.diff(family.factors[:, 1] * family.level) / np.diff(np.log10(SPEEDS))
     roughness = 0.5e6 * (light.pinion.roughness + light.gear.roughness)

@@ -72,9 +72,11 @@ def test_slow_dynamic_solution_is_quasi_static(name):
     differences = []
     for mu in (0.02, 0.01):
         pair = coulomb(name, mu, operating__pinion_speed=25)
-        dynamic = steady_state(pair, samples_per_cycle=8).attrs["mesh_efficiency"]
+        found, g = steady_state(pair, samples_per_cycle=8).attrs, geometry(pair)
+        # The torques balance sliding alone: dampers are no losses of quasi-statics.
+        dynamic = 1 - found["brake_torque"] * g.omega_gear / (found["pinion_torque"] * g.omega_pinion)
         static = quasi_static_losses(pair).mesh_efficiency
-        differences.append((1 - dynamic) / (1 - static) - 1)
+        differences.append(dynamic / (1 - static) - 1)
     assert abs(differences[0]) < 0.05 * 0.02
     # proportional to mu; at 25 rpm the vibration after tooth entry leaves 0.3 % of the difference
     assert differences[0] / differences[1] == pytest.approx(2.0, rel=0.01)
