@@ -195,10 +195,10 @@ def _row(results: Results, key: str, note: str = "") -> Number:
     if results.teeth is not None:  # samples and second program are of like teeth
         if key == "dte_peak_to_peak" and results.teeth_band is not None:
             low, high = results.teeth_band[:, 0].tolist()
-        return Number(key, _ROWS[key], prediction.numbers[key], _unit(key), low, high, note=note)
-    if isinstance(found, xr.Dataset):
-        low, high = (float(end) for end in found[f"{key}_percentile"].to_numpy()[[0, -1]])
-    of_second = math.nan if isinstance(second, Absent) else second.numbers[key]
+    else:
+        if isinstance(found, xr.Dataset):
+            low, high = (float(end) for end in found[f"{key}_percentile"].to_numpy()[[0, -1]])
+        of_second = math.nan if isinstance(second, Absent) else second.numbers[key]
     return Number(key, _ROWS[key], prediction.numbers[key], _unit(key), low, high, of_second, note)
 
 
