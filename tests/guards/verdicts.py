@@ -60,7 +60,8 @@ def _of(**changed: Any) -> Verdict:
         "outside": (), "nearest_hazard": None, "operating_rpm": _RPM, "contact_lost": False,
         "teeth_apart": 0, "speeds": (200.0, 4000.0), "inputs": (9, 0, "assumed"), "measured_error": None,
         "prediction": SimpleNamespace(contact_lost=False, stable=True, reason=""),
-        "uncertainty": _spread(0.01), "branches": None, "other_motions": (), "teeth": None, "teeth_band": None,
+        "uncertainty": _spread(0.01), "branches": None, "other_motions": (), "teeth": None,
+        "teeth_band": None,
     }  # fmt: skip
     results: Any = SimpleNamespace(**calm | changed)
     with mock.patch.object(page_one, "failed_checks", return_value=()):
