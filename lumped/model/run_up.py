@@ -1,4 +1,4 @@
-"""Run-up: the motion of the linear model while the speed rises or falls evenly.
+"""Run-up: the motion while the speed rises or falls evenly, with linear or unilateral contact.
 
 Sources: docs/theory/equations.md, "Run-up".
 """
