@@ -56,7 +56,7 @@ def speed_sweep(
     samples_per_cycle: int = 128,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Periodic motion over pinion speed.
+    """Periodic motion over pinion speed, with the teeth and on the shafts that the pair has.
 
     Parameters
     ----------
