@@ -8,8 +8,8 @@
     spurcheck.plot(found.cycle).savefig("motion.png")
 
 Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.with_(speed=2000) varies one
-Motion     predict, dynamic_factor, steady_state, simulate, run_up, speed_sweep, response_branches,
-           periodic_orbit
+Motion     predict, dynamic_factor: teeth only push; steady_state, simulate, run_up, speed_sweep, with
+           contact="linear", the default, or "unilateral"; response_branches, periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
 Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance, compare_ross,
            compare_matrices

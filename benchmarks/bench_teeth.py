@@ -109,7 +109,7 @@ def cracks() -> None:
         faults = [{"kind": "crack", "tooth": 1, "depth": depth, "angle": 90}]
         laws = ToothLaws(ALIKE.with_({"pinion.faults": faults}))
         at = np.array([g.L_XP, g.L_XD - 1e-9])
-        whole, left = (laws.of_kind(kind, at)[0] for kind in (0, 1))
+        whole, left = (laws.of_kind(kind, at)["stiffness"] for kind in (0, 1))
         more = float((1.0 / left - 1.0 / whole)[1]) * gear.youngs_modulus * g.face_width
         line(depth, more, more / elements, *(100.0 * (1.0 - left / whole)).tolist())
 

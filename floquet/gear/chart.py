@@ -63,7 +63,9 @@ def stability_chart(
     supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Stability chart of a gear pair.
+    """Stability chart of a gear pair, of its linear form with like teeth.
+
+    The motion of ``spurcheck.predict``, whose contact follows the momentary load, has a stability of its own.
 
     Over two axes the chart refines itself: nodes near edges of instability are evaluated, the others
     interpolated. Both sides of every edge are evaluated. An unstable region can only be missed if it lies

@@ -114,6 +114,8 @@ def jump_map(
 ) -> xr.Dataset:
     """Map of the motions with unilateral contact, and of the jumps between them, over speed and another axis.
 
+    Motions are those of ``periodic_orbit``: like teeth, and the tangents of the static load.
+
     For each value of the second axis all branches over speed are followed, from the motions of the linear
     model and from those of neighbouring values. Between the motions on a branch the numbers are interpolated
     (monotone cubics along the branch); folds and other bifurcations are among these motions.

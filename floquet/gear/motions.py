@@ -236,8 +236,10 @@ def periodic_orbit(
 ) -> GearOrbit:
     """One periodic motion of the gear pair with unilateral contact.
 
-    Where contact holds it is that of ``lumped.steady_state``. With contact loss several motions may exist at
-    one speed: which one is found depends on the start.
+    Teeth are alike, and loaded contact has the tangents and dampers of the static load: branches and jumps
+    are of such motions, the prediction is not. Where contact holds it is that of ``lumped.steady_state`` with
+    linear contact. With contact loss several motions may exist at one speed: which one is found depends on
+    the start.
 
     Parameters
     ----------

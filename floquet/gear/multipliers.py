@@ -316,7 +316,7 @@ def gear_pair_multipliers(
     method: str | Propagator = "taylor",
     supports: Supports | None = None,
 ) -> GearPairMultipliers:
-    """Floquet multipliers of a gear pair over one mesh cycle.
+    """Floquet multipliers of a gear pair over one mesh cycle, of its linear form with like teeth.
 
     The equations of y_p and y_g contain q, x_p, x_g but not the other way round, so the 10 x 10 matrix is
     block triangular: its multipliers are those of the 6 x 6 feedback block and of the bearings of y. On

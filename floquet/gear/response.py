@@ -306,6 +306,9 @@ def response_branches(
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
 
+    Teeth are alike, and loaded contact has the tangents of the static load, as of ``periodic_orbit``; the
+    prediction, whose contact follows the momentary load, is another motion.
+
     The search finds the branches through the motion of the linear model, those that double their period,
     those to which runs settle, and motions that do not repeat. A motion that attracts no run is not found.
     The speeds of the search depend on the pair's natural frequency, not on the range.

@@ -227,10 +227,11 @@ def campbell(
 ) -> xr.Dataset:
     """Frequencies of the Floquet solutions over speed, against mesh orders and predicted tongues.
 
-    A multiplier fixes its frequency up to multiples of the mesh frequency only. The branch is resolved by the
-    mode shape: a solution belongs to the mode of the mean system in which it has the largest share of action,
-    turning forwards, and its frequency is the branch nearest to that mode's. Six multipliers make three such
-    solutions and their conjugates. In a tongue the growing solution stands for the mode.
+    They are of the linear form with like teeth. A multiplier fixes its frequency up to multiples of the mesh
+    frequency only. The branch is resolved by the mode shape: a solution belongs to the mode of the mean
+    system in which it has the largest share of action, turning forwards, and its frequency is the branch
+    nearest to that mode's. Six multipliers make three such solutions and their conjugates. In a tongue the
+    growing solution stands for the mode.
 
     Parameters
     ----------
@@ -414,8 +415,9 @@ def stability_margins(
 ) -> StabilityMargins:
     """Find every tongue over speed and its distance to the operating point, in speed and in damping.
 
-    Friction is constant at its mean over the path of contact: it moves tongues by far less than their width,
-    and a law that depends on speed would have to be fitted at every speed.
+    Tongues are of the linear form with like teeth. Friction is constant at its mean over the path of contact:
+    it moves tongues by far less than their width, and a law that depends on speed would have to be fitted at
+    every speed.
 
     Parameters
     ----------

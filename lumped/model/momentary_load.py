@@ -1,6 +1,6 @@
-"""Motion by momentary load: a run from any state, and the periodic motion to which it settles.
+"""Motion by momentary load: a run from any state, its steps, and mean powers of what it records.
 
-Sources: docs/theory/teeth.md, "Motion", "Brake torque".
+Sources: docs/theory/teeth.md, "Motion", "Brake torque"; docs/theory/validity.md, "Prediction".
 """
 
 from __future__ import annotations

@@ -72,8 +72,8 @@ class RevolutionMotion:
     powers : mean power of sliding, tooth dampers, bearings, shafts, and of the gap that closes as the teeth
         roll [W]; {} where it is not known
     closure : mismatch of the state after the period, over the largest displacement
-    error : difference of the dynamic transmission error to that of steps four times longer, over its
-        largest value
+    error : difference of the dynamic transmission error to that of longer steps, over its largest value;
+        twice as long of like teeth and of the linear form, four times of teeth that differ and push only
     spectral_radius : of the motion itself where teeth are alike, else of the healthy twin
     origin : how a motion with unilateral contact was found
     first : number of the mesh cycle of the first time

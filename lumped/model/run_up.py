@@ -1,4 +1,4 @@
-"""Run-up: the motion of the linear model while the speed rises or falls evenly.
+"""Run-up: the motion while the speed rises or falls evenly, with linear or unilateral contact.
 
 Sources: docs/theory/equations.md, "Run-up".
 """
@@ -120,7 +120,13 @@ def run_up(
     }
     attributes = provenance(
         pair, speeds_rpm=tuple(ends.tolist()), seconds=duration, samples_per_cycle=samples_per_cycle
-    ) | {"model": "lumped", "contact": contact, "supports": supports, "turns": cycles / pair.pinion.teeth}
+    ) | {
+        "model": "lumped",
+        "contact": contact,
+        "supports": supports,
+        "teeth": "alike" if pair.healthy is pair else "as given",
+        "turns": cycles / pair.pinion.teeth,
+    }
     return labelled(time, dict(zip(_NAMES, found, strict=True)), attributes, further)
 
 

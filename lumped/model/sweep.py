@@ -56,7 +56,7 @@ def speed_sweep(
     samples_per_cycle: int = 128,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Periodic motion over pinion speed.
+    """Periodic motion over pinion speed, with the teeth and on the shafts that the pair has.
 
     Parameters
     ----------
@@ -119,7 +119,13 @@ def speed_sweep(
     return labelled_dataset(
         variables | {"periodic": ("speed", periodic, "1", "whether a periodic motion exists")},
         {"speed": (speeds, "rpm", "pinion speed")},
-        provenance(pair) | {"model": "lumped", "contact": contact, "supports": supports},
+        provenance(pair)
+        | {
+            "model": "lumped",
+            "contact": contact,
+            "supports": supports,
+            "teeth": "alike" if pair.healthy is pair else "as given",
+        },
     )
 
 

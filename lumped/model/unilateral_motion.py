@@ -1,5 +1,8 @@
 """Periodic motion with unilateral contact that follows the momentary load: near the linear one, or settled.
 
+Of like teeth `Shooting` closes one mesh cycle, or up to eight, by Broyden's method; of teeth that differ a
+run settles. With prescribed contact teeth push in its fixed windows.
+
 Sources: docs/theory/teeth.md, "Motion"; docs/theory/validity.md, "Prediction".
 """
 
@@ -252,7 +255,7 @@ class Shooting:
     def settled(self, unknowns: FloatArray) -> RevolutionMotion:
         """The stable motion of at most so many mesh cycles to which a run settles.
 
-        First the run is compared with itself, then Newton's method looks for a stable motion near it, since
+        First the run is compared with itself, then Broyden's method looks for a stable motion near it, since
         near a bifurcation settling takes long.
 
         Raises
@@ -290,7 +293,7 @@ def unilateral_motion(
 ) -> RevolutionMotion:
     """Periodic motion of a pair as given, with contact that follows the momentary load and only pushes.
 
-    Of like teeth it is the one that Newton's method finds from the linear motion, if that is stable, else the
+    Of like teeth it is the one that Broyden's method finds from the linear motion, if it is stable, else the
     one to which a run from there settles. Teeth that differ have the one to which a run from the motion of
     their twin settles.
 
@@ -299,7 +302,7 @@ def unilateral_motion(
     pair : a validated gear pair
     samples : outputs in a mesh cycle
     supports : as of ``periodic_system``
-    settles : whether to run where Newton's method finds no stable motion; else what it finds is returned
+    settles : whether to run where Broyden's method finds no stable motion; else what it finds is returned
 
     Raises
     ------

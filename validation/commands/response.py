@@ -43,7 +43,8 @@ def response(
     With --map the same over speed and torque, mesh damping or tip relief: where contact is lost, where
     several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
 
-    All of it is of a pair on the springs of 'bearings'; one with shafts needs --supports springs.
+    All of it is of a pair on the springs of 'bearings', with like teeth and the stiffness of the static load;
+    one with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck response my_pair.toml --range 200..3000 -o response.png

@@ -46,7 +46,7 @@ def stability(
     """Decide whether the motion is stable, at the operating point and over a chart.
 
     The largest Floquet multiplier tells by how much a disturbance grows (above 1) or dies (below 1) per mesh
-    cycle. The exit code is 1 when the operating point is not stable.
+    cycle, in the linear form with like teeth. The exit code is 1 when the operating point is not stable.
 
     [bold]Examples[/bold]
     spurcheck stability -o chart.png

@@ -132,13 +132,13 @@ def crosscheck(
     At fidelity "linear" the equations are the same: both models start from the lumped periodic solution and
     the whole history is compared; any difference beyond integration error is a fault of the program. At
     "exact" the model's own periodic motion is compared, with the brake torque that balances its own losses:
-    under the lumped one it would drift, and the phase with it. The largest difference over the peak to peak
-    of the lumped motion is the answer, and the difference of the power that both lose; beyond its limit the
-    lumped model is not accurate enough. Where the
-    lumped motion is unstable, or the exact model has no periodic motion near it, the end of a run from the
-    lumped motion is shown and not judged. Where the linear motion needs teeth that pull, the lumped motion is
-    the one with unilateral contact (``floquet.periodic_orbit``), and so are the equations of "linear";
-    "exact" is then compared with the prediction, whose contact follows the momentary load.
+    under the lumped one it would drift, and the phase with it. It is compared with the prediction on springs,
+    whose contact follows the momentary load. The largest difference over the peak to peak of the lumped
+    motion is the answer, and the difference of the power that both lose; beyond its limit the lumped model is
+    not accurate enough. Where the linear motion is unstable, or the exact model has no periodic motion near
+    it, the end of a run from the lumped motion is shown and not judged. Where the linear motion needs teeth
+    that pull, the equations of "linear" are those with unilateral contact and the tangents of the static load
+    (``floquet.periodic_orbit``); "exact" is compared with that motion where no prediction is near it.
 
     Parameters
     ----------

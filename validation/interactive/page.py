@@ -40,7 +40,7 @@ def write_interactive_page(
 
     Parameters
     ----------
-    pair : gear pair, preset name or parameter file
+    pair : gear pair, preset name or parameter file; all teeth of a gear are taken as alike
     path : the page, ``.html``
     data : the data file, ``.nc``; default beside the page, with its name
     new : whether files of these names that are there when all is computed stay; else they are replaced
@@ -58,7 +58,7 @@ def write_interactive_page(
     NumericalError : a computation fails; the text says what to try
     StorageError : a file cannot be written, or with ``new`` is there already
     """
-    pair = on_springs(load_gear_pair(pair), supports, "write_interactive_page")
+    pair = on_springs(load_gear_pair(pair), supports, "write_interactive_page").healthy
     of_type("sampling", sampling, Sampling, "a Sampling")
     page = file_path("path", path)
     values = page.with_suffix(".nc") if data is None else file_path("data", data)

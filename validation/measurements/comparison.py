@@ -88,7 +88,7 @@ class Prediction:
 
 
 def predict(pair: AnyPair, *, recurrence: int | None = None, supports: Supports | None = None) -> Prediction:
-    """Predict the periodic motion of a pair; between samples it is interpolated linearly.
+    """Return the linear periodic motion of a pair; between samples it is interpolated linearly.
 
     Parameters
     ----------

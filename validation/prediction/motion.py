@@ -4,7 +4,7 @@ The prediction is the motion of the pair as given, with its own teeth and on its
 unilateral, stiffness and dampers follow the momentary load. Where no such motion is found, the linear motion
 stands in and says why. Contact is lost where the total mesh force is zero.
 
-Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Prediction".
+Sources: docs/theory/validity.md, "Prediction".
 """
 
 from __future__ import annotations
@@ -58,7 +58,8 @@ class Prediction:
     motion : which motion it is
     cycle : that motion at even times over its period, with the variables of ``lumped.steady_state``
     peak_to_peak : of the transmission error, between samples too [m]
-    stable : whether the motion returns after a small disturbance
+    stable : whether the motion returns after a small disturbance, by multipliers of its own; of teeth that
+        differ by those of the twin with like teeth
     mesh_cycles : after which the motion repeats
     losses : place of ``PLACES`` -> mean power that is lost there [W]; empty where the motion is not periodic
     reason : why another motion stands in for the one with unilateral contact; else empty
@@ -182,9 +183,10 @@ QUANTITIES = {
 def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
     """Return the best motion that the program has for a pair at its operating point, and its numbers.
 
-    The motion with unilateral contact by momentary load, of teeth that differ over their whole period, on the
-    shafts of a pair that has them. ``Prediction.motion`` says which one it is, ``reason`` why it is another
-    one, ``uncertainty`` how far the inputs move it.
+    It is ``lumped.steady_state`` with ``contact="unilateral"``, by momentary load, of teeth that differ over
+    their whole period, on the shafts of a pair that has them. Where none is found the linear motion stands in
+    if it is stable. ``Prediction.motion`` says which one it is, ``reason`` why it is the linear one,
+    ``uncertainty`` how far the inputs move it. Charts, margins and jumps are of other forms.
 
     Parameters
     ----------
@@ -205,7 +207,7 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
-    """Return the largest mesh force of ``predict`` over the static one [-]; ``supports``, errors as there."""
+    """Return the largest mesh force of ``predict`` over the static one [-]; supports and errors as there."""
     return predict(pair, supports=supports).dynamic_factor
 
 
