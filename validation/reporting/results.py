@@ -383,6 +383,8 @@ class Results:
     def second_words(self) -> str:
         """Whether both programs agree, in a sentence; on the shafts by the peak to peak."""
         words = self._second_words
+        if self.teeth is not None:
+            words = f"With like teeth: {words[0].lower()}{words[1:]}"
         if self.pair.shafts is None or isinstance(self.second, Absent):
             return words
         more = self.second.peak_to_peak / self.like.peak_to_peak - 1.0
