@@ -201,7 +201,9 @@ def test_every_dataset_says_what_it_was_made_from(result, name, kind, tmp_path, 
         spurcheck.write_results(data, file)
         kept = ("parameters", "parameters_sha256", "gear_pair", "teeth", "supports", "contact", "fidelity")
         read = read_netcdf(file).attrs
-        assert {key: read[key] for key in kept if key in given} == {key: given[key] for key in kept if key in given}
+        assert {key: read[key] for key in kept if key in given} == {
+            key: given[key] for key in kept if key in given
+        }
 
 
 def _check_motion(name, data, options):
@@ -224,6 +226,7 @@ def _check_motion(name, data, options):
     assert mean == pytest.approx(abs(float(data["dte"].mean())), rel=1e-9)
 
 
+@pytest.mark.filterwarnings("ignore::lumped.errors.LikeTeethWarning")
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_dataset_has_its_figure(result, name, kind):
@@ -245,8 +248,24 @@ HEALTHY = _stated("larger_gear_drives_contact_lost", pinion__teeth=44)
 FIRST_ORDERS = ("steps", "eccentricity")
 #: What no deviation moves in proportion: errors of the methods, and the energy that is left by rounding.
 OF_THE_METHOD = ("error", "closure", "residual", "seconds", "unsettled", "settings")
+#: Functions about the numbers of the teeth, or about the deviations themselves.
+OF_THE_TEETH = {"lumped.meeting_teeth", "lumped.revolution", "lumped.tooth_gaps"}
+#: Function -> numbers that count teeth or cycles, or are of the whole period, as pairs of teeth meet.
+COUNTS = {
+    "floquet.revolution_multipliers": (".cycles", ".multipliers", ".rates"),
+    "lumped.static_sharing": (".pinion_tooth", ".gear_tooth", ".largest_load"),
+    "validation.predict": (".mesh_cycles",),
+    "validation.measurements.evaluate": (".measurement", ".points"),  # the record is another one
+}
+_BRAKE = "the conservative balance of settled_motion is 7e-5 off that of balance_of for like teeth"
 #: Function -> why one femtometre moves its result, where that is a fault.
-MOVED: dict[str, str] = {}
+MOVED = {
+    "lumped.simulate": "no mean powers in the attributes of own teeth; like teeth have them",
+    "multibody.power_balance": _BRAKE,
+    "multibody.simulate": _BRAKE,
+    "multibody.speed_sweep": _BRAKE,
+    "multibody.steady_state": "the motion is found 4e-7 rad of common rotation further along",
+}
 
 
 def leaves(value: Any, path: str = "") -> dict[str, Any]:
@@ -279,12 +298,12 @@ def _repeated(like: Any, own: Any) -> tuple[Any, Any]:
     return np.tile(like, [b // a if a else 1 for a, b in zip(like.shape, own.shape, strict=True)]), own
 
 
-def moved(like: Any, own: Any) -> dict[str, float]:
+def moved(like: Any, own: Any, counts: tuple[str, ...] = ()) -> dict[str, float]:
     """Name of what differs by more than 1e-6 of itself -> by how much."""
     before, after = leaves(like), leaves(own)
     found = {}
     for name, value in before.items():
-        if any(word in name for word in OF_THE_METHOD):
+        if any(word in name for word in OF_THE_METHOD) or name.startswith(counts):
             continue
         if name not in after:
             found[name] = np.nan
@@ -328,15 +347,12 @@ def _computed(name, pair, folder):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
         warnings.simplefilter("ignore", LikeTeethWarning)
-        return _numbers_as_given(name, CALLS[name](pair, folder, **LIMIT_OPTIONS.get(name, {})))
-
-
-#: Function -> keywords of its call in the test of the limit.
-LIMIT_OPTIONS: dict[str, dict[str, Any]] = {}
+        return _numbers_as_given(name, CALLS[name](pair, folder))
 
 
 @pytest.mark.parametrize("first_order", FIRST_ORDERS)
-@pytest.mark.parametrize("name", sorted(CALLS.keys() - {REPORT, *OF_SHAFTS}))
+@pytest.mark.filterwarnings("ignore::lumped.errors.LikeTeethWarning")
+@pytest.mark.parametrize("name", sorted(CALLS.keys() - {REPORT, *OF_SHAFTS, *OF_THE_TEETH}))
 def test_a_femtometre_moves_no_result_by_a_millionth(like, name, first_order, tmp_path, request):
     if reason := MOVED.get(name):
         request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
@@ -347,4 +363,16 @@ def test_a_femtometre_moves_no_result_by_a_millionth(like, name, first_order, tm
     except ParameterError as error:
         assert {one.field for one in error.problems} == {NOT_DONE[name, "own teeth"]}
         return
-    assert moved(like(name), found) == {}
+    assert moved(like(name), found, COUNTS.get(name, ())) == {}
+
+
+@pytest.mark.parametrize("first_order", FIRST_ORDERS)
+def test_multipliers_of_a_revolution_are_those_of_a_cycle_many_times(first_order):
+    index = [1e-9] + [0.0] * (HEALTHY.pinion.teeth - 1)
+    pair = HEALTHY.with_({"pinion.deviations": {"index": index, "first_order": first_order}})
+    found = floquet.revolution_multipliers(pair)
+    one = floquet.gear_pair_multipliers(HEALTHY).multipliers
+    assert found.cycles == 44
+    size = np.abs(one**44).max()
+    for value in found.multipliers:
+        assert np.abs(one**44 - value).min() < 1e-6 * size
