@@ -16,7 +16,6 @@ import xarray as xr
 
 import floquet
 import lumped
-import multibody
 import validation
 from lumped.model.periodic_system import LTVSystem, without_shafts
 from tests.meta.test_public_names import FUNCTIONS

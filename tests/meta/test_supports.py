@@ -1,7 +1,7 @@
 """`[shafts]` in the file means shafts in every function and command, unless springs are asked for.
 
-Every public function that takes a pair has one row in ``calls``. It computes on the shafts by default, or it refuses
-a pair with shafts and names ``supports``, or supports do not enter. A function without a row fails.
+Every public function that takes a pair has one row in ``calls``. It computes on the shafts by default, or it
+refuses a pair with shafts and names ``supports``, or supports do not enter. A function without a row fails.
 """
 
 import inspect

@@ -119,7 +119,8 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
     ----------
     result : of ``predict``; dataset of ``simulate`` or ``steady_state`` of either model, ``run_up``,
         ``waterfall``, ``order_spectrum``, ``speed_sweep``, ``mesh_stiffness``, ``static_transmission_error``,
-        ``static_sharing``, ``stability_chart`` (one or two axes), ``stability_boundaries`` over an axis, ``campbell``, ``jump_map`` or
+        ``static_sharing``, ``stability_chart`` (one or two axes), ``stability_boundaries`` over an axis,
+        ``campbell``, ``jump_map`` or
         ``response_branches``, or the ``points`` of an evaluated record. A list of results of one kind over
         time, phase or speed: their transmission errors, mesh stiffnesses or spectral radii
     ax : axes of yours to draw this curve into
