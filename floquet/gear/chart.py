@@ -35,7 +35,7 @@ from floquet.rank_one.boxes import proven_cells
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import of_type, one_of, real_number
 from lumped.errors import LawRangeWarning, refuse
-from lumped.labelling import Variable, labelled_dataset
+from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, IntArray, Progress
@@ -137,7 +137,9 @@ def stability_chart(
     for name in grid:
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
-    dataset = dataset.assign_attrs(title=title, friction_law=law, supports=variation.supports, rtol=rtol)
+    dataset = dataset.assign_attrs(
+        **provenance(variation.pair), title=title, friction_law=law, supports=variation.supports, rtol=rtol
+    )
     rpm, teeth = operating_rpm(variation.pair), variation.pair.pinion.teeth
     dataset = dataset.assign_attrs(operating_speed_rpm=rpm, mesh_cycles_per_revolution=teeth)
     return with_regions(variation, dataset)

@@ -25,7 +25,7 @@ from floquet.orbits.response import Branch, Member, Response, find_response, fin
 from lumped.arguments import one_of, real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
-from lumped.labelling import Variable, labelled_dataset
+from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, on_springs
 from lumped.ranges import warned_once
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -167,6 +167,8 @@ def jump_map(
         report(0.8 + 0.2 * (j + 1) / values.size)
     dataset = _dataset(name, values, speeds, rows, jumps)
     dataset.attrs.update(
+        **provenance(pair),
+        supports="springs",
         title=f"jump map of {pair.name}",
         model="unilateral lumped",
         friction_law=pair.friction.law,

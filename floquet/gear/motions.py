@@ -178,6 +178,8 @@ class GearOrbit:
         back: Variable = ("time", run.loads[:, drive:].sum(axis=1), "N", "normal load on the back sides")
         attributes = provenance(self.pair, samples_per_cycle=samples_per_cycle) | {
             "model": "lumped",
+            "contact": "unilateral",
+            "supports": "springs",
             "speed_rpm": self.speed_rpm,
             "n": self.n,
             "stable": int(self.stable),

@@ -37,7 +37,7 @@ from floquet.orbits.branch import Limits
 from floquet.orbits.long_run import LongRun, Settled, long_run
 from floquet.orbits.response import STARTS, Branch, Member, Response, find_response
 from lumped.arguments import whole_number
-from lumped.labelling import Variable, labelled_dataset
+from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.averaged import averaged_matrix
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, Supports, on_springs
@@ -288,8 +288,14 @@ class ResponseBranches:
                 "point": (np.arange(len(rows)), "1", "orbit"),
                 "jump": (np.arange(len(self.jumps)), "1", "jump"),
             },
-            {"model": "unilateral lumped", "speed_low_rpm": self.speeds_rpm[0]}
-            | {"speed_high_rpm": self.speeds_rpm[1], "operating_rpm": operating_rpm(self.pair)},
+            provenance(self.pair)
+            | {
+                "model": "unilateral lumped",
+                "supports": "springs",
+                "speed_low_rpm": self.speeds_rpm[0],
+                "speed_high_rpm": self.speeds_rpm[1],
+                "operating_rpm": operating_rpm(self.pair),
+            },
         )
 
 

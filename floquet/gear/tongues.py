@@ -208,7 +208,8 @@ def _boundaries_dataset(
             "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
         {name: (values, axis.units, axis.long_name) if axis else (values, "1", "value")},
-        {
+        provenance(own.pair)
+        | {
             "title": f"stability boundaries of {own.pair.name}",
             "friction_law": own.pair.friction.law,
             "supports": own.supports,
@@ -304,7 +305,7 @@ def campbell(
             "mode": (np.arange(1, modes.size + 1), "1", "mode of the mean system"),
             "mesh_order": (mesh_order, "1", "multiple of the mesh frequency"),
         },
-        provenance(pair) | {"title": f"Campbell diagram of {pair.name}"},
+        provenance(pair) | {"title": f"Campbell diagram of {pair.name}", "supports": "springs"},
     ).assign_coords(tongue_coordinates("line", lines))
 
 
@@ -357,6 +358,7 @@ class StabilityMargins:
 
     Attributes
     ----------
+    pair : the gear pair
     rpm, damping : operating point, pinion speed [rpm] and mesh damping ratio
     speed_range : range searched [rpm]
     friction_coefficient : constant coefficient that stands for the friction law here
@@ -366,6 +368,7 @@ class StabilityMargins:
     damping_at_speed : mesh damping ratio above which the operating speed is stable; None: it is at any
     """
 
+    pair: GearPair
     rpm: float
     damping: float
     speed_range: tuple[float, float]
@@ -403,8 +406,10 @@ class StabilityMargins:
                 "peak_radius": ("tongue", tips[2], "1", "largest multiplier without mesh damping"),
             },
             {},
-            {
+            provenance(self.pair)
+            | {
                 "title": "tongues of instability over speed and mesh damping",
+                "supports": "springs",
                 "friction_coefficient_held": self.friction_coefficient,
             },
         ).assign_coords(label=("tongue", np.array([t.label for t in tongues], dtype=object)))
@@ -454,6 +459,7 @@ def stability_margins(
     dampings = np.concatenate([[0.0], np.geomspace(1e-7, _LARGEST_DAMPING, 150)])
     at_speed = unstable_intervals(lambda z: radius(rpm, z), dampings, xtol=1e-8)
     return StabilityMargins(
+        pair=pair,
         rpm=rpm,
         damping=here,
         speed_range=(low, high),

@@ -14,7 +14,7 @@ import numpy as np
 from lumped.errors import ParameterError
 from lumped.friction.iso_14179 import coefficient_of
 from lumped.friction.registry import laws_with_friction
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.losses.loss_factor import (
     Sharing,
     loss_factor,
@@ -115,7 +115,7 @@ def losses_of_laws(pair: AnyPair) -> xr.Dataset:
             for key, (unit, text) in columns.items()
         },
         {"law": (list(rows), "1", "friction law")},
-        {"left_out": left_out},
+        provenance(pair) | {"left_out": left_out},
     )
     return result.assign_coords(law_title=("law", [laws[name].title for name in rows]))
 

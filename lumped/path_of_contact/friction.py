@@ -20,7 +20,7 @@ from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import average_coefficient, friction_number
 from lumped.friction.misfit import fit_misfit
 from lumped.friction.registry import law_of, laws_with_friction
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.lubrication import film
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
@@ -278,7 +278,7 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
             "xi": (xi, "m", "distance of the contact point from X"),
             "law": (list(functions), "1", "friction law"),
         },
-        {"range_warnings": warnings, "left_out": left_out},
+        provenance(pair) | {"range_warnings": warnings, "left_out": left_out},
     )
     other = path.film_thickness(xi, "hamrock_dowson") / result["film_thickness"].to_numpy()
     result["film_thickness"].attrs["note"] = film_note(float(other.min()), float(other.max()))

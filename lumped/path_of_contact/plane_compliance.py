@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from lumped.arguments import one_of, whole_number
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.stiffness import iso6336
@@ -97,8 +97,8 @@ def plane_compliance(
             "pair": (ahead, "1", "pitches ahead of the pair that was at A"),
             "loaded_pair": (ahead, "1", "pitches by which the loaded pair is ahead"),
         },
-        {
-            "pair": pair.name,
+        provenance(pair)
+        | {
             "plane": plane,
             "support": support,
             "mean": float(weight @ means[0]),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.path_function import PathFunction
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -72,8 +72,8 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
             "component": (names, "1", "part of the tooth pair"),
             "position": (found.position, "m", "position from X along the line of action"),
         },
-        {
-            "pair": pair.name,
+        provenance(pair)
+        | {
             "iso_single_stiffness": iso6336.single_of(pair),
             "quadrature_error": max(found.pinion.quadrature_error, found.gear.quadrature_error),
         },
@@ -110,8 +110,8 @@ def mesh_stiffness(pair: AnyPair, samples: int = 512) -> xr.Dataset:
             "phase": (phase, "1", "mesh cycles after a pair was at A"),
             "pair": (ahead, "1", "pitches ahead of the pair that was at A"),
         },
-        {
-            "pair": pair.name,
+        provenance(pair)
+        | {
             "model": pair.mesh.stiffness.model,
             "mean": curve.mean() * g.contact_ratio,
             "iso_mean": iso6336.mean_of(pair),

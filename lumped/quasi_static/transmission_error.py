@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.path_of_contact import pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening
 from lumped.quasi_static.contacts import contact_of
@@ -149,7 +149,7 @@ def static_transmission_error(
             "phase": (mesh.phase, "1", "mesh cycles after a pair was at A"),
             "pair": (mesh.ahead, "1", "pitches ahead of the pair that was at A"),
         },
-        {"pair": pair.name, "extended_contact": int(bool(extended))},
+        provenance(pair) | {"extended_contact": int(bool(extended))},
     )
 
 

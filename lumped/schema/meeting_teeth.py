@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.schema.teeth import Deviations
@@ -151,8 +151,13 @@ def meeting_teeth(pair: AnyPair, cycles: int | None = None) -> xr.Dataset:
             "gear_tooth": ("meshing", gear + 1, "1", "tooth of the gear"),
         },
         {"meshing": (number, "1", "mesh cycles until the pair is at A")},
-        {"pair": pair.name},
+        _provenance(pair),
     )
+
+
+def _provenance(pair: GearPair) -> dict[str, Any]:
+    """Attributes of a result about the teeth as given."""
+    return provenance(pair) | {"teeth": "alike" if pair.healthy is pair else "as given"}
 
 
 def numbers(pair: GearPair, number: IntArray) -> tuple[IntArray, IntArray]:
@@ -177,7 +182,7 @@ def tooth_gaps(pair: AnyPair) -> xr.Dataset:
     """
     pair = load_gear_pair(pair)
     pinion, gear = own_teeth(pair)
-    attributes = {"pair": pair.name, "period": period_of(pair)}
+    attributes = _provenance(pair) | {"period": period_of(pair)}
     for name, one in (("pinion", pinion), ("gear", gear)):
         attributes |= {f"{name}_eccentricity": one.eccentricity, f"{name}_phase": one.phase}
     return labelled_dataset(

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
 from lumped.labelling import provenance
+from lumped.model import cycle_maps
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
-from lumped.model.unilateral_motion import settled_motion
 from lumped.schema.meeting_teeth import ripples
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -197,7 +197,7 @@ def _on_springs(
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
     if pair.healthy is not pair:
-        own = settled_motion(pair, 8, "springs")
+        own = cycle_maps.linear_motion(pair, 8, "springs")
         balance = replace(balance, states=own.states[:1])
         mean_balance = own.balance(conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]

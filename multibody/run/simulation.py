@@ -361,5 +361,11 @@ def speed_sweep(
     return labelled_dataset(
         {name: ("speed", values, *_VARIABLES[name]) for name, values in table.items()},
         {"speed": (speeds, "rpm", "pinion speed")},
-        provenance(pair, fidelity=fidelity, settle=settle, cycles=cycles, rtol=rtol),
+        provenance(pair, settle=settle, cycles=cycles, rtol=rtol)
+        | {
+            "model": "multibody",
+            "fidelity": fidelity,
+            "teeth": "alike" if pair.healthy is pair else "as given",
+            "supports": "springs",
+        },
     )

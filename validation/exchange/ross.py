@@ -14,8 +14,8 @@ import numpy as np
 import lumped
 from lumped.arguments import real_array
 from lumped.errors import refuse
-from lumped.labelling import labelled_dataset
-from lumped.model.periodic_system import Supports, periodic_system
+from lumped.labelling import labelled_dataset, provenance
+from lumped.model.periodic_system import Supports, periodic_system, supports_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -71,7 +71,7 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
         *_over_cycle("mesh stiffness", "N/m", theirs, ours),
         ("transmission error, peak to peak", "m", *map(np.ptp, motions), _STIFFNESS),
     ]
-    return _compared("ross", rows, pair)
+    return _compared("ross", rows, pair, "springs")
 
 
 def compare_matrices(
@@ -116,7 +116,7 @@ def compare_matrices(
     if len(stiffness) > 1:
         traces = [np.trace(one, axis1=1, axis2=2) for one in (theirs, ours)]
         rows += _over_cycle("sum of squared frequencies", "rad^2/s^2", *traces)
-    return _compared("matrices", rows, pair)
+    return _compared("matrices", rows, pair, supports_of(pair, supports))
 
 
 def _frequencies(squares: FloatArray) -> FloatArray:
@@ -139,7 +139,7 @@ def _over_cycle(name: str, unit: str, theirs: FloatArray, ours: FloatArray) -> l
     ]
 
 
-def _compared(theirs: str, rows: list[Row], pair: GearPair) -> xr.Dataset:
+def _compared(theirs: str, rows: list[Row], pair: GearPair, supports: Supports) -> xr.Dataset:
     """The rows as a dataset."""
     names, units, a, b, limits = zip(*rows, strict=True)
     difference = np.array(a, dtype=float) / np.array(b, dtype=float) - 1.0
@@ -153,7 +153,7 @@ def _compared(theirs: str, rows: list[Row], pair: GearPair) -> xr.Dataset:
     result = labelled_dataset(
         {name: ("quantity", values, "1", words) for name, (values, words) in columns.items()},
         {"quantity": (list(names), "1", "quantity")},
-        {"parameters": pair.to_toml()},
+        provenance(pair) | {"supports": supports},
     )
     return result.assign_coords(units=("quantity", list(units)))
 

@@ -96,7 +96,10 @@ class PageResults:
         ]
         parts.append(self.sweep)
         merged = xr.merge(parts, join="exact", combine_attrs="override")
-        merged.attrs = provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"}
+        merged.attrs = provenance(self.pair) | {
+            "title": f"interactive page of {self.pair.name}",
+            "supports": "springs",
+        }
         return merged
 
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from lumped import Geometry, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -239,7 +239,9 @@ def overlay(
             "correlation": ("channel", correlation, "1", "Pearson correlation of measured and predicted"),
         },
         {"channel": ([c.name for c in measurement.spec.channel], "1", "channel")},
-        {"record": measurement.spec.name, "source": measurement.spec.source},
+        provenance(prediction.pair)
+        | {name: prediction.cycle.attrs[name] for name in ("teeth", "contact", "supports")}
+        | {"record": measurement.spec.name, "source": measurement.spec.source},
     )
 
 

@@ -145,7 +145,9 @@ def jump_map_figure(data: xr.Dataset) -> Figure:
     point = data.attrs["operating_rpm"], data.attrs["operating_value"]
     inside = speed[0] <= point[0] <= speed[-1] and values[0] <= point[1] <= values[-1]
     for ax in (left, right):
-        ax.set(xlim=(speed[0], speed[-1]), ylim=(values[0], values[-1]), xlabel="pinion speed [rpm]")
+        ax.set(xlim=(speed[0], speed[-1]), xlabel="pinion speed [rpm]")
+        if values.size > 1:
+            ax.set_ylim(values[0], values[-1])
         ax.grid(False)
         if inside:
             ax.plot(*point, **_POINT)

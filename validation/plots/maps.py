@@ -99,7 +99,7 @@ def waterfall_figure(data: xr.Dataset, frequencies: Iterable[float] = ()) -> Fig
     across, up = data["frequency"].attrs["long_name"], data["speed_rpm"].attrs["long_name"]
     ax.set(
         xlim=(0.0, end),
-        ylim=(speed.min(), speed.max()),
+        ylim=(speed.min(), speed.max()) if speed.size > 1 else None,
         xlabel=f"{across} [kHz]; 1×, 2×: mesh orders, red: natural frequencies",
         ylabel=f"{up} [rpm]",
     )

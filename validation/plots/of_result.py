@@ -31,6 +31,8 @@ def _pair(result: xr.Dataset) -> GearPair:
 
 
 def _sweep(result: xr.Dataset) -> Figure:
+    if "normal_load_max" not in result:  # of the multibody model, which says how far the teeth are apart
+        return _curves([result], None, [])
     pair = _pair(result)
     load = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     return sweep_figure(result, to_stated(pair.operating.pinion_speed, "rpm"), load)
@@ -44,8 +46,17 @@ def _chart(result: xr.Dataset) -> Figure:
 
 
 def _static(result: xr.Dataset) -> Figure:
+    if "torque" not in result.dims:  # of static_sharing, at the operating torque
+        return _curves([result], None, [])
     torques = result["torque"].to_numpy()
     return _curves([result.sel(torque=one) for one in torques], None, [f"{one:g} N m" for one in torques])
+
+
+def _boundaries(result: xr.Dataset) -> Figure:
+    if result["interval_lower"].ndim < 3:
+        action = "Compute them over an axis: stability_boundaries(pair, axes={...})."
+        raise refuse("result", "boundaries at one value", "boundaries over a second axis", action)
+    return boundaries_figure(result)
 
 
 def _waterfall(result: xr.Dataset) -> Figure:
@@ -81,7 +92,7 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "mesh_frequency": lambda result: campbell_figure(
         result, to_stated(_pair(result).operating.pinion_speed, "rpm")
     ),
-    "interval_lower": boundaries_figure,
+    "interval_lower": _boundaries,
     "verdict": _chart,
     "amplitude": _spectrum,
     "transmission_error": _static,
@@ -108,7 +119,8 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
     ----------
     result : of ``predict``; dataset of ``simulate`` or ``steady_state`` of either model, ``run_up``,
         ``waterfall``, ``order_spectrum``, ``speed_sweep``, ``mesh_stiffness``, ``static_transmission_error``,
-        ``stability_chart`` (one or two axes), ``stability_boundaries``, ``campbell``, ``jump_map`` or
+        ``static_sharing``, ``stability_chart`` (one or two axes), ``stability_boundaries`` over an axis,
+        ``campbell``, ``jump_map`` or
         ``response_branches``, or the ``points`` of an evaluated record. A list of results of one kind over
         time, phase or speed: their transmission errors, mesh stiffnesses or spectral radii
     ax : axes of yours to draw this curve into
@@ -132,10 +144,17 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
     if several or ax is not None:
         return _curves(results, ax, labels)
     for variable, draw in _FIGURES.items():
-        if variable in results[0]:
+        if variable in results[0] and _is_main(results[0], variable):
             return draw(results[0])
     known = "a result of simulate, steady_state, speed_sweep, stability_chart or campbell"
     raise refuse("result", ", ".join(map(str, one.data_vars)), known, "Draw it with xarray's own .plot().")
+
+
+def _is_main(result: xr.Dataset, variable: str) -> bool:
+    """Whether a variable is over what its figure shows it over: samples of a number are no sweep."""
+    if variable not in _CURVES:
+        return True
+    return set(result[variable].dims) <= {_CURVES[variable][0], "torque"}
 
 
 def _curves(results: Sequence[xr.Dataset], ax: Axes | None, labels: Sequence[str]) -> Figure:

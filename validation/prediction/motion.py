@@ -207,7 +207,10 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
-    """Return the largest mesh force of ``predict`` over the static one [-]; supports and errors as there."""
+    """Return the largest mesh force of ``predict`` over the static one [-].
+
+    ``pair``, ``supports`` and errors are those of ``predict``.
+    """
     return predict(pair, supports=supports).dynamic_factor
 
 

@@ -117,7 +117,10 @@ def uncertainty(
     names = (name for name in found.data_vars if found[name].dims == ("sample",))
     found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
     found.attrs |= {"refused": samples - len(table), "seed": seed}
-    held = {"supports": supports_of(pair, None)}
+    held = {
+        "supports": supports_of(pair, None),
+        "teeth": "alike" if pair.healthy is pair else "as given",
+    }
     return found.assign_attrs(provenance(pair, samples=samples, seed=seed) | held)
 
 

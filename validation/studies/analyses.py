@@ -56,10 +56,17 @@ class Settings(Section):
 
 @dataclass(frozen=True)
 class Analysis:
-    """What is computed of a varied pair and settings; name -> (unit, plain name) of its numbers."""
+    """What is computed of a varied pair and settings.
+
+    Attributes
+    ----------
+    outputs : name -> (unit, plain name) of its numbers
+    own_teeth : whether the teeth are those of the pair as given; else they are alike
+    """
 
     compute: Callable[[GearVariation, Settings], Values]
     outputs: Labels
+    own_teeth: bool = False
 
 
 _MOTIONS = {
@@ -170,7 +177,7 @@ def _motion(pair: GearPair, run: xr.Dataset) -> Values:
 
 ANALYSES: dict[AnalysisName, Analysis] = {
     "geometry": Analysis(_geometry, _GEOMETRY),
-    "lumped": Analysis(_lumped, _LUMPED),
-    "multibody": Analysis(_multibody, _MOTION),
+    "lumped": Analysis(_lumped, _LUMPED, own_teeth=True),
+    "multibody": Analysis(_multibody, _MOTION, own_teeth=True),
     "floquet": Analysis(_floquet, _FLOQUET),
 }

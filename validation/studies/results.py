@@ -10,6 +10,7 @@ import xarray as xr
 
 from lumped.arguments import file_path
 from lumped.labelling import parameters_hash
+from lumped.model.periodic_system import supports_of
 from lumped.typing import FloatArray
 from validation.studies.analyses import ANALYSES
 from validation.studies.axes import target_of
@@ -91,14 +92,19 @@ def _coordinates(cases: CaseList) -> dict[str, xr.DataArray]:
 
 def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
     study = cases.study
+    pair = study.gear_pair
+    as_given = ANALYSES[study.analysis].own_teeth and pair.healthy is not pair
     return {
         "title": study.name,
         "description": study.description,
-        "gear_pair": study.gear_pair.name,
+        "gear_pair": pair.name,
+        "teeth": "as given" if as_given else "alike",
+        "supports": supports_of(pair, study.settings.supports),
         "analysis": study.analysis,
         "study": study.to_toml(),
         "study_sha256": study.sha256,
-        "parameters_sha256": parameters_hash(study.gear_pair),
+        "parameters": pair.to_toml(),
+        "parameters_sha256": parameters_hash(pair),
         "cases_sha256": cases.sha256,
         # Runs with the same versions and code count once, so a resumed sweep gives the same file.
         "versions": "; ".join(dict.fromkeys(run.versions for run in table.runs)),
