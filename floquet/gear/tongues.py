@@ -208,8 +208,8 @@ def _boundaries_dataset(
             "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
         {name: (values, axis.units, axis.long_name) if axis else (values, "1", "value")},
-        provenance(own.pair)
-        | {
+        {
+            **provenance(own.pair),
             "title": f"stability boundaries of {own.pair.name}",
             "friction_law": own.pair.friction.law,
             "supports": own.supports,
@@ -405,8 +405,8 @@ class StabilityMargins:
                 "peak_radius": ("tongue", tips[2], "1", "largest multiplier without mesh damping"),
             },
             {},
-            provenance(self.pair)
-            | {
+            {
+                **provenance(self.pair),
                 "title": "tongues of instability over speed and mesh damping",
                 "supports": "springs",
                 "friction_coefficient_held": self.friction_coefficient,
