@@ -357,8 +357,7 @@ class StabilityMargins:
 
     Attributes
     ----------
-    pair : the gear pair
-    rpm, damping : operating point, pinion speed [rpm] and mesh damping ratio
+    pair, rpm, damping : the gear pair, its pinion speed [rpm] and mesh damping ratio
     speed_range : range searched [rpm]
     friction_coefficient : constant coefficient that stands for the friction law here
     tongues : at zero mesh damping, by speed
