@@ -208,8 +208,8 @@ def _boundaries_dataset(
             "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
         {name: (values, axis.units, axis.long_name) if axis else (values, "1", "value")},
-        provenance(own.pair)
-        | {
+        {
+            **provenance(own.pair),
             "title": f"stability boundaries of {own.pair.name}",
             "friction_law": own.pair.friction.law,
             "supports": own.supports,
@@ -358,8 +358,7 @@ class StabilityMargins:
 
     Attributes
     ----------
-    pair : the gear pair
-    rpm, damping : operating point, pinion speed [rpm] and mesh damping ratio
+    pair, rpm, damping : the gear pair, its pinion speed [rpm] and mesh damping ratio
     speed_range : range searched [rpm]
     friction_coefficient : constant coefficient that stands for the friction law here
     tongues : at zero mesh damping, by speed
@@ -406,8 +405,8 @@ class StabilityMargins:
                 "peak_radius": ("tongue", tips[2], "1", "largest multiplier without mesh damping"),
             },
             {},
-            provenance(self.pair)
-            | {
+            {
+                **provenance(self.pair),
                 "title": "tongues of instability over speed and mesh damping",
                 "supports": "springs",
                 "friction_coefficient_held": self.friction_coefficient,

@@ -299,7 +299,8 @@ def moved(like: Any, own: Any, counts: tuple[str, ...] = ()) -> dict[str, float]
     before, after = leaves(like), leaves(own)
     found = {}
     for name, value in before.items():
-        if any(word in name for word in OF_THE_METHOD) or name.startswith(counts):
+        of_the_method = any(word in name.replace("transmission_error", "") for word in OF_THE_METHOD)
+        if of_the_method or name.startswith(counts):
             continue
         if name not in after:
             found[name] = np.nan
