@@ -439,12 +439,12 @@ def revolution_multipliers(
     apart = OffLineOfAction.of(feedback)
     (separate,), (bounds,) = apart.multipliers(np.array([like.period]))
     sizes = np.abs(separate)
-    high = max(float(rates[0]) + error, float((sizes + bounds).max()))
-    low = max(float(rates[0]) - error, float((sizes - bounds).max()))
+    high = max(float(rates[0]) + error, float((sizes + bounds).max(initial=0.0)))
+    low = max(float(rates[0]) - error, float((sizes - bounds).max(initial=0.0)))
     whole, rates = np.append(whole, separate**cycles), np.append(rates, sizes)
     order = np.argsort(-rates, kind="stable")
     rate = float(rates[order[0]])
-    error, healthy = max(high - rate, rate - low), max(healthy, float(sizes.max()))
+    error, healthy = max(high - rate, rate - low), max(healthy, float(sizes.max(initial=0.0)))
     return RevolutionMultipliers(whole[order], rates[order], rate, error, cycles, healthy)
 
 

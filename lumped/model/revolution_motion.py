@@ -213,6 +213,10 @@ def labelled_motion(
     }
     if motion.origin is not None:
         attributes["origin"] = motion.origin.value
+    if motion.powers:
+        attributes |= {f"power_{place}": power for place, power in motion.losses.items()}
+        left = 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"]
+        attributes["power_energy_residual"] = left
     if periodic:
         attributes |= _of_period(motion, values)
     run = labelled(motion.time, values, attributes, further)
@@ -220,10 +224,8 @@ def labelled_motion(
 
 
 def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[str, float]:
-    """Mean powers, errors and ranges of a motion that closes."""
+    """Errors and ranges of a motion that closes."""
     found = {
-        **{f"power_{place}": power for place, power in motion.losses.items()},
-        "power_energy_residual": 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"],
         "closure": motion.closure,
         "error_estimate": motion.error,
     }

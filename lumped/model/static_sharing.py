@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.mesh.places import static_loads
 from lumped.model.revolution_motion import default_samples
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
@@ -85,5 +85,6 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
             "tooth_of_pinion": (np.arange(pair.pinion.teeth) + 1, "1", "tooth of the pinion"),
             "tooth_of_gear": (np.arange(pair.gear.teeth) + 1, "1", "tooth of the gear"),
         },
-        {"pair": pair.name, "period_cycles": period},
+        provenance(pair)
+        | {"teeth": "alike" if pair.healthy is pair else "as given", "period_cycles": period},
     )

@@ -57,7 +57,7 @@ KINDS = {
 }
 #: Functions whose result is of the teeth as given; the others take them as alike.
 AS_GIVEN = {
-    "lumped.meeting_teeth", "lumped.simulate", "lumped.speed_sweep", "lumped.static_sharing",
+    "lumped.meeting_teeth", "lumped.run_up", "lumped.simulate", "lumped.speed_sweep", "lumped.static_sharing",
     "lumped.steady_state",
     "lumped.tooth_gaps", "multibody.simulate", "multibody.speed_sweep", "multibody.steady_state",
     "validation.measurements.evaluate", "validation.measurements.predict", "validation.predict",
@@ -145,13 +145,6 @@ def result(tmp_path_factory):
 
 
 NAMES = sorted(CALLS.keys() - {REPORT})
-#: (function, kind) -> why its attributes are wrong today.
-WRONG_ATTRIBUTES = {
-    **{("lumped.static_sharing", kind): "attributes are a name and a period only" for kind in KINDS},
-    ("lumped.speed_sweep", "own teeth"): 'says "alike", though every motion is of the teeth as given',
-}
-
-
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_function_returns_a_result_or_names_what_it_refuses(result, name, kind):
@@ -179,9 +172,7 @@ def _expected(name, kind, found):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", NAMES)
-def test_every_dataset_says_what_it_was_made_from(result, name, kind, tmp_path, request):
-    if reason := WRONG_ATTRIBUTES.get((name, kind)):
-        request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
+def test_every_dataset_says_what_it_was_made_from(result, name, kind, tmp_path):
     found = result(name, kind)
     if isinstance(found, Exception):
         return
@@ -258,12 +249,6 @@ COUNTS = {
     "validation.predict": (".mesh_cycles",),
     "validation.measurements.evaluate": (".measurement", ".points"),  # the record is another one
 }
-#: Function -> why one femtometre moves its result, where that is a fault.
-MOVED = {
-    "lumped.simulate": "no mean powers in the attributes of own teeth; like teeth have them",
-}
-
-
 def leaves(value: Any, path: str = "") -> dict[str, Any]:
     """Numbers and arrays of a result by name; of a dataset its variables, to be repeated over cycles."""
     if isinstance(value, xr.Dataset):
@@ -347,12 +332,17 @@ def _computed(name, pair, folder):
         return _numbers_as_given(name, CALLS[name](pair, folder))
 
 
-@pytest.mark.parametrize("first_order", FIRST_ORDERS)
+#: What takes teeth as alike does not see how their errors are given.
+FEMTOMETRES = [
+    (name, first_order)
+    for name in sorted(CALLS.keys() - {REPORT, *OF_SHAFTS, *OF_THE_TEETH})
+    for first_order in (FIRST_ORDERS if name in AS_GIVEN else FIRST_ORDERS[:1])
+]
+
+
 @pytest.mark.filterwarnings("ignore::lumped.errors.LikeTeethWarning")
-@pytest.mark.parametrize("name", sorted(CALLS.keys() - {REPORT, *OF_SHAFTS, *OF_THE_TEETH}))
-def test_a_femtometre_moves_no_result_by_a_millionth(like, name, first_order, tmp_path, request):
-    if reason := MOVED.get(name):
-        request.applymarker(pytest.mark.xfail(strict=True, reason=reason))
+@pytest.mark.parametrize(("name", "first_order"), FEMTOMETRES)
+def test_a_femtometre_moves_no_result_by_a_millionth(like, name, first_order, tmp_path):
     index = [1e-9] + [0.0] * (HEALTHY.pinion.teeth - 1)
     pair = HEALTHY.with_({"pinion.deviations": {"index": index, "first_order": first_order}})
     if field := NOT_DONE.get((name, "own teeth")):
