@@ -136,7 +136,7 @@ def test_no_advice_is_to_do_what_the_pair_has(model, advised):
     swing = (("input", "end"), np.array([[1.0, 2.0], [1.2, 2.0]]) * 1e-6)
     results = SimpleNamespace(
         uncertainty=xr.Dataset({"dte_peak_to_peak_swing": swing}, {"input": inputs}),
-        prediction=SimpleNamespace(peak_to_peak=1e-6),
+        like=SimpleNamespace(peak_to_peak=1e-6),
         pair=lumped.load_gear_pair("fzg_c").with_(mesh__stiffness={"model": model}),
     )
     assert len(advice_on_inputs(results)) == advised

@@ -323,7 +323,7 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts(monkeypatch):
     own = pair("shafts", "19/41", 1450.0, 80.0)
     results = Results(own.with_(shafts_of(30, 2e8)), SMALL)
     monkeypatch.setattr(Results, "_second_words", "Yes: a second program agrees to 2.7 %.")
-    results.__dict__ |= {"prediction": SimpleNamespace(peak_to_peak=5e-6)}
+    results.__dict__ |= {"like": SimpleNamespace(peak_to_peak=5e-6)}
     for size, words in ((5.5e-6, "10 % larger"), (4e-6, "20 % smaller")):
         results.__dict__["second"] = SimpleNamespace(peak_to_peak=size)
         ends = f"to 2.7 % on springs; on the shafts its transmission error is {words}."
