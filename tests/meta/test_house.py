@@ -17,7 +17,7 @@ LOOSE = {
 #: Folders of tests that belong to no single package.
 QUESTIONS = {"meta", "packaging", "docs", "examples", "hardening", "evidence", "reproductions",
              "unlike_pairs", "guards"}  # fmt: skip
-#: Lines of a file, docstrings and blank lines included: 400 lines of code at most.
+#: Lines of a file, docstrings and blank lines included.
 LONGEST = {"library": 700, "tests": 700}
 
 
