@@ -52,8 +52,6 @@ _NEAR = 0.3
 _SETTLING, _RUNS, _MOST_CYCLES, _LOOKED = 400, 5, 8, 8
 #: Relative change after so many cycles that is called a repetition; outputs in a cycle of such a run.
 _REPEATS, _OUTPUTS = 1e-6, 16
-
-
 #: Of teeth that differ: what a start is to have faded to before it is recorded, most cycles for that, and the
 #: largest mismatch after the period, over the largest displacement, that is called periodic.
 _START_FADED, _MOST_SETTLING, _CALLED_CLOSED = 1e-11, 20_000, 1e-4

@@ -145,6 +145,8 @@ def result(tmp_path_factory):
 
 
 NAMES = sorted(CALLS.keys() - {REPORT})
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_function_returns_a_result_or_names_what_it_refuses(result, name, kind):
@@ -249,6 +251,8 @@ COUNTS = {
     "validation.predict": (".mesh_cycles",),
     "validation.measurements.evaluate": (".measurement", ".points"),  # the record is another one
 }
+
+
 def leaves(value: Any, path: str = "") -> dict[str, Any]:
     """Numbers and arrays of a result by name; of a dataset its variables, to be repeated over cycles."""
     if isinstance(value, xr.Dataset):

@@ -67,10 +67,10 @@ def test_losses_of_the_motion_with_unilateral_contact_are_those_of_the_linear_on
     assert 1.0 - found.efficiency == pytest.approx(lost / driving(pair), rel=0.02)
 
 
-@pytest.mark.parametrize("name", UNLIKE)
+@pytest.mark.parametrize("name", [*UNLIKE, *lumped.preset_names()])
 def test_the_parts_of_the_loss_add_up_to_it(name):
     """The losses by place are the whole of what the efficiency leaves."""
-    found = predicted(unlike_pair(name))
+    found = predicted(unlike_pair(name) if name in UNLIKE else lumped.load_gear_pair(name))
     parts = found.losses
     assert {"sliding", "tooth_dampers", "bearings"} <= set(parts)
     assert all(power >= 0.0 for power in parts.values())
