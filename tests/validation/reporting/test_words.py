@@ -182,9 +182,12 @@ def test_where_the_second_program_differs(written):
     """The quantity that is farthest beyond its limit, that of the second program first."""
     results = copy.copy(known(written.document["gear_pair"]))
     beyond = [
-        replace(one, limit=0.5 * one.difference) if (one.quantity, one.fidelity) == ("y_p", "exact") else one
+        replace(one, limit=0.5 * one.difference, peak_to_peak_multibody=1.3 * one.peak_to_peak)
+        if (one.quantity, one.fidelity) == ("y_p", "exact")
+        else one
         for one in results.check.agreements
     ]
+    size = np.ptp(written.data("prediction")["y_p"].to_numpy())
     vars(results)["check"] = replace(results.check, agreements=tuple(beyond))
     found = {
         one["quantity"]: one["difference"] for one in written.table("agreement") if "exact" in one["fidelity"]
@@ -195,10 +198,7 @@ def test_where_the_second_program_differs(written):
         r"Yes, but the second program, with exact contact, differs: (.*), (.*) beside (.*), by (.*) %, the "
         r"transmission error by (.*) %\.",
         name,
-        *(
-            (np.ptp(written.data(motion)["y_p"].to_numpy()), "m")
-            for motion in ("second_program", "prediction")
-        ),
+        *((factor * size, "m") for factor in (1.3, 1.0)),
         *((100.0 * found[one], "1") for one in (name, "dynamic transmission error")),
         digits=2,
     )
@@ -212,6 +212,29 @@ def test_the_remark(written):
     size = np.ptp(written.data("linear")["dte"].to_numpy())
     words = r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\."
     own.assert_says(remark, words, (size, "m"), digits=2)
+
+
+class AboveAJump(Results):
+    """A pair that runs 3 % above a jump."""
+
+    @property
+    def nearest_hazard(self):
+        """The jump."""
+        return self.operating_rpm / 1.03, "jump, running up"
+
+
+def test_page_1_prints_what_differs_from_the_prediction(written):
+    """Jump, linear model and second program, moved so far that none can stand for the prediction."""
+    results = copy.copy(known(written.document["gear_pair"]))
+    results.__class__, size = AboveAJump, results.prediction.peak_to_peak
+    vars(results)["second"] = replace(results.second, peak_to_peak=1.7 * size)
+    first = page_one(results)
+    own.assert_says(plain(first.numbers[0].second_shown), r"(.*)", (1.7 * size, "m"), digits=2)
+    if results.contact_lost:
+        assert plain(first.headline) == "Do not run here: the teeth lose contact, 3 % above a jump."
+        vars(results)["linear"] = results.linear.assign_attrs(dte_peak_to_peak=2.3 * size)
+        words = r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\."
+        own.assert_says(plain(_remark(results)), words, (2.3 * size, "m"), digits=2)
 
 
 def test_a_result_beyond_its_range_names_the_input_that_takes_it_there():
