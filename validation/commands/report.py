@@ -87,7 +87,7 @@ def report(
     console.print(first.title)
     console.print(f"{first.headline} {first.reason}".strip(), style="bold")
     for row in first.numbers:
-        note = f"  ({row.note})" if row.note else ""
+        note = f"  ({row.notes})" if row.notes else ""
         console.print(f"  {row.label}: {row.shown}{f', {row.range}' if row.range else ''}{note}")
     for action in first.actions:
         console.print(f"next: {action.text}{f': {action.command}' if action.command else ''}")

@@ -52,8 +52,6 @@ class Known(Protocol):
     def uncertainty(self) -> xr.Dataset | Absent: ...
     @property
     def measured_error(self) -> Compared | None: ...
-    @property
-    def finite_elements(self) -> bool: ...
 
 
 @dataclass(frozen=True)
@@ -61,6 +59,7 @@ class Row:
     """One error of the prediction: its sizes of ``COLUMNS`` [m, 1, N], NaN where they are not known.
 
     ``kind`` is "numerics", "form", "inputs" or "measurement"; ``note`` what it is, or why it is not known.
+    ``form`` names another form of the model that is no poorer, ``result`` is its transmission error [m].
     """
 
     key: str
@@ -68,6 +67,8 @@ class Row:
     kind: str
     sizes: Sizes
     note: str
+    form: str = ""
+    result: float = np.nan
 
 
 _UNKNOWN: Sizes = (np.nan, np.nan, np.nan)
@@ -81,8 +82,9 @@ def error_budget(known: Known) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset over ``row``: ``dte`` [m], ``share`` of the prediction's peak to peak [%], ``tooth_force``
-    [N] and ``bearing_force`` [N], NaN where a row is not known; attributes ``names``, ``kinds``, ``notes``
-    and ``largest``, the key of the largest row that is an error of the prediction itself
+    [N] and ``bearing_force`` [N], NaN where a row is not known; ``result`` [m], the transmission error of
+    another form of the model; attributes ``names``, ``kinds``, ``notes``, ``forms``, the names of other forms
+    that are no poorer, and ``largest``, the key of the largest row that is an error of the prediction itself
     """
     prediction = known.like
     rows = list(_rows(known))
@@ -103,12 +105,14 @@ def error_budget(known: Known) -> xr.Dataset:
         {
             "share": ("row", share, "%", "error, share of the transmission error's peak to peak"),
             **{name: ("row", values, unit, f"error, {text}") for name, values, unit, text in columns},
+            "result": ("row", [row.result for row in rows], "m", f"{texts[0]}, of another form"),
         },
         {"row": ([row.key for row in rows], "1", "error")},
         {
             "names": [row.name for row in rows],
             "kinds": [row.kind for row in rows],
             "notes": [row.note for row in rows],
+            "forms": [row.form for row in rows],
             "largest": largest.key,
             "largest_name": largest.name,
         },
@@ -167,23 +171,28 @@ def _rows(known: Known) -> Iterator[Row]:
         notes[0] = "the prediction is this motion"
     note = _note(linear, "; ".join(notes))
     yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
-    exact = (
-        "the pair has it" if pair.mesh.stiffness.model == "finite_elements" else "left out of a quick report"
+    has_finite_elements = pair.mesh.stiffness.model == "finite_elements"
+    stiffness: dict[str, object] | str = {"mesh.stiffness": {"model": "finite_elements"}}
+    contact, form = (
+        ("prescribed", "contact prescribed from A to D")
+        if pair.mesh.contact == "loaded"
+        else ("loaded", "contact that follows the load")
     )
-    fine = known.finite_elements and pair.mesh.stiffness.model != "finite_elements"
-    contact = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
-    others: tuple[tuple[str, str, str, Prediction | Absent], ...] = (
+    others: tuple[tuple[str, str, str, Prediction | Absent, str], ...] = (
         ("contact", "form of the contact", "prescribed from A to D, or following the load",
-         _varied(known, {"mesh.contact": contact})),
-        ("second", "exact contact and finite motions", "by the multibody model", known.second),
+         _varied(known, {"mesh.contact": contact}), form),
+        ("second", "exact contact and finite motions", "by the multibody model", known.second,
+         "second program"),
         ("supports", "springs in place of shafts", "without the modes of the shafts",
          Absent(Outcome.FAILED, "no shafts are given") if pair.shafts is None else
-         _predicted(without_shafts, pair)),
+         _predicted(without_shafts, pair), ""),
         ("stiffness", "tooth stiffness by finite elements", "plane finite elements of the whole gears",
-         _varied(known, {"mesh.stiffness": {"model": "finite_elements"}} if fine else exact)),
+         _varied(known, "the pair has it" if has_finite_elements else stiffness),
+         "tooth stiffness by finite elements"),
     )  # fmt: skip
-    for key, name, note, other in others:
-        yield Row(key, name, "form", _apart(own, other), _note(other, note))
+    for key, name, note, other, form in others:
+        result = np.nan if isinstance(other, Absent) else other.peak_to_peak
+        yield Row(key, name, "form", _apart(own, other), _note(other, note), form, result)
     half = _UNKNOWN
     if isinstance(found, xr.Dataset):
         ends = np.array([found[f"{name}_percentile"].to_numpy()[[0, -1]] for name in COLUMNS])

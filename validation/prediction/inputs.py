@@ -134,6 +134,18 @@ def _source(field: str, sources: Mapping[str, str]) -> str | None:
     return next((sources[path] for path in paths if path in sources), inside[0] if inside else None)
 
 
+def kind_of(field: str) -> str:
+    """Kind of an input: inputs of one kind are found out in the same way, by the advice of the report."""
+    first, *rest = field.split(".")
+    if first == "shafts" and "bearings" in rest:
+        return "shafts.bearings"
+    if first in ("bearings", "friction", "lubricant", "operating"):
+        return first
+    if first in ("pinion", "gear"):
+        return "relief" if rest[0] in ("tip_relief", "root_relief") else rest[0]
+    return field
+
+
 def _covered(field: str, stated: Mapping[str, Any]) -> bool:
     return any(field == one or field.startswith(f"{one}.") or one.startswith(f"{field}.") for one in stated)
 

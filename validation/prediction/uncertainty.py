@@ -76,8 +76,8 @@ def uncertainty(
     a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of a choice
     the smallest and largest result; ``q_rank_correlation`` (input), Spearman's. ``value`` (input, sample)
     holds the inputs, a choice by its number. Of teeth that differ also the quantities ``TEETH``; teeth of a
-    tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``
-    (counts of samples), ``seed``, and the result with the inputs as given, ``given_q``
+    tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``,
+    ``lost_or_unstable`` (counts of samples), ``seed``, and the result with the inputs as given, ``given_q``
 
     Raises
     ------
@@ -301,6 +301,7 @@ def _dataset(
         {
             "contact_lost": int(table[:, -2].sum()),
             "unstable": int(table[:, -1].sum()),
+            "lost_or_unstable": int(np.any(table[:, -2:] > 0.0, axis=1).sum()),
             "written": [one.written for one in inputs],
             "reason": [one.reason for one in inputs],
         },

@@ -7,7 +7,7 @@ import json
 import time
 import warnings
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -30,6 +30,7 @@ from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
 from validation.reporting.first_figures import first_figures
+from validation.reporting.facts import Fact
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
@@ -182,10 +183,12 @@ def document(
         "gear_pair": results.pair.name,
         "description": results.pair.description,
         "quick": quick,
+        "teeth": "alike" if results.teeth is None else "as given",
         "verdict": {"kind": first.verdict.name, "headline": first.headline, "reason": first.reason},
         "numbers": {number.key: _number(number) for number in first.numbers},
         "actions": [{"text": a.text, "command": a.command, "gain": a.gain} for a in first.actions],
         "how_sure": list(first.sure),
+        "facts": {fact.key: _fact(fact) for fact in first.facts},
         "warnings": list(first.warnings),
         "findings": sorted(findings(results)),
         "failed_checks": list(failed_checks(results)),
@@ -194,9 +197,16 @@ def document(
     }
 
 
+def _fact(fact: Fact) -> dict[str, Any]:
+    scope = asdict(fact.scope) | {"speeds_rpm": list(fact.scope.speeds_rpm)}
+    own = {"claim": fact.claim, "value": plain(fact.value), "unit": fact.unit}
+    return own | {"scope": scope, "computed_by": fact.computed_by}
+
+
 def _number(number: Number) -> dict[str, Any]:
-    sizes = {name: plain(float(getattr(number, name))) for name in ("value", "low", "high", "second")}
-    return {"label": number.label, "unit": number.unit, "note": number.note} | sizes
+    sizes = {name: plain(float(getattr(number, name))) for name in ("value", "low", "high", "median", "second")}
+    words = {"label": number.label, "unit": number.unit, "note": number.note, "scope": number.scope}
+    return words | sizes
 
 
 def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict[str, str]:
@@ -224,8 +234,9 @@ def _write_data(results: Results, folder: Path) -> None:
         "budget": results.budget,
         "teeth": Absent(Outcome.NOT_ASKED) if results.teeth is None else results.teeth.motion,
         "stability": results.chart,
-        "motions": results.branches if isinstance(results.branches, Absent) else results.branches.dataset,
     }
+    for number, branches in enumerate(results.jump_search.branches, 1):
+        found[f"motions_{number}" if number > 1 else "motions"] = branches.dataset
     for name, data in found.items():
         if not isinstance(data, Absent):
             write_dataset(data, folder / f"{name}.nc")

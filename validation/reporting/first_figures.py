@@ -7,7 +7,6 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from floquet.gear.response import ResponseBranches
 from lumped.labelling import Variable, labelled_dataset
 from lumped.outcomes import Absent
 from validation.plots.axes import cycle_figure
@@ -24,10 +23,7 @@ _ORDERS = 8
 
 def first_figures(results: Results) -> tuple[Picture, ...]:
     """Return the figures of page 1; where contact is lost the mesh force takes the place of the swings."""
-    branches = results.branches
-    over = (
-        motions(results, branches) if isinstance(branches, ResponseBranches) else linear_over_speed(results)
-    )
+    over = motions(results) if results.jump_search.branches else linear_over_speed(results)
     found = [
         Picture(
             "over_speed",

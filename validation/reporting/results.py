@@ -15,8 +15,8 @@ import floquet
 import lumped
 import multibody
 from floquet.gear.axes import chart_axes, operating_rpm, speed_range
+from floquet.gear.jump_search import JumpSearch, contact_loss_windows, search_jumps
 from floquet.gear.motions import GearOrbit
-from floquet.gear.response import ResponseBranches
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
@@ -35,7 +35,16 @@ from validation.measurements.model_error import ModelError, model_error
 from validation.measurements.record import Measurement
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
-from validation.prediction.motion import ORDERS, Motion, Prediction, measured, mesh_orders, predicted
+from validation.prediction.motion import (
+    ORDERS,
+    QUANTITIES,
+    Motion,
+    Prediction,
+    measured,
+    mesh_orders,
+    predicted,
+)
+from validation.prediction.resonance import Resonance, nearest_resonance
 from validation.prediction.uncertainty import LONG_STEP, STEP, speed_band, teeth_band, uncertainty
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
@@ -45,12 +54,21 @@ from validation.validity.plausibility import parameter_warnings
 _SLACK = 1e-9
 #: A curve over speed passes through the table's value within this share: it is computed with other samples.
 _SAME = 2e-3
+#: Numbers of page 1 in a sentence.
+SHORT = {
+    "dte_peak_to_peak": "transmission error",
+    "dynamic_factor": "dynamic factor",
+    "tooth_load": "largest tooth load",
+    "bearing_rms": "bearing force",
+    "efficiency": "efficiency",
+}
+#: Numbers of page 1 by which both programs are compared.
+_COMPARED = ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "bearing_rms")
 #: Share of its peak to peak by which another motion differs from the prediction at least.
 _APART = 0.25
-#: Speeds of the motions beyond contact loss, over the operating speed.
-BRANCH_SPEEDS = (0.8, 1.25)
-#: Speeds an octave at which runs settle, to find beats and chaos.
-_SEEDS = 8
+#: Share of the speed to either side within which jumps are searched where contact is lost at the operating
+#: point and the linear motion does not say so.
+_ABOUT = 0.1
 #: Vibrations in a mesh cycle beyond which half of the samples, and of the speeds of their range, are taken:
 #: each costs as much more, and no resonance is left to be seen.
 _MANY = 300.0
@@ -62,7 +80,8 @@ _SAMPLES = 512
 class Effort:
     """How finely the report samples: inputs (0: not varied), speeds of each curve, nodes of the chart.
 
-    ``full``: the budget has finite elements, and motions beyond contact loss are followed over speed.
+    ``jump_seconds``: processor time of the search for jumps; ``jump_seeds``: speeds an octave at which runs
+    settle, to find isolated motions, beats and chaos; ``name``: what a reader calls it.
     """
 
     samples: int
@@ -72,11 +91,13 @@ class Effort:
     chart_speeds: int
     chart_dampings: int
     orders_speeds: int
-    full: bool
+    jump_seconds: float
+    jump_seeds: int
+    name: str
 
 
-FULL = Effort(128, 32, 41, 160, 1601, 101, 61, full=True)
-QUICK = Effort(0, 0, 0, 48, 401, 41, 25, full=False)
+FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report")
+QUICK = Effort(0, 0, 0, 48, 401, 41, 25, 5.0, 0, "quick report")
 
 
 class Results:
@@ -203,9 +224,14 @@ class Results:
         return fastest_frequency(system) * system.period / (2.0 * math.pi)
 
     @cached_property
-    def inputs(self) -> tuple[int, int, str]:
-        """Number of values that are given, of those that are assumed, and the word for these."""
-        return given_and_assumed(self.pair)
+    def inputs(self) -> tuple[int, int]:
+        """Number of inputs that are known, and of those that are assumed; see ``given_and_assumed``."""
+        return given_and_assumed(self.given)[:2]
+
+    @cached_property
+    def varies(self) -> bool:
+        """Whether inputs are uncertain."""
+        return bool(uncertain_inputs(self.given))
 
     @cached_property
     def sweep(self) -> xr.Dataset:
@@ -241,11 +267,11 @@ class Results:
 
     @cached_property
     def other_motions(self) -> tuple[GearOrbit, ...]:
-        """Further stable motions that were found at the operating speed, by size; see ``branches``."""
-        if not isinstance(self.branches, ResponseBranches) or self.pair.shafts is not None:
-            return ()  # branches are those on springs
+        """Further stable motions that were found at the operating speed, by size; see ``jump_search``."""
+        if self.pair.shafts is not None:
+            return ()  # the search is on springs
         own = self.like.peak_to_peak
-        stable = [one for one in self.branches.at(self.operating_rpm) if one.stable]
+        stable = [one for one in self.jump_search.at(self.operating_rpm) if one.stable]
         others = [one for one in stable if abs(one.peak_to_peak / own - 1.0) > _APART]
         return tuple(sorted(others, key=lambda one: one.peak_to_peak))
 
@@ -255,32 +281,43 @@ class Results:
         return 0 if self.teeth is None else len(self.teeth.contact_lost)
 
     @cached_property
-    def loses_contact(self) -> bool:
-        """Whether contact is lost at the operating point or, by the linear motion, near it."""
-        if self.like.contact_lost:
-            return True
-        speed = self.sweep["speed"].to_numpy()
-        near = (speed > BRANCH_SPEEDS[0] * self.operating_rpm) & (
-            speed < BRANCH_SPEEDS[1] * self.operating_rpm
-        )
-        return bool((self.sweep["normal_load_min"].to_numpy()[near] <= 0.0).any())
+    def contact_loss_windows(self) -> tuple[tuple[float, float], ...]:
+        """Speeds [rpm] at which like teeth on springs can lose contact, within ``speeds``."""
+        windows = contact_loss_windows(self.sweep, self.speeds)
+        own = self.operating_rpm
+        if not self.like.contact_lost or any(low <= own <= high for low, high in windows):
+            return windows
+        ends = max((1.0 - _ABOUT) * own, self.speeds[0]), min((1.0 + _ABOUT) * own, self.speeds[1])
+        return tuple(sorted((*windows, ends)))
 
     @cached_property
-    def branches(self) -> ResponseBranches | Absent:
-        """Motions on springs with unilateral contact about the operating speed."""
-        if not self.loses_contact:
-            return Absent(Outcome.CONTACT_NOT_LOST)
-        if not self.effort.full and not self.like.contact_lost:
-            return Absent(Outcome.NOT_ASKED)
-        low, high = (factor * self.operating_rpm for factor in BRANCH_SPEEDS)
-        ends = max(low, self.speeds[0]), min(high, self.speeds[1])
-        try:
-            seeds = _SEEDS if self.effort.full else 0
-            return floquet.response_branches(
-                self.pair_on_springs, ends, seeds=seeds, progress=self.stage("contact loss")
-            )
-        except (NumericalError, ParameterError) as error:
-            return Absent(Outcome.FAILED, str(error))
+    def jump_search(self) -> JumpSearch:
+        """Motions beyond contact loss on springs over ``speeds``, within the effort's processor time."""
+        windows = self.contact_loss_windows
+        return search_jumps(
+            self.pair_on_springs,
+            windows,
+            seconds=self.effort.jump_seconds,
+            seeds=self.effort.jump_seeds,
+            first=self.operating_rpm,
+            progress=self.stage("contact loss") if windows else None,
+        )
+
+    @property
+    def searched(self) -> tuple[float, float] | None:
+        """Widest range about the operating speed in which all jumps were searched [rpm]; None: none."""
+        own, (low, high) = self.operating_rpm, self.speeds
+        for start, end in self.jump_search.open:
+            if start <= own <= end:
+                return None
+            low, high = (max(low, end), high) if end < own else (low, min(high, start))
+        return low, high
+
+    @cached_property
+    def resonance(self) -> Resonance | None:
+        """The resonance nearest to the operating speed, on the supports of the prediction."""
+        self.stage("resonances")
+        return nearest_resonance(self.pair, self.speeds)
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -342,11 +379,6 @@ class Results:
         """Sentences on given values that hardly can be meant."""
         return tuple(parameter_warnings(self.pair))
 
-    @property
-    def finite_elements(self) -> bool:
-        """Whether the budget predicts the pair with tooth stiffness by finite elements."""
-        return self.effort.full
-
     @cached_property
     def same_equations(self) -> float | None:
         """Largest difference of the same equations in both programs, over peak to peak."""
@@ -381,38 +413,63 @@ class Results:
 
     @property
     def second_words(self) -> str:
-        """Whether both programs agree, in a sentence; on the shafts by the peak to peak."""
+        """Whether both programs agree, in a sentence; by the numbers of page 1 that differ most."""
         words = self._second_words
-        if self.teeth is not None:
-            words = f"With like teeth: {words[0].lower()}{words[1:]}"
-        if self.pair.shafts is None or isinstance(self.second, Absent):
-            return words
-        more = self.second.peak_to_peak / self.like.peak_to_peak - 1.0
-        size = f"{100.0 * abs(more):.2g} % {'larger' if more > 0.0 else 'smaller'}"
-        return f"{words[:-1]} on springs; on the shafts its transmission error is {size}."
+        return words if self.teeth is None else f"With like teeth: {words[0].lower()}{words[1:]}"
 
     @property
     def _second_words(self) -> str:
-        check = self.check
-        if isinstance(check, Absent):
+        check, second = self.check, self.second
+        if isinstance(check, Absent) or isinstance(second, Absent):
             return "Not checked: the second program does not run here; its chapter says why."
         if check.verdict is Verdict.NOT_CHECKED:
             return "The equations are; the second program has no motion to compare."
         if check.verdict is Verdict.FAILS:
             return "No: a check of the program fails."
-        worst = next(a for a in check.of("exact") if a.quantity == "dte")
-        apart = f"{max(100.0 * worst.difference, 0.01):.2g} %"
+        apart = f"{self._most_apart(second)}{'' if self.pair.shafts is None else ' on the shafts'}"
         if check.verdict is Verdict.AGREES:
-            return f"Yes: a second program agrees to {apart}."
+            return f"Yes: a second program agrees{self.in_place_of_shafts}. Its {apart}."
         if all(a.within for a in check.of("exact")):
-            return f"Yes, but of the second program, whose motion agrees to {apart}: {loss_difference(check)}"
+            return f"Yes, but of the second program, whose motion agrees: {loss_difference(check)}"
         own = check.worst("exact")
         swings = (quantity(v, own.unit, 3) for v in (own.peak_to_peak_multibody, own.peak_to_peak))
-        rest = "" if own is worst else f", the transmission error by {apart}"
         return (
-            f"Yes, but the second program, with exact contact, differs: {own.long_name}, "
-            f"{' beside '.join(swings)}, by {share(own.difference)}{rest}."
+            f"Yes, but the second program, with exact contact, differs{self.in_place_of_shafts}: "
+            f"{own.long_name}, {' beside '.join(swings)}, by {share(own.difference)}. Its {apart}."
         )
+
+    def _most_apart(self, second: Prediction) -> str:
+        """The number of page 1 that differs most by the second program; of the efficiency the loss."""
+        one, other = self.like, second
+        numbers = {name: (one.numbers[name], other.numbers[name]) for name in _COMPARED}
+        sizes = {name: abs(there / here - 1.0) for name, (here, there) in numbers.items() if here}
+        name = max(sizes, key=sizes.__getitem__)
+        unit, _ = QUANTITIES[name]
+        shown = " beside ".join(quantity(value, unit, 3) for value in reversed(numbers[name]))
+        return f"{SHORT[name]} differs most: {shown}, by {share(sizes[name])}"
+
+    def spread(self, name: str) -> tuple[float, float] | None:
+        """5 and 95 % of a number of page 1, relative to its result; None where no samples tell it."""
+        found = self.uncertainty
+        if self.teeth is not None:
+            if name != "dte_peak_to_peak" or self.teeth_band is None:
+                return None
+            low, high = self.teeth_band[:, 0].tolist()
+        elif isinstance(found, Absent):
+            return None
+        else:
+            low, _, high = found[f"{name}_percentile"].to_numpy().tolist()
+        result = self.prediction.numbers[name]
+        return low / result - 1.0, high / result - 1.0
+
+    def rank(self, name: str) -> float:
+        """Share of the samples below the result as given [-]; NaN where no samples tell it."""
+        found = self.uncertainty
+        if self.teeth is not None or isinstance(found, Absent):
+            return math.nan
+        values, result = found[name].to_numpy(), self.prediction.numbers[name]
+        slack = _SLACK * abs(result)
+        return float(0.5 * (np.mean(values < result - slack) + np.mean(values <= result + slack)))
 
     @cached_property
     def budget(self) -> xr.Dataset:
@@ -421,22 +478,49 @@ class Results:
         return error_budget(self)
 
     @property
-    def nearest_hazard(self) -> tuple[float, str] | None:
-        """Speed [rpm] and kind of the unstable speed, jump, beats or chaos nearest to the operating speed."""
-        edge = float(self.chart.attrs["nearest_edge_speed_rpm"])
-        found = [] if math.isnan(edge) else [(edge, "unstable speed")]
+    def nearest_hazard(self) -> Hazard | None:
+        """The unstable speed, jump, beats or chaos nearest to the operating speed."""
+        edge, own = float(self.chart.attrs["nearest_edge_speed_rpm"]), self.operating_rpm
+        found = [] if math.isnan(edge) else [Hazard(edge, "unstable speed")]
         if self.multipliers.verdict == "unstable":
-            found = [(self.operating_rpm, "unstable speed")]
-        if isinstance(self.branches, ResponseBranches):
-            found += [
-                (jump.speed_rpm, f"jump, running {'up' if jump.rising else 'down'}")
-                for jump in self.branches.jumps
-            ]
-            found += [
-                (min(max(self.operating_rpm, one.low_rpm), one.high_rpm), f"{one.kind} possible")
-                for one in self.branches.attractors
-            ]
-        return min(found, key=lambda one: abs(one[0] - self.operating_rpm), default=None)
+            found = [Hazard(own, "unstable speed")]
+        found += [
+            Hazard(jump.speed_rpm, "jump", f"running {'up' if jump.rising else 'down'}")
+            for jump in self.jump_search.jumps
+        ]
+        found += [
+            Hazard(min(max(own, one.low_rpm), one.high_rpm), str(one.kind), "possible")
+            for one in self.jump_search.attractors
+        ]
+        return min(found, key=lambda one: abs(one.speed_rpm - own), default=None)
+
+
+#: Kind of a hazard -> the hazard with its article.
+_NOUNS = {
+    "jump": "a jump",
+    "unstable speed": "an unstable speed",
+    "periodic": "a motion of many mesh cycles",
+}
+
+
+@dataclass(frozen=True)
+class Hazard:
+    """A speed [rpm] at which the pair must not run; ``kind``: "unstable speed", "jump", "beats" or "chaos"."""
+
+    speed_rpm: float
+    kind: str
+    how: str = ""
+
+    @property
+    def noun(self) -> str:
+        """The hazard with its article."""
+        return _NOUNS.get(self.kind, self.kind)
+
+    @property
+    def words(self) -> str:
+        """The hazard and how it happens."""
+        kind = "motion of many mesh cycles" if self.kind == "periodic" else self.kind
+        return f"{kind}{',' if self.kind == 'jump' else ''} {self.how}".strip()
 
 
 def failed_checks(results: Results) -> tuple[str, ...]:

@@ -2,43 +2,47 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 import xarray as xr
 
-from floquet.gear.response import ResponseBranches
+from floquet.gear.motions import Basin
 from lumped.labelling import labelled_dataset
-from lumped.outcomes import Absent, Outcome
 from validation.files.formatting import number
 from validation.plots.prediction import over_speed_figure
 from validation.plots.style import WIDTH
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.results import BRANCH_SPEEDS, Results
+from validation.reporting.facts import facts
+from validation.reporting.results import Results
 
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    branches = results.branches
-    if isinstance(branches, Absent):
-        low, high = (number(f * results.operating_rpm, 5) for f in BRANCH_SPEEDS)
-        kept = branches.outcome is Outcome.CONTACT_NOT_LOST
-        words = (
-            f"Contact is never lost from {low} to {high} rpm{results.on_springs}." if kept else str(branches)
-        )
+    search = results.jump_search
+    left = facts(results).get("jumps_left_open")
+    unsearched = () if left is None else (Text(f"{left.claim[0].upper()}{left.claim[1:]}."),)
+    if not search.branches:
+        words = f"Contact is never lost {_over(results)}{results.on_springs}."
+        if search.windows:
+            words = f"Contact can be lost {_over(results)}{results.on_springs}."
         shared = _load_sharing(results)
-        return Content(words, (Text(shared),) if shared else ())
-    jumps = branches.jumps
+        return Content(words, (*((Text(shared),) if shared else ()), *unsearched))
+    jumps = search.jumps
     lost = "Contact is lost" if results.contact_lost else "Contact is kept"
-    low, high = (number(speed, 5) for speed in branches.speeds_rpm)
+    windows = " and ".join(f"{number(low, 5)} to {number(high, 5)}" for low, high in search.windows)
     found = f"{_count(len(jumps), 'jump')} found{results.on_springs}"
-    result = f"{lost} at the operating point. From {low} to {high} rpm {found}."
+    result = (
+        f"{lost} at the operating point. {_over(results).capitalize()} contact can be lost at {windows} rpm; "
+        f"there {found}."
+    )
     blocks: list[Block] = [
         Picture(
             "motions_over_speed",
             "Peak to peak of every motion that was found over speed, with jumps.",
-            motions(results, branches),
+            motions(results),
             partial(over_speed_figure, operating_rpm=results.operating_rpm, size=(3.4, WIDTH)),
         ),
         table_of(
@@ -55,7 +59,7 @@ def write(results: Results) -> Content:
             },
         ),
     ]
-    here = branches.at(results.operating_rpm)
+    here = search.at(results.operating_rpm)
     if len(here) > 1:
         blocks.append(
             table_of(
@@ -73,7 +77,7 @@ def write(results: Results) -> Content:
                 },
             )
         )
-    shares = branches.basins() if any(o.stable for o in here) or branches.attractors else ()
+    shares = _basins(results)
     if len(shares) > 1:
         total = sum(one.starts for one in shares)
         blocks.append(
@@ -95,13 +99,29 @@ def write(results: Results) -> Content:
                 },
             )
         )
-    for one in branches.attractors:
+    for one in search.attractors:
         blocks.append(Text(f"{one.text}."))
-    for low_rpm, high_rpm in branches.gaps:
+    for low_rpm, high_rpm in sorted(gap for branches in search.branches for gap in branches.gaps):
         blocks.append(
             Text(f"No motion that repeats is stable from {number(low_rpm, 5)} to {number(high_rpm, 5)} rpm.")
         )
-    return Content(result, tuple(blocks))
+    return Content(result, (*blocks, *unsearched))
+
+
+def _over(results: Results) -> str:
+    """The speeds of the search in words."""
+    low, high = results.speeds
+    return f"from {number(low, 5)} to {number(high, 5)} rpm"
+
+
+def _basins(results: Results) -> Sequence[Basin]:
+    """To which motions start states lead at the operating speed, where its window was searched."""
+    own = results.operating_rpm
+    for branches in results.jump_search.branches:
+        low, high = branches.speeds_rpm
+        if low <= own <= high and (any(o.stable for o in branches.at(own)) or branches.attractors):
+            return branches.basins()
+    return ()
 
 
 def _count(count: int, word: str) -> str:
@@ -117,21 +137,20 @@ def _load_sharing(results: Results) -> str:
     return "A tooth pair begins to carry late or ends early while others carry: load sharing by relief."
 
 
-def motions(results: Results, branches: ResponseBranches) -> xr.Dataset:
+def motions(results: Results) -> xr.Dataset:
     """What ``over_speed_figure`` draws: linear motion, range, motions with unilateral contact, jumps."""
-    data = linear_over_speed(results)
-    period = results.pair.geometry.mesh_period * results.operating_rpm
-    orbits = [orbit for branch in branches.branches for orbit in branch.orbits]
-    speed = np.array([period / orbit.period for orbit in orbits])
-    size = np.array([orbit.run.most - orbit.run.least for orbit in orbits])
-    # As in the saved motions: a bifurcation belongs to the stable motions before it.
-    stable = branches.dataset["stable"].to_numpy().astype(float)
-    jumps = [j for j in branches.jumps if np.isfinite(j.dte_rms_after)]
+    data, search = linear_over_speed(results), results.jump_search
+    saved = [branches.dataset for branches in search.branches]
+    speed, size, stable = (
+        np.concatenate([one[name].to_numpy().astype(float) for one in saved])
+        for name in ("speed_rpm", "dte_peak_to_peak", "stable")
+    )
+    jumps = [j for j in search.jumps if np.isfinite(j.dte_rms_after)]
     at = np.array([j.speed_rpm for j in jumps])
     before, after = (
         np.array([getattr(j, f"dte_peak_to_peak{when}") for j in jumps]) for when in ("", "_after")
     )
-    roaming = [point for one in branches.attractors for point in one.points]
+    roaming = [point for one in search.attractors for point in one.points]
     text = "transmission error, peak to peak"
     more = labelled_dataset(
         {

@@ -17,13 +17,13 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    pair, g = results.pair, results.pair.geometry
+    pair, g = results.given, results.pair.geometry
     values = {path: v for path, v in leaf_paths(pair).items() if path not in ("name", "description")}
     spreads = {one.field: one.written for one in uncertain_inputs(pair)}
-    given, assumed, word = results.inputs
+    given, assumed = results.inputs
     table = table_of(
         "parameters",
-        f"All values: {given} given, {assumed} {word}.",
+        f"All values: {given} known, {assumed} assumed.",
         list(values),
         {
             "field": ("field", lambda path: path),
@@ -52,7 +52,7 @@ def write(results: Results) -> Content:
         ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", "all pairs in contact"),
         ("effective mass", b.effective_mass, "kg", "of both gears on the line of action"),
     )
-    return Content(f"{assumed} of {given + assumed} values are {word}.", (derived, table))
+    return Content(f"{assumed} of {given + assumed} values are assumed.", (derived, table))
 
 
 def _shown(value: Any) -> Cell:

@@ -43,7 +43,7 @@ def write(results: Results) -> Content:
             if math.isnan(edge)
             else [("stability changes at", edge, "1", "mesh damping ratio, this speed")]
         ),
-        *([("nearest hazard", margin[0], "rpm", margin[1])] if margin is not None else []),
+        *([("nearest hazard", margin.speed_rpm, "rpm", margin.words)] if margin is not None else []),
         ("unstable share of the chart", float((chart["verdict"] < 0).mean()), "1", "of speeds and dampings"),
         *([] if math.isnan(thinnest) else [("thinnest tongue", thinnest, "rpm", "at its widest")]),
     )

@@ -1,0 +1,257 @@
+"""What a report claims of a pair: each claim with its value, the scope it was computed over, and by what.
+
+Page 1, the terminal and report.json take their sentences from here. What was not computed is not claimed: a
+fact then says so, over the same scope.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import xarray as xr
+
+from lumped.outcomes import Absent
+from validation.files.formatting import number, quantity
+from validation.prediction.resonance import Resonance
+from validation.reporting.results import SHORT, Results
+
+
+@dataclass(frozen=True)
+class Scope:
+    """Over what a claim was computed.
+
+    Attributes
+    ----------
+    speeds_rpm : lowest and highest pinion speed [rpm]; twice the operating speed where it is of that one
+    motion : which motion it is about
+    supports : "springs" or "shafts"
+    teeth : "alike" or "as given"
+    inputs : "as given", or how many samples of them
+    effort : "quick report" or "full report"
+    """
+
+    speeds_rpm: tuple[float, float]
+    motion: str
+    supports: str
+    teeth: str
+    inputs: str
+    effort: str
+
+    @property
+    def speeds(self) -> str:
+        """The speeds as a phrase: "at 1450 rpm" or "from 145 to 2900 rpm"."""
+        low, high = self.speeds_rpm
+        return f"at {rpm(low)}" if low == high else f"from {number(low, 5)} to {rpm(high)}"
+
+    @property
+    def words(self) -> str:
+        """The whole scope in one line."""
+        return (
+            f"{self.speeds}; {self.motion}; {self.supports}; teeth {self.teeth}; inputs {self.inputs}; "
+            f"{self.effort}"
+        )
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One claim.
+
+    Attributes
+    ----------
+    key : name in report.json
+    claim : the claim as a clause, without a full stop
+    value, unit : the number that it is about, in SI or rpm; NaN where it has none
+    scope : over what it was computed
+    computed_by : the function that computed it
+    """
+
+    key: str
+    claim: str
+    value: float
+    unit: str
+    scope: Scope
+    computed_by: str
+
+
+def rpm(speed: float) -> str:
+    """A speed as it is printed."""
+    return f"{number(speed, 5)} rpm"
+
+
+def percent(share: float) -> str:
+    """A share in per cent, with its sign where it is negative: two digits, all before the point."""
+    return number(100.0 * share, 2)
+
+
+def facts(results: Results) -> dict[str, Fact]:
+    """Return every claim of a report by its key; those of what was computed already cost nothing."""
+    found = (fact(results) for fact in _FACTS)
+    return {one.key: one for one in found if one is not None}
+
+
+def _scope(results: Results, speeds: tuple[float, float] | None = None, **changes: str) -> Scope:
+    """The scope of the prediction at the operating point, with changes."""
+    own = results.operating_rpm
+    words = {
+        "motion": results.prediction.motion.text,
+        "supports": "springs" if results.pair.shafts is None else "shafts",
+        "teeth": "alike" if results.teeth is None else "as given",
+        "inputs": "as given",
+        "effort": results.effort.name,
+    }
+    return Scope((own, own) if speeds is None else speeds, **(words | changes))
+
+
+_ON_SPRINGS = {"supports": "springs", "teeth": "alike"}
+
+
+def _contact(results: Results) -> Fact:
+    prediction = results.prediction
+    if results.teeth_apart:
+        claim = f"the teeth lose contact, at {results.teeth_apart} pairs of teeth that meet"
+    else:
+        claim = "the teeth lose contact" if prediction.contact_lost else "contact is kept"
+    return Fact("contact", claim, prediction.least_force, "1", _scope(results), "predict")
+
+
+def _stable(results: Results) -> Fact:
+    stable = results.prediction.stable
+    claim = "the motion is stable" if stable else "the motion is unstable"
+    return Fact("stable", claim, float(stable), "1", _scope(results, teeth="alike"), "predict")
+
+
+def _instability(results: Results) -> Fact:
+    """What the chart says over speed at the given damping."""
+    share = float((results.stability_line < 0).mean())
+    claim = "no speed is unstable" if share == 0.0 else f"{percent(share)} % of the speeds are unstable"
+    scope = _scope(results, results.speeds, motion="linear motion", **_ON_SPRINGS)
+    return Fact("unstable_speeds", claim, share, "1", scope, "stability_chart")
+
+
+def _jumps(results: Results) -> Fact:
+    """What the search beyond contact loss says over the widest range that it went through."""
+    search, searched = results.jump_search, results.searched
+    motion = "motions with unilateral contact"
+    if searched is None:
+        scope = _scope(results, motion=motion, **_ON_SPRINGS)
+        claim = "jumps were not searched to the end about this speed"
+        return Fact("jumps", claim, math.nan, "1", scope, "search_jumps")
+    low, high = searched
+    inside = [one for one in search.jumps if low <= one.speed_rpm <= high]
+    claim = "no jump, beats or chaos was found"
+    if inside or search.attractors:
+        jumps = f"{len(inside)} jump{'' if len(inside) == 1 else 's'}" if inside else ""
+        roaming = " and ".join(sorted({str(one.kind) for one in search.attractors}))
+        claim = f"{' and '.join(one for one in (jumps, roaming) if one)} found"
+    elif not search.windows:
+        claim = "the linear motion keeps contact, so the pair cannot jump"
+    scope = _scope(results, searched, motion=motion, **_ON_SPRINGS)
+    return Fact("jumps", claim, float(len(inside)), "1", scope, "search_jumps")
+
+
+def _left_open(results: Results) -> Fact | None:
+    """The speeds whose search the budget did not finish."""
+    left = results.jump_search.open
+    if not left:
+        return None
+    ranges = " and ".join(f"from {number(low, 5)} to {rpm(high)}" for low, high in left)
+    claim = f"jumps {ranges} were not searched to the end"
+    scope = _scope(
+        results, (left[0][0], left[-1][1]), motion="motions with unilateral contact", **_ON_SPRINGS
+    )
+    return Fact("jumps_left_open", claim, float(len(left)), "1", scope, "search_jumps")
+
+
+def _resonance(results: Results) -> Fact:
+    found = results.resonance
+    scope = _scope(results, results.speeds, motion="mesh orders 1 to 10", teeth="alike")
+    if found is None:
+        return Fact("resonance", "no mesh order resonates", math.nan, "rpm", scope, "nearest_resonance")
+    distance = found.speed_rpm - results.operating_rpm
+    return Fact("resonance", resonance_words(found), distance, "rpm", scope, "nearest_resonance")
+
+
+def resonance_words(found: Resonance) -> str:
+    """Where the operating speed lies beside a resonance: "order 3 is 0.4 % above the mesh mode (1870 Hz)"."""
+    side = "above" if found.apart > 0.0 else "below"
+    size = number(100.0 * abs(found.apart), 2)
+    return f"order {found.order} is {size} % {side} the {found.mode} ({found.frequency:.0f} Hz)"
+
+
+def amplified_words(found: Resonance) -> str:
+    """What a resonance amplifies, at its speed: the dynamic factor, or the force on the bearings."""
+    if found.place == "mesh force":
+        factor = found.dynamic_factor
+        return f"dynamic factor there {factor:.3g}" if math.isfinite(factor) else ""
+    return f"{found.place} there {quantity(found.force, 'N', 2)} at this order"
+
+
+def _trouble(results: Results) -> Fact | None:
+    """The share of the samples that lose contact or are unstable."""
+    found = results.uncertainty
+    if not isinstance(found, xr.Dataset):
+        return None
+    count, lost = int(found.sizes["sample"]), int(found.attrs["contact_lost"])
+    unstable, either = (int(found.attrs[name]) for name in ("unstable", "lost_or_unstable"))
+    parts = [f"{lost} lose contact"] if lost else []
+    parts += [f"{unstable} are unstable"] if unstable else []
+    claim = f"of {count} possible machines {' and '.join(parts) or 'none loses contact or is unstable'}"
+    scope = _scope(results, teeth="alike", inputs=f"{count} samples")
+    return Fact("trouble", claim, either / count, "1", scope, "uncertainty")
+
+
+def _levels(results: Results) -> Fact | None:
+    """How far the inputs move the transmission error."""
+    spread = results.spread("dte_peak_to_peak")
+    if spread is None:
+        return None
+    text = f"{SHORT['dte_peak_to_peak']} {spread_words(spread)}"
+    count = results.uncertainty.sizes["sample"] if isinstance(results.uncertainty, xr.Dataset) else 0
+    scope = _scope(results, inputs=f"{count} samples")
+    return Fact("levels", text, max(-spread[0], spread[1]), "1", scope, "uncertainty")
+
+
+def spread_words(spread: tuple[float, float]) -> str:
+    """A range relative to its result: "−20/+180 %"."""
+    low, high = (f"{'+' if end > 0.0 else ''}{percent(end)}" for end in spread)
+    return f"{low}/{high} %"
+
+
+def _second_program(results: Results) -> Fact:
+    check = results.check
+    compared = not isinstance(check, Absent) and check.of("exact")
+    worst = check.worst("exact").difference if compared else math.nan
+    scope = _scope(results, motion="motion of the second program", **_ON_SPRINGS)
+    return Fact("second_program", results.second_words.removesuffix("."), worst, "1", scope, "crosscheck")
+
+
+def _record(results: Results) -> Fact | None:
+    measured = results.measured_error
+    if measured is None:
+        return None
+    return Fact(
+        "record", measured.words.removesuffix("."), measured.error, "m", _scope(results), "model_error"
+    )
+
+
+def _inputs(results: Results) -> Fact:
+    known, assumed = results.inputs
+    claim = f"{assumed} of {known + assumed} inputs are assumed"
+    return Fact("inputs", claim, float(assumed), "1", _scope(results), "given_and_assumed")
+
+
+_FACTS: tuple[Callable[[Results], Fact | None], ...] = (
+    _contact,
+    _stable,
+    _instability,
+    _jumps,
+    _left_open,
+    _resonance,
+    _trouble,
+    _levels,
+    _second_program,
+    _record,
+    _inputs,
+)
