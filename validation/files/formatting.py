@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any
 
@@ -14,7 +15,7 @@ _MINUS = "\u2212"
 _SPACE = "\u00a0"
 #: Mantissa and exponent of a number as a computer writes it.
 _EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e(-\d+|\+\d{2,})(?!\w)")
-_PREFIXED = frozenset({"m", "N", "Pa", "N/m", "W", "s", "Hz", "m/s", "N s/m"})
+_PREFIXED = frozenset({"m", "N", "Pa", "N/m", "N m", "W", "s", "Hz", "m/s", "N s/m"})
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
 
 
@@ -37,19 +38,43 @@ def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
     return f"{mantissa}{_SPACE}×{_SPACE}10{str(int(exponent)).translate(_SUPERSCRIPT)}".replace("-", _MINUS)
 
 
-def quantity(value: float, unit: str, digits: int = 4, *, measured: bool = False) -> str:
-    """A number in SI with its unit, prefixed where that is usual; arguments as those of ``number``."""
+def quantity(
+    value: float, unit: str, digits: int = 4, *, measured: bool = False, exponent: int | None = None
+) -> str:
+    """A number in SI with its unit, prefixed where that is usual.
+
+    ``exponent`` of ten of the prefix, by default the number's own; other arguments as those of ``number``.
+    """
     if unit == "1" or value == 0.0:  # nothing has no unit that a reader would miss
         return number(value, digits, measured=measured)
     if unit in _PREFIXED and math.isfinite(value):
-        exponent = 3 * math.floor(math.log10(abs(value)) / 3)
-        exponent = min(max(exponent, -12), 9)
-        scaled = value / 10.0**exponent
-        if abs(float(f"{scaled:.{digits}g}")) >= 1000.0 and exponent < 9:  # 999.99 rounds to 1000
-            exponent += 3
-            scaled = value / 10.0**exponent
-        value, unit = scaled, f"{_PREFIXES[exponent]}{unit}"
+        exponent = prefix_exponent(value, digits) if exponent is None else exponent
+        value, unit = value / 10.0**exponent, f"{_PREFIXES[exponent]}{unit}"
     return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
+
+
+def prefix_exponent(value: float, digits: int = 4) -> int:
+    """Exponent of ten of the SI prefix with which a number other than 0 is printed from 1 to 999."""
+    exponent = min(max(3 * math.floor(math.log10(abs(value)) / 3), -12), 9)
+    rounded = abs(float(f"{value / 10.0**exponent:.{digits}g}"))
+    return exponent + 3 if rounded >= 1000.0 and exponent < 9 else exponent  # 999.99 rounds to 1000
+
+
+def common_exponent(values: Sequence[float], digits: int = 4) -> int | None:
+    """Exponent of the one prefix of numbers that are read beside each other; None where all are 0.
+
+    It is the one with which most are printed without a power of ten and with at most four digits before the
+    point; of two alike that of the larger prefix.
+    """
+    sizes = [abs(one) for one in values if one and math.isfinite(one)]
+    if not sizes:
+        return None
+    tried = sorted({prefix_exponent(one, digits) for one in sizes}, reverse=True)
+    return max(tried, key=lambda exponent: sum(_plain_with(one, exponent) for one in sizes))
+
+
+def _plain_with(size: float, exponent: int) -> bool:
+    return bool(1e-2 <= size / 10.0**exponent < 1e4)
 
 
 def prose(text: str) -> str:

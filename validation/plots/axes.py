@@ -12,6 +12,8 @@ from matplotlib.figure import Figure
 from lumped.typing import FloatArray
 from validation.plots.style import GREY, WIDTH, legend_above, look, new_figure, one_panel, scaled
 
+#: Characters that fit in a row of a legend as wide as a page, and those that a curve's sample takes.
+_ROW, _HANDLE = 100, 9
 #: Units that take no prefix.
 _AS_IS = frozenset({"rpm", "%", "1/rev", "mesh cycles"})
 
@@ -70,7 +72,8 @@ def cycle_figure(
     x = data[str(data[names[0]].dims[0])].to_numpy()
     ax.set_xlim(x[0], x[-1])
     if len(names) > 1:
-        legend_above(ax, min(len(names), 4))
+        characters = sum(len(str(data[name].attrs["long_name"])) + _HANDLE for name in names)
+        legend_above(ax, min(len(names), 4 if characters <= _ROW * size[1] / WIDTH else 2))
     return figure
 
 

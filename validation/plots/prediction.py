@@ -9,8 +9,21 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from validation.files.formatting import number
 from validation.plots.axes import label_axis, scale_of
-from validation.plots.style import BLACK, BLUE, GREY, IN_X, ORANGE, RED, SKY, legend, one_panel, write_beside
+from validation.plots.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    IN_X,
+    ORANGE,
+    RED,
+    SKY,
+    legend,
+    legend_above,
+    one_panel,
+    write_beside,
+)
 
 #: Height and width of a figure of page 1, three of which stand side by side [inch].
 SMALL = (3.0, 4.2)
@@ -86,7 +99,7 @@ def orders_figure(data: xr.Dataset) -> Figure:
     if ends:
         low, high = (end.to_numpy() / factor for end in ends)
         ax.vlines(x, low, high, color=BLACK, linewidth=1.3, label="5 to 95 % of the samples")
-        legend(ax, loc="best")
+        legend_above(ax, 2)
     ax.set_xticks(x)
     ax.set_ylim(bottom=0.0)
     ax.grid(False, axis="x")
@@ -117,12 +130,13 @@ def budget_figure(data: xr.Dataset) -> Figure:
     place, values = np.arange(share.size)[::-1], share.to_numpy()
     known = np.isfinite(values) & (values > 0.0)
     floor = 10.0 ** np.floor(np.log10(values[known].min(initial=1e-3)) - 0.5)
-    colours = [RED if known[i] and values[i] == np.nanmax(values) else BLUE for i in range(values.size)]
+    largest = list(data["row"].to_numpy()).index(data.attrs["largest"])
+    colours = [RED if i == largest else BLUE for i in range(values.size)]
     ax.barh(place, np.where(known, values, floor), left=0.0, height=0.6, color=colours)
     ax.set_xscale("log")
     ax.set_xlim(floor, max(200.0, 2.0 * float(np.nanmax(values))))
     for at, value, fine in zip(place, values, known, strict=True):
-        words = f"{value:.2g} %" if fine else "0" if value == 0.0 else "not known"
+        words = f"{number(value, 2)} %" if fine else "0" if value == 0.0 else "not known"
         write_beside(ax, words, (value if fine else floor, at), (3, 0), va="center")
     ax.set_yticks(place, list(data.attrs["names"]))
     ax.set_ylabel("error")
@@ -133,7 +147,7 @@ def budget_figure(data: xr.Dataset) -> Figure:
 def overlay_figure(data: xr.Dataset) -> Figure:
     """One quantity by two programs over a mesh cycle, and their difference below."""
     from validation.plots.axes import draw_curves
-    from validation.plots.style import legend_above, new_figure
+    from validation.plots.style import new_figure
 
     figure, axes = new_figure(2, 1, height=3.6, sharex=True, height_ratios=(2.0, 1.0))
     top, bottom = axes[:, 0]

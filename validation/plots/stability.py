@@ -81,13 +81,14 @@ def stability_figure(
     xs, ys, values = chart[x].to_numpy(), chart[y].to_numpy(), growth.transpose(y, x).to_numpy()
     norm = Normalize(min(float(values.min()), -1e-3), 0.0)
     bar = figure.colorbar(_field(ax, xs, ys, values.clip(max=0.0), norm), ax=ax, pad=0.01)
-    words = f"growth of a disturbance [{unit}]; hatched: unstable"
-    words += undecided.any().item() * "\ndotted: undecided"
-    if "cell_verdict" in chart:
-        words += f"\n{100.0 * chart.attrs['proven_share']:.2f} % of the area proven; red dots: not proven"
-    # Not above the axes: the names of tongues stand there.
-    bar.set_label(f"{words}\n{_certificate(chart)}", fontsize=8.0)
+    bar.set_label(f"growth of a disturbance [{unit}]")
+    bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_linewidth(0.5)
+    words = "hatched: unstable" + undecided.any().item() * "; dotted: undecided"
+    if "cell_verdict" in chart:
+        words += f"; {100.0 * chart.attrs['proven_share']:.2f} % of the area proven, red dots: not proven"
+    # Not above the axes: the names of tongues stand there.
+    figure.supxlabel(f"{words}; {_certificate(chart)}", fontsize=8.0, color=GREY)
     ax.set(
         xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]), xlabel=axis_label(chart, x), ylabel=axis_label(chart, y)
     )

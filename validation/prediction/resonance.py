@@ -110,7 +110,9 @@ def nearest_resonance(pair: GearPair, speeds_rpm: tuple[float, float]) -> Resona
 _ORDERS = range(1, ORDERS + 1)
 
 
-def _resonance(pair: GearPair, speed: float, order: int, mode: Mode, amplified: tuple[int, float]) -> Resonance:
+def _resonance(
+    pair: GearPair, speed: float, order: int, mode: Mode, amplified: tuple[int, float]
+) -> Resonance:
     own = pair.operating.pinion_speed * 30.0 / math.pi
     place, force = amplified
     try:

@@ -29,8 +29,8 @@ from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
-from validation.reporting.first_figures import first_figures
 from validation.reporting.facts import Fact
+from validation.reporting.first_figures import first_figures
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
@@ -204,7 +204,9 @@ def _fact(fact: Fact) -> dict[str, Any]:
 
 
 def _number(number: Number) -> dict[str, Any]:
-    sizes = {name: plain(float(getattr(number, name))) for name in ("value", "low", "high", "median", "second")}
+    sizes = {
+        name: plain(float(getattr(number, name))) for name in ("value", "low", "high", "median", "second")
+    }
     words = {"label": number.label, "unit": number.unit, "note": number.note, "scope": number.scope}
     return words | sizes
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import xarray as xr
 
@@ -91,7 +91,7 @@ def facts(results: Results) -> dict[str, Fact]:
     return {one.key: one for one in found if one is not None}
 
 
-def _scope(results: Results, speeds: tuple[float, float] | None = None, **changes: str) -> Scope:
+def _scope(results: Results, **changes: str) -> Scope:
     """The scope of the prediction at the operating point, with changes."""
     own = results.operating_rpm
     words = {
@@ -101,10 +101,13 @@ def _scope(results: Results, speeds: tuple[float, float] | None = None, **change
         "inputs": "as given",
         "effort": results.effort.name,
     }
-    return Scope((own, own) if speeds is None else speeds, **(words | changes))
+    return Scope((own, own), **(words | changes))
 
 
-_ON_SPRINGS = {"supports": "springs", "teeth": "alike"}
+def _over(results: Results, speeds: tuple[float, float], motion: str) -> Scope:
+    """The scope of what is computed over speed: on springs, with like teeth."""
+    scope = _scope(results, motion=motion, supports="springs", teeth="alike")
+    return replace(scope, speeds_rpm=speeds)
 
 
 def _contact(results: Results) -> Fact:
@@ -126,7 +129,7 @@ def _instability(results: Results) -> Fact:
     """What the chart says over speed at the given damping."""
     share = float((results.stability_line < 0).mean())
     claim = "no speed is unstable" if share == 0.0 else f"{percent(share)} % of the speeds are unstable"
-    scope = _scope(results, results.speeds, motion="linear motion", **_ON_SPRINGS)
+    scope = _over(results, results.speeds, "linear motion")
     return Fact("unstable_speeds", claim, share, "1", scope, "stability_chart")
 
 
@@ -135,7 +138,8 @@ def _jumps(results: Results) -> Fact:
     search, searched = results.jump_search, results.searched
     motion = "motions with unilateral contact"
     if searched is None:
-        scope = _scope(results, motion=motion, **_ON_SPRINGS)
+        own = results.operating_rpm
+        scope = _over(results, (own, own), motion)
         claim = "jumps were not searched to the end about this speed"
         return Fact("jumps", claim, math.nan, "1", scope, "search_jumps")
     low, high = searched
@@ -147,7 +151,7 @@ def _jumps(results: Results) -> Fact:
         claim = f"{' and '.join(one for one in (jumps, roaming) if one)} found"
     elif not search.windows:
         claim = "the linear motion keeps contact, so the pair cannot jump"
-    scope = _scope(results, searched, motion=motion, **_ON_SPRINGS)
+    scope = _over(results, searched, motion)
     return Fact("jumps", claim, float(len(inside)), "1", scope, "search_jumps")
 
 
@@ -158,15 +162,13 @@ def _left_open(results: Results) -> Fact | None:
         return None
     ranges = " and ".join(f"from {number(low, 5)} to {rpm(high)}" for low, high in left)
     claim = f"jumps {ranges} were not searched to the end"
-    scope = _scope(
-        results, (left[0][0], left[-1][1]), motion="motions with unilateral contact", **_ON_SPRINGS
-    )
+    scope = _over(results, (left[0][0], left[-1][1]), "motions with unilateral contact")
     return Fact("jumps_left_open", claim, float(len(left)), "1", scope, "search_jumps")
 
 
 def _resonance(results: Results) -> Fact:
     found = results.resonance
-    scope = _scope(results, results.speeds, motion="mesh orders 1 to 10", teeth="alike")
+    scope = replace(_scope(results, motion="mesh orders 1 to 10", teeth="alike"), speeds_rpm=results.speeds)
     if found is None:
         return Fact("resonance", "no mesh order resonates", math.nan, "rpm", scope, "nearest_resonance")
     distance = found.speed_rpm - results.operating_rpm
@@ -221,9 +223,10 @@ def spread_words(spread: tuple[float, float]) -> str:
 
 def _second_program(results: Results) -> Fact:
     check = results.check
-    compared = not isinstance(check, Absent) and check.of("exact")
-    worst = check.worst("exact").difference if compared else math.nan
-    scope = _scope(results, motion="motion of the second program", **_ON_SPRINGS)
+    worst = math.nan
+    if not isinstance(check, Absent) and check.of("exact"):
+        worst = check.worst("exact").difference
+    scope = _scope(results, motion="motion of the second program", teeth="alike")
     return Fact("second_program", results.second_words.removesuffix("."), worst, "1", scope, "crosscheck")
 
 

@@ -13,7 +13,7 @@ from lumped.errors import ParameterError, refuse
 from lumped.fields.text_file import read_text
 from validation.files.folder import FORMAT, FORMAT_VERSION
 from validation.reporting.blocks import REMARKS
-from validation.reporting.page_one import Verdict
+from validation.reporting.verdict import Verdict
 
 #: Relative change of a number that passes; numbers are compared as computed, not as shown.
 TOLERANCE = 1e-3

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -10,7 +10,7 @@ from typing import Any
 
 import jinja2
 
-from validation.files.formatting import number, prose, quantity
+from validation.files.formatting import common_exponent, number, prose, quantity
 from validation.reporting.blocks import Badge, Block, Cell, Picture, Quantity, Table
 from validation.reporting.chapter import Written
 from validation.reporting.page_one import PageOne
@@ -76,7 +76,7 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     environment.filters |= {
-        "cell": cell,
+        "shown_rows": shown_rows,
         "prose": prose,
         "id": id,
         "kind": lambda block: type(block).__name__,
@@ -95,14 +95,37 @@ def _numeric_columns(table: Table) -> list[bool]:
     return [any(_is_numeric(row[k]) for row in table.rows) for k in range(len(table.columns))]
 
 
-def cell(value: Cell, digits: int = 4) -> str:
-    """Text of a table cell."""
+def shown_rows(table: Table) -> list[list[str | Badge]]:
+    """Texts of the cells of a table, and its badges: one prefix for all numbers of a unit in a column."""
+    columns = zip(*table.rows, strict=True)
+    exponents = [_exponents(column) for column in columns]
+    return [
+        [
+            value if isinstance(value, Badge) else cell(value, exponents=found)
+            for value, found in zip(row, exponents, strict=True)
+        ]
+        for row in table.rows
+    ]
+
+
+def _exponents(column: Sequence[Cell]) -> dict[str, int]:
+    """Unit -> exponent of ten of its prefix in a column."""
+    sizes: dict[str, list[float]] = {}
+    for value in column:
+        if isinstance(value, Quantity):
+            sizes.setdefault(value.unit, []).append(value.value)
+    found = {unit: common_exponent(values) for unit, values in sizes.items()}
+    return {unit: exponent for unit, exponent in found.items() if exponent is not None}
+
+
+def cell(value: Cell, digits: int = 4, exponents: Mapping[str, int] | None = None) -> str:
+    """Text of a table cell; ``exponents``: of the prefix of a unit, by default each number's own."""
     if value is None:
         return "–"
     if isinstance(value, Badge):
         return value.label
     if isinstance(value, Quantity):
-        return quantity(value.value, value.unit, digits)
+        return quantity(value.value, value.unit, digits, exponent=(exponents or {}).get(value.unit))
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):

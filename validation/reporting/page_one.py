@@ -264,9 +264,9 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
         found.append(Action("See where the pair can jump, over speed and torque", command, ""))
         found.append(Action("Try tip relief for this torque", "--set pinion.tip_relief.amount=...", ""))
     resonance = results.resonance
-    if verdict in (Verdict.ABSOLUTE, Verdict.UNCERTAIN) and resonance is not None and resonance.near:
-        if words := way_out(resonance):
-            found.append(Action(f"Move the speed off the resonance, {words}", "", ""))
+    runs = verdict in (Verdict.ABSOLUTE, Verdict.UNCERTAIN)
+    if runs and resonance is not None and resonance.near and (words := way_out(resonance)):
+        found.append(Action(f"Move the speed off the resonance, {words}", "", ""))
     found += _left_open(results)
     return (*found, *advice_on_inputs(results))[:_MOST_ACTIONS]
 

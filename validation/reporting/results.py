@@ -97,7 +97,7 @@ class Effort:
 
 
 FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report")
-QUICK = Effort(0, 0, 0, 48, 401, 41, 25, 5.0, 0, "quick report")
+QUICK = Effort(0, 0, 0, 96, 401, 41, 25, 5.0, 0, "quick report")
 
 
 class Results:
@@ -505,7 +505,14 @@ _NOUNS = {
 
 @dataclass(frozen=True)
 class Hazard:
-    """A speed [rpm] at which the pair must not run; ``kind``: "unstable speed", "jump", "beats" or "chaos"."""
+    """A speed at which the pair must not run.
+
+    Attributes
+    ----------
+    speed_rpm : pinion speed [rpm]
+    kind : "unstable speed", "jump", "beats", "chaos", or "periodic", a motion of many mesh cycles
+    how : how it happens
+    """
 
     speed_rpm: float
     kind: str

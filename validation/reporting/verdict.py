@@ -133,7 +133,9 @@ def _hazard(results: Results, facts: Mapping[str, Fact]) -> tuple[str, str] | No
             side = "above" if apart > 0.0 else "below"
             place = f", {100.0 * abs(apart):.0f} % {side} {near.noun}"
         others = f"{_other_motions(results)}." if results.other_motions else ""
-        open_here = "" if results.searched else f"{facts['jumps'].claim[0].upper()}{facts['jumps'].claim[1:]}."
+        open_here = (
+            "" if results.searched else f"{facts['jumps'].claim[0].upper()}{facts['jumps'].claim[1:]}."
+        )
         words = f"{_rises(prediction)} {others} {_jump_words(results)} {_roaming_words(results)} {open_here}"
         return f"{facts['contact'].claim}{place}", " ".join(words.split())
     if not prediction.stable:

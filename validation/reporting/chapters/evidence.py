@@ -11,6 +11,7 @@ from typing import Any
 from lumped.labelling import provenance, source_hash
 from validation.reporting.blocks import Badge, Block, Content, Table, Text, table_of
 from validation.reporting.chapter import Chapter
+from validation.reporting.facts import facts
 from validation.reporting.results import Results, broken_relations, failed_checks
 
 
@@ -29,6 +30,16 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     failed = failed_checks(results)
     blocks: list[Block] = [
+        table_of(
+            "claims",
+            "What page 1 says, and over what it was computed.",
+            list(facts(results).values()),
+            {
+                "claim": ("claim", lambda fact: f"{fact.claim[0].upper()}{fact.claim[1:]}."),
+                "scope": ("scope", lambda fact: fact.scope.words),
+                "computed_by": ("by", lambda fact: fact.computed_by),
+            },
+        ),
         table_of(
             "assumptions",
             f"Assumptions of the linear model, checked at the operating point{results.in_place_of_shafts}.",

@@ -105,7 +105,9 @@ def _ranges(found: xr.Dataset) -> Table:
     for name, (unit, words) in QUANTITIES.items():
         low, middle, high = found[f"{name}_percentile"].to_numpy()
         given = float(found.attrs[f"given_{name}"])
-        rows.append((words, *(Quantity(float(v), unit) for v in (given, low, middle, high))))
+        share = 100.0 if name == "efficiency" else 1.0
+        unit = "%" if name == "efficiency" else unit
+        rows.append((words, *(Quantity(share * float(v), unit) for v in (given, low, middle, high))))
     columns = {"result": "result", "given": "as given", "low": "5 %", "middle": "50 %", "high": "95 %"}
     return Table("ranges", "Results with the uncertain inputs.", columns, tuple(rows))
 

@@ -66,8 +66,8 @@ def write(results: Results) -> Content:
         blocks.append(Text("The friction law is used outside its range:", tuple(outside)))
     result = (
         f"The pair loses {quantity(prediction.loss, 'W', 2)} of "
-        f"{quantity(power, 'W', 3)}; the friction laws differ from {number(loss.min(), 2)} to "
-        f"{number(loss.max(), 2)} %."
+        f"{quantity(power, 'W', 3)}; sliding alone takes {number(loss.min(), 2)} to "
+        f"{number(loss.max(), 2)} % by the different friction laws."
     )
     return Content(result, tuple(blocks))
 

@@ -25,7 +25,13 @@ def write(results: Results) -> Content:
         {"dte": ("cycles", cycle["dte"].to_numpy(), "m", "dynamic transmission error")},
         {"cycles": (cycle["time"].to_numpy() / period, "mesh cycles", "time")},
     )
-    iso = iso_dynamic_factor(pair)
+    classes = [
+        gear.deviations.tolerance_class
+        for gear in (results.given.pinion, results.given.gear)
+        if gear.deviations is not None and gear.deviations.tolerance_class is not None
+    ]
+    iso = iso_dynamic_factor(pair, max(classes)) if classes else iso_dynamic_factor(pair)
+    of_class = f"tolerances of class {iso.tolerance_class}{'' if classes else ' assumed'}"
     numbers = quantities(
         "motion",
         "The motion at the operating point.",
@@ -36,7 +42,7 @@ def write(results: Results) -> Content:
             "K_v of ISO 6336-1, method B",
             iso.factor,
             "1",
-            f"{iso.zone}, N = {iso.resonance_ratio:.2f}, tolerances of class {iso.tolerance_class} assumed",
+            f"{iso.zone}, N = {iso.resonance_ratio:.2f}, {of_class}",
         ),
         ("mesh frequency", pair.geometry.mesh_frequency, "Hz"),
     )
