@@ -53,6 +53,13 @@ def quantity(
     return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
 
 
+def span(low: float, high: float, unit: str, digits: int = 2) -> str:
+    """A range with one prefix and one unit: "0.9 to 1.6 µm"."""
+    exponent = common_exponent((low, high), digits)
+    first, last = (quantity(end, unit, digits, measured=True, exponent=exponent) for end in (low, high))
+    return f"{first.partition(_SPACE + last.rpartition(_SPACE)[2])[0] if _SPACE in last else first} to {last}"
+
+
 def prefix_exponent(value: float, digits: int = 4) -> int:
     """Exponent of ten of the SI prefix with which a number other than 0 is printed from 1 to 999."""
     exponent = min(max(3 * math.floor(math.log10(abs(value)) / 3), -12), 9)
@@ -74,7 +81,7 @@ def common_exponent(values: Sequence[float], digits: int = 4) -> int | None:
 
 
 def _plain_with(size: float, exponent: int) -> bool:
-    return bool(1e-2 <= size / 10.0**exponent < 1e4)
+    return bool(0.1 <= size / 10.0**exponent < 1e4)
 
 
 def prose(text: str) -> str:

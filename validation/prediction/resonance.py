@@ -132,7 +132,7 @@ def mode_name(mode: Mode) -> str:
 
 
 def _amplified(pair: GearPair, speed: float, order: int, supports: Supports) -> tuple[int, float] | None:
-    """Place in ``_PLACES`` of the largest force that matters and is amplified at a speed, and its amplitude [N]."""
+    """Place in ``_PLACES`` and amplitude [N] of the largest force that counts at a speed; None: none does."""
     speeds = speed * np.array([1.0 - _BESIDE, 1.0, 1.0 + _BESIDE])
     before, there, after = (
         np.full(len(_PLACES), np.nan) if motion is None else _amplitudes(motion)[:, order - 1]

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.outcomes import Absent
-from validation.files.formatting import quantity, read_table
+from validation.files.formatting import quantity, read_table, span
 from validation.prediction.inputs import kind_of
 from validation.prediction.motion import QUANTITIES, Prediction
 from validation.reporting.facts import Fact, amplified_words, facts, rpm, spread_words
@@ -67,11 +67,10 @@ class Number:
         """The range as printed, with its ends relative to the result; empty where there is none."""
         if not math.isfinite(self.low):
             return ""
-        low, high = (_printed(end, self.unit, self.digits) for end in (self.low, self.high))
-        number, _, unit = low.partition("\u00a0")
-        ends = f"{number if high.endswith(unit) else low} to {high}"
         if self.unit == "%":  # a share of one, which has per cents of its own
-            return ends
+            low, high = (_printed(end, "%", self.digits) for end in (self.low, self.high))
+            return f"{low.removesuffix(' %')} to {high}"
+        ends = span(self.low, self.high, self.unit, self.digits)
         return f"{ends} ({spread_words((self.low / self.value - 1.0, self.high / self.value - 1.0))})"
 
     @property
@@ -302,7 +301,7 @@ def advice_on_inputs(results: Results) -> list[Action]:
         kind = kind_of(field)
         advice = _ADVICE.get(kind, {"text": "Narrow the range of this input", "command": field})
         if kind not in actions:
-            gain = f"it moves the transmission error from {quantity(low, 'm', 2)} to {quantity(high, 'm', 2)}"
+            gain = f"it moves the transmission error from {span(low, high, 'm')}"
             actions[kind] = Action(advice["text"], advice["command"].format(field=field), gain)
     return list(actions.values())
 

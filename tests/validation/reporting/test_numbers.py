@@ -77,20 +77,35 @@ def of_motion(written, name):
     }
 
 
+def motions_of(written):
+    """Names of the saved motions beyond contact loss, one for each window of speeds."""
+    names = {path.stem for path in (written.folder / "data").iterdir()}
+    return sorted(name for name in names if name.startswith("motions"))
+
+
 def nearest_hazard(written):
     """Speed and way of the nearest jump; these pairs have no unstable speed."""
-    if "motions" not in {path.stem for path in (written.folder / "data").iterdir()}:
-        return None
-    motions = written.data("motions")
-    speeds = motions["jump_speed_rpm"].to_numpy()
-    at = int(np.argmin(np.abs(speeds - written.parameters["operating"]["pinion_speed"])))
-    return float(speeds[at]), "up" if motions["jump_rising"].to_numpy()[at] else "down"
+    own = written.parameters["operating"]["pinion_speed"]
+    jumps = [
+        (float(speed), "up" if rising else "down")
+        for motions in map(written.data, motions_of(written))
+        for speed, rising in zip(
+            motions["jump_speed_rpm"].to_numpy(), motions["jump_rising"].to_numpy(), strict=True
+        )
+    ]
+    return min(jumps, key=lambda jump: abs(jump[0] - own), default=None)
 
 
 def test_numbers_of_page_1(written):
     numbers, lost = written.document["numbers"], written.parameters["name"] == "lost"
     keys = ["dte_peak_to_peak", "dynamic_factor", "tooth_load", "least_force" if lost else "bearing_rms"]
-    assert list(numbers) == [*keys, "efficiency", "hazard"]
+    assert list(numbers) == [
+        *keys,
+        "efficiency",
+        "resonance",
+        "hazard",
+        *(["trouble"] if "trouble" in numbers else []),
+    ]
     first, second = of_motion(written, "prediction"), of_motion(written, "second_program")
     samples = written.data("uncertainty")
     for key in keys:
@@ -139,7 +154,7 @@ def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
     if found is None:
         assert number["value"] is None
         own.assert_says(
-            number["note"], r"none from (.*) to (.*)", (0.1 * speed, "rpm"), (2.0 * speed, "rpm"), digits=5
+            number["note"], r"none from (.*) to (.*) rpm", (0.1 * speed, "1"), (2.0 * speed, "1"), digits=5
         )
         return
     assert number["value"] == close(found[0] - speed)
@@ -356,8 +371,9 @@ def test_the_tables_of_the_inputs_that_are_varied(written):
     ]
     for name, one in zip(names, written.table("ranges"), strict=True):
         values = [samples.attrs[f"given_{name}"], *np.percentile(samples[name].to_numpy(), [5.0, 50.0, 95.0])]
+        unit, times = ("%", 100.0) if name == "efficiency" else (samples[name].attrs["units"], 1.0)
         for key, value in zip(("given", "low", "middle", "high"), values, strict=True):
-            assert one[key] == {"value": close(value), "unit": samples[name].attrs["units"]}, (name, key)
+            assert one[key] == {"value": close(times * value), "unit": unit}, (name, key)
     swing = samples["dte_peak_to_peak_swing"].to_numpy()
     width = np.abs(swing[:, 1] - swing[:, 0])
     table, inputs = written.table("inputs_varied"), list(map(str, samples["input"].to_numpy()))
@@ -370,8 +386,10 @@ def test_the_tables_of_the_inputs_that_are_varied(written):
         rank = float(samples["dte_peak_to_peak_rank_correlation"][j])
         assert one["correlation"] == pytest.approx(rank, abs=0.00501)
     in_order = [table[places.index(j)] for j in range(len(inputs))]
-    for column, name in (("spread", "written"), ("reason", "reason")):
-        assert "; ".join(one[column] for one in in_order) == samples.attrs[name]
+    assert "; ".join(one["reason"] for one in in_order) == samples.attrs["reason"]
+    for one, spread in zip(in_order, samples.attrs["written"].split("; "), strict=True):
+        shown = one["spread"].replace("±", "+- ").replace("×", "* ").replace("÷", "/ ")
+        assert shown.replace(" to ", " .. ").replace("\u00a0", "_") == spread
     damping = samples["value"].sel(input="mesh.damping_ratio").to_numpy()
     order = np.corrcoef(np.argsort(np.argsort(damping)), np.argsort(np.argsort(samples["dte_peak_to_peak"])))
     found = next(one for one in table if one["field"] == "mesh.damping_ratio")["correlation"]
@@ -422,7 +440,7 @@ def test_the_tables_of_inputs(written):
         assert one["range"] == written_as.get(one["field"], ""), one
     assumed = sum(bool(one["state"]) for one in table)
     caption = written.document["chapters"]["inputs"]["tables"]["parameters"]["caption"]
-    assert caption == f"All values: {len(table) - assumed} given, {assumed} assumed."
+    assert caption == f"All values: {len(table) - assumed} known, {assumed} assumed."
     assert written.sentences["inputs"] == f"{assumed} of {len(table)} values are assumed."
     start, _, end, _ = own.path_of_contact(parameters)
     rack = parameters["basic_rack"]
@@ -509,8 +527,7 @@ _HEADINGS = {
     "orders": "order: order, frequency: frequency, dte: transmission error, bearing: pinion bearings",
     "ranges": "given: as given, low: 5 %, middle: 50 %, high: 95 %",
     "error_budget": "dte: transmission error, share: % of peak to peak, tooth_force: tooth load",
-    "inputs_varied": "low: transmission error; peak to peak: smallest, high: largest, "
-    "correlation: rank correlation",
+    "inputs_varied": "low: smallest, high: largest, correlation: rank corr.",
     "agreement": "difference: difference, limit: limit",
     "conservation": "value: residual, limit: limit",
     "modes": "frequency: frequency, damping: damping ratio, speed: speed at which order 1 meets it",

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.outcomes import Absent
-from validation.files.formatting import quantity
+from validation.files.formatting import span
 from validation.measurements.model_error import ModelError
 from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
@@ -24,7 +24,7 @@ def write(results: Results) -> Content:
     blocks.append(
         Picture(
             "error_budget",
-            "The errors of the prediction, over its peak to peak. Red: the largest.",
+            "The errors of the prediction, over its peak to peak. Red: the largest that no poorer form has.",
             budget,
             budget_figure,
         )
@@ -49,8 +49,8 @@ def write(results: Results) -> Content:
     )
     low, high = found["dte_peak_to_peak_percentile"].to_numpy()[[0, -1]]
     result = (
-        f"With its uncertain inputs the transmission error lies between {quantity(low, 'm', 2)} and "
-        f"{quantity(high, 'm', 2)} (5 to 95 %). {result}"
+        f"With its uncertain inputs the transmission error lies from {span(low, high, 'm')} (5 to 95 %). "
+        f"{result}"
     )
     return Content(result, tuple(blocks))
 
@@ -120,7 +120,7 @@ def inputs_table(found: xr.Dataset) -> Table:
     rows = tuple(
         (
             str(found["input"].to_numpy()[j]),
-            str(found.attrs["written"][j]),
+            range_words(str(found.attrs["written"][j])),
             Quantity(float(swing[j].min()), "m"),
             Quantity(float(swing[j].max()), "m"),
             round(float(correlation[j]), 2),
@@ -131,12 +131,21 @@ def inputs_table(found: xr.Dataset) -> Table:
     columns = {
         "field": "input",
         "spread": "range",
-        "low": f"{QUANTITIES[name][1]}: smallest",
+        "low": "smallest",
         "high": "largest",
-        "correlation": "rank correlation",
+        "correlation": "rank corr.",
         "reason": "why this range",
     }
-    return Table("inputs_varied", "Each uncertain input alone, the largest effect first.", columns, rows)
+    words = "The transmission error, peak to peak, with each uncertain input alone, the largest effect first."
+    return Table("inputs_varied", words, columns, rows)
+
+
+def range_words(written: str) -> str:
+    """A range as the parameter file writes it, in the signs of print: "* 0.7 .. * 1.4" as "×0.7 to ×1.4"."""
+    signs = {"+- ": "±", "* ": "×", "/ ": "÷", " .. ": " to ", "_": "\u00a0"}
+    for sign, printed in signs.items():
+        written = written.replace(sign, printed)
+    return written
 
 
 CHAPTER = Chapter("how_sure", "How sure", write, seconds=8.0)
