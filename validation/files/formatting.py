@@ -56,8 +56,13 @@ def quantity(
 def span(low: float, high: float, unit: str, digits: int = 2) -> str:
     """A range with one prefix and one unit: "0.9 to 1.6 µm"."""
     exponent = common_exponent((low, high), digits)
-    first, last = (quantity(end, unit, digits, measured=True, exponent=exponent) for end in (low, high))
-    return f"{first.partition(_SPACE + last.rpartition(_SPACE)[2])[0] if _SPACE in last else first} to {last}"
+    ends = [
+        [quantity(end, unit, more, measured=True, exponent=exponent).partition(_SPACE) for end in (low, high)]
+        for more in range(digits, digits + 3)
+    ]
+    # More digits where both ends would read alike.
+    (first, _, _), (last, space, unit_text) = next((two for two in ends if two[0] != two[1]), ends[0])
+    return f"{first} to {last}{space}{unit_text}"
 
 
 def prefix_exponent(value: float, digits: int = 4) -> int:
