@@ -113,7 +113,7 @@ def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Paths and values of what is compared."""
     yield "verdict", document["verdict"]["kind"]
     for key, one in document["numbers"].items():
-        for name in ("value", "low", "high", "second"):
+        for name in ("value", "low", "high", "median", "second"):
             if one[name] is not None:
                 yield f"page 1/{key}/{name}", float(one[name])
     for key, chapter in document["chapters"].items():
