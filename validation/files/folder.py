@@ -20,7 +20,7 @@ from validation.files.output import not_writable
 #: Value of "format" in report.json, by which an earlier report is recognised.
 FORMAT = "spurcheck-report"
 #: Version of the layout of report.json; a change that breaks readers raises it.
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 #: File in each folder that names the files written there.
 CONTENTS = "contents.json"
 
