@@ -110,12 +110,3 @@ def _waves(cycles: FloatArray, orders: int) -> FloatArray:
     """Columns 1, cos, sin of the mesh orders at mesh cycles (k,)."""
     angle = 2.0 * np.pi * np.multiply.outer(cycles, np.arange(1, orders + 1))
     return np.hstack([np.ones((cycles.size, 1)), np.cos(angle), np.sin(angle)])
-
-
-from enum import Enum
-
-
-class RecordVerdict(Enum):
-    CONFIRMS = "x"
-    CONTRADICTS = "y"
-    TOO_UNCERTAIN = "z"
