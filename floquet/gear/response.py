@@ -185,7 +185,7 @@ class ResponseBranches:
                 if not self._inside(self._rpm(last)) or (run is None and self.response.limited):
                     continue
                 if run is None:
-                    run = self.member.leads_to(last, behind, self.response.at(behind))
+                    run = self.member.leads_to(last, behind)
                 size = np.array([before.rms, before.least, before.most])
                 rising, load = behind < last.period, before.largest_load
                 result.append(_jump(self._rpm(last), rising, size, load, branch.n, run))

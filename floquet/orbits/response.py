@@ -16,7 +16,7 @@ from floquet.orbits.branch import End, Family, Limits
 from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.long_run import LongRun, grown, long_run
 from floquet.orbits.orbit import Orbit, find_orbit, same_motion, state_scale
-from floquet.orbits.settling import alike, settle
+from floquet.orbits.settling import alike
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -33,6 +33,8 @@ _CLOSE = 0.03
 #: Cycles that a run which has settled settles once more, and is observed; cycles of a motion for which Newton
 #: looks near a run that has not come to one yet.
 _AGAIN, _OBSERVE, _MOST_CYCLES = 40, 400, 4
+#: Cycles in which a run leaves a motion that has lost its stability, before it is looked at first.
+_AWAY = 100
 #: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
 MARGINAL = 1.0 + 1e-6
 #: Part of the speed behind a bifurcation where a run shows what happens there.
@@ -169,19 +171,15 @@ class Member:
         states[:, [0, half]] += lengths * limits.length * [1.0, 2.0 * np.pi * limits.frequency / rate]
         return [(rate, one, parameter) for one in states]
 
-    def leads_to(
-        self, start: Orbit, period: float, orbits: list[Orbit], deadline: Deadline = ENDLESS
-    ) -> LongRun:
-        """What a run from a motion settles to at another period, at which ``orbits`` are known."""
-        deadline.check()
-        run = settle(
-            self.family, self.limits, start.start[None], np.array([period]), np.array([start.parameter])
-        )
-        if run.grown(self.limits.amplitude)[0]:
-            return grown(start.parameter)
-        return self.exactly(
-            Motion(1.0 / period, run.states[0], start.parameter, run.sizes[0]), orbits, deadline
-        )
+    def leads_to(self, orbit: Orbit, period: float, deadline: Deadline = ENDLESS) -> LongRun:
+        """What a run from a motion settles to at another period.
+
+        It is a run to rounding, not of `settle`: basins beside a motion that doubles can be thin.
+        """
+        return long_run(
+            self.family.at(period), orbit.start, period, orbit.parameter,
+            settle=_AWAY, observe=_OBSERVE, amplitude=self.limits.amplitude, deadline=deadline,
+        )  # fmt: skip
 
     def exactly(self, motion: Motion, orbits: list[Orbit], deadline: Deadline = ENDLESS) -> LongRun:
         """What a settled run has come to: one of the orbits that were found there, or something else."""

@@ -373,8 +373,7 @@ class _Search:
                 return
             with_time = self.slot.share(_RUN)
             try:
-                known = self.response_at(period)
-                self.behind[b.orbit] = self.member.leads_to(b.orbit, period, known, with_time)
+                self.behind[b.orbit] = self.member.leads_to(b.orbit, period, with_time)
             except (OutOfTimeError, NumericalError):
                 continue
 
