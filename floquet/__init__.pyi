@@ -14,6 +14,9 @@ from .engine.tongues import Tongue as Tongue
 from .gear.axes import GEAR_AXES as GEAR_AXES
 from .gear.chart import label_regions as label_regions
 from .gear.chart import stability_chart as stability_chart
+from .gear.jump_search import JumpSearch as JumpSearch
+from .gear.jump_search import contact_loss_windows as contact_loss_windows
+from .gear.jump_search import search_jumps as search_jumps
 from .gear.jumps import JUMP_AXES as JUMP_AXES
 from .gear.jumps import JumpRemoval as JumpRemoval
 from .gear.jumps import jump_map as jump_map

@@ -16,12 +16,13 @@ from scipy.interpolate import PchipInterpolator
 from floquet.engine.chart import Axes, checked_axes
 from floquet.gear.axes import GEAR_AXES, GearAxis, GearVariation, operating_rpm
 from floquet.gear.motions import JUMP
-from floquet.gear.response import MARGINAL, ResponseBranches, lost_stability, member
+from floquet.gear.response import ResponseBranches, member
 from floquet.gear.unilateral import unilateral_family
 from floquet.orbits.branch import Continuation, Family, Limits
 from floquet.orbits.folds import FoldContinuation
 from floquet.orbits.orbit import Orbit
-from floquet.orbits.response import Branch, Member, Response, find_response, find_stack
+from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
+from floquet.orbits.search import find_response, find_stack
 from lumped.arguments import one_of, real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated

@@ -5,6 +5,7 @@ Sources: docs/theory/orbits.md, "Branches".
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Collection
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -32,11 +33,16 @@ from floquet.gear.motions import (
     static_deflection,
 )
 from floquet.gear.unilateral import ContactForm, unilateral_family
-from floquet.orbits.bifurcations import Bifurcation, Kind
+from floquet.orbits.bifurcations import Kind
 from floquet.orbits.branch import Limits
-from floquet.orbits.long_run import LongRun, Settled, long_run
-from floquet.orbits.response import STARTS, Branch, Member, Response, find_response
-from lumped.arguments import whole_number
+from floquet.orbits.deadline import Deadline
+from floquet.orbits.long_run import LongRun, Settled
+from floquet.orbits.orbit import one_pass
+from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
+from floquet.orbits.search import STARTS, find_response
+from floquet.orbits.settling import settle
+from lumped.arguments import real_number, whole_number
+from lumped.errors import NumericalError
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.averaged import averaged_matrix
 from lumped.model.mesh_cycle import MeshCycle
@@ -51,11 +57,6 @@ if TYPE_CHECKING:
 
     from floquet.orbits.orbit import Orbit
 
-#: Part of the speed behind a bifurcation where a run shows what happens there.
-_BEYOND = 1e-3
-_CORNER = 1e-6
-#: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
-MARGINAL = 1.0 + 1e-6
 #: Part of the range that counts as a gap between stable motions.
 _GAP = 5e-4
 
@@ -136,6 +137,11 @@ class ResponseBranches:
             o is not None and o.stable and o.run.least_load > 0.0 for o in orbits + ends
         )
 
+    @property
+    def open(self) -> tuple[tuple[float, float], ...]:
+        """Speeds at which the processor time did not suffice, (low, high) [rpm]; empty without limit."""
+        return within(self.response.open, self._cycle, self.speeds_rpm)
+
     @cached_property
     def _cycle(self) -> float:
         """Pinion speed times T [rpm s]."""
@@ -168,16 +174,18 @@ class ResponseBranches:
         """Where the root mean square changes at once by a tenth or more, on running up and down.
 
         At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
-        speed further on. Where a motion that does not repeat ends is found within 0.1 %.
+        speed further on. Where a motion that does not repeat ends is found within 0.1 %. Of a search within
+        a time those are left out whose run had no time; their speeds are ``open``.
         """
         result = []
         for branch in self.branches:
             for b, behind in lost_stability(branch):
                 last, before = b.orbit, b.orbit.run
-                if not self._inside(self._rpm(last)):
+                run = self.response.behind.get(last)
+                if not self._inside(self._rpm(last)) or (run is None and self.response.limited):
                     continue
-                system, limit = branch.family.at(behind), largest_motion(self.pair)
-                run = long_run(system, last.start, behind, last.parameter, amplitude=limit)
+                if run is None:
+                    run = self.member.leads_to(last, behind)
                 size = np.array([before.rms, before.least, before.most])
                 rising, load = behind < last.period, before.largest_load
                 result.append(_jump(self._rpm(last), rising, size, load, branch.n, run))
@@ -308,6 +316,7 @@ def response_branches(
     seeds: int = 20,
     back_side: bool = False,
     supports: Supports | None = None,
+    seconds: float | None = None,
     progress: Progress | None = None,
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
@@ -329,18 +338,23 @@ def response_branches(
     back_side : whether the back sides of the teeth touch after the backlash; motions that need it say so
         without it (``GearOrbit.reaches_back_side``)
     supports : "springs", on which alone they are computed; needed for a pair with shafts
+    seconds : processor time that the search may use [s]; what it leaves open is ``ResponseBranches.open``;
+        None: no limit
     progress : called with the finished fraction
 
     Raises
     ------
-    ParameterError : speeds that are no range, or shafts
+    ParameterError : speeds that are no range, a time that is not positive, or shafts
     """
     pair = on_springs(load_gear_pair(pair), supports, "response_branches")
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
     result = member(pair, low, high, form_with(back_side=back_side))
-    response = find_response(result, periods=wanted, seeds=seeds, progress=progress)
+    limit = None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
+    if limit is not None:
+        compile_kernels(result)
+    response = find_response(result, periods=wanted, seeds=seeds, progress=progress, deadline=Deadline(limit))
     return ResponseBranches(pair, (low, high), back_side, response, result)
 
 
@@ -350,25 +364,22 @@ def _jump(rpm: float, rising: bool, size: FloatArray, load: float, n: int, after
     return Jump(rpm, rising, *before, *behind, after.orbit.n if after.orbit else 0)
 
 
-def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
-    """Places where a branch loses its stability, and T 0.1 % of the speed behind each."""
-    result = []
-    marginal = {id(b.orbit) for b in branch.bifurcations if b.kind != "grazing"}
-    for b in branch.bifurcations:
-        at = branch.orbits.index(b.orbit)
-        before, after = (
-            next((o.stable for o in side if id(o) not in marginal), None)
-            for side in (branch.orbits[:at][::-1], branch.orbits[at + 1 :])
-        )
-        if b.kind == "grazing" or before is None or after is None or before == after:
-            continue
-        way = 1 if after else -1
-        # A corner is not the extreme of the speed to the last digit.
-        calm = (o.period / b.orbit.period for o in branch.orbits[at + way :: way])
-        ratio = next((ratio for ratio in calm if abs(ratio - 1.0) > _CORNER), 1.0)
-        if ratio != 1.0:
-            result.append((b, b.orbit.period * (1.0 - _BEYOND if ratio > 1.0 else 1.0 + _BEYOND)))
-    return result
+def within(
+    rates: tuple[tuple[float, float], ...], cycle: float, speeds_rpm: tuple[float, float]
+) -> tuple[tuple[float, float], ...]:
+    """Ranges of 1/T as ranges of the pinion speed [rpm], cut to those asked for."""
+    low, high = speeds_rpm
+    ranges = [(max(cycle * one, low), min(cycle * two, high)) for one, two in rates]
+    return tuple((one, two) for one, two in ranges if one < two)
+
+
+def compile_kernels(one: Member) -> None:
+    """Call what is compiled at its first call: that shall not count as time of a search."""
+    rate = one.limits.fastest
+    state, parameter = one.start(1.0 / rate)
+    with contextlib.suppress(NumericalError):
+        one_pass(one.family.at(1.0 / rate), state, 1.0 / rate, 1, parameter)
+    settle(one.family, one.limits, state[None], np.array([1.0 / rate]), np.array([parameter]))
 
 
 def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:

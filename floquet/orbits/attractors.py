@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from floquet.orbits.branch import Family, Limits
+from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.long_run import LongRun, grown
 from floquet.orbits.settling import Settled, alike, settle
 from lumped.typing import BoolArray, FloatArray
@@ -99,15 +100,15 @@ class Survey:
     """Motions to which runs settle at speeds (k,) that increase, those of neighbours followed both ways.
 
     ``starts`` are the rate, state and parameter of each run; each rate is one of ``rates``. ``grown`` are the
-    starts from which runs grow; ``told`` gets the finished fraction.
+    starts from which runs grow; ``told`` gets the finished fraction. OutOfTimeError: the deadline has passed.
     """
 
     def __init__(
         self, family: Family, limits: Limits, rates: FloatArray,
         starts: list[tuple[float, FloatArray, float]],
-        told: Callable[[float], object] = lambda done: None,
+        told: Callable[[float], object] = lambda done: None, deadline: Deadline = ENDLESS,
     ) -> None:  # fmt: skip
-        self.family, self.limits, self.rates = family, limits, rates
+        self.family, self.limits, self.rates, self.deadline = family, limits, rates, deadline
         self.levels: list[list[Motion]] = [[] for _ in rates]
         self.grown = list[Motion]()
         for j, rate in enumerate(rates):
@@ -124,6 +125,7 @@ class Survey:
 
     def _settle(self, motions: list[Motion], rates: FloatArray) -> tuple[Settled, BoolArray]:
         """Settle from motions at speeds; the runs, and which of them grow."""
+        self.deadline.check()
         result = settle(
             self.family, self.limits, np.array([motion.state for motion in motions]), 1.0 / rates,
             np.array([motion.parameter for motion in motions]),

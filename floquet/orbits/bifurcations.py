@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 from bisect import bisect_left
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from floquet.orbits.branch import Continuation, Path
+from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.orbit import Orbit
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -25,6 +26,9 @@ Kind = Literal["fold", "period doubling", "Neimark-Sacker", "grazing"]
 _Test = Callable[[Orbit, FloatArray], float]
 #: A test function this much below its values around is zero there; else it jumps, at a corner.
 _ZERO = 1e-5
+#: Part of a step to which a place is refined; a contact begins to open or to close in a step of its test
+#: function, which is halved, and no other result builds on that place.
+_REFINED, _GRAZES = 1e-13, 1e-7
 #: Inside a tongue the linear system has motions of any amplitude at one speed: a branch that neither turns.
 _ROUNDING = 1e-11
 #: Least cosine between a tangent and the chord for a cubic between neighbours.
@@ -71,13 +75,23 @@ def with_bifurcations(along: Continuation, path: Path, result: list[Bifurcation]
     return [orbit for _, orbit in sorted(places, key=lambda item: item[0])]
 
 
-def bifurcations(along: Continuation, path: Path) -> list[Bifurcation]:
-    """Return the bifurcations between the points of a path in order, each refined."""
-    result = []
-    for j in range(len(path.orbits) - 1):
-        points = [_refined(along, path, j, kind, test) for kind, test in _tests(path, j)]
+def bifurcations(
+    along: Continuation, path: Path, intervals: Sequence[int] | None = None, deadline: Deadline = ENDLESS
+) -> tuple[list[Bifurcation], list[int]]:
+    """Return the bifurcations between the points of a path in order, each refined.
+
+    ``intervals`` are the indices of the points after which they are looked for, the most useful first; None:
+    all. Second come those for which the deadline left no time.
+    """
+    result, left = list[Bifurcation](), list[int]()
+    for j in range(len(path.orbits) - 1) if intervals is None else intervals:
+        tests = _tests(path, j)
+        if tests and deadline.passed:
+            left.append(j)
+            continue
+        points = [_refined(along, path, j, kind, test) for kind, test in tests]
         result += [point for point in points if point.kind != "Neimark-Sacker" or _turns(point.orbit)]
-    return result
+    return sorted(result, key=lambda point: int(point.place)), left
 
 
 def doubling_direction(along: Continuation, orbit: Orbit) -> FloatArray:
@@ -149,7 +163,8 @@ def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -
         return known[at].value
 
     try:
-        part = float(brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-14, maxiter=80))
+        room = _GRAZES if kind == "grazing" else _REFINED
+        part = float(brentq(value, 0.0, 1.0, xtol=room, rtol=1e-14, maxiter=80))
         value(part)
     except (NumericalError, RuntimeError):
         part = places[int(np.argmin([abs(one.value) for one in known]))]

@@ -12,12 +12,13 @@ from typing import Literal
 
 import numpy as np
 
+from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.orbit import Orbit, one_pass
 from floquet.orbits.system import ContactSystem
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
-End = Literal["range", "amplitude", "closed", "doubling", "lost", "points"]
+End = Literal["range", "amplitude", "closed", "doubling", "lost", "points", "calm", "time"]
 
 _FIRST_STEP, _LEAST_STEP, _LARGEST_STEP = 0.02, 1e-7, 0.2
 _CORNER_STEP = 2e-4
@@ -32,6 +33,9 @@ _SPEED = 0.04
 _MOST_LOG = 100.0
 #: Phase rates are about this many times the displacements.
 _RATE = 10.0
+#: Distance (the largest step is 0.2) within which what T does through coefficients is taken as the same: it
+#: decides how fast Newton's method comes to a motion, not to which.
+_ALIKE = 0.5
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,7 @@ class Limits:
     amplitude : largest motion of the output from its mean that is followed
     frequency : of the fastest natural motion while contacts hold, with the mean stiffness [1/s]
     points : most orbits in a direction
+    calm : whether a motion of one cycle needs no following, for nothing happens beyond it; None: no motion
     """
 
     slowest: float
@@ -69,16 +74,21 @@ class Limits:
     amplitude: float
     frequency: float
     points: int = 4000
+    calm: Callable[[Orbit], bool] | None = None
 
 
 @dataclass(eq=False)
 class Path:
-    """Points of a branch in one direction: scaled unknowns X, motions, unit tangents, and why it ends."""
+    """Points of a branch in one direction: scaled unknowns X, motions, unit tangents, and why it ends.
+
+    Where it ends for want of "time", ``step`` is the one with which it goes on.
+    """
 
     X: list[FloatArray]
     orbits: list[Orbit]
     tangents: list[FloatArray]
     end: End = "points"
+    step: float = _FIRST_STEP
 
     def append(self, X: FloatArray, orbit: Orbit, tangent: FloatArray) -> None:
         self.X.append(X)
@@ -99,6 +109,7 @@ class Continuation:
         self._rows = np.concatenate([state, state[-1:] if self.balanced else []])
         # Derivatives come by the start, T and the parameter; the unknowns end with log 1/T.
         self._columns = [*range(self.size), *([self.size + 1] if self.balanced else []), self.size]
+        self._coefficients: tuple[FloatArray, FloatArray] | None = None
 
     def unknowns(self, orbit: Orbit) -> FloatArray:
         """The scaled vector X of an orbit."""
@@ -141,13 +152,24 @@ class Continuation:
             ends.append(np.concatenate([run.end, run.accumulated]))
         return np.asarray((ends[0] - ends[1]) / (2.0 * _PERIOD_STEP * T))
 
+    def _by_coefficients_near(self, X: FloatArray) -> FloatArray | None:
+        """The same, of a place near by where it is known; None where no coefficient depends on T.
+
+        Folds stay where they are: the speed component of a tangent vanishes with the determinant of the
+        derivatives by the other unknowns.
+        """
+        if self.family.constant:
+            return None
+        if self._coefficients is None or np.linalg.norm(X - self._coefficients[0]) > _ALIKE:
+            self._coefficients = X, self.by_coefficients(X)
+        return self._coefficients[1]
+
     def correct(self, X: FloatArray, border: FloatArray) -> tuple[FloatArray, Orbit, FloatArray, int]:
         """Newton's method in the plane through X across the border -> X, orbit, tangent, iterations."""
         plane = float(border @ X)
         right = np.zeros((X.size, 2))
         right[-1, 1] = 1.0
-        # Two runs more: once for all iterations, which it hardly changes on the way to the branch.
-        by_coefficients = None if self.family.constant else self.by_coefficients(X)
+        by_coefficients = self._by_coefficients_near(X)
         for iteration in range(_MOST_CORRECTIONS):
             F, J, orbit = self.evaluate(X, by_coefficients)
             right[:-1, 0], right[-1, 0] = -F, plane - border @ X
@@ -162,7 +184,13 @@ class Continuation:
             X = X + step
         raise NumericalError("Newton's method did not settle on the branch.")
 
-    def follow(self, orbit: Orbit, direction: float = 1.0, tangent: FloatArray | None = None) -> Path:
+    def follow(
+        self,
+        orbit: Orbit,
+        direction: float = 1.0,
+        tangent: FloatArray | None = None,
+        deadline: Deadline = ENDLESS,
+    ) -> Path:
         """Orbits from one on until an end of the limits, towards higher (+1) or lower speeds (-1).
 
         ``tangent`` is the one to start along instead, where the orbit is a bifurcation.
@@ -171,8 +199,16 @@ class Continuation:
         if tangent is None:
             X, orbit, tangent, _ = self.correct(X, direction * np.eye(X.size)[-1])
         path = Path([X], [orbit], [tangent])
-        step, doubled = _FIRST_STEP, None
+        self.extend(path, deadline)
+        return path
+
+    def extend(self, path: Path, deadline: Deadline = ENDLESS) -> None:
+        """Follow a path on from its last orbit until an end of the limits, or of the time."""
+        step, path.end = path.step, "points"
         while len(path.orbits) < self.limits.points:
+            if deadline.passed:
+                path.end, path.step = "time", step
+                break
             X, tangent = path.X[-1], path.tangents[-1]
             try:
                 new, orbit, turned, iterations = self.correct(X + step * tangent, tangent)
@@ -187,12 +223,9 @@ class Continuation:
                         break
                     step = _CORNER_STEP
                 continue
-            if self.n % 2 == 0:  # scaled distance between the halves of the motion
-                apart = (orbit.run.states[self.n // 2] - orbit.start) / self.scale[: self.size]
-                doubled = apart if doubled is None else doubled
-                if float(apart @ doubled) <= 0.0:  # it lies behind the motion of half the cycles
-                    path.end = "doubling"
-                    break
+            if self.n % 2 == 0 and self._falls_back(path, orbit):
+                path.end = "doubling"
+                break
             path.append(new, orbit, turned)
             end = self._end(path, step)
             if end is not None:
@@ -202,7 +235,13 @@ class Continuation:
                 step = min(1.5 * step, _LARGEST_STEP)
             elif iterations > 5:
                 step *= 0.6
-        return path
+
+    def _falls_back(self, path: Path, orbit: Orbit) -> bool:
+        """Whether a motion lies behind that of half the cycles: the halves have changed places."""
+        first = path.orbits[1] if len(path.orbits) > 1 else orbit
+        one, two = (o.run.states[self.n // 2] - o.start for o in (first, orbit))
+        scale = self.scale[: self.size]
+        return float((one / scale) @ (two / scale)) <= 0.0
 
     def _end(self, path: Path, step: float) -> End | None:
         run, rate = path.orbits[-1].run, 1.0 / path.orbits[-1].period
@@ -210,6 +249,8 @@ class Continuation:
             return "range"
         if max(run.most - run.mean, run.mean - run.least) > self.limits.amplitude:
             return "amplitude"
+        if self.n == 1 and self.limits.calm is not None and self.limits.calm(path.orbits[-1]):
+            return "calm"
         return "closed" if len(path.X) > 10 and self._returns(path, step) else None
 
     def _returns(self, path: Path, step: float) -> bool:

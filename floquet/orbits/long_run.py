@@ -6,11 +6,12 @@ vectors: Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.orbit import Orbit, find_orbit, primitive, state_scale
 from floquet.orbits.system import ContactSystem, Run
 from lumped.errors import NumericalError
@@ -29,6 +30,8 @@ _LOOKED = 8
 #: Largest exponent per cycle that counts as zero; quasi-periodic motions come to it as the inverse of the
 #: length.
 _ZERO_EXPONENT = 5e-3
+#: Cycles between two looks at a deadline.
+_PART = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +76,7 @@ def long_run(
     observe: int = 800,
     most_cycles: int = 8,
     amplitude: float = np.inf,
+    deadline: Deadline = ENDLESS,
 ) -> LongRun:
     """Let a motion settle and say what it is.
 
@@ -86,32 +90,66 @@ def long_run(
     observe : cycles over which exponents and means are taken
     most_cycles : largest n
     amplitude : largest motion of the output from its mean that is looked at
+    deadline : OutOfTimeError where it passes before that is known
     """
     state = start
     for turn in range(_TURNS + 1):
         try:
-            settled = system.run(state, period, settle << turn, parameter)
+            settled = _run(system, state, period, settle << turn, parameter, deadline)
             seen = system.run(settled.end, period, _LOOKED * most_cycles, parameter, samples=np.zeros(1))
         except NumericalError:
             return grown(parameter)
         if max(seen.most - seen.mean, seen.mean - seen.least) > amplitude:
             return grown(parameter)
-        orbit = _periodic(system, seen, period, parameter, most_cycles)
+        orbit = _periodic(system, seen, period, parameter, most_cycles, deadline)
         if orbit is not None:
             return LongRun("periodic", orbit, float("nan"), float("nan"), orbit.run, orbit.parameter)
         state = seen.end
         if turn < _TURNS - 1:
             continue
-        exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe)
+        exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe, deadline)
         zero = max(3.0 * uncertainty, _ZERO_EXPONENT)
         if exponent > -zero:  # else it has left for a motion that repeats, and will have reached it next time
             break
-    last = system.run(state, period, observe, parameter)
+    last = _run(system, state, period, observe, parameter, deadline)
     return LongRun("chaos" if exponent > zero else "beats", None, exponent, uncertainty, last, parameter)
 
 
+def _run(
+    system: ContactSystem, start: FloatArray, period: float, cycles: int, parameter: float, deadline: Deadline
+) -> Run:
+    """`ContactSystem.run`, in parts where there is a deadline."""
+    if not deadline.limited or cycles <= _PART:
+        return system.run(start, period, cycles, parameter)
+    done, result = 0, None
+    while done < cycles:
+        deadline.check()
+        count = min(_PART, cycles - done)
+        part = system.run(start if result is None else result.end, period, count, parameter)
+        result = part if result is None else _joined(result, done, part, count)
+        done += count
+    assert result is not None
+    return result
+
+
+def _joined(one: Run, cycles: int, other: Run, more: int) -> Run:
+    """A run of some cycles and the next ones, as one."""
+    share = more / (cycles + more)
+    return replace(
+        other,
+        start=one.start,
+        accumulated=one.accumulated + other.accumulated,
+        mean=one.mean + share * (other.mean - one.mean),
+        mean_square=one.mean_square + share * (other.mean_square - one.mean_square),
+        least=min(one.least, other.least),
+        most=max(one.most, other.most),
+        largest_load=max(one.largest_load, other.largest_load),
+        least_load=min(one.least_load, other.least_load),
+    )
+
+
 def _periodic(
-    system: ContactSystem, seen: Run, period: float, parameter: float, most_cycles: int
+    system: ContactSystem, seen: Run, period: float, parameter: float, most_cycles: int, deadline: Deadline
 ) -> Orbit | None:
     """The stable periodic motion that a run has come to or comes near to."""
     scale = state_scale(seen.end)
@@ -119,6 +157,7 @@ def _periodic(
         n for n in range(1, len(seen.states)) if (np.abs(seen.states[-n] - seen.end) <= _RECURS * scale).all()
     ]
     for n in recurs[:1] or range(1, most_cycles + 1):
+        deadline.check()
         try:
             orbit = primitive(find_orbit(system, seen.end, period, n, parameter))
         except NumericalError:
@@ -140,7 +179,12 @@ def grown(parameter: float) -> LongRun:
 
 
 def lyapunov_exponent(
-    system: ContactSystem, start: FloatArray, period: float, parameter: float = 0.0, cycles: int = 800
+    system: ContactSystem,
+    start: FloatArray,
+    period: float,
+    parameter: float = 0.0,
+    cycles: int = 800,
+    deadline: Deadline = ENDLESS,
 ) -> tuple[float, float]:
     """Largest Lyapunov exponent per cycle and its standard error by blocks, from a state on the motion.
 
@@ -151,6 +195,7 @@ def lyapunov_exponent(
     growth = np.empty(cycles)
     x = start
     for j in range(cycles):
+        deadline.check()
         run = system.run(x, period, 1, parameter, derivatives=True)
         vector = (run.derivative[: start.size, : start.size] @ (vector * scale)) / scale
         length = float(np.linalg.norm(vector))

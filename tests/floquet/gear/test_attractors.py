@@ -9,9 +9,9 @@ from scipy.stats import binomtest
 import floquet
 import lumped
 from floquet.gear.motions import binomial_interval, start_of
-from floquet.gear.response import lost_stability
 from floquet.gear.unilateral import unilateral_system
 from floquet.orbits.long_run import long_run
+from floquet.orbits.response import lost_stability
 from floquet.orbits.settling import settle
 from lumped import ParameterError
 

@@ -8,7 +8,8 @@ from floquet.orbits.bifurcations import doubling_direction
 from floquet.orbits.branch import Continuation, Family, Limits
 from floquet.orbits.long_run import long_run, lyapunov_exponent
 from floquet.orbits.orbit import find_orbit
-from floquet.orbits.response import Member, find_response
+from floquet.orbits.response import Member
+from floquet.orbits.search import find_response
 from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 

@@ -1,0 +1,60 @@
+"""A limit of processor time for a search.
+
+Whoever works with one asks it between short pieces of work. What is found before is as right as without a
+limit; what is left has to be named by the search.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+
+class OutOfTimeError(Exception):
+    """The processor time of a search is used up. Never reaches a user: the search says what it left open."""
+
+
+class Deadline:
+    """Processor time of this process from now on.
+
+    Parameters
+    ----------
+    seconds : how much [s]; None: without limit
+    """
+
+    def __init__(self, seconds: float | None = None) -> None:
+        self._start = time.process_time()
+        self._end = math.inf if seconds is None else self._start + seconds
+
+    @property
+    def used(self) -> float:
+        """Processor time since it was set [s]."""
+        return time.process_time() - self._start
+
+    @property
+    def limited(self) -> bool:
+        """Whether there is a limit."""
+        return math.isfinite(self._end)
+
+    @property
+    def left(self) -> float:
+        """Processor time that is left [s], 0 at least; infinite without limit."""
+        return max(self._end - time.process_time(), 0.0) if self.limited else math.inf
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing is left."""
+        return self.left == 0.0
+
+    def check(self) -> None:
+        """Raise OutOfTimeError where nothing is left."""
+        if self.passed:
+            raise OutOfTimeError
+
+    def share(self, part: float) -> Deadline:
+        """One that ends after a part of what is left."""
+        return Deadline(part * self.left if self.limited else None)
+
+
+#: Without limit.
+ENDLESS = Deadline()
