@@ -1,0 +1,115 @@
+"""Mesh orders of a record, and those of the prediction at the same orders.
+
+A tooth pair is in contact for less than as many mesh cycles as pairs are in contact at once. Its channel is
+taken over that many mesh cycles of each engagement, so its orders are parts of mesh orders.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from lumped.errors import refuse
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+from validation.measurements.comparison import Prediction as Curves
+from validation.measurements.comparison import mesh_cycles
+from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
+from validation.prediction.motion import Prediction
+from validation.signals.complex_orders import ComplexOrders, complex_orders, orders_of_period
+
+#: Most mesh orders of a record, most per different phase of its samples, and how many phases of a mesh cycle
+#: are different.
+_ORDERS, _PER_PHASE, _DIFFERENT = 40, 0.3, 1000
+#: Samples for each number that is fitted.
+_PER_NUMBER = 4
+#: Speed and torque of the record may be this share off those of the pair.
+_SAME = 0.01
+#: Samples of the prediction in a mesh cycle.
+_SAMPLES = 512
+#: Mesh cycles in a bin of a record for its coarse shift.
+BIN = 1.0 / 32.0
+
+
+def check_record(measurement: Measurement, pair: GearPair) -> None:
+    """Refuse a record of another speed or torque than the pair's, or of too few samples."""
+    spec, own = measurement.spec, pair.operating
+    for name, there in (("pinion_speed", spec.pinion_speed), ("pinion_torque", spec.pinion_torque)):
+        here = float(getattr(own, name))
+        if abs(there / here - 1.0) > _SAME:
+            action = "Give the speed and the torque of the record to the pair."
+            raise refuse(f"measurement.{name}", f"{there:.5g}", f"{here:.5g} within 1 %, SI", action)
+    if _resolved(mesh_cycles(measurement, pair)) < 1:
+        refused = f"{measurement.abscissa.size} samples"
+        raise refuse("data", refused, "several in each mesh cycle", "Sample faster, or longer.")
+
+
+def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Curves:
+    """The motion averaged over the mesh cycles of its period, readable at any mesh cycle."""
+    count, cycle = prediction.mesh_cycles, prediction.cycle
+    size = cycle.sizes["time"] // count
+    names = [name for name in QUANTITIES if name in cycle]
+    first = cycle[names].isel(time=slice(0, size))
+    for name in names:
+        values = cycle[name].to_numpy()[..., : count * size]
+        first[name] = first[name].copy(data=values.reshape(*values.shape[:-1], count, size).mean(axis=-2))
+    return Curves(prediction.pair, first, recurrence or prediction.pair.pinion.teeth)
+
+
+def _resolved(cycles: FloatArray, period: int = 1) -> int:
+    """Mesh orders that samples at these cycles show, of a signal that repeats after ``period`` cycles."""
+    # Samples that are no whole number in a mesh cycle fill in its phases.
+    phases = np.unique(np.floor(_DIFFERENT * np.mod(cycles, 1.0))).size
+    enough = (cycles.size / _PER_NUMBER - 1.0) / (2 * period)
+    return int(max(min(_ORDERS, _PER_PHASE * phases, enough), 0.0))
+
+
+def measured_orders(measurement: Measurement, curves: Curves, own: Channel, shift: float) -> ComplexOrders:
+    """Orders of a channel; of one tooth pair over as many mesh cycles as pairs are in contact at once."""
+    cycles, values = mesh_cycles(measurement, curves.pair), measurement.channels[own.name]
+    if own.pair is None:
+        return complex_orders(cycles, values, np.arange(1, _resolved(cycles) + 1))
+    period = curves.geometry.pairs
+    since = cycles + shift
+    age = curves.age(since, own.pair)
+    inside = age < period
+    most = _resolved(cycles[inside], period)
+    if most < 1:
+        allowed = f"a record in which pair {own.pair} is in contact for many samples"
+        refused = f"{np.count_nonzero(inside)} samples in contact"
+        raise refuse(f"channel.{own.name}", refused, allowed, "Record longer; check pair and recurrence.")
+    engagement = np.floor((since[inside] - PAIR_LABELS.index(own.pair)) / curves.recurrence)
+    # Less the shift, so that one shift puts the prediction in the phase of every channel.
+    return complex_orders(
+        age[inside] - shift, values[inside], np.arange(1, most * period + 1) / period,
+        period=period, blocks=engagement.astype(np.int64),
+    )  # fmt: skip
+
+
+def predicted_orders(curves: Curves, own: Channel, like: ComplexOrders) -> ComplexOrders:
+    """Orders of the prediction that are those of a measured channel."""
+    phases = np.arange(_SAMPLES * like.period) / _SAMPLES
+    label = None if own.pair is None else PAIR_LABELS[0]  # all labels have the same life
+    values = curves.value(own.quantity, phases, label)
+    return orders_of_period(values, round(like.orders.size / like.period), like.period)
+
+
+def coarse_shift(measurement: Measurement, curves: Curves, channels: Sequence[Channel]) -> float:
+    """Shift at which a record with channels of tooth pairs correlates best, to a bin; 0 of other records."""
+    if all(one.pair is None for one in channels):
+        return 0.0
+    count = round(curves.recurrence / BIN)
+    index = np.floor(np.mod(mesh_cycles(measurement, curves.pair), curves.recurrence) / BIN)
+    index = index.astype(np.int64) % count
+    filled = np.maximum(np.bincount(index, minlength=count), 1)
+    total, middles = np.zeros(count), (np.arange(count) + 0.5) * BIN
+    for one in channels:
+        values = measurement.channels[one.name]
+        mean = np.bincount(index, weights=values - values.mean(), minlength=count) / filled
+        model = curves.value(one.quantity, middles, one.pair)
+        model = model - model.mean()
+        size = float(np.linalg.norm(mean) * np.linalg.norm(model))
+        if size > 0.0:
+            total += np.fft.irfft(np.fft.rfft(mean).conj() * np.fft.rfft(model), count) / size
+    return float(total.argmax()) * BIN
