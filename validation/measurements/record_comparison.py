@@ -31,6 +31,7 @@ from validation.measurements.record_orders import (
     BIN,
     check_record,
     coarse_shift,
+    cycles_in_step,
     mean_mesh_cycle,
     measured_orders,
     predicted_orders,
@@ -210,7 +211,8 @@ class ChannelComparison:
     def table(self) -> dict[str, FloatArray]:
         """Columns over the orders: amplitudes and phase difference with their standard uncertainties.
 
-        Phases are S less D [rad]; the uncertainty of an amplitude is along it, that of a phase across it.
+        Phases are S less D [rad]; the uncertainty of an amplitude is along it, that of a phase across it. NaN
+        is what the inputs would leave, where they were not varied.
         """
         ends = {"measured": self.measured.values, "predicted": self.predicted.values}
         found: dict[str, FloatArray] = {}
@@ -218,10 +220,11 @@ class ChannelComparison:
         for place, (name, values) in enumerate(ends.items()):
             size = np.maximum(np.abs(values), 1e-300)
             found[name] = np.abs(values)
-            found[f"{name}_deviation"] = self._along(values)[place]
+            known = np.nan if place and not self.varied else 1.0
+            found[f"{name}_deviation"] = self._along(values)[place] * known
             across = np.hypot(across, self._along(1j * values)[place] / size)
-        found["phase"] = np.angle(self.predicted.values * self.measured.values.conj())
-        found["phase_deviation"] = np.minimum(across, math.pi)
+        found["phase_difference"] = np.angle(self.predicted.values * self.measured.values.conj())
+        found["phase_deviation"] = np.minimum(across, math.pi) * (1.0 if self.varied else np.nan)
         found["contradicts"] = self.contradicted_orders.astype(np.float64)
         return found
 
@@ -270,10 +273,10 @@ def _noise_factor(compared: int) -> float:
 def _apart_words(percent: float) -> str:
     if abs(percent) < 1.0:
         return "the same within 1 %"
+    if percent > 900.0:
+        return "more than 10 times the measured value"
     if percent > 200.0:
-        return (
-            f"{percent / 100.0 + 1.0:.2g} times the measured value" if math.isfinite(percent) else "too high"
-        )
+        return f"{percent / 100.0 + 1.0:.1f} times the measured value"
     digits = f"{abs(percent):.0f}" if abs(percent) >= 9.5 else f"{abs(percent):.1f}"
     return f"{digits} % too {'high' if percent > 0.0 else 'low'}"
 
@@ -346,6 +349,8 @@ class RecordComparison:
         parts = [self.leading.size_words]
         parts += [one.size_words for one in wrong if one is not self.leading and one.contradicts_size]
         parts += [one.shape_words for one in wrong]
+        if self.verdict is Record.TOO_UNCERTAIN and self.leading.noisy:
+            parts.append("Its mesh orders hardly stand out of the noise: check its speed, or record longer.")
         vague = [one.name for one in self.channels if one.verdict is Record.TOO_UNCERTAIN]
         if 0 < len(vague) < len(self.channels):
             parts.append(f"Too uncertain to judge: {', '.join(vague)}.")
@@ -379,7 +384,7 @@ class RecordComparison:
             "worst_predicted": (
                 [float(t["predicted"][j]) for t, j, _ in worst], own, "its predicted amplitude"
             ),
-            "worst_phase": ([float(t["phase"][j]) for t, j, _ in worst], "rad",
+            "worst_phase": ([float(t["phase_difference"][j]) for t, j, _ in worst], "rad",
                             "its phase, predicted less measured"),
             "verdict": ([one.verdict.name for one in rows], "1", "verdict of the channel"),
         }  # fmt: skip
@@ -401,7 +406,7 @@ class RecordComparison:
             "measured_deviation": ("SI, by channel", "its standard uncertainty"),
             "predicted": ("SI, by channel", "predicted amplitude"),
             "predicted_deviation": ("SI, by channel", "its standard uncertainty"),
-            "phase": ("rad", "phase, predicted less measured"),
+            "phase_difference": ("rad", "phase, predicted less measured"),
             "phase_deviation": ("rad", "its standard uncertainty"),
             "contradicts": ("1", "whether the difference contradicts the prediction"),
         }
@@ -473,8 +478,9 @@ def compare_record(
     spec = measurement.spec
     channels = sorted(spec.channel, key=lambda one: one.quantity != "dte")  # the first leads
     curves = mean_mesh_cycle(prediction, spec.recurrence)
-    at = coarse_shift(measurement, curves, channels) if shift is None else shift
-    every = [measured_orders(measurement, curves, one, at) for one in channels]
+    cycles, samples = cycles_in_step(measurement, prediction.pair), measurement.channels
+    at = coarse_shift(measurement, cycles, curves, channels) if shift is None else shift
+    every = [measured_orders(samples[one.name], cycles, curves, one, at) for one in channels]
     expected = [predicted_orders(curves, own, one) for own, one in zip(channels, every, strict=True)]
     compared = sum(one.orders.size for one in every)
     seen = [_above_noise(*two, compared) for two in zip(every, expected, strict=True)]

@@ -90,7 +90,7 @@ def _orders(alike: Sequence[ChannelComparison], unit: str) -> Table:
                     one.name,
                     float(one.measured.orders[j]),
                     *(_rounded(float(table[name][j]) / factor) for name in _AMPLITUDES),
-                    _rounded(math.degrees(float(table["phase"][j]))),
+                    _rounded(math.degrees(float(table["phase_difference"][j]))),
                     _rounded(math.degrees(float(table["phase_deviation"][j])), 2),
                     "contradicts" if table["contradicts"][j] else "",
                 )
@@ -136,7 +136,9 @@ def _uncertainties(found: RecordComparison) -> Table:
     return Table("record_uncertainty", words, columns, tuple(rows))
 
 
-def _rounded(value: float, digits: int = 3) -> float:
+def _rounded(value: float, digits: int = 3) -> float | None:
+    if not math.isfinite(value):
+        return None
     return float(f"{value:.{digits}g}")
 
 
