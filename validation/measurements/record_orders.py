@@ -1,7 +1,7 @@
 """Mesh orders of a record, and those of the prediction at the same orders.
 
-A tooth pair is in contact for less than as many mesh cycles as pairs are in contact at once. Its channel is
-taken over that many mesh cycles of each engagement, so its orders are parts of mesh orders.
+A channel of one tooth pair is taken over the mesh cycles of each engagement: as many as the motion has places
+for tooth pairs. So its orders are parts of mesh orders.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _SAME = 0.01
 _SAMPLES = 512
 #: The mesh frequency of a record may be this share off that of its stated speed. So many orders find it, with
 #: so many trials in a wave of the last of them, over so many mesh cycles at first and then over more.
-_OFF, _FIRST, _TRIALS, _SHORT = 0.005, 3, 4.0, 64.0
+_OFF, _FIRST, _TRIALS, _SHORT = 0.005, 6, 4.0, 64.0
 #: Share of the stated speed within which another one is looked for.
 _FAR = 0.05
 #: Share by which the orders must carry more at another frequency than at the stated one.
@@ -145,7 +145,7 @@ def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Cu
     count, cycle = prediction.mesh_cycles, prediction.cycle
     size = cycle.sizes["time"] // count
     names = [name for name in QUANTITIES if name in cycle]
-    first = cycle[names].isel(time=slice(0, size))
+    first = cycle[[*names, "position"]].isel(time=slice(0, size))
     for name in names:
         values = cycle[name].to_numpy()[..., : count * size]
         first[name] = first[name].copy(data=values.reshape(*values.shape[:-1], count, size).mean(axis=-2))
@@ -155,7 +155,7 @@ def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Cu
 def _resolved(cycles: FloatArray, period: int = 1) -> int:
     """Mesh orders that samples at these cycles show, of a signal that repeats after ``period`` cycles."""
     # Samples that are no whole number in a mesh cycle fill in its phases.
-    phases = np.unique(np.floor(_DIFFERENT * np.mod(cycles, 1.0))).size
+    phases = np.unique(np.round(_DIFFERENT * cycles) % _DIFFERENT).size
     enough = (cycles.size / _PER_NUMBER - 1.0) / (2 * period)
     return int(max(min(_ORDERS, _PER_PHASE * phases, enough), 0.0))
 
@@ -166,21 +166,22 @@ def measured_orders(
     """Orders of a channel; of one tooth pair over as many mesh cycles as pairs are in contact at once."""
     if own.pair is None:
         return complex_orders(cycles, values, np.arange(1, _resolved(cycles) + 1))
-    period = curves.geometry.pairs
-    since = cycles + shift
-    age = curves.age(since, own.pair)
-    inside = age < period
+    period, first = curves.ahead.size, int(curves.ahead.min())
+    if curves.recurrence < period:
+        action = "Count the mesh cycles until the same labelled pair is in contact again."
+        raise refuse("measurement.recurrence", curves.recurrence, f">= {period}", action)
+    since = curves.since(cycles + shift, own.pair)
+    inside = since < first + period
     most = _resolved(cycles[inside], period)
     if most < 1:
         allowed = f"a record in which pair {own.pair} is in contact for many samples"
         refused = f"{np.count_nonzero(inside)} samples in contact"
         raise refuse(f"channel.{own.name}", refused, allowed, "Record longer; check pair and recurrence.")
-    engagement = np.floor((since[inside] - PAIR_LABELS.index(own.pair)) / curves.recurrence)
+    passed = cycles[inside] + shift - PAIR_LABELS.index(own.pair) - first
+    engagement = np.floor(passed / curves.recurrence).astype(np.int64)
     # Less the shift, so that one shift puts the prediction in the phase of every channel.
-    return complex_orders(
-        age[inside] - shift, values[inside], np.arange(1, most * period + 1) / period,
-        period=period, blocks=engagement.astype(np.int64),
-    )  # fmt: skip
+    orders = np.arange(1, most * period + 1) / period
+    return complex_orders(since[inside] - shift, values[inside], orders, period=period, blocks=engagement)
 
 
 def predicted_orders(curves: Curves, own: Channel, like: ComplexOrders) -> ComplexOrders:
