@@ -188,6 +188,8 @@ def predicted_orders(curves: Curves, own: Channel, like: ComplexOrders) -> Compl
     """Orders of the prediction that are those of a measured channel."""
     phases = np.arange(_SAMPLES * like.period) / _SAMPLES
     label = None if own.pair is None else PAIR_LABELS[0]  # all labels have the same life
+    if label is not None:  # the end of the period is before A
+        phases -= like.period * (phases >= int(curves.ahead.min()) + like.period)
     values = curves.value(own.quantity, phases, label)
     return orders_of_period(values, round(like.orders.size / like.period), like.period)
 
