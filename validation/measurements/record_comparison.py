@@ -8,8 +8,7 @@ Means are not compared: encoders and accelerometers have no zero.
 In the terms of ASME V&V 20-2009, eqs. 1-5-2 to 1-5-5: D is a value of the record, S the same value of the
 prediction, E = S - D, and u_val the root of the sum of the squares of their standard uncertainties by the
 record's noise, by the inputs and by the numerics. The error of the model lies within E +- 2 u_val. Here D and
-S are the peak to peak of a channel, and each of its complex orders. Limits: docs/theory/validity.md,
-"A record".
+S are the peak to peak of a channel, and each of its complex orders. Limits: docs/how_to/measured_data.md.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ A signal over u, in cycles, is written as mean + SUM Re(V_m exp(2 pi i m u)), m 
 amplitude, peak. The same signal s cycles later in its period has V_m exp(2 pi i m s).
 
 Sources: least squares with a variance that holds for correlated noise, Liang and Zeger, Biometrika 73 (1986)
-13-22, the clusters being the cycles of the record; docs/theory/validity.md, "A record".
+13-22, the clusters being the cycles of the record; docs/how_to/measured_data.md.
 """
 
 from __future__ import annotations

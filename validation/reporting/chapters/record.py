@@ -119,7 +119,7 @@ def _uncertainties(found: RecordComparison) -> Table:
     for one in found.channels:
         p = one.peak_to_peak
         parts = (p.record, p.inputs, p.numerical, p.u_val)
-        rows.append((one.name, _rounded(p.percent), *(_rounded(100.0 * u / p.measured, 2) for u in parts)))
+        rows.append((one.name, _rounded(p.percent), *(_rounded(100.0 * u / p.measured) for u in parts)))
     columns = {
         "channel": "channel",
         "error": "error E = S − D [%]",
