@@ -53,20 +53,25 @@ def report(
     spurcheck report -o report
     spurcheck report my_pair.toml --speed "3000 rpm" --torque "500 lbf*in" --range 200..6000 -o report_3000
     spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01 --require contact
+    spurcheck report my_pair.toml --record run12.toml --require record
 
     Parameters
     ----------
     quick : Coarser sampling, inputs not varied, for a first look.
-    require : Exit 4 unless the model holds, the motion is stable, or contact is kept: holds, stable, contact.
-    record TOML : Description of a measured transmission error at this speed and torque, to compare with.
+    require : Exit 4 unless the model holds, the motion is stable, contact is kept, or the record confirms the
+        prediction: holds, stable, contact, record.
+    record TOML : Description of a measured record at this speed and torque, to compare with.
     compare OLD : report.json of an earlier report, or its folder: show changes, exit 1 past tolerances.
     tolerance : With --compare: relative change of a number that passes: 1%.
     """
     from lumped.arguments import some_of
+    from lumped.errors import refuse
     from validation.files.folder import check_target
     from validation.reporting import report as write
 
-    required = some_of("--require", require or (), ("holds", "stable", "contact"))
+    required = some_of("--require", require or (), ("holds", "stable", "contact", "record"))
+    if "record" in required and record is None:
+        raise refuse("--require", "record", "with a record", "Add --record FILE.")
     check_target(output, force=force)
     name, gear_pair = pair
     with progress_bar("report") as bar, compiling(bar) as tell:
@@ -89,6 +94,8 @@ def report(
     for row in first.numbers:
         note = f"  ({row.notes})" if row.notes else ""
         console.print(f"  {row.label}: {row.shown}{f', {row.range}' if row.range else ''}{note}")
+    if written.record is not None:
+        console.print(f"record: {written.record.verdict.text} {written.record.words}")
     for action in first.actions:
         console.print(f"next: {action.text}{f': {action.command}' if action.command else ''}")
     console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)")

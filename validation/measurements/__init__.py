@@ -3,13 +3,25 @@
 from validation.measurements.comparison import Prediction, predict
 from validation.measurements.identification import Evaluation, Identification, evaluate
 from validation.measurements.record import Measurement, MeasurementSpec, load_measurement
+from validation.measurements.record_comparison import (
+    ChannelComparison,
+    PeakToPeak,
+    Record,
+    RecordComparison,
+    compare_record,
+)
 
 __all__ = [
+    "ChannelComparison",
     "Evaluation",
     "Identification",
     "Measurement",
     "MeasurementSpec",
+    "PeakToPeak",
     "Prediction",
+    "Record",
+    "RecordComparison",
+    "compare_record",
     "evaluate",
     "load_measurement",
     "predict",

@@ -19,7 +19,7 @@ from lumped.labelling import labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.typing import BoolArray, FloatArray
+from lumped.typing import BoolArray, FloatArray, IntArray
 from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
 
 _SAMPLES = 1024  # of a prediction per mesh cycle
@@ -59,31 +59,54 @@ class Prediction:
         """Whether the labelled pair is in contact."""
         return np.asarray(self.age(cycles, label) < self.geometry.contact_ratio, dtype=np.bool_)
 
+    @cached_property
+    def ahead(self) -> IntArray:
+        """Whole pitches by which each tooth pair of ``cycle`` is ahead of the one that is at A at the start.
+
+        With loaded contact pairs touch before A and behind D, so the last is below 0.
+        """
+        g = self.geometry
+        place = self.cycle["position"].to_numpy()[:, 0] - g.L_XA
+        return np.asarray(np.round(place / g.base_pitch), dtype=np.int64)
+
+    @property
+    def life(self) -> tuple[float, float]:
+        """Mesh cycles since A between which a tooth pair can carry load: wider than A to D if loaded."""
+        if self.pair.mesh.contact == "loaded":
+            return float(self.ahead.min()), float(self.ahead.max()) + 1.0
+        return 0.0, self.geometry.contact_ratio
+
+    def since(self, cycles: ArrayLike, label: str) -> FloatArray:
+        """``age``, negative before A where a pair can touch there."""
+        age, first = self.age(cycles, label), self.life[0]
+        return np.asarray(np.where(age >= self.recurrence + first, age - self.recurrence, age))
+
     def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
         """A predicted quantity [SI] at mesh cycles u; of one labelled pair where it has pairs."""
         places, values = self._curves[quantity]
         if label is None:
             u = np.mod(np.asarray(cycles, dtype=float), 1.0)
             return np.asarray(np.interp(u, places, values, period=1.0), dtype=np.float64)
-        age = self.age(cycles, label)
-        inside = age < self.geometry.contact_ratio
+        age, (first, last) = self.since(cycles, label), self.life
+        inside = (age >= first) & (age < last)
         return np.asarray(np.where(inside, np.interp(age, places, values), 0.0), dtype=np.float64)
 
     @cached_property
     def _curves(self) -> dict[str, tuple[FloatArray, FloatArray]]:
-        """Quantity -> mesh cycles and values: over one cycle, or of one tooth pair from A to D.
+        """Quantity -> mesh cycles and values: over one cycle, or of one tooth pair over its life.
 
-        Whole cycles after A a tooth pair is that many slots ahead. Past the last sample before D its value
-        holds.
+        Whole cycles after A a tooth pair is that many places ahead. Past the last sample of its life its
+        value holds.
         """
         grid = self.cycle["time"].to_numpy() / self.geometry.mesh_period
-        slots = np.arange(self.geometry.pairs)
-        life = (slots[:, None] + grid).ravel()
-        inside = life < self.geometry.contact_ratio
+        young = np.argsort(self.ahead)
+        life = (self.ahead[young][:, None] + grid).ravel()
+        first, last = self.life
+        inside = (life >= first) & (life < last)
         found = {}
         for name, (_, paired) in QUANTITIES.items():
             values = self.cycle[name].to_numpy()
-            found[name] = (life[inside], values[slots[::-1]].ravel()[inside]) if paired else (grid, values)
+            found[name] = (life[inside], values[young].ravel()[inside]) if paired else (grid, values)
         return found
 
 

@@ -27,12 +27,12 @@ COLUMNS = ("dte_peak_to_peak", "tooth_load", "bearing_rms")
 
 
 class Compared(Protocol):
-    """What the budget reads of a comparison with a record."""
+    """What the budget reads of a record: E of the transmission error [m], NaN where it was not measured."""
 
     @property
-    def error(self) -> float: ...
+    def dte_error(self) -> float: ...
     @property
-    def uncertainty(self) -> float: ...
+    def words(self) -> str: ...
 
 
 class Known(Protocol):
@@ -201,7 +201,7 @@ def _rows(known: Known) -> Iterator[Row]:
     yield Row("inputs", "inputs, 5 to 95 %", "inputs", half, note)
     record, size, note = known.measured_error, np.nan, "no measurement is given"
     if record is not None:
-        size, note = abs(record.error), f"prediction less record; known to ±{2e6 * record.uncertainty:.2g} µm"
+        size, note = abs(record.dte_error), record.words
     yield Row("measurement", "measurement", "measurement", (size, np.nan, np.nan), note)
 
 

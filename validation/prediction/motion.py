@@ -27,6 +27,7 @@ from lumped.model.steady import UNSTABLE
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.signals.complex_orders import orders_of_period
 
 _SAMPLES = 512
 #: Load of a tooth pair over the mean mesh force that counts as pulling: rounding of a pair that just touches.
@@ -158,8 +159,7 @@ class Prediction:
 
 def mesh_orders(values: FloatArray, mesh_cycles: int = 1) -> FloatArray:
     """(``ORDERS``,) amplitudes at the mesh orders 1, 2, ... of values at even times over so many cycles."""
-    found = 2.0 * np.abs(np.fft.rfft(values)) / values.size
-    return np.asarray(found[mesh_cycles::mesh_cycles][:ORDERS], dtype=np.float64)
+    return orders_of_period(values, ORDERS, mesh_cycles).amplitudes[mesh_cycles - 1 :: mesh_cycles]
 
 
 #: Where power is lost -> its plain name.

@@ -23,8 +23,9 @@ from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.measurements.model_error import measured_peak_to_peak
 from validation.measurements.record import load_measurement
+from validation.measurements.record_comparison import Record, RecordComparison
+from validation.measurements.record_orders import check_record
 from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
@@ -48,9 +49,10 @@ class Report:
     folder : where it is
     first : what page 1 says
     failed : checks of the program that fail, one phrase each
-    findings : findings about the machine, for gates: "contact", "stable", "holds"
+    findings : findings about the machine, for gates: "contact", "stable", "holds", "record"
     seconds : wall time [s]
     comparison : with an earlier report, where one was given
+    record : the prediction beside a measured record, where one was given
     """
 
     folder: Path
@@ -59,6 +61,7 @@ class Report:
     findings: frozenset[str]
     seconds: float
     comparison: Comparison | None = None
+    record: RecordComparison | None = None
 
 
 def report(
@@ -87,7 +90,7 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling, inputs not varied, for a first look
-    record : description of a measured record of the transmission error at this speed and torque (TOML)
+    record : description of a measured record at this speed and torque (TOML)
     compare : report.json of an earlier report, or its folder
     tolerance : relative change of a number that passes in this comparison
     name : how commands name the pair, its file or preset; default the pair's name
@@ -111,7 +114,7 @@ def report(
     real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
     measured = None if record is None else load_measurement(record)
     if measured is not None:
-        measured_peak_to_peak(measured, gear_pair)  # refused before any work
+        check_record(measured, gear_pair)  # refused before any work
     with whole_folder(target, force=force) as folder, warnings.catch_warnings():
         # The page says where a law is outside its range at the operating point; each speed and sample more
         # would say it again.
@@ -142,13 +145,18 @@ def report(
     tell(1.0, "done")
     changes = None if earlier is None else compare_reports(earlier, data, tolerance)
     seconds = time.perf_counter() - started
-    return Report(target, first, failed_checks(results), findings(results), seconds, changes)
+    compared = results.measured_error
+    return Report(target, first, failed_checks(results), findings(results), seconds, changes, compared)
 
 
 def findings(results: Results) -> frozenset[str]:
-    """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold"."""
-    lost, unstable = results.contact_lost, not results.prediction.stable
+    """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold".
+
+    "record": a measured record does not confirm the prediction.
+    """
+    lost, unstable, record = results.contact_lost, not results.prediction.stable, results.measured_error
     found = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
+    found["record"] = record is not None and record.verdict is not Record.CONFIRMS
     return frozenset(name for name, there in found.items() if there)
 
 

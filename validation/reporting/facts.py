@@ -235,7 +235,7 @@ def _record(results: Results) -> Fact | None:
     if measured is None:
         return None
     return Fact(
-        "record", measured.words.removesuffix("."), measured.error, "m", _scope(results), "model_error"
+        "record", measured.words.removesuffix("."), measured.dte_error, "m", _scope(results), "compare_record"
     )
 
 

@@ -31,8 +31,8 @@ from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
 from validation.cross_check.words import loss_difference, share
 from validation.files.formatting import quantity
-from validation.measurements.model_error import ModelError, model_error
 from validation.measurements.record import Measurement
+from validation.measurements.record_comparison import RecordComparison, compare_record
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
@@ -45,7 +45,14 @@ from validation.prediction.motion import (
     predicted,
 )
 from validation.prediction.resonance import Resonance, nearest_resonance
-from validation.prediction.uncertainty import LONG_STEP, STEP, speed_band, teeth_band, uncertainty
+from validation.prediction.uncertainty import (
+    LONG_STEP,
+    STEP,
+    sampled_predictions,
+    speed_band,
+    teeth_band,
+    uncertainty,
+)
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import parameter_warnings
@@ -386,13 +393,23 @@ class Results:
         return max((a.difference for a in agreements if a.quantity in ("dte", "x_p", "x_g")), default=None)
 
     @cached_property
-    def measured_error(self) -> ModelError | None:
-        """The prediction against a measured record; None without one."""
+    def measured_error(self) -> RecordComparison | None:
+        """The prediction beside a measured record; None without one."""
         if self.record is None:
             return None
-        simulated, linear = self.prediction.peak_to_peak, self.linear
-        share = 0.0 if isinstance(linear, Absent) else float(linear.attrs["error_estimate"])
-        return model_error(self.record, self.pair, simulated, share * simulated, self.uncertainty)
+        known, varied = self.uncertainty, None
+        errors = [float(one.attrs.get("error_estimate", math.nan)) for one in self._motions]
+        share = next((one for one in errors if math.isfinite(one)), 0.0)
+        if not isinstance(known, Absent):
+            self.stage("the record, with uncertain inputs")
+            varied = sampled_predictions(self.pair, known, self.effort.band_samples)
+        return compare_record(self.record, self.prediction, numerical=share, varied=varied)
+
+    @property
+    def _motions(self) -> tuple[xr.Dataset, ...]:
+        """Motions that may say their numerical error; an orbit has no steps and says none."""
+        linear = self.linear
+        return (self.prediction.cycle, *(() if isinstance(linear, Absent) else (linear,)))
 
     @cached_property
     def outside(self) -> tuple[Flag, ...]:

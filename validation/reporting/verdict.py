@@ -8,7 +8,7 @@ from enum import Enum
 
 from floquet.gear.response import Jump
 from validation.files.formatting import number, quantity
-from validation.measurements.model_error import RecordVerdict
+from validation.measurements.record_comparison import Record
 from validation.prediction.motion import Prediction
 from validation.prediction.resonance import Resonance
 from validation.reporting.facts import Fact, rpm, spread_words
@@ -48,7 +48,7 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> tuple[Verdict, st
     if hazard := _hazard(results, facts):
         return Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {hazard[0]}.", hazard[1]
     record = results.measured_error
-    if record is not None and record.verdict is RecordVerdict.CONTRADICTS:
+    if record is not None and record.verdict is Record.CONTRADICTS:
         return Verdict.CONTRADICTED, f"{Verdict.CONTRADICTED.value}.", record.words
     if reason := results.prediction.reason:
         text = f"No motion with unilateral contact was found: {reason}"
@@ -58,7 +58,7 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> tuple[Verdict, st
     doubt = _doubt(results, facts)
     if doubt is not None:
         return Verdict.UNCERTAIN, f"{Verdict.UNCERTAIN.value}: {doubt}.", calm
-    confirmed = record is not None and record.verdict is RecordVerdict.CONFIRMS
+    confirmed = record is not None and record.verdict is Record.CONFIRMS
     why = "A record confirms them." if confirmed else "Every input is known."
     return Verdict.ABSOLUTE, f"{Verdict.ABSOLUTE.value}.", f"{calm} {why}"
 
@@ -76,7 +76,7 @@ def _doubt(results: Results, facts: Mapping[str, Fact]) -> str | None:
         if widest == "dte_peak_to_peak":
             return first
         return f"{first}, {SHORT[widest]} {spread_words(known[widest])}"
-    if record is not None and record.verdict is RecordVerdict.CONFIRMS:
+    if record is not None and record.verdict is Record.CONFIRMS:
         return None
     return f"{facts['inputs'].claim}, and no record confirms the prediction" if assumed else None
 

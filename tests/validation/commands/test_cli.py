@@ -187,7 +187,19 @@ def test_findings_about_the_machine_exit_4_where_a_gate_forbids_them(asked, tmp_
     asked["findings"] = frozenset(found)
     result = run("report", "-o", tmp_path / "out", *(word for one in require for word in ("--require", one)))
     assert result.exit_code == code
-    assert "holds, stable, contact" in refused("report", "-o", tmp_path / "out", "--require", "quiet")
+    assert "holds, stable, contact, record" in refused("report", "-o", tmp_path / "out", "--require", "quiet")
+
+
+def test_a_record_that_does_not_confirm_exits_4_where_it_is_required(asked, tmp_path):
+    asked["findings"] = frozenset({"record"})
+    options = ("report", "-o", tmp_path / "out", "--record", tmp_path / "run12.toml")
+    assert run(*options).exit_code == 0
+    result = run(*options, "--require", "record")
+    assert result.exit_code == 4
+    assert "--require is not met: record" in result.stdout
+    asked["findings"] = frozenset()
+    assert run(*options, "--require", "record").exit_code == 0
+    assert "Add --record" in refused("report", "-o", tmp_path / "out", "--require", "record")
 
 
 @pytest.mark.parametrize("fails", [False, True])

@@ -1,4 +1,4 @@
-"""The chapters of the report, one module each, in their order: nine, and one where teeth differ.
+"""The chapters of the report, one module each, in their order: nine, one where teeth differ, one of a record.
 
 A module writes ``CHAPTER``.
 """
@@ -11,6 +11,7 @@ from validation.reporting.chapters import (
     how_sure,
     inputs,
     losses,
+    record,
     response,
     second_program,
     stability,
@@ -27,6 +28,7 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         teeth,
         losses,
         how_sure,
+        record,
         second_program,
         inputs,
         evidence,

@@ -9,7 +9,6 @@ import xarray as xr
 
 from lumped.outcomes import Absent
 from validation.files.formatting import span
-from validation.measurements.model_error import ModelError
 from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
 from validation.reporting.blocks import Block, Cell, Content, Picture, Quantity, Table, Text
@@ -30,8 +29,6 @@ def write(results: Results) -> Content:
         )
     )
     result = f"The largest error of the prediction is “{budget.attrs['largest_name']}”."
-    if results.measured_error is not None:
-        blocks.append(_measured_table(results.measured_error))
     if isinstance(found, Absent):
         blocks.append(Text("The inputs were not varied in this report."))
         return Content(result, tuple(blocks))
@@ -84,20 +81,6 @@ def _budget_table(budget: xr.Dataset) -> Table:
         "note": "",
     }
     return Table("error_budget", "Error budget of the prediction.", columns, rows)
-
-
-def _measured_table(found: ModelError) -> Table:
-    rows = (
-        ("prediction S, peak to peak", Quantity(found.simulated, "m")),
-        ("record D, peak to peak", Quantity(found.measured, "m")),
-        ("error E = S − D", Quantity(found.error, "m")),
-        ("standard uncertainty of the numerics", Quantity(found.numerical, "m")),
-        ("standard uncertainty by the inputs", Quantity(found.inputs, "m")),
-        ("standard uncertainty of the record, by its noise", Quantity(found.record, "m")),
-        ("all three, u_val", Quantity(found.uncertainty, "m")),
-    )
-    words = "The prediction beside the record: the error of the model lies within E ± 2 u_val."
-    return Table("measured", words, {"what": "transmission error", "value": "value"}, rows)
 
 
 def _ranges(found: xr.Dataset) -> Table:

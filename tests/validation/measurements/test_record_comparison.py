@@ -1,0 +1,266 @@
+"""Does a right record confirm the prediction, and does one that is wrong in any channel contradict it?"""
+
+import dataclasses
+from functools import cache
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.errors import ParameterError
+from tests.unlike_pairs import unlike_pair
+from tests.validation.measurements.dynamic_records import dynamic_record, motion
+from validation.exchange.new_pair_file import new_pair
+from validation.measurements.record_comparison import (
+    NOT_VARIED,
+    SHARE,
+    UNKNOWN,
+    PeakToPeak,
+    Record,
+    compare_record,
+)
+from validation.prediction.motion import predicted
+from validation.prediction.uncertainty import Varied
+
+PAIRS = {
+    "19/41": lambda: new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80),
+    "31/57 contact lost": lambda: new_pair("31/57", module=3, face_width=25, speed=10500, torque=120).with_(
+        {"mesh.damping_ratio": 0.02, "pinion.tip_relief": None, "gear.tip_relief": None}
+    ),
+    "fzg_c": lambda: lumped.load_gear_pair("fzg_c"),
+    "25/103": lambda: new_pair("25/103", module=2, face_width=20, speed=1500, torque=60),
+}
+SEVERAL = ("dte", "x_p", "bearing_force_y_g")
+WITH_A_TOOTH = ("dte", "normal_load", "friction_force")
+
+
+@cache
+def motion_of(name):
+    return predicted(PAIRS[name]())
+
+
+@cache
+def varied(name, spread=0.05):
+    """Predictions at torques about the given one: the motion moves by about as much."""
+    pair = PAIRS[name]()
+    torque = pair.operating.pinion_torque
+    factors = (1.0 - spread, 1.0 - 0.3 * spread, 1.0 + 0.6 * spread, 1.0 + spread)
+    samples = (predicted(pair.with_({"operating.pinion_torque": f * torque})) for f in factors)
+    return Varied(motion_of(name), tuple(samples))
+
+
+def compared(name, quantities=SEVERAL, *, samples=None, **made):
+    prediction = motion_of(name)
+    return compare_record(dynamic_record(prediction, quantities, **made), prediction, varied=samples)
+
+
+def test_contact_is_lost_in_one_of_the_pairs():
+    assert [name for name in PAIRS if motion_of(name).contact_lost] == ["31/57 contact lost"]
+
+
+@pytest.mark.parametrize("quantities", [("dte",), SEVERAL, WITH_A_TOOTH], ids=" ".join)
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_right_record_confirms(name, quantities):
+    # Another phase, 50.317 samples a mesh cycle; 400 mesh cycles hold many engagements of tooth pair A.
+    for seed, phase in ((1, 0.37), (2, 0.81)):
+        found = compared(name, quantities, cycles=400, seed=seed, phase=phase)
+        assert [one.verdict for one in found.channels] == len(quantities) * [Record.CONFIRMS], found.words
+        assert min(one.explained for one in found.channels) > 0.995
+        assert found.shift % 1.0 == pytest.approx(phase, abs=2e-3)
+        assert compared(name, quantities, cycles=400, samples=varied(name)).verdict is Record.CONFIRMS
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+@pytest.mark.parametrize("name", PAIRS)
+def test_one_percent_of_noise_changes_no_verdict(name, noise):
+    for change, verdict in ((None, Record.CONFIRMS), (flip("x_p"), Record.CONTRADICTS)):
+        for seed in range(5):
+            found = compared(name, noise=noise, change=change, seed=seed)
+            assert found.verdict is verdict, found.words
+
+
+def flip(name):
+    return lambda quantity, values, u: -values if quantity == name else values
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_pure_third_order_of_the_right_size_contradicts(name):
+    swing = motion_of(name).peak_to_peak
+
+    def third(quantity, values, u):
+        return 0.5 * swing * np.sin(6.0 * np.pi * u)
+
+    for samples in (None, varied(name)):
+        found = compared(name, ("dte",), change=third, samples=samples, noise=0.005)
+        assert abs(found.error) < 0.02 * swing  # the size alone says nothing
+        assert found.verdict is Record.CONTRADICTS
+        assert not found.leading.contradicts_size
+        assert "Order 3 is" in found.words or "Order 1 is" in found.words
+
+
+@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("factor", [1.0 / 0.73, 0.7])
+def test_a_wrong_size_contradicts_and_is_told_in_percent_of_the_measured(name, factor):
+    for samples in (None, varied(name)):
+        found = compared(name, change=lambda q, values, u: factor * values, samples=samples)
+        assert found.verdict is Record.CONTRADICTS, found.words
+        assert found.peak_to_peak.percent == pytest.approx(100.0 * (1.0 / factor - 1.0), abs=1.5)
+        assert "27 % too low" in found.words if factor > 1.0 else "43 % too high" in found.words
+        assert "Order" not in found.words  # the shape is right
+        assert ("not varied" in found.words) == (samples is None)
+
+
+def test_a_record_far_off_contradicts_without_varied_inputs():
+    # 12 um off: the fault was that inputs that are not varied hid it.
+    for name in ("19/41", "fzg_c"):
+        swing = motion_of(name).peak_to_peak
+        found = compared(name, ("dte",), change=lambda q, v, u, swing=swing: v * (1.0 + 12e-6 / swing))
+        assert found.error == pytest.approx(-12e-6, rel=0.02)
+        assert found.verdict is Record.CONTRADICTS
+
+
+@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("samples", [False, True])
+def test_a_channel_in_the_wrong_phase_or_sign_contradicts(name, samples):
+    prediction = motion_of(name)
+
+    def late(quantity, values, u):
+        return motion(prediction, "x_p", u - 0.1) if quantity == "x_p" else values
+
+    for change in (late, flip("x_p"), flip("bearing_force_y_g")):
+        found = compared(name, change=change, samples=varied(name) if samples else None)
+        sizes = [abs(one.peak_to_peak.percent) for one in found.channels]
+        assert max(sizes) < 2.0  # peaks to peak are right
+        assert found.verdict is Record.CONTRADICTS, found.words
+        assert "degrees" in found.words or "opposite sign" in found.words or "Order" in found.words
+
+
+def test_the_order_of_the_channels_does_not_matter():
+    for change in (None, flip("x_p")):
+        one, other = (compared("25/103", names, change=change) for names in (SEVERAL, SEVERAL[::-1]))
+        assert one.verdict is other.verdict
+        assert one.leading.quantity == other.leading.quantity == "dte"
+
+
+def test_a_noisy_record_is_too_uncertain_and_never_contradicts():
+    for name in PAIRS:
+        verdicts = [compared(name, noise=4.0, cycles=45, per_cycle=20.3, seed=seed) for seed in range(10)]
+        # Noise alone contradicts in 5 of 100 records at most: 3 of 10 would be one in 90.
+        wrong = sum(one.verdict is Record.CONTRADICTS for one in verdicts)
+        assert wrong <= 2
+        assert sum(one.verdict is Record.TOO_UNCERTAIN for one in verdicts) >= 8
+        assert any("noise" in one.words for one in verdicts)
+
+
+def test_more_of_a_noisy_record_is_certain():
+    short, long = (compared("19/41", noise=1.0, cycles=count) for count in (20, 2000))
+    assert (short.verdict, long.verdict) == (Record.TOO_UNCERTAIN, Record.CONFIRMS)
+
+
+def test_inputs_that_leave_much_neither_confirm_nor_contradict():
+    many = varied("25/103", 0.6)
+    found = compared("25/103", ("dte",), change=lambda q, v, u: 1.3 * v, samples=many)
+    assert found.verdict is Record.TOO_UNCERTAIN
+    assert "known to" in found.words
+    assert 2.0 * found.uncertainty > UNKNOWN * found.measured
+    # A record that is met is met, whatever the inputs could have done.
+    assert compared("25/103", ("dte",), samples=many).verdict is Record.CONFIRMS
+
+
+def test_without_varied_inputs_a_moderate_difference_is_no_verdict():
+    # Between SHARE and twice NOT_VARIED.
+    found = compared("19/41", ("dte",), change=lambda q, v, u: v / 0.82)
+    assert SHARE < abs(found.error) / found.measured < 2.0 * NOT_VARIED
+    assert found.verdict is Record.TOO_UNCERTAIN
+    assert "not varied" in found.words
+
+
+def test_inputs_move_the_prediction_by_as_much_as_their_samples_do():
+    name = "fzg_c"
+    given, samples = motion_of(name), varied(name)
+    found = compared(name, ("dte",), samples=samples).peak_to_peak
+    moves = [one.peak_to_peak - given.peak_to_peak for one in samples.samples]
+    assert found.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=5e-3)
+
+
+def test_three_uncertainties_add_as_squares():
+    found = PeakToPeak(4e-6, 5e-6, record=2e-7, inputs=1e-7, numerical=2e-7)
+    assert found.error == pytest.approx(1e-6)
+    assert found.u_val == pytest.approx(3e-7)
+    assert found.percent == pytest.approx(25.0)
+
+
+def test_orders_have_the_amplitudes_and_phases_that_were_put_in():
+    def change(quantity, values, u):
+        return 3e-6 * np.cos(2 * np.pi * u) + 1e-6 * np.cos(2 * np.pi * 4 * u + 0.5)
+
+    found = compared("25/103", ("dte",), change=change, noise=0.003)
+    orders = found.orders.sel(channel="dte")
+    for order, size in ((1, 3e-6), (4, 1e-6)):
+        one = orders.sel(order=order)
+        assert float(one["measured"]) == pytest.approx(size, abs=4.0 * float(one["measured_deviation"]))
+    # Unrelated to the common shift: the phase of order 4 less four times that of order 1.
+    leading = found.leading.measured
+    turn = np.angle(leading.values[leading.orders == 4] * leading.values[leading.orders == 1].conj() ** 4)
+    assert turn[0] % (2 * np.pi) == pytest.approx((0.5 + 2 * np.pi * (4 - 4) * 0.37) % (2 * np.pi), abs=0.05)
+
+
+def test_teeth_that_differ_are_compared_by_their_mean_mesh_cycle():
+    prediction = predicted(unlike_pair("unlike_teeth_finite_elements"))
+    count = prediction.mesh_cycles
+    assert count > 1
+    # Two hunting periods, and the same of a record that is no whole number of them.
+    for cycles in (2 * count, 3.4 * count):
+        made = dynamic_record(prediction, ("dte", "x_p"), cycles=cycles)
+        found = compare_record(made, prediction)
+        assert found.verdict is Record.CONFIRMS, found.words
+        assert found.mesh_cycles == count
+    # Mesh orders alone: the swing over a revolution is larger.
+    assert found.measured < 0.5 * prediction.peak_to_peak
+    wrong = dynamic_record(prediction, ("dte", "x_p"), cycles=2 * count, change=flip("x_p"))
+    assert compare_record(wrong, prediction).verdict is Record.CONTRADICTS
+
+
+@pytest.mark.parametrize("name", ["19/41", "fzg_c"])
+def test_a_speed_stated_a_little_wrong_is_found(name):
+    prediction = motion_of(name)
+    made = dynamic_record(prediction, SEVERAL, cycles=800)
+    for off in (-0.003, 0.0008):
+        found = compare_record(dataclasses.replace(made, abscissa=made.abscissa / (1.0 + off)), prediction)
+        assert found.verdict is Record.CONFIRMS, found.words
+
+
+@pytest.mark.parametrize("off", [-0.03, 0.02])
+def test_samples_of_another_speed_are_refused_with_that_speed(off):
+    prediction = motion_of("19/41")
+    made = dynamic_record(prediction, SEVERAL)
+    wrong = dataclasses.replace(made, abscissa=made.abscissa / (1.0 + off))
+    with pytest.raises(ParameterError, match=f"about {str(1450 * (1 + off))[:3]}"):
+        compare_record(wrong, prediction)
+
+
+@pytest.mark.parametrize(("changes", "match"), [
+    ({"pinion_speed": "3000 rpm"}, "pinion_speed"),
+    ({"pinion_torque": 81.7}, "pinion_torque"),
+])  # fmt: skip
+def test_a_record_of_something_else_is_refused(changes, match):
+    prediction = motion_of("19/41")
+    with pytest.raises(ParameterError, match=match):
+        compare_record(dynamic_record(prediction, **changes), prediction)
+
+
+def test_samples_at_few_phases_show_few_orders():
+    # 10 samples in every mesh cycle: 3 orders, over which both peaks to peak are.
+    found = compared("19/41", ("dte",), per_cycle=10, noise=0.0, cycles=80)
+    assert found.leading.measured.orders.max() <= 3
+    assert found.verdict is not Record.CONTRADICTS
+
+
+def test_the_table_is_what_the_channels_say():
+    found = compared("31/57 contact lost", change=flip("x_p"))
+    table = found.table.sel(channel="x_p")
+    own = next(one for one in found.channels if one.name == "x_p")
+    assert float(table["explained"]) == own.explained < 0.5
+    assert str(table["verdict"].item()) == "CONTRADICTS"
+    assert found.table.attrs["verdict"] == "CONTRADICTS"
+    assert float(table["worst_order"]) in own.measured.orders

@@ -1,0 +1,216 @@
+"""Mesh orders of a record, and those of the prediction at the same orders.
+
+A channel of one tooth pair is taken over the mesh cycles of each engagement: as many as the motion has places
+for tooth pairs. So its orders are parts of mesh orders.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from lumped.errors import refuse
+from lumped.fields.units import to_stated
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, IntArray
+from validation.measurements.comparison import Prediction as Curves
+from validation.measurements.comparison import mesh_cycles
+from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
+from validation.prediction.motion import Prediction
+from validation.signals.complex_orders import ComplexOrders, complex_orders, orders_of_period
+
+#: Most mesh orders of a record, most per different phase of its samples, and how many phases of a mesh cycle
+#: are different.
+_ORDERS, _PER_PHASE, _DIFFERENT = 40, 0.3, 1000
+#: Samples for each number that is fitted.
+_PER_NUMBER = 4
+#: Speed and torque of the record may be this share off those of the pair.
+_SAME = 0.01
+#: Samples of the prediction in a mesh cycle.
+_SAMPLES = 512
+#: The mesh frequency of a record may be this share off that of its stated speed. So many orders find it, with
+#: so many trials in a wave of the last of them, over so many mesh cycles at first and then over more.
+_OFF, _FIRST, _TRIALS, _SHORT = 0.005, 6, 4.0, 64.0
+#: Share of the stated speed within which another one is looked for.
+_FAR = 0.05
+#: Share by which the orders must carry more at another frequency than at the stated one.
+_BETTER = 1e-3
+#: Mesh cycles in a bin of a record for its coarse shift.
+BIN = 1.0 / 32.0
+
+
+def check_record(measurement: Measurement, pair: GearPair) -> None:
+    """Refuse a record of another speed or torque than the pair's, or of too few samples.
+
+    Another speed is one that is stated, or one at which the mesh orders of the samples are.
+    """
+    spec, own = measurement.spec, pair.operating
+    for name, there in (("pinion_speed", spec.pinion_speed), ("pinion_torque", spec.pinion_torque)):
+        here = float(getattr(own, name))
+        if abs(there / here - 1.0) > _SAME:
+            action = "Give the speed and the torque of the record to the pair."
+            raise refuse(f"measurement.{name}", f"{there:.5g}", f"{here:.5g} within 1 %, SI", action)
+    if _resolved(mesh_cycles(measurement, pair)) < 1:
+        refused = f"{measurement.abscissa.size} samples"
+        raise refuse("data", refused, "several in each mesh cycle", "Sample faster, or longer.")
+    _refuse_other_speed(measurement, pair)
+
+
+def cycles_in_step(measurement: Measurement, pair: GearPair) -> FloatArray:
+    """Mesh cycles (k,) of the samples, at the mesh frequency that the record has itself.
+
+    A speed that is stated 0.1 % too high makes the orders of 500 mesh cycles average out. So the frequency is
+    the one within 0.5 % at which the first mesh orders of all channels carry most; of a record whose samples
+    the stated speed explains as well it is that of the stated speed.
+    """
+    carried = _Carried.of(measurement, pair)
+    cycles = mesh_cycles(measurement, pair)
+    if carried is None or carried.reach * _OFF * _TRIALS < 0.5:
+        return cycles
+    factor, width, length = 1.0, _OFF, min(_SHORT, carried.reach)
+    while True:
+        factor, width = carried.strongest(factor, width, length)
+        if length >= carried.reach:
+            break
+        length = min(4.0 * length, carried.reach)
+    fine = minimize_scalar(
+        lambda one: -carried(float(one), carried.reach), bounds=(factor - width, factor + width),
+        method="bounded", options={"xatol": 1e-3 * width},
+    )  # fmt: skip
+    better = -float(fine.fun) > (1.0 + _BETTER) * carried(1.0, carried.reach)
+    return cycles * float(fine.x) if better else cycles
+
+
+def _refuse_other_speed(measurement: Measurement, pair: GearPair) -> None:
+    """Refuse a record most of whose motion is at the mesh orders of another speed."""
+    carried = _Carried.of(measurement, pair)
+    if carried is None:
+        return
+    length = min(_SHORT, carried.reach)
+    there, _ = carried.strongest(1.0, _FAR, length)
+    here, _ = carried.strongest(1.0, _OFF, length)
+    most = carried(there, length)
+    if most > 0.5 and most > 4.0 * carried(here, length):
+        stated = to_stated(measurement.spec.pinion_speed, "rpm")
+        raise refuse(
+            "measurement.pinion_speed", f"{stated:.5g} rpm",
+            f"the speed of the samples, whose mesh orders are those of about {stated * there:.4g} rpm",
+            "Correct the speed in the description.",
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _Carried:
+    """Share of a record's variation that the first mesh orders carry, over a factor on its mesh frequency."""
+
+    cycles: FloatArray
+    values: FloatArray
+    orders: IntArray
+
+    @classmethod
+    def of(cls, measurement: Measurement, pair: GearPair) -> _Carried | None:
+        """Of the channels that are no tooth pair's; None where there is none."""
+        cycles = mesh_cycles(measurement, pair)
+        values = [measurement.channels[one.name] for one in measurement.spec.channel if one.pair is None]
+        if not values:
+            return None
+        return cls(cycles - cycles[0], np.stack(values), np.arange(1, min(_FIRST, _resolved(cycles)) + 1))
+
+    @property
+    def reach(self) -> float:
+        """Mesh cycles of the record."""
+        return float(self.cycles[-1])
+
+    def __call__(self, factor: float, length: float) -> float:
+        """The share, mean over the channels, over the first mesh cycles."""
+        count = int(np.searchsorted(self.cycles, length, side="right"))
+        part = self.values[:, :count] - self.values[:, :count].mean(axis=1, keepdims=True)
+        power = np.maximum(np.sum(part**2, axis=1), 1e-300)
+        first = np.exp(-2j * np.pi * factor * self.cycles[:count])
+        found = sum(np.abs(part @ first**m) ** 2 for m in self.orders)
+        return float(np.mean(2.0 * found / (count * power)))
+
+    def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
+        """The factor within ``about`` +- ``width`` at which most is carried, and the step of the trials."""
+        step = 1.0 / (_TRIALS * float(self.orders[-1]) * length)
+        trials = about + step * np.arange(-np.floor(width / step), np.floor(width / step) + 1)
+        return float(trials[int(np.argmax([self(float(one), length) for one in trials]))]), step
+
+
+def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Curves:
+    """The motion averaged over the mesh cycles of its period, readable at any mesh cycle."""
+    count, cycle = prediction.mesh_cycles, prediction.cycle
+    size = cycle.sizes["time"] // count
+    names = [name for name in QUANTITIES if name in cycle]
+    first = cycle[[*names, "position"]].isel(time=slice(0, size))
+    for name in names:
+        values = cycle[name].to_numpy()[..., : count * size]
+        first[name] = first[name].copy(data=values.reshape(*values.shape[:-1], count, size).mean(axis=-2))
+    return Curves(prediction.pair, first, recurrence or prediction.pair.pinion.teeth)
+
+
+def _resolved(cycles: FloatArray, period: int = 1) -> int:
+    """Mesh orders that samples at these cycles show, of a signal that repeats after ``period`` cycles."""
+    # Samples that are no whole number in a mesh cycle fill in its phases.
+    phases = np.unique(np.round(_DIFFERENT * cycles) % _DIFFERENT).size
+    enough = (cycles.size / _PER_NUMBER - 1.0) / (2 * period)
+    return int(max(min(_ORDERS, _PER_PHASE * phases, enough), 0.0))
+
+
+def measured_orders(
+    values: FloatArray, cycles: FloatArray, curves: Curves, own: Channel, shift: float
+) -> ComplexOrders:
+    """Orders of a channel; of one tooth pair over as many mesh cycles as pairs are in contact at once."""
+    if own.pair is None:
+        return complex_orders(cycles, values, np.arange(1, _resolved(cycles) + 1))
+    period, first = curves.ahead.size, int(curves.ahead.min())
+    if curves.recurrence < period:
+        action = "Count the mesh cycles until the same labelled pair is in contact again."
+        raise refuse("measurement.recurrence", curves.recurrence, f">= {period}", action)
+    since = curves.since(cycles + shift, own.pair)
+    inside = since < first + period
+    most = _resolved(cycles[inside], period)
+    if most < 1:
+        allowed = f"a record in which pair {own.pair} is in contact for many samples"
+        refused = f"{np.count_nonzero(inside)} samples in contact"
+        raise refuse(f"channel.{own.name}", refused, allowed, "Record longer; check pair and recurrence.")
+    passed = cycles[inside] + shift - PAIR_LABELS.index(own.pair) - first
+    engagement = np.floor(passed / curves.recurrence).astype(np.int64)
+    # Less the shift, so that one shift puts the prediction in the phase of every channel.
+    orders = np.arange(1, most * period + 1) / period
+    return complex_orders(since[inside] - shift, values[inside], orders, period=period, blocks=engagement)
+
+
+def predicted_orders(curves: Curves, own: Channel, like: ComplexOrders) -> ComplexOrders:
+    """Orders of the prediction that are those of a measured channel."""
+    phases = np.arange(_SAMPLES * like.period) / _SAMPLES
+    label = None if own.pair is None else PAIR_LABELS[0]  # all labels have the same life
+    if label is not None:  # the end of the period is before A
+        phases -= like.period * (phases >= int(curves.ahead.min()) + like.period)
+    values = curves.value(own.quantity, phases, label)
+    return orders_of_period(values, round(like.orders.size / like.period), like.period)
+
+
+def coarse_shift(
+    measurement: Measurement, cycles: FloatArray, curves: Curves, channels: Sequence[Channel]
+) -> float:
+    """Shift at which a record with channels of tooth pairs correlates best, to a bin; 0 of other records."""
+    if all(one.pair is None for one in channels):
+        return 0.0
+    count = round(curves.recurrence / BIN)
+    index = np.floor(np.mod(cycles, curves.recurrence) / BIN)
+    index = index.astype(np.int64) % count
+    filled = np.maximum(np.bincount(index, minlength=count), 1)
+    total, middles = np.zeros(count), (np.arange(count) + 0.5) * BIN
+    for one in channels:
+        values = measurement.channels[one.name]
+        mean = np.bincount(index, weights=values - values.mean(), minlength=count) / filled
+        model = curves.value(one.quantity, middles, one.pair)
+        model = model - model.mean()
+        size = float(np.linalg.norm(mean) * np.linalg.norm(model))
+        if size > 0.0:
+            total += np.fft.irfft(np.fft.rfft(mean).conj() * np.fft.rfft(model), count) / size
+    return float(total.argmax()) * BIN
