@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
+from collections.abc import Iterable
 from importlib.resources import files
 from typing import Any
 
@@ -50,6 +51,26 @@ def quantity(value: float, unit: str, digits: int = 4, *, measured: bool = False
             scaled = value / 10.0**exponent
         value, unit = scaled, f"{_PREFIXES[exponent]}{unit}"
     return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
+
+
+def side_by_side(values: Iterable[float], unit: str, digits: int = 3) -> tuple[list[str], str]:
+    """Numbers in SI in the unit of the largest, with digits that tell them apart; and that unit.
+
+    At most three further digits; what is equal then reads the same.
+    """
+    values = [float(value) for value in values]
+    largest = max(map(abs, values), default=0.0)
+    name = "" if unit == "1" else f"{_SPACE}{unit.replace(' ', _SPACE)}"
+    factor = 1.0
+    if unit in _PREFIXED and largest > 0.0:
+        exponent = min(max(3 * math.floor(math.log10(largest) / 3), -12), 9)
+        factor, name = 10.0**exponent, f"{_SPACE}{_PREFIXES[exponent]}{unit}"
+    scaled = [value / factor for value in values]
+    for more in range(4):
+        texts = [number(value, digits + more) for value in scaled]
+        if len(set(texts)) == len(set(values)):
+            break
+    return texts, name
 
 
 def prose(text: str) -> str:
