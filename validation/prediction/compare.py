@@ -58,7 +58,8 @@ OF_TEETH = {"revolution_dte_peak_to_peak": "transmission error over all teeth"}
 LARGER = frozenset({"efficiency"})
 #: Probability with which the interval of a share holds it.
 SURE = 0.9
-#: A share of the machines from which on a variant counts as better; below it the inputs show no difference.
+#: A share of the machines from which on a variant counts as better, of two variants of the machines in which
+#: they differ; below it the inputs show no difference.
 CLEAR = 0.8
 #: Two results are equal where they differ by no more than this share of the larger one.
 _EQUAL = 1e-9
@@ -401,14 +402,17 @@ def _sentence(
     if len(alike) == len(letters):
         share = float(equal[first, [k for k in alike if k != first]].min())
         return f"{_all(letters)} are equal in {of_hundred(share)} {machines}: {values}."
+    clear = float(best[first])
     if len(letters) == 2:
-        share = float(better[first, 1 - first])
+        share, tied = float(better[first, 1 - first]), float(equal[0, 1])
+        clear = share / (1.0 - tied)  # of the machines in which they differ
         values = f"{text} {words[first]} against {words[1 - first]}"
         said = f"{letters[first]} is better than {letters[1 - first]} in {of_hundred(share)} {machines}"
+        said += f", equal in {of_hundred(tied)}" if tied > 0.0 else ""
     else:
-        share, verb = float(best[first]), "is" if len(alike) == 1 else "are"
-        said = f"{_all([letters[k] for k in alike])} {verb} best in {of_hundred(share)} {machines}"
-    if share < CLEAR:
+        verb = "is" if len(alike) == 1 else "are"
+        said = f"{_all([letters[k] for k in alike])} {verb} best in {of_hundred(clear)} {machines}"
+    if clear < CLEAR:
         return f"No difference that these inputs can show: {values}; {said}."
     against = "" if place[first] == 1 else ", though not with the values as given"
     return f"{said}{against}: {values}."
