@@ -1,7 +1,7 @@
 """Shares of ``spurcheck.compare`` against plain Monte Carlo: ``python -m tests.evidence.rankings``.
 
-Seven pairs of variants, five results of each. The own program draws independent uniform numbers, one for every
-input, and decides by a list of each case, written by hand, which inputs the variants do not share.
+Seven pairs of variants, five results of each. The own program draws independent uniform numbers, one for
+every input, and a list of each case, written by hand, says which inputs the variants do not share.
 """
 
 from __future__ import annotations

@@ -27,7 +27,6 @@ from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
-from lumped.model.results import cycle_peak_to_peak
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
 from lumped.typing import FloatArray, Progress
@@ -37,6 +36,7 @@ from validation.prediction.motion import QUANTITIES, Motion, predicted
 from validation.prediction.uncertainty import (
     PERCENTILES,
     TEETH,
+    TEETH_SAMPLES,
     end_shares,
     importance_of,
     of_teeth,
@@ -291,8 +291,10 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]], *, own_teet
 
 def _over_the_period(pair: GearPair) -> float:
     """Peak to peak of the transmission error over the period of the teeth, in the linear form [m]."""
-    own = of_teeth(pair)
-    return own[0] if own else float(cycle_peak_to_peak(lumped.steady_state(pair), "dte"))
+    if own := of_teeth(pair):
+        return own[0]
+    motion = lumped.steady_state(pair, samples_per_cycle=TEETH_SAMPLES)
+    return float(motion.attrs["dte_peak_to_peak"])
 
 
 def _dataset(

@@ -44,7 +44,7 @@ TEETH = {
     "revolution_dte_peak_to_peak": ("m", "transmission error over the period of the teeth, peak to peak"),
     "sideband_ratio": ("1", "largest sideband of the mesh frequency in the transmission error, over it"),
 }
-_TEETH_SAMPLES = 32
+TEETH_SAMPLES = 32
 #: Samples of them beside those of like teeth, and mesh cycles of all together.
 _LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = 8, 32, 30_000
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
@@ -262,7 +262,7 @@ def of_teeth(pair: GearPair) -> list[float]:
     """The quantities ``TEETH``; none of like teeth."""
     if pair.healthy is pair:
         return []
-    motion = lumped.steady_state(pair, samples_per_cycle=_TEETH_SAMPLES)
+    motion = lumped.steady_state(pair, samples_per_cycle=TEETH_SAMPLES)
     beside = [sidebands(motion, gear, most=3)["ratio"][0].drop_sel(sideband=0) for gear in GEARS]
     return [float(motion.attrs["dte_peak_to_peak"]), max(float(one.max()) for one in beside)]
 
