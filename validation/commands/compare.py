@@ -119,13 +119,14 @@ def _show(found: xr.Dataset) -> None:
     rows = []
     for one in found["result"].to_numpy():
         of = found.sel(result=one)
-        cells, unit = as_read(one, found[f"{one}_given"].to_numpy())
+        given = found[f"{one}_given"].to_numpy()
+        cells, unit = as_read(one, given)
         better = ", larger is better" if one in LARGER else ""
         text = f"{(RESULTS | OF_TEETH)[str(one)]}{better}" + (f" [{unit.strip()}]" if unit else "")
         if two:
             ends = found[f"{one}_difference"].sel(variant="B", other="A", percentile=[5.0, 95.0])
-            (low, high), end_unit = as_read(one, ends.to_numpy(), 2)
-            other = f"{low} to {high}{end_unit}"
+            (low, high), _ = as_read(one, ends.to_numpy(), 2, given)
+            other = f"{low} to {high}"
         else:
             best = of["best"].to_numpy()
             other = f"{letters[int(best.argmax())]} in {of_hundred(float(best.max()))}"

@@ -53,13 +53,16 @@ def quantity(value: float, unit: str, digits: int = 4, *, measured: bool = False
     return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
 
 
-def side_by_side(values: Iterable[float], unit: str, digits: int = 3) -> tuple[list[str], str]:
+def side_by_side(
+    values: Iterable[float], unit: str, digits: int = 3, beside: Iterable[float] = ()
+) -> tuple[list[str], str]:
     """Numbers in SI in the unit of the largest, with digits that tell them apart; and that unit.
 
-    At most three further digits; what is equal then reads the same.
+    At most three further digits; what is equal then reads the same. ``beside``: other numbers of the same
+    line of a table, whose largest chooses the unit.
     """
     values = [float(value) for value in values]
-    largest = max(map(abs, values), default=0.0)
+    largest = max(map(abs, list(beside) or values), default=0.0)
     name = "" if unit == "1" else f"{_SPACE}{unit.replace(' ', _SPACE)}"
     factor = 1.0
     if unit in _PREFIXED and largest > 0.0:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from validation.plots.axes import label_axis
 from validation.plots.style import BLACK, BLUE, GREY, IN_Y, RED, new_figure, write_beside
-from validation.prediction.compare import LARGER, of_hundred
+from validation.prediction.compare import LARGER, differences, of_hundred
 
 #: Most machines that are drawn in a row, and half the height over which they are spread.
 _DOTS, _HALF = 256, 0.28
@@ -31,17 +31,15 @@ def compare_figure(found: xr.Dataset) -> Figure:
     height = len(names) * (_FRAME + _ROW * len(others)) + 0.16 * (2 + len(others))
     figure, axes = new_figure(len(names), 1, height=height)
     for ax, name in zip(axes[:, 0], names, strict=True):
-        percent = name == "efficiency"
-        values = found[name] * (100.0 if percent else 1.0)
-        values.attrs = found[name].attrs | ({"units": "%"} if percent else {})
-        differences = (values - values.sel(variant="A")).sel(variant=others)
-        differences.attrs = values.attrs
-        text = values.attrs["long_name"]
-        least = "B less A" if len(others) == 1 else "each less A"
-        factor = label_axis(ax, "x", differences, text=f"{text}, {least}")
+        values = found[name].to_numpy()
+        unit, per = ("%", 100.0) if name == "efficiency" else (found[name].attrs["units"], 1.0)
+        off = xr.DataArray(per * differences(values[1:], values[:1])[:, 0], attrs={"units": unit})
+        text = str(found[name].attrs["long_name"])
+        less = "B less A" if len(others) == 1 else "each less A"
+        factor = label_axis(ax, "x", off, text=f"{text}, {less}")
         sign = 1.0 if name in LARGER else -1.0
         for row, letter in enumerate(reversed(others)):
-            size = differences.sel(variant=letter).to_numpy() / factor
+            size = off.to_numpy()[others.index(letter)] / factor
             spread = _HALF * (2.0 * ((np.arange(size.size) * 0.618034) % 1.0) - 1.0)
             shown = slice(None, _DOTS)
             for side, colour in ((sign * size > 0.0, BLUE), (sign * size < 0.0, RED), (size == 0.0, GREY)):

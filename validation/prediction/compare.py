@@ -318,7 +318,7 @@ def _dataset(
         shares["best"].append((relation >= 0).all(axis=1).mean(axis=-1))
         shares["place"].append(1 + (as_given < 0).sum(axis=1))
         shares["sentence"].append(_sentence(name, given[:, column], shares, letters))
-        between = np.percentile(values[:, None] - values[None], PERCENTILES, axis=-1)
+        between = np.percentile(differences(values, values), PERCENTILES, axis=-1)
         variables |= {
             name: (("variant", "sample"), values, unit, text),
             f"{name}_given": ("variant", given[:, column], unit, f"{text}, with the values as given"),
@@ -362,11 +362,16 @@ def _label(draw: _Draw, draws: Sequence[_Draw], letters: Sequence[str]) -> str:
     return draw.path if alone else f"{draw.path} ({', '.join(letters[k] for k in draw.inputs)})"
 
 
+def differences(values: FloatArray, others: FloatArray) -> FloatArray:
+    """(variant, other, ...) values less those of others; 0 where they are equal but for rounding."""
+    a, b = values[:, None], others[None]
+    equal = np.abs(a - b) <= _EQUAL * np.maximum(np.abs(a), np.abs(b))
+    return np.where(equal, 0.0, a - b)
+
+
 def _relation(values: FloatArray, name: str) -> FloatArray:
     """(variant, variant, ...) 1 where the first variant is better than the second, -1 worse, 0 equal."""
-    a, b = values[:, None], values[None]
-    equal = np.abs(a - b) <= _EQUAL * np.maximum(np.abs(a), np.abs(b))
-    return np.where(equal, 0.0, np.sign(a - b if name in LARGER else b - a))
+    return np.sign(differences(values, values)) * (1.0 if name in LARGER else -1.0)
 
 
 def of_hundred(share: float) -> int:
@@ -374,11 +379,17 @@ def of_hundred(share: float) -> int:
     return min(max(round(100.0 * share), 1 if share > 0.0 else 0), 99 if share < 1.0 else 100)
 
 
-def as_read(name: str, values: FloatArray, digits: int = 3) -> tuple[list[str], str]:
-    """Values of a result side by side, and their unit: an efficiency in per cent, with a digit more."""
+def as_read(
+    name: str, values: FloatArray, digits: int = 3, beside: FloatArray | None = None
+) -> tuple[list[str], str]:
+    """Values of a result side by side, and their unit: an efficiency in per cent, with a digit more.
+
+    ``beside``: values in whose unit they are.
+    """
+    line = values if beside is None else beside
     if name == "efficiency":
-        return side_by_side(100.0 * values, "%", digits + 1 if digits > 2 else digits)
-    return side_by_side(values, (QUANTITIES | TEETH)[name][0], digits)
+        return side_by_side(100.0 * values, "%", digits + 1 if digits > 2 else digits, 100.0 * line)
+    return side_by_side(values, (QUANTITIES | TEETH)[name][0], digits, line)
 
 
 def ranking(places: Sequence[int], letters: Sequence[str]) -> str:
