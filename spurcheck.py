@@ -11,8 +11,8 @@ Pairs      new_pair, load_gear_pair, preset_names, gear_pair_from_rexs; pair.wit
 Motion     predict, dynamic_factor: teeth only push; steady_state, simulate, run_up, speed_sweep, with
            contact="linear", the default, or "unilateral"; response_branches, periodic_orbit
 Gears      geometry, mesh_stiffness, natural_frequencies, static_transmission_error, optimal_relief, bodies
-Trust      report, uncertainty, crosscheck, validity_flags, attribution, power_balance, compare_ross,
-           compare_matrices
+Trust      report, uncertainty, compare, crosscheck, validity_flags, attribution, power_balance,
+           compare_ross, compare_matrices
 Stability  stability_chart, stability_margins, stability_boundaries, campbell
 Any system PeriodicSystem, periodic_system, from_second_order, monodromy
 Signals    order_spectrum, waterfall, time_synchronous_average; more in spurcheck.validation.signals
@@ -71,6 +71,7 @@ if TYPE_CHECKING:  # the one list of the public names; below it is read at run t
     from lumped import steady_state as steady_state
     from multibody import attribution as attribution
     from multibody import power_balance as power_balance
+    from validation import compare as compare
     from validation import crosscheck as crosscheck
     from validation import dynamic_factor as dynamic_factor
     from validation import plot as plot

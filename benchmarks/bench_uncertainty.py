@@ -83,7 +83,7 @@ def order(reference: int) -> None:
     """The same for 19/41 with the inputs in the order of the file."""
     reference_of("19/41", reference)
     print("\nInputs in the order of the file:")
-    with mock.patch.object(module, "_importance", lambda ends: -np.arange(float(len(ends)))):
+    with mock.patch.object(module, "importance_of", lambda ends: -np.arange(float(len(ends)))):
         samples("19/41", reference)
 
 

@@ -2,6 +2,7 @@ from .cross_check.comparison import CrossCheck as CrossCheck
 from .cross_check.comparison import crosscheck as crosscheck
 from .interactive import write_interactive_page as write_interactive_page
 from .plots.of_result import plot as plot
+from .prediction.compare import compare as compare
 from .prediction.motion import Prediction as Prediction
 from .prediction.motion import dynamic_factor as dynamic_factor
 from .prediction.motion import predict as predict

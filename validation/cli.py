@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from validation.commands.compare import compare
 from validation.commands.files import export, init, presets
 from validation.commands.motion import interactive, simulate, teeth, uncertainty
 from validation.commands.report import crosscheck, report
@@ -39,7 +40,7 @@ _INSTEAD = {
     "gui": "spurcheck interactive",
     **dict.fromkeys(("new", "create"), "spurcheck init"),
     **dict.fromkeys(("run", "plot", "figures"), "spurcheck report"),
-    **dict.fromkeys(("check", "compare", "verify", "validate"), "spurcheck crosscheck"),
+    **dict.fromkeys(("check", "verify", "validate"), "spurcheck crosscheck"),
 }
 
 
@@ -108,8 +109,8 @@ def paragraphs(text: str | None) -> str:
 
 
 COMMANDS = (
-    *(report, presets, init, simulate, export, crosscheck, uncertainty, stability, floquet, response, teeth),
-    *(interactive, sweep),
+    *(report, presets, init, simulate, export, crosscheck, uncertainty, compare, stability, floquet),
+    *(response, teeth, interactive, sweep),
 )
 for command in COMMANDS:
     app.command(cls=Once, help=paragraphs(command.__doc__))(command)

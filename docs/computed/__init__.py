@@ -33,6 +33,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
         interface,
         mutants,
         paper,
+        rankings,
         schema,
         verification,
     )
@@ -46,6 +47,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             agreement,
             errata,
             paper,
+            rankings,
             schema,
             interface,
             diagrams,

@@ -64,6 +64,11 @@ FILES: dict[str, Callable[[], str]] = {
     "commands.md": commands,
     "output_crosscheck.md": lambda: transcript("crosscheck", "nasa_28_28"),
     "output_simulate.md": lambda: transcript("simulate", "mypair.toml", "-o", "run.nc", before=_INIT),
+    "output_compare.md": lambda: transcript(
+        *("compare", "mypair.toml", "--variant", "bearings.stiffness=3e8"),
+        *("--variant", "torque=40; oil=vg220; temperature=60"),
+        before=_INIT,
+    ),
     "output_refused.md": lambda: transcript(
         "simulate", "mypair.toml", "--set", "centre_distance=80", exit_code=2, before=_INIT
     ),

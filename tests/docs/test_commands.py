@@ -130,7 +130,7 @@ def shortened(arguments: list[str]) -> list[str]:
     processes, branches of motions and jump maps cover a small range, few samples are predicted.
     """
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
-    quicker["uncertainty"] = ["--samples", "16"]
+    quicker["uncertainty"] = quicker["compare"] = ["--samples", "16"]
     quicker["response"] = ["--periods", "1", "--seeds", "0", "--speeds", "3", "--range", "12000..12100"]
     most = 2 if arguments[0] in ("response", "floquet") else 5
     arguments = [

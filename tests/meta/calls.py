@@ -123,6 +123,7 @@ def _of(name, *arguments, **fixed):
 CHANGES = {
     "floquet.stability_boundaries": {"mesh.damping_ratio": 0.0},
     "validation.exchange.compare_matrices": {"friction.law": "none"},  # as the function itself does
+    "validation.compare": {"uncertainty": {"mesh.damping_ratio": "+- 10 %"}},
     "validation.uncertainty": {"uncertainty": {"mesh.damping_ratio": "+- 10 %"}},
 }
 #: Function -> call; on the shafts of a pair that has them by default.
@@ -146,6 +147,12 @@ COMPUTED = {
     "validation.dynamic_factor": _of("validation.dynamic_factor"),
     "validation.predict": _of("validation.predict"),
     "validation.report": _page_one,
+    "validation.compare": lambda pair, folder, **held: validation.compare(
+        pair.with_(CHANGES["validation.compare"]),
+        pair.with_(CHANGES["validation.compare"] | {"mesh.damping_ratio": 1.1 * pair.mesh.damping_ratio}),
+        samples=16,
+        **held,
+    ),
     "validation.uncertainty": _of("validation.uncertainty", 16),
     "validation.exchange.compare_matrices": _of(
         "validation.exchange.compare_matrices", np.eye(2), 1e9 * np.array([[2.0, -1.0], [-1.0, 1.0]])

@@ -61,7 +61,7 @@ AS_GIVEN = {
     "lumped.steady_state",
     "lumped.tooth_gaps", "multibody.simulate", "multibody.speed_sweep", "multibody.steady_state",
     "validation.measurements.evaluate", "validation.measurements.predict", "validation.predict",
-    "validation.studies.run_sweep", "validation.uncertainty",
+    "validation.compare", "validation.studies.run_sweep", "validation.uncertainty",
 }  # fmt: skip
 #: (function, kind) -> field that the refusal names; "" where a computation has no answer.
 NOT_DONE = {
@@ -315,6 +315,8 @@ def _numbers_as_given(name, found):
     """Of samples that vary inputs, among them the teeth, the result with the inputs as given."""
     if name == "validation.uncertainty":
         return {key: one for key, one in found.attrs.items() if key.startswith("given_")}
+    if name == "validation.compare":
+        return {key: one for key, one in found.data_vars.items() if key.endswith("_given")}
     return found
 
 

@@ -143,7 +143,9 @@ def taking_a_pair():
     for parameter in FUNCTIONS:
         function = inspect.unwrap(parameter.values[0])
         for name, argument in inspect.signature(function).parameters.items():
-            # What takes a GearPair alone is called with one that has been read.
+            # What takes a GearPair alone is called with one that has been read; further pairs have no name.
+            if argument.kind is argument.VAR_POSITIONAL:
+                continue
             if re.search(r"\bAnyPair\b|GearPair \|", str(argument.annotation)):
                 yield pytest.param(function, name, str(argument.annotation), id=parameter.id)
 
@@ -160,6 +162,7 @@ def test_what_is_no_pair_is_refused_by_name(function, name, annotation):
         other: None
         for other, argument in inspect.signature(function).parameters.items()
         if argument.default is argument.empty and other != name
+        if argument.kind is not argument.VAR_POSITIONAL
     }
     for value in (3, None, 2.5, ["nasa_28_28"], object()):
         with pytest.raises(ParameterError, match=r"pair = .*allowed a preset name"):

@@ -154,7 +154,7 @@ REFUSED_COMMANDS = {
     "stability": ["--tongues"],
 }
 #: Commands whose function is in the tables above, and is called with the option.
-BY_FUNCTION = {"report", "uncertainty", "teeth"}
+BY_FUNCTION = {"report", "uncertainty", "compare", "teeth"}
 #: Commands in which supports do not enter, or are in the file.
 WITHOUT_COMMANDS = {"floquet", "init", "presets", "sweep"}
 

@@ -89,14 +89,20 @@ def gear_pair(
     law: str | None = None,
     settings: list[str] | None = None,
     speed_range: str | None = None,
+    variant: str | None = None,
 ) -> GearPair:
-    """Load a gear pair and apply the options of the command line; None: the example, which a note says."""
+    """Load a gear pair and apply the options of the command line; None: the example, which a note says.
+
+    ``variant`` holds further changes, FIELD=VALUE, between semicolons.
+    """
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
     from lumped.schema.changes import fields_of
     from validation.validity.plausibility import parameter_warnings
 
     asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
+    changes = [] if variant is None else variant.split(";")
+    asked += [(f"--variant {path}", path, text) for path, text in set_fields(changes, "--variant").items()]
     for name, text in (("speed", speed), ("torque", torque), ("law", law), ("range", speed_range)):
         if text is not None:
             asked.append((f"--{name}", fields_of(name)[0], text))
@@ -213,15 +219,15 @@ def once(fields: Iterable[str]) -> None:
             raise refuse(field, f"set {count} times", "one value", "Leave the others out.")
 
 
-def set_fields(settings: list[str] | None) -> dict[str, str]:
-    """Return field path -> text of its value of every --set."""
+def set_fields(settings: list[str] | None, option: str = "--set") -> dict[str, str]:
+    """Return field path -> text of its value of every --set; ``option`` is named in a refusal."""
     from lumped.errors import refuse
 
     found: dict[str, str] = {}
     for item in settings or []:
         path, separator, text = item.partition("=")
         if not separator or not path.strip():
-            raise refuse("--set", item, "FIELD=VALUE", "For example --set mesh.damping_ratio=0.03.")
+            raise refuse(option, item, "FIELD=VALUE", f"For example {option} mesh.damping_ratio=0.03.")
         once([*found, path.strip()])
         found[path.strip()] = text.strip()
     return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib.resources import files
 from typing import Any
 
@@ -54,15 +54,9 @@ def quantity(
 
 
 def span(low: float, high: float, unit: str, digits: int = 2) -> str:
-    """A range with one prefix and one unit: "0.9 to 1.6 µm"."""
-    exponent = common_exponent((low, high), digits)
-    ends = [
-        [quantity(end, unit, more, measured=True, exponent=exponent).partition(_SPACE) for end in (low, high)]
-        for more in range(digits, digits + 3)
-    ]
-    # More digits where both ends would read alike.
-    (first, _, _), (last, space, unit_text) = next((two for two in ends if two[0] != two[1]), ends[0])
-    return f"{first} to {last}{space}{unit_text}"
+    """A range with one prefix and one unit, and digits that tell its ends apart: "0.90 to 1.6 µm"."""
+    (first, last), name = side_by_side((low, high), unit, digits, measured=True)
+    return f"{first} to {last}{name}"
 
 
 def prefix_exponent(value: float, digits: int = 4) -> int:
@@ -87,6 +81,34 @@ def common_exponent(values: Sequence[float], digits: int = 4) -> int | None:
 
 def _plain_with(size: float, exponent: int) -> bool:
     return bool(0.1 <= size / 10.0**exponent < 1e4)
+
+
+def side_by_side(
+    values: Iterable[float],
+    unit: str,
+    digits: int = 3,
+    beside: Iterable[float] = (),
+    *,
+    measured: bool = False,
+) -> tuple[list[str], str]:
+    """Numbers in SI in the unit of the largest, with digits that tell them apart; and that unit.
+
+    At most three further digits; what is equal then reads the same. ``beside``: other numbers of the same
+    line of a table, whose largest chooses the unit; ``measured`` as of ``number``.
+    """
+    values = [float(value) for value in values]
+    largest = max(map(abs, list(beside) or values), default=0.0)
+    name = "" if unit == "1" else f"{_SPACE}{unit.replace(' ', _SPACE)}"
+    factor = 1.0
+    if unit in _PREFIXED and largest > 0.0:
+        exponent = prefix_exponent(largest, digits)
+        factor, name = 10.0**exponent, f"{_SPACE}{_PREFIXES[exponent]}{unit}"
+    scaled = [value / factor for value in values]
+    for more in range(4):
+        texts = [number(value, digits + more, measured=measured) for value in scaled]
+        if len(set(texts)) == len(set(values)):
+            break
+    return texts, name
 
 
 def prose(text: str) -> str:

@@ -25,7 +25,7 @@ _LONGEST_NAME = 63
 DATA_SUFFIXES = (".nc", ".csv", ".mat")
 FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 #: Dimensions that become columns of a CSV file; all others become rows.
-COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
+COLUMN_DIMENSIONS = ("pair", "multiplier", "law", "variant", "input")
 
 
 def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
@@ -177,7 +177,7 @@ def _inert(texts: np.ndarray[Any, np.dtype[Any]]) -> np.ndarray[Any, np.dtype[An
 
 
 def _write_csv(result: xr.Dataset, path: Path) -> None:
-    """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
+    """One row per point of the axes, one column per variable (and entry of ``COLUMN_DIMENSIONS``)."""
     import pandas as pd
 
     # A file has one table: the regions of a chart are another one.

@@ -16,6 +16,7 @@ from lumped.model.averaged import natural_frequencies
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.plots.axes import cycle_figure, label_axis
+from validation.plots.compare import compare_figure
 from validation.plots.contact_loss import jump_map_figure, response_figure
 from validation.plots.maps import waterfall_figure
 from validation.plots.motion import history_figure, overlay_figure, sweep_figure
@@ -83,6 +84,7 @@ def _spectrum(result: xr.Dataset) -> Figure:
 _MESH_ORDERS = 10
 #: Variable that no kind of result below has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "holds": compare_figure,
     "contact_kept": jump_map_figure,
     "running_speed": lambda result: _waterfall(waterfall(result)),
     "branch": response_figure,

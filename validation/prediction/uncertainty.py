@@ -46,7 +46,7 @@ TEETH = {
     "revolution_dte_peak_to_peak": ("m", "transmission error over the period of the teeth, peak to peak"),
     "sideband_ratio": ("1", "largest sideband of the mesh frequency in the transmission error, over it"),
 }
-_TEETH_SAMPLES = 32
+TEETH_SAMPLES = 32
 #: Samples of them beside those of like teeth, and mesh cycles of all together.
 _LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = 8, 32, 30_000
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
@@ -101,7 +101,7 @@ def uncertainty(
     if not inputs:
         action = "State ranges in [uncertainty], or sources that say what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
-    alone = [(j, share) for j, one in enumerate(inputs) for share in _shares(one)]
+    alone = [(j, share) for j, one in enumerate(inputs) for share in end_shares(one)]
     total = samples + len(alone) + 1
     done = 0
 
@@ -116,7 +116,7 @@ def uncertainty(
     if given is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
     ends = _ends(inputs, [j for j, _ in alone], [row([(inputs[j], share)]) for j, share in alone], given.size)
-    points = _points(_importance(ends), samples, seed)
+    points = sobol_points(importance_of(ends), samples, seed)
     rows = [row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]) for point in points]
     kept = np.array([found is not None for found in rows])
     if kept.sum() < _LEAST * samples:
@@ -148,7 +148,7 @@ def speed_band(
     ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
     ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
     """
-    table = _each_sample(pair, known, samples, lambda varied: _peaks(varied, speeds_rpm, step_angle))
+    table = _each_sample(pair, known, samples, lambda one: _peaks(one, speeds_rpm, step_angle))
     low, high = np.nanpercentile(table, PERCENTILES[::2], axis=0)
     text = "transmission error, peak to peak"
     return labelled_dataset(
@@ -167,7 +167,7 @@ def teeth_band(pair: GearPair, known: xr.Dataset) -> FloatArray:
     ``known`` as in `speed_band`, of the twin with like teeth. The more mesh cycles, the fewer samples.
     """
     samples = max(_LEAST_DRAWN, min(_MOST_DRAWN, _ALL_CYCLES // period_of(pair)))
-    table = _each_sample(pair, known, samples, _of_teeth)
+    table = _each_sample(pair, known, samples, of_teeth)
     return np.asarray(np.percentile(table, PERCENTILES[::2], axis=0))
 
 
@@ -193,9 +193,9 @@ def _results_of(pair: GearPair, known: xr.Dataset, samples: int, run: Callable[[
     by_name = dict(zip(known["input"].to_numpy().tolist(), moved, strict=True))
     importance = np.array([by_name.get(one.field, moved.max()) for one in inputs])
     found = []
-    for point in _points(importance, samples, int(known.attrs["seed"])):
+    for point in sobol_points(importance, samples, int(known.attrs["seed"])):
         try:
-            found.append(run(_varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
+            found.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
         except SpurcheckError:
             continue
     return found
@@ -226,13 +226,14 @@ def percentile_interval(count: int, percentile: float) -> tuple[int, int]:
     return max(int(low) - 1, 0), min(int(high), count - 1)
 
 
-def _shares(one: Input) -> list[float]:
+def end_shares(one: Input) -> list[float]:
+    """Shares of the distribution at which an input stands alone: 5 and 95 %, of a choice each of them."""
     if one.choices:
         return [(k + 0.5) / len(one.choices) for k in range(len(one.choices))]
     return [PERCENTILES[0] / 100.0, PERCENTILES[-1] / 100.0]
 
 
-def _points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
+def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
     """(samples, inputs) scrambled Sobol points, the first dimensions for the most important inputs.
 
     Few points fill the planes of later dimensions unevenly: docs/verification/uncertainty.md. Inputs that
@@ -254,14 +255,15 @@ def _ends(
     return found
 
 
-def _importance(ends: FloatArray) -> FloatArray:
+def importance_of(ends: FloatArray) -> FloatArray:
     """(input,) swing of each input over the largest one, of the result that it moves most."""
     width = np.nan_to_num(np.abs(ends[:, 1] - ends[:, 0])[:, : len(QUANTITIES)])
     largest = width.max(axis=0)
     return np.asarray((width / np.where(largest > 0.0, largest, 1.0)).max(axis=1))
 
 
-def _varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
+def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
+    """The pair with each input at its share of the distribution."""
     return pair.with_(dict(one.change(one.at(share)) for one, share in changes)) if changes else pair
 
 
@@ -270,8 +272,8 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
-            varied = _varied(pair, changes)
-            found, own = predicted(varied.healthy), _of_teeth(varied)
+            sampled = varied(pair, changes)
+            found, own = predicted(sampled.healthy), of_teeth(sampled)
     except SpurcheckError:
         return None
     orders = np.zeros(ORDERS)
@@ -280,11 +282,11 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
     return np.array([*found.numbers.values(), *orders, *own, *flags])
 
 
-def _of_teeth(pair: GearPair) -> list[float]:
+def of_teeth(pair: GearPair) -> list[float]:
     """The quantities ``TEETH``; none of like teeth."""
     if pair.healthy is pair:
         return []
-    motion = lumped.steady_state(pair, samples_per_cycle=_TEETH_SAMPLES)
+    motion = lumped.steady_state(pair, samples_per_cycle=TEETH_SAMPLES)
     beside = [sidebands(motion, gear, most=3)["ratio"][0].drop_sel(sideband=0) for gear in GEARS]
     return [float(motion.attrs["dte_peak_to_peak"]), max(float(one.max()) for one in beside)]
 

@@ -13,9 +13,9 @@ from tests.unlike_pairs import unlike_pair
 from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.uncertainty import (
     _ends,
-    _importance,
-    _points,
+    importance_of,
     percentile_interval,
+    sobol_points,
     speed_band,
     teeth_band,
     transmission_error,
@@ -97,10 +97,10 @@ def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     rows = [[0.0, 5.0, *[0.0] * 4], None, [0.1, 5.0, *[0.0] * 4], *np.eye(6)[[0, 2]] * 0.5]
     rows += [np.eye(6)[0] * 0.1, np.zeros(6), np.eye(6)[0] * 0.25]
     ends = _ends(inputs, [0, 1, 0, 1, 1, 2, 2, 2], rows, 6)
-    share = _importance(ends)
+    share = importance_of(ends)
     np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
     sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)
-    np.testing.assert_array_equal(_points(share, 8, 3)[:, [1, 2, 0]], sobol)
+    np.testing.assert_array_equal(sobol_points(share, 8, 3)[:, [1, 2, 0]], sobol)
 
 
 def test_the_band_over_speed_is_about_the_sweep(torque):

@@ -1,0 +1,435 @@
+"""Is a variant better? Every variant runs in the same possible machines, and the share of them is counted.
+
+A possible machine is one value of every uncertain input. What the variants have in common has the same value
+in all of them, so that a difference between two variants is that of the same machine.
+
+Sources: common random numbers, A. M. Law, Simulation Modeling and Analysis, 2015, section 11.2; interval of a
+share, C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import itertools
+import warnings
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from string import ascii_uppercase
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.stats import binomtest
+
+import lumped
+from lumped.arguments import whole_number
+from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
+from lumped.labelling import Variable, labelled_dataset, provenance
+from lumped.model.periodic_system import Supports, supports_of, with_supports
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair, leaf_paths
+from lumped.typing import FloatArray, Progress
+from validation.files.formatting import side_by_side
+from validation.prediction.inputs import Input, uncertain_inputs
+from validation.prediction.motion import QUANTITIES, Motion, predicted
+from validation.prediction.uncertainty import (
+    PERCENTILES,
+    TEETH,
+    TEETH_SAMPLES,
+    end_shares,
+    importance_of,
+    of_teeth,
+    sobol_points,
+    varied,
+)
+
+#: Result that is compared -> its short name.
+RESULTS = {
+    "dte_peak_to_peak": "transmission error",
+    "dynamic_factor": "dynamic factor",
+    "tooth_load": "tooth load factor",
+    "bearing_rms": "bearing force",
+    "efficiency": "efficiency",
+}
+#: The same of a result that is added where a variant has teeth that differ.
+OF_TEETH = {"revolution_dte_peak_to_peak": "transmission error over all teeth"}
+#: Of these a larger one is better; of all others a smaller one.
+LARGER = frozenset({"efficiency"})
+#: Probability with which the interval of a share holds it.
+SURE = 0.9
+#: A share of the machines from which on a variant counts as better, of two variants of the machines in which
+#: they differ; below it the inputs show no difference.
+CLEAR = 0.8
+#: Two results are equal where they differ by no more than this share of the larger one.
+_EQUAL = 1e-9
+#: Samples of which most must be left after refusals.
+_LEAST = 0.5
+#: Fields of the machine round the gears and of the model: their deviation is common to variants whose values
+#: differ, while a part of another size is another part, with a deviation of its own.
+_COMMON = ("operating.*", "lubricant.*", "friction.*", "mesh.stiffness*", "mesh.damping_ratio")
+#: What happens in some machines -> its short name.
+FLAGS = {
+    "contact_lost": "contact is lost",
+    "unstable": "unstable",
+    "linear": "linear motion instead",
+}
+
+
+@dataclass
+class _Draw:
+    """One random number of a machine: the inputs, by place of the variant, that take their values from it."""
+
+    path: str
+    inputs: dict[int, Input] = field(default_factory=dict)
+
+
+def compare(
+    pair: AnyPair,
+    *others: AnyPair,
+    names: Sequence[str] | None = None,
+    samples: int = 128,
+    seed: int = 1,
+    supports: Supports | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Return in which share of all possible machines one variant of a gear pair is better than another.
+
+    Each sample is one machine, in which every variant runs: an input that the variants share has the same
+    value in all of them. docs/how_to/compare.md says which inputs these are.
+
+    Parameters
+    ----------
+    pair : the first variant, A: gear pair, preset name or parameter file
+    others : one to 25 further variants, B, C, ...; teeth, speed and everything else may differ
+    names : a text for each variant; default the names of the pairs
+    samples : number of machines, 16 to 65536; powers of two fill the space most evenly
+    seed : of the scrambled Sobol points
+    supports : "springs" leaves shafts and their inputs out; by default the shafts of a variant that has them
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``variant`` and ``other``, letters, ``result`` and ``sample``. Shares of the samples:
+    ``holds`` (result), in which all variants rank as with the values given, with ``holds_interval`` (result,
+    end), in which it lies with a probability of 0.9; ``better`` (result, variant, other), ``equal`` alike;
+    ``best`` (result, variant), in which no other variant is better. ``place`` (result, variant) is the rank
+    as given, and ``sentence`` (result) says it in words. Each result q in SI: ``q`` (variant, sample),
+    ``q_given`` (variant), ``q_difference`` (variant, other, percentile) of the paired differences. Smaller is
+    better, of the efficiency larger. Also shares of contact loss, instability and stand-ins by variant, and
+    ``share`` (input, sample), the drawn numbers. Attributes: ``refused`` (samples without a prediction in
+    some variant, which count in none), ``remarks`` (inputs that vary in some variants only, or whose range
+    hides a difference), ``parameters`` of A and ``parameters_B``, ...
+
+    Raises
+    ------
+    ParameterError : fewer than two variants, two equal ones, a spread that cannot be read, no uncertain input
+    NumericalError : a variant as given, or half of the samples, have no prediction
+    """
+    pairs = [with_supports(load_gear_pair(one), supports) for one in (pair, *others)]
+    texts = _names(pairs, names)
+    samples = whole_number("samples", samples, 16, 65536)
+    draws = common_draws(pairs)
+    if not draws:
+        action = "State ranges in [uncertainty], or sources that say what is assumed."
+        raise refuse("uncertainty", "none", "at least one uncertain input", action)
+    own_teeth = any(one.healthy is not one for one in pairs)
+    alone = [(draw, share) for draw in draws for share in end_shares(next(iter(draw.inputs.values())))]
+    total = len(pairs) * (1 + samples) + len(alone)
+    done = 0
+
+    def row(k: int, shares: Mapping[int, float]) -> FloatArray | None:
+        """Numbers of variant k with some draws, by their place, at these shares."""
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done / total)
+        own = [(draws[n].inputs[k], share) for n, share in shares.items() if k in draws[n].inputs]
+        return _numbers(pairs[k], own, own_teeth=own_teeth)
+
+    given = [row(k, {}) for k in range(len(pairs))]
+    for k, one in enumerate(given):
+        if one is None:
+            name = f"{ascii_uppercase[k]} ({texts[k]})"
+            raise NumericalError(f"{name} has no prediction with its values as given.")
+    as_given = np.stack([one for one in given if one is not None])
+    swings = np.full((len(draws), 2, as_given.shape[1]), np.nan)
+    for n, draw in enumerate(draws):
+        ends = [row(min(draw.inputs), {n: share}) for one, share in alone if one is draw]
+        if known := [one for one in ends if one is not None]:
+            swings[n] = np.min(known, axis=0), np.max(known, axis=0)
+    points = sobol_points(importance_of(swings), samples, seed)
+    machines = [[row(k, dict(enumerate(point.tolist()))) for k in range(len(pairs))] for point in points]
+    kept = np.array([all(one is not None for one in machine) for machine in machines])
+    if kept.sum() < _LEAST * samples:
+        text = f"Only {kept.sum()} of {samples} samples have a prediction in every variant"
+        raise NumericalError(f"{text}: narrow the ranges in [uncertainty].")
+    table = np.array([machine for machine, whole in zip(machines, kept, strict=True) if whole])
+    results = (*RESULTS, *(OF_TEETH if own_teeth else ()))
+    found = _dataset(results, as_given, np.moveaxis(table, 1, 0), points[kept], draws)
+    letters = list(map(str, found["variant"].to_numpy()))
+    found["name"] = ("variant", texts, {"units": "1", "long_name": "what the variant is"})
+    held = {
+        "supports": supports_of(pairs[0], None),
+        "teeth": "as given" if own_teeth else "alike",
+        "refused": samples - len(table),
+        "seed": seed,
+        "remarks": _remarks(draws, pairs, letters),
+    }
+    held |= {f"parameters_{k}": one.to_toml() for k, one in zip(letters[1:], pairs[1:], strict=True)}
+    return found.assign_attrs(provenance(pairs[0], samples=samples, seed=seed) | held)
+
+
+def _names(pairs: Sequence[GearPair], names: Sequence[str] | None) -> list[str]:
+    """What each variant is called; refused are too few, too many and equal variants."""
+    if not 2 <= len(pairs) <= len(ascii_uppercase):
+        allowed = f"2 to {len(ascii_uppercase)}"
+        raise refuse("variants", len(pairs), allowed, "Give another pair, or pair.with_(...).")
+    about = {"name": "variant", "description": "", "sources": {}, "uncertainty": {}}
+    plain = [one.with_(about) for one in pairs]
+    for k, one in enumerate(plain):
+        if one in plain[:k]:
+            which = f"{ascii_uppercase[plain.index(one)]} and {ascii_uppercase[k]}"
+            action = "They are equal: leave one out, or change it."
+            raise refuse("variants", which, "pairs that differ in some value", action)
+    if names is not None and len(names) != len(pairs):
+        raise refuse("names", list(names), f"{len(pairs)} texts, one a variant", "Give one for each.")
+    if names is not None:
+        return list(map(str, names))
+    return [_told(one, next(other for other in pairs if other.name == one.name)) for one in pairs]
+
+
+def _told(pair: GearPair, before: GearPair) -> str:
+    """The name of a pair, and where it differs from an earlier one of the same name."""
+    if pair is before:
+        return pair.name
+    ours, theirs = leaf_paths(pair), leaf_paths(before)
+    fields = [one for one in ours | theirs if ours.get(one) != theirs.get(one)]
+    return f"{pair.name}, other {_listed(fields)}"
+
+
+def common_draws(pairs: Sequence[GearPair]) -> list[_Draw]:
+    """The random numbers that make a machine, and which inputs of which variants take their values from each.
+
+    Variants share the number of a field in which value and range are equal. Where the values differ, a part
+    of another size is another part: its number is its own. A field ``_COMMON`` keeps one number, for the
+    machine and the model are the same, unless the range stays where it is though the value moves.
+    """
+    by_field: dict[str, dict[int, tuple[Input, Any]]] = defaultdict(dict)
+    for k, pair in enumerate(pairs):
+        values = leaf_paths(pair) | {"mesh.stiffness": pair.mesh.stiffness.model}
+        for one in uncertain_inputs(pair):
+            by_field[one.field][k] = one, _rounded(values.get(one.field))
+    draws: list[_Draw] = []
+    for name, of in by_field.items():
+        ranges = {k: _range(one) for k, (one, _) in of.items()}
+        fixed = len({(value, ranges[k]) for k, (_, value) in of.items()}) > len(set(ranges.values()))
+        whole = any(fnmatch.fnmatchcase(name, pattern) for pattern in _COMMON) and not fixed
+        groups: dict[Any, _Draw] = {}
+        for k, (one, value) in of.items():
+            key = None if whole else (value, ranges[k])
+            groups.setdefault(key, _Draw(name)).inputs[k] = one
+        draws += groups.values()
+    return draws
+
+
+def _rounded(value: Any) -> Any:
+    """A value as it compares: 8 um and 0.008 mm are equal."""
+    return float(f"{value:.12g}") if isinstance(value, float) else value
+
+
+def _range(one: Input) -> tuple[Any, ...]:
+    """What a range allows; NaN, the ends of a choice, would differ from itself. A class is its words."""
+    ends = () if one.choices else (_rounded(one.low), _rounded(one.high))
+    return (*ends, frozenset(one.choices), one.written if one.field.endswith(".seed") else "")
+
+
+def _remarks(draws: Sequence[_Draw], pairs: Sequence[GearPair], letters: Sequence[str]) -> list[str]:
+    """What a reader must know of inputs that do not vary alike in all variants."""
+    fields: dict[str, dict[int, Input]] = defaultdict(dict)
+    for draw in draws:
+        fields[draw.path] |= draw.inputs
+    only: dict[tuple[int, ...], list[str]] = defaultdict(list)
+    for name, inputs in fields.items():
+        if len(inputs) < len(pairs):
+            only[tuple(sorted(inputs))].append(name)
+    found = []
+    for places, names in only.items():
+        where = _all([letters[k] for k in places])
+        text = f"{_listed(names)} {'vary' if len(names) > 1 else 'varies'} in {where} only"
+        found.append(f"{text}: state ranges in [uncertainty] to vary them in every variant")
+    for name, inputs in fields.items():
+        values = {k: _rounded(leaf_paths(pairs[k]).get(name)) for k in inputs}
+        ranges = {k: _range(one) for k, one in inputs.items()}
+        if len(set(values.values())) > 1 and len(set(ranges.values())) == 1 and not name.endswith(".seed"):
+            text = next(iter(inputs.values())).written
+            found.append(
+                f"{name} differs between variants and its range, {text}, does not: the samples do not show "
+                "this difference. State '+- ...' in [uncertainty], or the source of the value"
+            )
+    return found
+
+
+def _listed(names: Sequence[str]) -> str:
+    return names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
+
+
+def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]], *, own_teeth: bool) -> FloatArray | None:
+    """``RESULTS``, with ``own_teeth`` ``OF_TEETH``, and the flags; None where there is no motion."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LawRangeWarning)
+            sampled = varied(pair, changes)
+            found = predicted(sampled.healthy)
+            over_period = [_over_the_period(sampled)] if own_teeth else []
+    except SpurcheckError:
+        return None
+    flags = [float(found.contact_lost), float(not found.stable), float(found.motion is Motion.LINEAR)]
+    numbers = np.array([*(found.numbers[name] for name in RESULTS), *over_period, *flags])
+    return numbers if np.isfinite(numbers).all() else None
+
+
+def _over_the_period(pair: GearPair) -> float:
+    """Peak to peak of the transmission error over the period of the teeth, in the linear form [m]."""
+    if own := of_teeth(pair):
+        return own[0]
+    motion = lumped.steady_state(pair, samples_per_cycle=TEETH_SAMPLES)
+    return float(motion.attrs["dte_peak_to_peak"])
+
+
+def _dataset(
+    results: tuple[str, ...], given: FloatArray, table: FloatArray, points: FloatArray, draws: Sequence[_Draw]
+) -> xr.Dataset:
+    """Shares and numbers of ``given`` (variant, column) and ``table`` (variant, sample, column)."""
+    count, machines = table.shape[:2]
+    letters = list(ascii_uppercase[:count])
+    variables: dict[str, Variable] = {}
+    shares = defaultdict(list)
+    for column, name in enumerate(results):
+        unit, text = (QUANTITIES | TEETH)[name]
+        values = table[..., column]
+        relation, as_given = _relation(values, name), _relation(given[:, column], name)
+        holding = int((relation == as_given[..., None]).all(axis=(0, 1)).sum())
+        interval = binomtest(holding, machines).proportion_ci(SURE, "exact")
+        shares["holds"].append(holding / machines)
+        shares["holds_interval"].append([interval.low, interval.high])
+        shares["better"].append((relation > 0).mean(axis=-1))
+        shares["equal"].append((relation == 0).mean(axis=-1))
+        shares["best"].append((relation >= 0).all(axis=1).mean(axis=-1))
+        shares["place"].append(1 + (as_given < 0).sum(axis=1))
+        shares["sentence"].append(_sentence(name, given[:, column], shares, letters))
+        between = np.percentile(differences(values, values), PERCENTILES, axis=-1)
+        variables |= {
+            name: (("variant", "sample"), values, unit, text),
+            f"{name}_given": ("variant", given[:, column], unit, f"{text}, with the values as given"),
+            f"{name}_difference": (
+                ("variant", "other", "percentile"),
+                np.moveaxis(between, 0, -1),
+                unit,
+                f"{text}, of the variant less that of the other in the same machine",
+            ),
+        }
+    each: tuple[str, ...] = ("result", "variant", "other")
+    words = {
+        "holds": (each[:1], "share of the machines in which the ranking as given holds"),
+        "holds_interval": (("result", "end"), "interval of this share, with a probability of 0.9"),
+        "better": (each, "share of the machines in which the variant is better than the other"),
+        "equal": (each, "share of the machines in which both are equal"),
+        "best": (each[:2], "share of the machines in which no other variant is better"),
+        "place": (each[:2], "rank with the values as given, 1 is best"),
+        "sentence": (each[:1], "what the samples say"),
+    }
+    variables |= {name: (dims, np.array(shares[name]), "1", text) for name, (dims, text) in words.items()}
+    flags = table[..., len(results) :].mean(axis=1)
+    variables |= {name: ("variant", flags[:, k], "1", text) for k, (name, text) in enumerate(FLAGS.items())}
+    variables["share"] = (("input", "sample"), points.T, "1", "share of the distribution below the value")
+    labels = [_label(draw, draws, letters) for draw in draws]
+    return labelled_dataset(
+        variables,
+        {
+            "variant": (letters, "1", "variant"),
+            "other": (letters, "1", "variant that it is compared with"),
+            "result": (list(results), "1", "result"),
+            "percentile": (list(PERCENTILES), "%", "share of the samples below"),
+            "input": (labels, "1", "drawn number: field, with its variants where others have their own"),
+        },
+    )
+
+
+def _label(draw: _Draw, draws: Sequence[_Draw], letters: Sequence[str]) -> str:
+    """The field of a draw; with the variants that it is of where there are others of the same field."""
+    alone = sum(one.path == draw.path for one in draws) == 1
+    return draw.path if alone else f"{draw.path} ({', '.join(letters[k] for k in draw.inputs)})"
+
+
+def differences(values: FloatArray, others: FloatArray) -> FloatArray:
+    """(variant, other, ...) values less those of others; 0 where they are equal but for rounding."""
+    a, b = values[:, None], others[None]
+    equal = np.abs(a - b) <= _EQUAL * np.maximum(np.abs(a), np.abs(b))
+    return np.where(equal, 0.0, a - b)
+
+
+def _relation(values: FloatArray, name: str) -> FloatArray:
+    """(variant, variant, ...) 1 where the first variant is better than the second, -1 worse, 0 equal."""
+    return np.sign(differences(values, values)) * (1.0 if name in LARGER else -1.0)
+
+
+def of_hundred(share: float) -> int:
+    """A share as a number of 100 machines: 100 and 0 are all and none."""
+    return min(max(round(100.0 * share), 1 if share > 0.0 else 0), 99 if share < 1.0 else 100)
+
+
+def as_read(
+    name: str, values: FloatArray, digits: int = 3, beside: FloatArray | None = None
+) -> tuple[list[str], str]:
+    """Values of a result side by side, and their unit: an efficiency in per cent, with a digit more.
+
+    ``beside``: values in whose unit they are.
+    """
+    line = values if beside is None else beside
+    if name == "efficiency":
+        return side_by_side(100.0 * values, "%", digits + 1 if digits > 2 else digits, 100.0 * line)
+    return side_by_side(values, (QUANTITIES | TEETH)[name][0], digits, line)
+
+
+def ranking(places: Sequence[int], letters: Sequence[str]) -> str:
+    """Variants from the best to the worst, "B, A"; equal ones as "A = B"."""
+    order = sorted(zip(places, letters, strict=True))
+    text = order[0][1]
+    for (before, _), (place, letter) in itertools.pairwise(order):
+        text += f" = {letter}" if place == before else f", {letter}"
+    return text
+
+
+def _sentence(
+    name: str, given: FloatArray, shares: Mapping[str, Sequence[Any]], letters: Sequence[str]
+) -> str:
+    """What the samples say of a result; ``shares`` ends with those of this result."""
+    better, equal, best, place = (shares[key][-1] for key in ("better", "equal", "best", "place"))
+    numbers, unit = as_read(name, given)
+    words = [f"{number}{unit}" for number in numbers]
+    first, machines = int(np.argmax(best)), "of 100 possible machines"
+    alike = [k for k in range(len(letters)) if k == first or equal[first, k] >= CLEAR]
+    text = (RESULTS | OF_TEETH)[name]
+    values = f"{text} " + ", ".join(f"{a} {b}" for a, b in zip(letters, words, strict=True))
+    if len(alike) == len(letters):
+        share = float(equal[first, [k for k in alike if k != first]].min())
+        return f"{_all(letters)} are equal in {of_hundred(share)} {machines}: {values}."
+    clear = float(best[first])
+    if len(letters) == 2:
+        share, tied = float(better[first, 1 - first]), float(equal[0, 1])
+        clear = share / (1.0 - tied)  # of the machines in which they differ
+        values = f"{text} {words[first]} against {words[1 - first]}"
+        said = f"{letters[first]} is better than {letters[1 - first]} in {of_hundred(share)} {machines}"
+        said += f", equal in {of_hundred(tied)}" if tied > 0.0 else ""
+    else:
+        verb = "is" if len(alike) == 1 else "are"
+        said = f"{_all([letters[k] for k in alike])} {verb} best in {of_hundred(clear)} {machines}"
+    if clear < CLEAR:
+        return f"No difference that these inputs can show: {values}; {said}."
+    against = "" if place[first] == 1 else ", though not with the values as given"
+    return f"{said}{against}: {values}."
+
+
+def _all(letters: Sequence[str]) -> str:
+    return letters[0] if len(letters) == 1 else f"{', '.join(letters[:-1])} and {letters[-1]}"
