@@ -259,8 +259,12 @@ class StaticMesh:
         if self._fitted is not None:
             start = self._fitted.breaks[0]
             return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
-        force, no_loads = np.full(np.size(xi), self.force), np.empty((0, self.shifts.size))
-        phases = self.phases(xi)
+        return self._approach(self.phases(xi))
+
+    def _approach(self, phases: Phases) -> FloatArray:
+        """Static approach delta (n,) [m] by iteration."""
+        force = np.full(len(phases.position), self.force)
+        no_loads = np.empty((0, self.shifts.size))
         found = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
         if not np.isfinite(found).all():
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
@@ -284,8 +288,8 @@ class StaticMesh:
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
-        approach, contact = self.approach(xi), np.zeros(np.size(xi), CONTACT)
-        phases = self.phases(xi)
+        contact, phases = np.zeros(np.size(xi), CONTACT), self.phases(xi)
+        approach = self._approach(phases) if self._fitted is None else self.approach(xi)
         middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
         return StaticPair(approach, contact)
 
