@@ -136,7 +136,7 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
     if not any(path.startswith("mesh.stiffness.") for path in values):
-        pair = pair.with_(stiffness=stand_in_stiffness(pair))
+        pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     sources = {}
     for path in leaf_paths(pair):
         if path not in ("name", "description"):

@@ -91,7 +91,7 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     _read_backlash(draft, component, _validated(draft, picked))
     read_reliefs(draft, component, gears, _validated(draft, picked).geometry)
     pair = _validated(draft, picked)
-    pair = pair.with_(stiffness=stand_in_stiffness(pair))
+    pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     sources = {
         path: draft.sources.get(path) or _BECAUSE.get(path, ASSUMED)
         for path in sorted(leaf_paths(pair))
