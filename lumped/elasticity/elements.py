@@ -7,6 +7,8 @@ Source: O. C. Zienkiewicz and R. L. Taylor, The Finite Element Method, 5th ed. (
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy import sparse
 
@@ -30,15 +32,35 @@ def square_shapes(points: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     return product(n, n), np.stack([product(d, n), product(n, d)]), np.outer(w, w).ravel()
 
 
-def gradients(corners: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gradients (e, 2, p, 9) of shape functions and Jacobian (e, p), by nodes (e, 9, 2), slopes (2, p, 9)."""
-    j = np.einsum("dpk,ekc->epdc", slopes, corners)
-    determinant = j[..., 0, 0] * j[..., 1, 1] - j[..., 0, 1] * j[..., 1, 0]
-    inverse = np.stack(
-        [np.stack([j[..., 1, 1], -j[..., 0, 1]], -1), np.stack([-j[..., 1, 0], j[..., 0, 0]], -1)], -2
-    )
-    inverse /= determinant[..., None, None]
-    return np.einsum("epcd,dpk->ecpk", inverse, slopes), determinant
+class Quadrature(NamedTuple):
+    """A Gauss rule in all elements.
+
+    Attributes
+    ----------
+    shapes : (p, 9) shape functions
+    places : (e, p, 2) coordinates
+    gradients : (e, 2, p, 9) of the shape functions along x and y
+    areas : (e, p)
+    """
+
+    shapes: FloatArray
+    places: FloatArray
+    gradients: FloatArray
+    areas: FloatArray
+
+
+def quadrature(nodes: FloatArray, elements: IntArray, points: int) -> Quadrature:
+    """Gauss rule of points x points in each element (e, 9) of nodes (n, 2)."""
+    shapes, slopes, weights = square_shapes(points)
+    corners, count = nodes[elements], weights.size
+    j = (slopes.reshape(2 * count, 9) @ corners).reshape(-1, 2, count, 2)
+    (xs, ys), (xt, yt) = ((j[:, d, :, 0], j[:, d, :, 1]) for d in (0, 1))
+    determinant = xs * yt - ys * xt
+    along, across = slopes
+    gradients = np.empty((len(elements), 2, count, 9))
+    gradients[:, 0] = (yt / determinant)[..., None] * along - (ys / determinant)[..., None] * across
+    gradients[:, 1] = (xs / determinant)[..., None] * across - (xt / determinant)[..., None] * along
+    return Quadrature(shapes, shapes @ corners, gradients, determinant * weights)
 
 
 def plane_law(poisson: float) -> FloatArray:
@@ -49,29 +71,20 @@ def plane_law(poisson: float) -> FloatArray:
 
 def assembled(nodes: FloatArray, elements: IntArray, poisson: float) -> tuple[sparse.csc_array, FloatArray]:
     """Stiffness matrix (2 n, 2 n); loads (2 n, 3) of unit accelerations along x, along y and about 0."""
-    shapes, slopes, weights = square_shapes(3)
-    corners = nodes[elements]
-    gradient, determinant = gradients(corners, slopes)
-    strain = np.zeros((len(elements), weights.size, 3, 18))
-    strain[..., 0, 0::2] = strain[..., 2, 1::2] = gradient[:, 0]
-    strain[..., 1, 1::2] = strain[..., 2, 0::2] = gradient[:, 1]
-    area = determinant * weights
-    stress = np.einsum("ab,epbj->epaj", plane_law(poisson), strain) * area[..., None, None]
-    size = len(elements)
-    rows = weights.size * 3
+    shapes, places, gradients, area = quadrature(nodes, elements, 3)
+    strain = np.zeros((*area.shape, 3, 18))
+    strain[..., 0, 0::2] = strain[..., 2, 1::2] = gradients[:, 0]
+    strain[..., 1, 1::2] = strain[..., 2, 0::2] = gradients[:, 1]
+    stress = plane_law(poisson) @ strain * area[..., None, None]
+    size, rows = len(elements), area.shape[1] * 3
     stiffness = strain.reshape(size, rows, 18).transpose(0, 2, 1) @ stress.reshape(size, rows, 18)
     freedoms = np.stack([2 * elements, 2 * elements + 1], axis=-1).reshape(size, 18)
     index = np.broadcast_to(freedoms[:, :, None], stiffness.shape)
     pairs = (index.ravel(), index.transpose(0, 2, 1).ravel())
     count = 2 * len(nodes)
     matrix = sparse.csc_array(sparse.coo_array((stiffness.ravel(), pairs), shape=(count, count)))
-    mass = np.einsum("ep,pi,pj,ejc->eic", area, shapes, shapes, np.ones_like(corners))
-    turned = np.einsum(
-        "ep,pi,pj,ejc->eic", area, shapes, shapes, np.stack([-corners[..., 1], corners[..., 0]], -1)
-    )
-    loads = np.zeros((count, 3))
-    np.add.at(loads[:, 0], 2 * elements, mass[..., 0])
-    np.add.at(loads[:, 1], 2 * elements + 1, mass[..., 1])
-    for axis in (0, 1):
-        np.add.at(loads[:, 2], 2 * elements + axis, turned[..., axis])
-    return matrix, loads
+    loads = np.zeros((len(nodes), 2, 3))
+    x, y = np.moveaxis(places, -1, 0)
+    for axis, motion, field in ((0, 0, area), (1, 1, area), (0, 2, -y * area), (1, 2, x * area)):
+        np.add.at(loads[:, axis, motion], elements, field @ shapes)
+    return matrix, loads.reshape(count, 3)

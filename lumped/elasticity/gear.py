@@ -11,6 +11,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
+from lumped.blas import one_thread
 from lumped.cache import cached
 from lumped.elasticity.ring import Support, compliances
 from lumped.elasticity.sector import Sector, sector, stations
@@ -19,7 +20,7 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.typing import FloatArray
 
 #: Elements at the surface of the mesh, and of the coarser one that shows its error [modules].
-_FINE, _COARSE = 0.2, 0.3
+FINE, COARSE = 0.2, 0.3
 #: Loads along the flank, and terms in each direction that neighbours, which hardly feel the place, are given.
 _LOADS, _TERMS = 14, 4
 #: Nearer than this to the edge of the tip the half plane of the load ends [modules].
@@ -59,21 +60,15 @@ class FlankCompliance:
         u_c + (2 ln(2/a) - nu)/pi, nu of plane stress
     cross : (reach, k, k) coefficients of the motion of the tooth m + 1 ahead, over the lengths of load and
         point
-    rough : (n,) the same as ``own`` from a coarser mesh
     """
 
     interval: tuple[float, float]
     own: FloatArray
     cross: FloatArray
-    rough: FloatArray
 
     def deflection(self, length: ArrayLike) -> FloatArray:
         """u_c at lengths along the base tangent, any shape [-]."""
         return np.asarray(chebyshev.chebval(self._at(length), self.own), dtype=np.float64)
-
-    def error(self, length: ArrayLike) -> FloatArray:
-        """By how much a coarser mesh differs at lengths along the base tangent, any shape [-]."""
-        return np.asarray(abs(chebyshev.chebval(self._at(length), self.own - self.rough)), dtype=np.float64)
 
     def moved(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
         """Motion of the tooth ``apart`` pitches ahead of a loaded one, at lengths of the same shape [-]."""
@@ -85,33 +80,32 @@ class FlankCompliance:
         return (2.0 * np.asarray(length) - low - high) / (high - low)
 
 
-@lru_cache(maxsize=64)
-def flank_compliance(gear: PlaneGear) -> FlankCompliance:
-    """Compliances of a gear over the usable length of its flanks, from two meshes."""
+@lru_cache(maxsize=128)
+def flank_compliance(gear: PlaneGear, size: float = FINE) -> FlankCompliance:
+    """Compliances of a gear over the usable length of its flanks.
+
+    ``size`` of the elements at the surface [modules]; the difference to ``COARSE`` ones shows the error.
+    """
     profile = gear.profile
-    bore = bore_radius(gear)
+    mesh = meshed(profile, gear.tip, bore_radius(gear), size)
     tip_length = math.sqrt(gear.tip**2 - profile.base_radius**2)
     low = max(profile.form_length, _BASE)
     high = tip_length - _EDGE * profile.base_radius / tip_length
-    fine, coarse = (meshed(profile, gear.tip, bore, size) for size in (_FINE, _COARSE))
-    numbers = np.array([low, high, gear.poisson, profile.teeth, gear.reach, _LOADS, _TERMS, _COARSE])
+    numbers = np.array([low, high, gear.poisson, profile.teeth, gear.reach, _LOADS, _TERMS])
 
     def compute() -> dict[str, FloatArray]:
-        at = 0.5 * (low + high) + 0.5 * (high - low) * chebyshev.chebpts1(_LOADS)
-        first, second = (
-            compliances(mesh, gear.poisson, profile.teeth, at, gear.reach, gear.support)
-            for mesh in (fine, coarse)
-        )
         nodes = chebyshev.chebpts1(_LOADS)
-        own, rough = (chebyshev.chebfit(nodes, np.diag(each[0]), _LOADS - 1) for each in (first, second))
+        at = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+        with one_thread():
+            found = compliances(mesh, gear.poisson, profile.teeth, at, gear.reach, gear.support)
+        own = chebyshev.chebfit(nodes, np.diag(found[0]), _LOADS - 1)
         basis = np.linalg.pinv(chebyshev.chebvander(nodes, _TERMS - 1))
         # Rows of the matrices are points, columns loads.
-        cross = np.einsum("li,mji,kj->mlk", basis, first[1:], basis)
-        return {"own": own, "cross": cross, "rough": rough}
+        return {"own": own, "cross": np.einsum("li,mji,kj->mlk", basis, found[1:], basis)}
 
-    inputs = fine.nodes.tobytes() + gear.support.encode() + numbers.tobytes()
+    inputs = mesh.nodes.tobytes() + gear.support.encode() + numbers.tobytes()
     result = cached("elasticity", sorted(Path(__file__).parent.glob("*.py")), inputs, compute)
-    return FlankCompliance((low, high), result["own"], result["cross"], result["rough"])
+    return FlankCompliance((low, high), result["own"], result["cross"])
 
 
 def bore_radius(gear: PlaneGear) -> float:

@@ -16,14 +16,12 @@ import math
 
 import numpy as np
 
-from lumped.elasticity.elements import gradients, line_shapes, plane_law, square_shapes
-from lumped.elasticity.sector import Sector
+from lumped.elasticity.elements import line_shapes, plane_law
+from lumped.elasticity.sector import SPREAD_POINTS, Sector
 from lumped.typing import FloatArray
 
 #: Radii between which chi falls [modules].
 NEAR, FAR = 0.15, 1.1
-#: Gauss points along an edge and a side of an element where the load is spread.
-_POINTS = 4
 
 
 def flank_load(
@@ -43,7 +41,7 @@ def flank_load(
     load = np.zeros_like(reading)
 
     edges = mesh.surface[(distance[mesh.surface] < far).any(axis=1)]
-    s, w = np.polynomial.legendre.leggauss(_POINTS)
+    s, w = np.polynomial.legendre.leggauss(SPREAD_POINTS)
     values, slopes = line_shapes(s)
     at, along = (np.einsum("pk,ekc->epc", each, mesh.nodes[edges]) for each in (values, slopes))
     _, stress, chi, _ = flamant(at - point, normal, poisson, near, far)
@@ -51,34 +49,30 @@ def flank_load(
     traction = (chi * w)[..., None] * np.einsum("epcd,epd->epc", stress, outward)
     _add(load, edges, -np.einsum("epc,pk->ekc", traction, values))
 
-    elements = mesh.elements[(distance[mesh.elements] < far).any(axis=1)]
-    square, slope, weight = square_shapes(_POINTS)
-    corners = mesh.nodes[elements]
-    gradient, determinant = gradients(corners, slope)
-    at = np.einsum("pk,ekc->epc", square, corners)
+    near_by = (distance[mesh.elements] < far).any(axis=1)
+    elements, square = mesh.elements[near_by], mesh.quadrature.shapes
+    at, gradient, area = (part[near_by] for part in mesh.quadrature[1:])
     moved, stress, chi, fall = flamant(at - point, normal, poisson, near, far)
-    area = determinant * weight
-    force = np.einsum("epcd,epd,ep->epc", stress, fall, area)
-    tensor = np.einsum("epc,epd->epcd", fall, moved)
-    strain = np.stack([tensor[..., 0, 0], tensor[..., 1, 1], tensor[..., 0, 1] + tensor[..., 1, 0]], -1)
-    cut = np.einsum("ab,epb,ep->epa", plane_law(poisson), strain, area)
-    cut = cut[..., [[0, 2], [2, 1]]]
-    spread = np.einsum("epc,pk->ekc", force, square) - np.einsum("epcd,edpk->ekc", cut, gradient)
-    _add(load, elements, spread)
+    force = (stress @ fall[..., None])[..., 0] * area[..., None]
+    (fall_x, fall_y), (x, y) = np.moveaxis(fall, -1, 0), np.moveaxis(moved, -1, 0)
+    strain = np.stack([fall_x * x, fall_y * y, fall_x * y + fall_y * x], -1)
+    cut = np.swapaxes(strain @ plane_law(poisson) * area[..., None], 1, 2)
+    for axis, rows in ((0, [0, 2]), (1, [2, 1])):  # of the symmetric tensor xx, yy, xy
+        spread = force[..., axis] @ square - (cut[:, rows, None] @ gradient)[:, :, 0].sum(axis=1)
+        np.add.at(load, 2 * elements + axis, spread)
 
     # Quadrature leaves force and moment off by some 1e-4, which the twist of a small bore would multiply.
-    motions = np.zeros((*at.shape, 3))
-    motions[..., 0, 0] = motions[..., 1, 1] = 1.0
-    motions[..., 0, 2], motions[..., 1, 2] = -at[..., 1], at[..., 0]
-    rigid = np.zeros((load.size, 3))
-    rigid[::2, 0] = rigid[1::2, 1] = 1.0
-    rigid[::2, 2], rigid[1::2, 2] = -mesh.nodes[:, 1], mesh.nodes[:, 0]
-    even = np.zeros_like(rigid)
-    for k in range(3):
-        _add(even[:, k], elements, np.einsum("epc,ep,pk->ekc", motions[..., k], area, square))
-    missing = rigid.T @ (reading - load)
-    load += even @ np.linalg.solve(rigid.T @ even, missing)
-    return load, reading, np.einsum("ep,epc,epck,ep->k", chi, moved, motions, area)
+    rigid, even = (np.zeros((len(mesh.nodes), 2, 3)) for _ in range(2))
+    rigid[:, 0, 0] = rigid[:, 1, 1] = 1.0
+    rigid[:, 0, 2], rigid[:, 1, 2] = -mesh.nodes[:, 1], mesh.nodes[:, 0]
+    a, b = np.moveaxis(at, -1, 0)
+    for axis, motion, field in ((0, 0, area), (1, 1, area), (0, 2, -b * area), (1, 2, a * area)):
+        np.add.at(even[:, axis, motion], elements, field @ square)
+    rigid, even = rigid.reshape(-1, 3), even.reshape(-1, 3)
+    load += even @ np.linalg.solve(rigid.T @ even, rigid.T @ (reading - load))
+    held = chi * area
+    taken = np.array([(held * x).sum(), (held * y).sum(), (held * (a * y - b * x)).sum()])
+    return load, reading, taken
 
 
 def outer_radius(mesh: Sector, point: FloatArray, far: float) -> float:

@@ -9,16 +9,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
 
-from lumped.elasticity.elements import line_shapes
+from lumped.elasticity.elements import Quadrature, line_shapes, quadrature
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.typing import FloatArray, IntArray
 
 #: Where elements at the surface are 0.3 modules long: growth of the rows below it, their largest share of r.
 _COARSE, _GROWTH, _LARGEST = 0.3, 0.45, 0.3
+#: Gauss points along an edge and a side of an element where a load is spread.
+SPREAD_POINTS = 4
 #: Shorter arcs between the fillets' ends are none [modules].
 _NO_LAND = 1e-3
 
@@ -46,6 +49,11 @@ class Sector:
     flank: IntArray
     lengths: FloatArray
     surface: IntArray
+
+    @cached_property
+    def quadrature(self) -> Quadrature:
+        """Gauss rule for loads that are spread over elements."""
+        return quadrature(self.nodes, self.elements, SPREAD_POINTS)
 
     def edge_at(self, length: float) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
         """Where a load at a length along the base tangent meets the flank.

@@ -116,6 +116,27 @@ class PairStiffness:
         return float(self.law(np.concatenate([breaks, breaks + 0.5 * np.diff(self.law.breaks)])).max())
 
 
+class TeethAtLoad(NamedTuple):
+    """What the stiffness model says of the teeth at the mean load.
+
+    Attributes
+    ----------
+    stiffness : of a tooth pair
+    neighbours : w_m(xi), how far the load of a pair moves the one m pitches ahead, m = 1, 2, ... [m/N]
+    softening : D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]
+    """
+
+    stiffness: PairStiffness
+    neighbours: tuple[PathFunction, ...]
+    softening: float
+
+
+@lru_cache(maxsize=_KEPT)
+def teeth_at_load(pair: GearPair) -> TeethAtLoad:
+    """The teeth of a pair ``at_rest``: all forms of its motion read the same."""
+    return TeethAtLoad(PairStiffness(pair_stiffness(pair)), cross_compliances(pair), contact_softening(pair))
+
+
 class StaticPair(NamedTuple):
     """One pair in static equilibrium at n positions: the approach (n,) [m], and CONTACT records (n,).
 
@@ -192,11 +213,10 @@ class StaticMesh:
         g, bearings = pair.geometry, pair.bearings
         self.pair, self.geometry = pair, g
         self.force = pair.operating.pinion_torque / g.base_radius_pinion
-        self.neighbours = cross_compliances(pair)
-        self.stiffness = PairStiffness(pair_stiffness(pair))
+        self.stiffness, self.neighbours, softening = teeth_at_load(at_rest(pair))
         self.law = ContactLaw(
             force=self.force,
-            softening=contact_softening(pair),
+            softening=softening,
             linear_below=LEAST_LOAD * self.force,
             converged=EXACT,
             full_damper=FULL_DAMPING * self.force,
@@ -239,8 +259,12 @@ class StaticMesh:
         if self._fitted is not None:
             start = self._fitted.breaks[0]
             return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
-        force, no_loads = np.full(np.size(xi), self.force), np.empty((0, self.shifts.size))
-        phases = self.phases(xi)
+        return self._approach(self.phases(xi))
+
+    def _approach(self, phases: Phases) -> FloatArray:
+        """Static approach delta (n,) [m] by iteration."""
+        force = np.full(len(phases.position), self.force)
+        no_loads = np.empty((0, self.shifts.size))
         found = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
         if not np.isfinite(found).all():
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
@@ -264,8 +288,8 @@ class StaticMesh:
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
-        approach, contact = self.approach(xi), np.zeros(np.size(xi), CONTACT)
-        phases = self.phases(xi)
+        contact, phases = np.zeros(np.size(xi), CONTACT), self.phases(xi)
+        approach = self._approach(phases) if self._fitted is None else self.approach(xi)
         middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
         return StaticPair(approach, contact)
 

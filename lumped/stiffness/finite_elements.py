@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from lumped.elasticity.gear import FlankCompliance, PlaneGear, flank_compliance
+from lumped.elasticity.gear import COARSE, FlankCompliance, PlaneGear, flank_compliance
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Wheel
 from lumped.path_function import PathFunction
@@ -36,17 +36,22 @@ Support = Literal["free", "clamped", "untwisted"]
 
 @dataclass(frozen=True, eq=False)
 class ElasticTooth:
-    """One gear of a pair: its flank compliance with the lengths and moduli that make it one in m/N.
+    """One gear of a pair: its plane body with the lengths and moduli that make its compliance one in m/N.
 
-    Lengths of ``flank`` are in modules. ``twist`` of the body, times modulus and face width [-], is taken off
+    Lengths of ``body`` are in modules. ``twist`` of the body, times modulus and face width [-], is taken off
     the motion of all teeth.
     """
 
     wheel: Wheel
     material: Material
     plane: Plane
-    flank: FlankCompliance
+    body: PlaneGear
     twist: float
+
+    @property
+    def flank(self) -> FlankCompliance:
+        """Compliances of the flanks, by plane finite elements."""
+        return flank_compliance(self.body)
 
     @property
     def modulus(self) -> float:
@@ -93,7 +98,7 @@ def elastic_teeth(
         if plane == "strain":
             nu = nu / (1.0 - nu)
         reach = min(apart, tooth.teeth - 1)
-        blank = PlaneGear(
+        body = PlaneGear(
             tooth, wheel.tip_radius / module, radius, nu, "free" if support == "free" else "clamped", reach
         )
         twist = 0.0
@@ -101,7 +106,7 @@ def elastic_teeth(
             # Lame's ring, G = 1/(2 (1 + nu)).
             inverse = (radius**-2 - tooth.root_radius**-2) / (2.0 * math.pi)
             twist = tooth.base_radius**2 * (1.0 + nu) * inverse
-        result.append(ElasticTooth(wheel, material, plane, flank_compliance(blank), twist))
+        result.append(ElasticTooth(wheel, material, plane, body, twist))
     return result[0], result[1]
 
 
@@ -142,11 +147,10 @@ def cross_compliance(
 
 def pair_error(pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> FloatArray:
     """Share of ``self_compliance`` by which a coarser mesh differs, at positions xi of any shape [-]."""
-    g = pair.geometry
-    off = sum(
-        tooth.flank.error(length / tooth.wheel.tooth.module) / tooth.modulus
-        for tooth, length in zip(teeth, (xi, g.L_XY - xi), strict=True)
-    )
+    g, off = pair.geometry, np.zeros(np.shape(xi))
+    for tooth, length in zip(teeth, (xi, g.L_XY - xi), strict=True):
+        place, coarse = length / tooth.wheel.tooth.module, flank_compliance(tooth.body, COARSE)
+        off += abs(tooth.flank.deflection(place) - coarse.deflection(place)) / tooth.modulus
     return np.asarray(off / g.face_width / self_compliance(pair, teeth, xi), dtype=np.float64)
 
 

@@ -19,6 +19,7 @@ from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
 from lumped.schema.own_laws import is_own
 from lumped.schema.pair import FORMAT, GearPair, leaf_paths, stated_unit
+from lumped.stiffness.foundation import thin_rims
 
 GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
@@ -35,7 +36,9 @@ _WHY = {
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
     **dict.fromkeys(("density", "youngs_modulus", "poisson_ratio"), "steel"),
-    "stiffness.model": "computed from the tooth form; 'finite_elements' computes it from both gears",
+    "stiffness.model": "computed from the form of both gears by plane finite elements",
+    "stiffness.plane": "usual for gears; 'strain' for wide ones",
+    "stiffness.support": "deflections count from the mean motion of the gear",
     "backlash": "least by ISO/TR 10064-2 for module and centre distance, up to a tenth of the module",
     "viscosity": "oil warm from running",
     "temperature": "sump of an enclosed gear",
@@ -49,6 +52,7 @@ _WHY = {
     "film_length": "usual cut-off",
     "brake_torque": "steady mean speed",
 }
+_OF_THIN_RIMS = "as of a solid body: what holds a thin rim decides its stiffness, and is not known"
 _SECTION = re.compile(r"(\[\[?)([\w.]+)\]\]?$")
 _ENTRY = re.compile(r"(\w+) = ")
 _COLUMN = 40
@@ -113,7 +117,7 @@ _STAND_INS: dict[str, Any] = {
         for key, value in _BEARING.items()
     },
     "mesh.damping_ratio": 0.05,
-    "mesh.stiffness.model": "energy",
+    "mesh.stiffness.model": "finite_elements",
     "friction.law": "xu_kahraman",
     "operating.pinion_speed": 1000.0,
 }
@@ -131,12 +135,16 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
     pair = _whole({"name": name}, values)
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
+    if not any(path.startswith("mesh.stiffness.") for path in values):
+        pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     sources = {}
     for path in leaf_paths(pair):
         if path not in ("name", "description"):
             # The user gave the field, or the list that it is in.
             by_user = any(path == one or path.startswith(f"{one}.") for one in values)
             why = next((why for end, why in _WHY.items() if path.endswith(end)), "the schema's default")
+            if path == "mesh.stiffness.model" and pair.mesh.stiffness.model == "energy":
+                why = _OF_THIN_RIMS
             sources[path] = GIVEN if by_user else f"assumed: {why}"
     count = list(sources.values()).count(GIVEN)
     notes = [
@@ -167,6 +175,15 @@ def _whole(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
             return load_gear_pair(named | completed(values | shifts))
         except ParameterError:
             raise error from None
+
+
+def stand_in_stiffness(pair: GearPair) -> str:
+    """Stiffness model of a pair that names none: finite elements, of thin rims the energy method.
+
+    A thin rim on its own becomes oval: k then depends on what holds the bore, which no drawing says. The
+    energy method takes the body as solid.
+    """
+    return "energy" if thin_rims(pair) else "finite_elements"
 
 
 def _backlash(pair: GearPair) -> float:

@@ -5,12 +5,14 @@ import math
 import numpy as np
 import pytest
 
+from lumped.elasticity import gear
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import contact_softening, pair_compliance
 from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width
 from lumped.stiffness.foundation import body_twist
 from tests.guards.by_hand import ByHand, Contact
 from tests.unlike_pairs import unlike_pair
+from validation.exchange import new_pair
 
 #: c'_th of ISO 6336-1, eqs (83) and (84): of z_1, z_2, x_1, x_2, gear 1 with fewer teeth.
 C = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
@@ -87,3 +89,30 @@ def test_plane_strain_is_plane_stress_of_another_material():
     length = np.linspace(strained.wheel.tooth.form_length, 22e-3, 5)[1:-1] / strained.wheel.tooth.module
     found, expected = strained.flank.deflection(length), stressed.flank.deflection(length)
     assert found == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "solved"),
+    [
+        # A flank's compliance over the modulus depends on its tooth, its bore and Poisson's ratio.
+        ({"operating.pinion_torque": 70.0}, 0),
+        ({"operating.pinion_speed": 2000.0}, 0),
+        ({"mesh.damping_ratio": 0.08, "mesh.stiffness_factor": 1.05, "mesh.backlash": 0.1}, 0),
+        ({"bearings.stiffness": 3e8, "lubricant.viscosity": 20.0, "gears.roughness": 0.6}, 0),
+        ({"pinion.tip_relief": {"amount": 12.0, "start_roll_angle": 27.0}}, 0),
+        ({"gears.face_width": 30.0, "gears.youngs_modulus": 190.0, "basic_rack.module": 4.0}, 0),
+        ({"pinion.poisson_ratio": 0.25}, 1),
+        ({"gear.bore": 25.0}, 1),
+        ({"gears.bore": 12.0}, 2),
+        ({"pinion.profile_shift": 0.1}, 1),
+    ],
+)
+def test_a_variation_solves_again_only_the_gears_whose_form_it_changes(change, solved, monkeypatch):
+    pair = new_pair("21/34", 3.0, 25.0, 1450.0, 80.0)
+    pair.mesh.stiffness.curve(pair)
+    count = []
+    monkeypatch.setattr(gear, "cached", lambda folder, sources, inputs, compute: count.append(1) or compute())
+    varied = pair.with_(change)
+    varied.mesh.stiffness.curve(varied)
+    varied.mesh.stiffness.neighbours(varied)
+    assert len(count) == solved

@@ -91,3 +91,27 @@ def test_an_own_pair_has_the_backlash_of_industrial_gears(module, backlash):
     given |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 0.1}
     pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
     assert pair.geometry.normal_backlash == pytest.approx(1e-3 * backlash)
+
+
+THIN = {"gear.bore": 82.0}  # root radius 48.1 mm over 41 mm: 1.17
+
+
+@pytest.mark.parametrize(
+    ("given", "model", "source"),
+    [
+        ({}, "finite_elements", "assumed: computed from the form of both gears"),
+        ({"gear.bore": 30.0}, "finite_elements", "assumed: computed from the form of both gears"),
+        # A thin rim on its own becomes oval: what holds its bore decides, and no drawing says it.
+        (THIN, "energy", "assumed: as of a solid body"),
+        (THIN | {"mesh.stiffness.model": "finite_elements"}, "finite_elements", GIVEN),
+        (THIN | {"mesh.stiffness.plane": "strain"}, "finite_elements", "assumed: computed from the form"),
+    ],
+)
+def test_the_teeth_of_a_new_pair_are_finite_elements_but_for_thin_rims(given, model, source, monkeypatch):
+    # What writes a file solves nothing.
+    monkeypatch.setattr("lumped.stiffness.finite_elements.flank_compliance", None)
+    drawing = {"teeth": "19/41", "basic_rack.module": 2.5, "gears.face_width": 20.0}
+    drawing |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 80.0}
+    pair = load_gear_pair(tomllib.loads(new_pair_text("x", drawing | given)))
+    assert pair.mesh.stiffness.model == model
+    assert dict(pair.sources)["mesh.stiffness.model"].startswith(source)

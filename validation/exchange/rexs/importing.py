@@ -12,7 +12,7 @@ from lumped.fields.units import to_stated
 from lumped.gear_geometry.geometry import theoretical_backlash
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.new_pair_file import completed
+from validation.exchange.new_pair_file import completed, stand_in_stiffness
 from validation.exchange.rexs.draft import ASSUMED, Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
 from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
@@ -91,6 +91,7 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     _read_backlash(draft, component, _validated(draft, picked))
     read_reliefs(draft, component, gears, _validated(draft, picked).geometry)
     pair = _validated(draft, picked)
+    pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     sources = {
         path: draft.sources.get(path) or _BECAUSE.get(path, ASSUMED)
         for path in sorted(leaf_paths(pair))
