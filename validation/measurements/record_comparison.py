@@ -288,9 +288,9 @@ class RecordComparison:
     ----------
     name : of the record
     channels : one for each channel of the record, the transmission error first where it is measured
-    shift : mesh cycles since pair A was at A, at time 0 of the record
+    shift : since pair A was at A, at time 0 of the record [mesh cycles]
     varied : whether the inputs were varied
-    mesh_cycles : of the period of the prediction, whose mean mesh cycle is compared
+    mesh_cycles : number of the period of the prediction, whose mean mesh cycle is compared
     """
 
     name: str
@@ -466,7 +466,7 @@ def compare_record(
     prediction : of ``validation.prediction.motion.predict``
     numerical : standard uncertainty of every predicted amplitude by the numerics, over it
     varied : predictions with varied inputs, of ``sampled_predictions``; None: the inputs were not varied
-    shift : mesh cycles since pair A was at A, at time 0 of the record; default the one with the best
+    shift : since pair A was at A, at time 0 of the record [mesh cycles]; default the one with the best
         correlation, the same for all channels
 
     Raises
