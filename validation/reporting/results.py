@@ -204,8 +204,8 @@ class Results:
 
     @cached_property
     def inputs(self) -> tuple[int, int, str]:
-        """Number of values that are given, of those that are assumed, and the word for these."""
-        return given_and_assumed(self.pair)
+        """Number of values that are known, of those that are assumed, and the word for these."""
+        return *given_and_assumed(self.pair, contact_lost=self.like.contact_lost), "assumed"
 
     @cached_property
     def sweep(self) -> xr.Dataset:
