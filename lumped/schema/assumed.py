@@ -181,7 +181,9 @@ def _value_at(pair: Section, path: str) -> Value | None:
         if isinstance(node, tuple):
             node = node[int(part)] if part.isdigit() and int(part) < len(node) else None
         else:
-            node = getattr(node, part) if isinstance(node, Section) and part in type(node).model_fields else None
+            node = (
+                getattr(node, part) if isinstance(node, Section) and part in type(node).model_fields else None
+            )
     if not isinstance(node, Section) or leaf not in type(node).model_fields:
         return None
     value = getattr(node, leaf)

@@ -130,9 +130,9 @@ class GearPair(Section, metaclass=_InOurWords):
     operating: OperatingPoint
     sources: Sources = Field((), description="field path -> where its value comes from, in your own words")
     assumed: AssumedTable = Field(
-        Assumed(),
-        description="field path -> the value that is assumed; a field with another value, or without an entry, "
-        "is known",
+        default_factory=Assumed,
+        description="field path -> the value that is assumed; a field with another value, or without an "
+        "entry, is known",
     )
     uncertainty: Spreads = Field(
         (),

@@ -16,8 +16,14 @@ from lumped.errors import NumericalError, ParameterError, refuse
 from lumped.fields.tables import check_points, positions, spline, uncovered, with_file
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction, shifted
-from lumped.stiffness.base import TOOTH_FORM, MeshingPair, RampLength, StiffnessModel, check_ramp_length, ramped
-from lumped.stiffness.energy import energy_curve
+from lumped.stiffness.base import (
+    MeshingPair,
+    RampLength,
+    StiffnessModel,
+    check_ramp_length,
+    ramped,
+)
+from lumped.stiffness.energy import READS, energy_curve
 from lumped.typing import FloatArray
 
 #: Name and unit of the column in a file.
@@ -70,7 +76,7 @@ class TableStiffness(StiffnessModel):
     @property
     def reads(self) -> frozenset[str]:
         """The tooth form where a total is shared out; nothing for the curve of one pair."""
-        return TOOTH_FORM if self.kind == "total" else frozenset()
+        return READS if self.kind == "total" else frozenset()
 
     def curve(self, pair: MeshingPair) -> PathFunction:
         """By interpolation of the table [N/m].

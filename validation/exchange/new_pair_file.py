@@ -138,8 +138,8 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
     notes = [
         "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
         f"{given} values are given, {assumed} assumed: replace what you know, first bearings.",
-        "An assumed value stands in the table [assumed], too. It is known when you change it here, or where it "
-        "is right as it is: when you delete its line there.",
+        "An assumed value stands in the table [assumed], too. It is known when you change it here, or, where "
+        "it is right as it is, when you delete its line there.",
     ]
     return parameter_text(pair.to_mapping(), notes)
 

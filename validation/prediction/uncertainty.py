@@ -62,8 +62,8 @@ def uncertainty(
 
     Parameters
     ----------
-    pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where a value
-        is assumed
+    pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where a
+        value is assumed
     samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
     seed : of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them

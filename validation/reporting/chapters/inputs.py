@@ -7,8 +7,8 @@ import re
 from typing import Any
 
 from lumped.path_of_contact import pair_stiffness
-from lumped.schema.bodies import bodies_of
 from lumped.schema.assumed import WORDS, State
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair, leaf_paths, stated_unit
 from validation.exchange.new_pair_file import reasons
 from validation.prediction.inputs import read_values, source_of, uncertain_inputs
