@@ -23,7 +23,9 @@ from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_component
 from lumped.quasi_static import optimal_relief, static_transmission_error
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import MeshElements
+from lumped.schema.assumed import State
 from lumped.schema.bodies import Bodies, bodies
+from lumped.schema.fields_read import fields_read
 from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
 from lumped.schema.meeting_teeth import meeting_teeth, revolution, tooth_gaps
 from lumped.schema.pair import GearPair
@@ -44,8 +46,10 @@ __all__ = [
     "ParameterError",
     "PathFunction",
     "SpurcheckError",
+    "State",
     "bodies",
     "condensed_bearings",
+    "fields_read",
     "flank_tolerances",
     "geometry",
     "json_schema",

@@ -213,6 +213,8 @@ class FrictionLaw:
     ranges : validity ranges of the law's arguments
     parts : for a law made of others, (xi, path, settings) -> pairs of a law and where it is in force
     coefficient : whether |mu| far from the pitch point is one number, ``friction.coefficient``
+    reads : what mu depends on beside places, speeds and load, by the names of ``ContactPath`` and
+        ``FrictionSettings``; a mean of law II where no coefficient is given is added. None: on all of them
     varies : whether mu depends on speed, load, oil or flanks (a law with a coefficient: where none is given)
     fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
     factor : (path, settings) -> number to which mu is proportional over speed, all else equal; None: speed
@@ -234,6 +236,7 @@ class FrictionLaw:
         Callable[[FloatArray, ContactPath, FrictionSettings], list[tuple[FrictionLaw, BoolArray]]] | None
     ) = None
     coefficient: bool = False
+    reads: frozenset[str] | None = None
     varies: bool = True
     fluid_film: bool = False
     factor: Callable[[ContactPath, FrictionSettings], float] | None = None

@@ -174,6 +174,7 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=_switches,
     ranges=RANGES,
+    reads=frozenset({"viscosity", "roughness", "maximum"}),
     fluid_film=True,
     shift=lambda path, settings: float(-3.0 * _factor(path.roughness * 1e6) * np.log10(path.omega_pinion)),
     analytic=_analytic,

@@ -106,6 +106,19 @@ def _analytic(
     return ratio, size
 
 
+#: What the film parameter, which decides the regime, and its limits depend on.
+_OF_FILM = frozenset(
+    {
+        "thresholds",
+        "effective_modulus",
+        "viscosity",
+        "pressure_viscosity_k",
+        "pressure_viscosity_s",
+        "composite_roughness",
+        "film_length",
+    }
+)
+
 LAW = FrictionLaw(
     name="composite",
     numeral="V",
@@ -114,5 +127,8 @@ LAW = FrictionLaw(
     switches=_switches,
     ranges=(*BENEDICT_KELLEY.ranges, *XU_KAHRAMAN.ranges, *RANGES),
     parts=_parts,
+    reads=frozenset().union(
+        _OF_FILM, *(law.reads or () for law in (BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB))
+    ),
     analytic=_analytic,
 )

@@ -48,6 +48,7 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     coefficient=True,
+    reads=frozenset({"coefficient"}),
     factor=average_coefficient,
     analytic=constant(average_coefficient),
 )

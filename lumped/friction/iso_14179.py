@@ -88,6 +88,7 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
+    reads=frozenset({"viscosity", "roughness"}),
     fluid_film=True,
     factor=lambda path, settings: coefficient_of(path),
     analytic=constant(lambda path, settings: coefficient_of(path)),

@@ -24,6 +24,7 @@ _NONE = FrictionLaw(
     label="no friction",
     signed=lambda xi, path, settings: np.zeros_like(xi),
     switches=lambda path, settings: [],
+    reads=frozenset(),
     varies=False,
 )
 

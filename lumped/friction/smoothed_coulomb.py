@@ -69,6 +69,7 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [],
     coefficient=True,
+    reads=frozenset({"coefficient", "sharpness"}),
     factor=average_coefficient,
     analytic=_analytic,
 )

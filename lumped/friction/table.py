@@ -120,5 +120,6 @@ def _law_of(table: FrictionTable) -> FrictionLaw:
             for quantity, unit, value in made_at
             if value is not None
         ),
+        reads=frozenset(),
         varies=False,
     )

@@ -121,6 +121,7 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
+    reads=frozenset({"effective_modulus", "viscosity", "roughness"}),
     fluid_film=True,
     # Speed enters by V_e alone, since the slide-to-roll ratio has none.
     factor=lambda path, settings: path.omega_pinion ** B[5],

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.path_function import PathFunction
+from lumped.schema.assumed import Assumed
 from lumped.schema.contact import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -97,6 +98,7 @@ def at_rest(pair: GearPair) -> GearPair:
         "name": "",
         "description": "",
         "sources": (),
+        "assumed": Assumed(),
         "friction": _FRICTION,
         "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
         "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),

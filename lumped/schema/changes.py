@@ -12,6 +12,7 @@ import numpy as np
 from lumped.errors import ParameterError, refuse
 from lumped.fields.refusals import field_of, unknown_key
 from lumped.fields.section import Section
+from lumped.schema.assumed import ABOUT, WORDS, within
 
 _GEARS = ("pinion", "gear")
 #: Short name -> the fields that it sets.
@@ -74,13 +75,17 @@ def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the plain data of a pair with other values of some fields, whose sources are the user's."""
+    """Return the plain data of a pair with other values of some fields: known ones, with the user as source.
+
+    A field that is given the value that it has is known too, where it was assumed.
+    """
     data = pair.to_mapping()
     sources: dict[str, str] = data.setdefault("sources", {})
+    assumed: dict[str, Any] = data.setdefault("assumed", {})
     # The model first: it decides which other keys its table may have.
     for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request
-        if _reads(pair, path, value):
+        if _reads(pair, path, value) and not any(within(one, path) for one in assumed):
             continue
         outdated = [path]
         if path == _STIFFNESS:
@@ -93,9 +98,10 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
                     if not path.startswith(f"{other}."):
                         _assign(type(pair), data, other, None)
         _assign(type(pair), data, path, value)
-        for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
-            del sources[known]
-        if path not in ("name", "description", "sources", "uncertainty") and value is not None:
+        for table in (sources, assumed):
+            for one in [key for key in table if any(within(key, p) for p in outdated)]:
+                del table[one]
+        if path not in (*WORDS, *ABOUT) and value is not None:
             sources[path] = "varied by the user"
     return data
 

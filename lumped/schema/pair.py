@@ -28,6 +28,7 @@ from lumped.friction.table import TABLE
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, existence_problems
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
+from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
@@ -127,7 +128,12 @@ class GearPair(Section, metaclass=_InOurWords):
     lubricant: Lubricant
     friction: Friction
     operating: OperatingPoint
-    sources: Sources = Field((), description="field path -> where its value comes from, or 'assumed'")
+    sources: Sources = Field((), description="field path -> where its value comes from, in your own words")
+    assumed: AssumedTable = Field(
+        default_factory=Assumed,
+        description="field path -> the value that is assumed; a field with another value, or without an "
+        "entry, is known",
+    )
     uncertainty: Spreads = Field(
         (),
         description="field path -> how far its value may be off: '0.02 .. 0.10', '+- 2 um', '+- 10 %', "
@@ -146,9 +152,29 @@ class GearPair(Section, metaclass=_InOurWords):
             raise ParameterError(problems, self.name)
         wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
         wrong += [problem for path, _ in self.uncertainty for problem in _path_problems(path, "uncertainty")]
+        wrong += problems_of(type(self), self.assumed)
         if wrong:
             raise ParameterError(wrong)
         return self
+
+    @model_validator(mode="after")
+    def _records_what_it_assumes(self) -> GearPair:
+        self.__dict__["assumed"] = recorded(self, self.assumed)  # nobody has the pair yet
+        return self
+
+    def state(self, field: str) -> State:
+        """Return whether the value of a field is known or assumed; see ``assumed``.
+
+        Parameters
+        ----------
+        field : dotted path, "mesh.backlash"
+
+        Raises
+        ------
+        ParameterError : a name that is no field; it names the nearest
+        """
+        field_at(field)
+        return State.ASSUMED if field in self.assumed else State.KNOWN
 
     @cached_property
     def geometry(self) -> Geometry:
@@ -243,8 +269,10 @@ class GearPair(Section, metaclass=_InOurWords):
         none = {"deviations": None, "mounting": None, "faults": ()}
         gears = {name: getattr(self, name).model_copy(update=none) for name in ("pinion", "gear")}
         steady = self.operating.model_copy(update={"torque_ripple": ()})
+        gone = [f"{gear}.{field}" for gear in gears for field in none]
+        rest = {"operating": steady, "assumed": self.assumed.without(*gone, "operating.torque_ripple")}
         return GearPair.model_construct(
-            **{name: getattr(self, name) for name in GearPair.model_fields} | gears | {"operating": steady}
+            **{name: getattr(self, name) for name in GearPair.model_fields} | gears | rest
         )
 
     def at_speed(self, rpm: float) -> GearPair:
@@ -252,6 +280,7 @@ class GearPair(Section, metaclass=_InOurWords):
         speed = SIValue(to_si(rpm, "rpm"), "rad/s")
         own = {name: getattr(self, name) for name in GearPair.model_fields}
         own["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
+        own["assumed"] = self.assumed.without("operating.pinion_speed")
         return GearPair.model_construct(**own)
 
     if not TYPE_CHECKING:  # a checker knows the fields
@@ -292,8 +321,10 @@ class GearPair(Section, metaclass=_InOurWords):
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
         data = super().to_mapping()
-        tables = {name: data.pop(name, {}) for name in ("sources", "uncertainty")}
-        return data | {name: dict(table) for name, table in tables.items() if table}
+        data.pop("assumed")
+        tables = {name: dict(data.pop(name, {})) for name in ("sources", "uncertainty")}
+        tables = {"sources": tables["sources"], "assumed": self.assumed.to_mapping()} | tables
+        return data | {name: table for name, table in tables.items() if table}
 
     def to_toml(self) -> str:
         """Return the pair as TOML text; reading it back gives an equal pair."""
@@ -349,7 +380,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:
-    """Return every set field of a pair as dotted path -> value in file units; no sources, no uncertainty.
+    """Return every set field of a pair as dotted path -> value in file units, without the tables about them.
 
     An entry of a list of tables has its number, from 0 on, as part of its path.
     """
@@ -365,7 +396,7 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
             else:
                 result[path] = value
 
-    walk({k: v for k, v in pair.to_mapping().items() if k not in ("sources", "uncertainty")}, "")
+    walk({k: v for k, v in pair.to_mapping().items() if k not in ABOUT}, "")
     return result
 
 

@@ -59,8 +59,25 @@ class MeshingPair(Protocol):
         """Geometry of the pair."""
 
 
+#: Fields of the shape below the active flanks, of the bodies and the material; "gears" are both gears.
+TOOTH_FORM = frozenset(
+    {
+        "basic_rack.dedendum_coefficient",
+        "basic_rack.fillet_radius_coefficient",
+        "gears.bore",
+        "gears.youngs_modulus",
+        "gears.poisson_ratio",
+    }
+)
+
+
 class StiffnessModel(Section):
     """Base of the stiffness models: the section ``mesh.stiffness`` with the curve that it stands for."""
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """What the model depends on of ``TOOTH_FORM``, beside its own section, the circles and the torque."""
+        return TOOTH_FORM
 
     @abstractmethod
     def curve(self, pair: MeshingPair) -> PathFunction:

@@ -38,7 +38,15 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
-from lumped.stiffness.base import Material, MeshingPair, RampLength, StiffnessModel, fitted_series, ramped
+from lumped.stiffness.base import (
+    TOOTH_FORM,
+    Material,
+    MeshingPair,
+    RampLength,
+    StiffnessModel,
+    fitted_series,
+    ramped,
+)
 from lumped.stiffness.foundation import HALF_ANGLE, foundation_compliance, thin_rims
 from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.typing import FloatArray
@@ -282,6 +290,10 @@ def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
     return (*result, *thin_rims(pair))
 
 
+#: What the method reads of the tooth form: the body is one for every gear, bored or solid.
+READS = TOOTH_FORM - {"gears.bore"}
+
+
 class EnergyStiffness(StiffnessModel):
     """Potential-energy stiffness of the true tooth form on its gear body."""
 
@@ -294,6 +306,11 @@ class EnergyStiffness(StiffnessModel):
         "none", description="'iso6336' scales the curve to the mean mesh stiffness of ISO 6336-1 method B"
     )
     ramp_length: RampLength = 0.0
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The tooth form without the bore."""
+        return READS
 
     def curve(self, pair: MeshingPair) -> PathFunction:
         """By the potential-energy method [N/m]."""

@@ -112,6 +112,10 @@ def pair_single_stiffness(pair: MeshingPair) -> float:
     )
 
 
+#: Fields that C' depends on beside the numbers of teeth, the profile shifts and the pressure angle.
+READS = frozenset({"basic_rack.dedendum_coefficient", "gears.youngs_modulus"})
+
+
 def single_of(pair: MeshingPair) -> float:
     """C' of a gear pair times its face width: the largest stiffness of a tooth pair [N/m]."""
     return pair_single_stiffness(pair) * SI * pair.geometry.face_width

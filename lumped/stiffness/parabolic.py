@@ -76,6 +76,11 @@ class ParabolicStiffness(StiffnessModel):
     )
     ramp_length: RampLength = 0.0
 
+    @property
+    def reads(self) -> frozenset[str]:
+        """Material and rack for C' of ISO 6336-1, where no peak is given."""
+        return iso6336.READS if self.peak is None else frozenset()
+
     def curve(self, pair: MeshingPair) -> PathFunction:
         """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle."""
         g = pair.geometry

@@ -23,6 +23,11 @@ class RectangularStiffness(StiffnessModel):
         )
     )
 
+    @property
+    def reads(self) -> frozenset[str]:
+        """Material and rack for C' of ISO 6336-1, where no stiffness is given."""
+        return iso6336.READS if self.pair_stiffness is None else frozenset()
+
     def curve(self, pair: MeshingPair) -> PathFunction:
         """Stiffness of a tooth pair [N/m], constant from A to D."""
         value = iso6336.single_of(pair) if self.pair_stiffness is None else self.pair_stiffness

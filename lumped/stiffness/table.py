@@ -16,8 +16,14 @@ from lumped.errors import NumericalError, ParameterError, refuse
 from lumped.fields.tables import check_points, positions, spline, uncovered, with_file
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction, shifted
-from lumped.stiffness.base import MeshingPair, RampLength, StiffnessModel, check_ramp_length, ramped
-from lumped.stiffness.energy import energy_curve
+from lumped.stiffness.base import (
+    MeshingPair,
+    RampLength,
+    StiffnessModel,
+    check_ramp_length,
+    ramped,
+)
+from lumped.stiffness.energy import READS, energy_curve
 from lumped.typing import FloatArray
 
 #: Name and unit of the column in a file.
@@ -66,6 +72,11 @@ class TableStiffness(StiffnessModel):
         action = "Check the unit and the sign; leave out points without contact."
         check_points(self.points, self.stiffness, STIFFNESS, _LARGEST, action)
         return self
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The tooth form where a total is shared out; nothing for the curve of one pair."""
+        return READS if self.kind == "total" else frozenset()
 
     def curve(self, pair: MeshingPair) -> PathFunction:
         """By interpolation of the table [N/m].

@@ -16,6 +16,7 @@ import pytest
 
 from lumped.path_of_contact import contact_path, pair_stiffness
 from lumped.quasi_static.contacts import contact_of, mesh_elements
+from lumped.schema.assumed import Assumed
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 
@@ -71,7 +72,14 @@ class Census:
 def standard(pair: GearPair) -> GearPair:
     """The pair at a speed and torque and with a name that are the same for all."""
     operating = pair.operating.model_copy(update={"pinion_speed": 1.0, "pinion_torque": 1.0})
-    changed = {"operating": operating, "name": "", "description": "", "sources": (), "uncertainty": ()}
+    changed = {
+        "operating": operating,
+        "name": "",
+        "description": "",
+        "sources": (),
+        "assumed": Assumed(),
+        "uncertainty": (),
+    }
     return GearPair.model_construct(**{name: getattr(pair, name) for name in GearPair.model_fields} | changed)
 
 

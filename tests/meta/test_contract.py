@@ -24,7 +24,6 @@ import spurcheck
 from lumped.errors import LawRangeWarning, LikeTeethWarning, NumericalError, ParameterError
 from lumped.labelling import parameters_hash
 from lumped.model.periodic_system import LTVSystem, supports_of
-from lumped.schema.pair import leaf_paths
 from tests.meta.calls import CHANGES, COMPUTED, OF_SHAFTS, PUBLIC, REFUSED, WITHOUT, numbers
 from tests.unlike_pairs import unlike_pair
 from validation.exchange import read_netcdf
@@ -35,10 +34,8 @@ REPORT = "validation.report"
 
 
 def _stated(name, **changes):
-    """An unlike pair all of whose values are stated, so that no assumed one is uncertain."""
-    pair = unlike_pair(name).with_(**changes)
-    known = {path: "stated" for path in leaf_paths(pair) if path not in ("name", "description")}
-    return pair.with_(sources=known)
+    """An unlike pair all of whose values are known, so that none is uncertain."""
+    return unlike_pair(name).with_(**changes).with_(assumed={})
 
 
 #: Kind of pair -> a pair of it.
@@ -165,7 +162,7 @@ def _expected(name, kind, found):
     if name == "validation.measurements.evaluate":
         at_record = found.prediction.pair
         ours, theirs = pair.to_mapping(), at_record.to_mapping()
-        for key in ("operating", "sources"):
+        for key in ("operating", "sources", "assumed"):
             del ours[key], theirs[key]
         assert theirs == ours
         return at_record

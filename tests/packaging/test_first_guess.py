@@ -32,7 +32,8 @@ def test_a_new_pair_is_what_the_drawing_says(pair: spurcheck.GearPair) -> None:
     assert pair.pinion.face_width == pair.gear.face_width == pytest.approx(0.02)
     assert pair.operating.pinion_speed == pytest.approx(1450 * 2 * np.pi / 60)
     assert dict(pair.sources)["pinion.teeth"] == "given by the user"
-    assert dict(pair.sources)["mesh.damping_ratio"].startswith("assumed")
+    assert pair.assumed["mesh.damping_ratio"] == 0.05
+    assert "pinion.teeth" not in pair.assumed
     shifted = spurcheck.new_pair(
         "13/41", **DRAWING, changes={"oil": "vg220", "law": "coulomb", "pinion.profile_shift": 0.4}
     )

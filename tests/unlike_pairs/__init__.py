@@ -11,6 +11,8 @@ from functools import cache
 from pathlib import Path
 
 from lumped import GearPair, load_gear_pair
+from lumped.schema.assumed import WORDS
+from lumped.schema.pair import leaf_paths
 
 #: Names of the pairs, which are the names of their files.
 UNLIKE = tuple(sorted(path.stem for path in Path(__file__).parent.glob("*.toml")))
@@ -18,5 +20,13 @@ UNLIKE = tuple(sorted(path.stem for path in Path(__file__).parent.glob("*.toml")
 
 @cache
 def unlike_pair(name: str) -> GearPair:
-    """Return the pair of this name; equal arguments give the same object, so that it is read once."""
-    return load_gear_pair(Path(__file__).with_name(f"{name}.toml"))
+    """Return the pair of this name; equal arguments give the same object, so that it is read once.
+
+    All of its values are assumed: nobody made such gears.
+    """
+    return all_assumed(load_gear_pair(Path(__file__).with_name(f"{name}.toml")))
+
+
+def all_assumed(pair: GearPair) -> GearPair:
+    """Return a pair of which nothing is known."""
+    return pair.with_(assumed={path: v for path, v in leaf_paths(pair).items() if path not in WORDS})

@@ -167,8 +167,8 @@ def uncertainty(
 ) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
 
-    Inputs vary as the section \[uncertainty] of the file states, and by documented defaults where the source
-    of a value says that it is assumed. Teeth of a tolerance class are drawn anew in every sample.
+    Inputs vary as the section \[uncertainty] of the file states, and by documented defaults where a value is
+    assumed. Teeth of a tolerance class are drawn anew in every sample.
 
     [bold]Examples[/bold]
     spurcheck uncertainty my_pair.toml

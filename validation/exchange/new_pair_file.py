@@ -15,6 +15,7 @@ import tomli_w
 from lumped.errors import ParameterError
 from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
+from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
 from lumped.schema.own_laws import is_own
@@ -27,7 +28,7 @@ _WHY = {
     "_stiffness": "of rolling bearing, shaft and housing together; see the guide on bearings",
     "mesh.damping_ratio": "usual for steel gears, 0.03 to 0.17",
     "damping_ratio": "shaft on rolling bearings; see the guide on bearings",
-    "roughness": "ground flanks, Ra 0.4 um",
+    "roughness": "ground flanks",
     **dict.fromkeys(
         ("pressure_angle", "addendum_coefficient", "dedendum_coefficient", "fillet_radius_coefficient"),
         "standard basic rack, ISO 53",
@@ -51,6 +52,8 @@ _WHY = {
     "thresholds": "read by law V alone",
     "film_length": "usual cut-off",
     "brake_torque": "steady mean speed",
+    "pinion_torque": "tangential load over face width and module of 20 N/mm^2",
+    "pinion_speed": "a round number",
 }
 _OF_THIN_RIMS = "as of a solid body: what holds a thin rim decides its stiffness, and is not known"
 _SECTION = re.compile(r"(\[\[?)([\w.]+)\]\]?$")
@@ -68,7 +71,7 @@ def new_pair(
     name: str = "",
     **fields: Any,
 ) -> GearPair:
-    """Return a pair from what is on its drawing; what is not given is assumed, and ``pair.sources`` says so.
+    """Return a pair from what is on its drawing; what is not given is assumed, see ``pair.assumed``.
 
     Parameters
     ----------
@@ -127,31 +130,61 @@ _TEMPERATURE, _VISCOSITY = 70.0, 10.0
 
 
 def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
-    """Return a complete parameter file; every value says whether the user gave it or why it is assumed.
+    """Return a complete parameter file; every assumed value says so, and why it is that one.
 
     ``request``: as the arguments of ``new_pair``, by the full paths of the fields.
     """
     values = _values(request)
-    pair = _whole({"name": name}, values)
+    pair = _filled({"name": name}, values)
+    by_user = [path for path in leaf_paths(pair) if any(within(path, one) for one in values)]
+    pair = marked(pair, dict.fromkeys(by_user, GIVEN))
+    given, assumed = len(pair.sources), len(pair.assumed)
+    notes = [
+        "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
+        f"{given} values are given, {assumed} assumed: replace what you know, first bearings.",
+        "An assumed value stands in the table [assumed], too. It is known when you change it here, or, where "
+        "it is right as it is, when you delete its line there.",
+    ]
+    return parameter_text(pair.to_mapping(), notes)
+
+
+def marked(pair: GearPair, sources: Mapping[str, str]) -> GearPair:
+    """Return a pair whose fields with a source are known, and all others assumed."""
+    assumed = {path: v for path, v in leaf_paths(pair).items() if path not in (*WORDS, *sources)}
+    return load_gear_pair(pair.to_mapping() | {"sources": dict(sources), "assumed": assumed})
+
+
+def reasons(pair: GearPair) -> dict[str, str]:
+    """Return assumed field -> why it has this value; those alone that `new_pair` would assume too."""
+    known = {name: part for name, part in pair.to_mapping().items() if name not in (*WORDS, *ABOUT)}
+    for path in pair.assumed:
+        *parents, leaf = path.split(".")
+        node: Any = known
+        for part in parents:
+            node = node[int(part) if isinstance(node, list) else part]
+        del node[leaf]
+    try:
+        own = leaf_paths(_filled({"name": pair.name}, _values(known)))
+    except ParameterError:  # such as a kind of stiffness that the program would not assume
+        return {}
+    values = pair.assumed.to_mapping()
+    return {path: _why(path, value) for path, value in values.items() if own.get(path) == value}
+
+
+def _why(path: str, value: object) -> str:
+    if (path, value) == ("mesh.stiffness.model", "energy"):
+        return _OF_THIN_RIMS
+    return next((why for end, why in _WHY.items() if path.endswith(end)), "the default of a parameter file")
+
+
+def _filled(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
+    """The pair of these values with everything else assumed."""
+    pair = _whole(named, values)
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
     if not any(path.startswith("mesh.stiffness.") for path in values):
         pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
-    sources = {}
-    for path in leaf_paths(pair):
-        if path not in ("name", "description"):
-            # The user gave the field, or the list that it is in.
-            by_user = any(path == one or path.startswith(f"{one}.") for one in values)
-            why = next((why for end, why in _WHY.items() if path.endswith(end)), "the schema's default")
-            if path == "mesh.stiffness.model" and pair.mesh.stiffness.model == "energy":
-                why = _OF_THIN_RIMS
-            sources[path] = GIVEN if by_user else f"assumed: {why}"
-    count = list(sources.values()).count(GIVEN)
-    notes = [
-        "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
-        f"{count} values are given, {len(sources) - count} assumed: replace what you know, first bearings.",
-    ]
-    return parameter_text(load_gear_pair(pair.to_mapping() | {"sources": sources}).to_mapping(), notes)
+    return pair
 
 
 def _whole(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
@@ -212,14 +245,16 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
 
     Parameters
     ----------
-    mapping : nested parameters in file units, with ``sources``
+    mapping : nested parameters in file units
     notes : put above as comments
 
     Returns
     -------
     TOML text; reading it gives ``mapping`` back
     """
-    sources = mapping.get("sources", {})
+    pair = load_gear_pair(mapping)
+    assumed = dict.fromkeys(pair.assumed, "assumed")
+    assumed |= {path: f"assumed: {why}" for path, why in reasons(pair).items()}
     section = ""
     entries: Counter[str] = Counter()  # of a list of tables, those above
     lines = []
@@ -229,8 +264,8 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
             if found[1] == "[[":
                 section += f"{entries[section]}."
                 entries[f"{found[2]}."] += 1
-        elif section != "sources." and (entry := _ENTRY.match(line)):
-            line = _commented(line, f"{section}{entry[1]}", sources)
+        elif entry := _ENTRY.match(line):  # the paths of [sources] and [assumed] have quotation marks
+            line = _commented(line, f"{section}{entry[1]}", assumed)
         lines.append(line)
     head = [
         wrapped
@@ -247,7 +282,7 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
     return "\n".join([*head, *([""] if head else []), *lines]) + "\n"
 
 
-def _commented(line: str, path: str, sources: Mapping[str, str]) -> str:
+def _commented(line: str, path: str, assumed: Mapping[str, str]) -> str:
     try:
         unit = stated_unit(path)
     except ParameterError:  # a member of a choice of sections
@@ -255,8 +290,8 @@ def _commented(line: str, path: str, sources: Mapping[str, str]) -> str:
     remarks = (
         [] if unit in (None, "1") or line.endswith('"') else [str(unit).replace("**", "^").replace("*", " ")]
     )
-    if sources.get(path, "").startswith("assumed"):
-        remarks.append("assumed")
+    if path in assumed:
+        remarks.append(assumed[path])
     return f"{line:<{_COLUMN}} # {', '.join(remarks)}" if remarks else line
 
 

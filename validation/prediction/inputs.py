@@ -9,7 +9,8 @@ import fnmatch
 import functools
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
@@ -17,6 +18,8 @@ from typing import Any
 from lumped.errors import ParameterError, refuse
 from lumped.fields.units import to_si, to_stated
 from lumped.friction.registry import LAWS
+from lumped.schema.assumed import State
+from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import GearPair, field_at, leaf_paths, stated_unit
 from lumped.stiffness.registry import MODELS
 
@@ -65,9 +68,9 @@ class Input:
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     """Return every input of a pair that may be another value than the file has.
 
-    Those of ``[uncertainty]``, and by documented defaults every value whose source says that it is assumed. A
-    spread that cannot be read, or with values that the field cannot have, is refused. Of random teeth of a
-    tolerance class the seed is an input.
+    Those of ``[uncertainty]``, and by documented defaults every assumed value that the pair reads, or would
+    read with another law or model that its inputs may be. A spread that cannot be read, or with values that
+    the field cannot have, is refused. Of random teeth of a tolerance class the seed is an input.
     """
     stated = dict(pair.uncertainty)
     found = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
@@ -77,38 +80,53 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
             words = f"class {deviations.tolerance_class}"
             reason = "the class says how large errors are, and not which: every seed is another gear of it"
             found.append(Input(f"{gear}.deviations.seed", 1, _SEEDS, (), "1", words, reason))
-    values, sources = leaf_paths(pair), dict(pair.sources)
-    candidates = [*values, "mesh.stiffness", "mesh.stiffness_factor"]
+    candidates = [*leaf_paths(pair), "mesh.stiffness", "mesh.stiffness_factor"]
+    assumed: list[Input] = []
     for field in dict.fromkeys(candidates):
         default = _default(field)
         if default is None or _covered(field, stated):
             continue
-        source = _source(default.get("with", field), sources)
-        if source is None or "assumed" in source:
+        if is_assumed(pair, default.get("with", field)):
             if field == "mesh.stiffness" and pair.mesh.stiffness.model == "table":
                 continue
             spread = default["spread"]
             if isinstance(spread, list):
                 spread = list(dict.fromkeys([_chosen(pair, field), *spread]))
             if (value := _by_default(pair, field, spread, default["reason"])) is not None:
-                found.append(value)
-    return tuple(found)
+                assumed.append(value)
+    read = _read(pair, [*found, *assumed])
+    return (*found, *(one for one in assumed if one.choices or one.field in read))
 
 
-def given_and_assumed(pair: GearPair) -> tuple[int, int, str]:
-    """Number of values of a pair that a source states, of all others, and what these are, in words."""
-    sources = dict(pair.sources)
-    values = {path: v for path, v in leaf_paths(pair).items() if path not in ("name", "description")}
-    found = {path: _source(path, sources) for path in values}
-    assumed = sum(source is None or "assumed" in source for source in found.values())
-    stated = any(found[path] is None and not _is_default(path, value) for path, value in values.items())
-    return len(found) - assumed, assumed, "assumed or without a source" if stated else "assumed"
+def is_assumed(pair: GearPair, field: str) -> bool:
+    """Whether a value is assumed; of the stiffness of the teeth, whether its model is."""
+    return pair.state("mesh.stiffness.model" if field == "mesh.stiffness" else field) is State.ASSUMED
 
 
-def _is_default(path: str, value: object) -> bool:
-    """Whether a value is the one that the program assumes where a file has none."""
-    default, unit = field_at(path).default, stated_unit(path)
-    return bool(value == (to_si(default, unit) if unit and isinstance(default, (int, float)) else default))
+def _read(pair: GearPair, inputs: Iterable[Input], *, contact_lost: bool = False) -> frozenset[str]:
+    """Fields that a pair reads with its laws and models, and with those that its inputs may be instead."""
+    read = fields_read(pair, contact_lost=contact_lost)
+    for one in inputs:
+        for name in one.choices:
+            with suppress(ParameterError):  # a law or model that the pair cannot have
+                read |= fields_read(pair.with_(dict([one.change(name)])), contact_lost=contact_lost)
+    return read & leaf_paths(pair).keys()
+
+
+def given_and_assumed(pair: GearPair, *, contact_lost: bool = False) -> tuple[int, int]:
+    """Number of values of a pair that are known, and that are assumed, of those that its results depend on.
+
+    What the chosen laws and models do not read counts where a choice that is an uncertain input reads it, and
+    the backlash where contact is lost.
+    """
+    read = read_values(pair, contact_lost=contact_lost)
+    assumed = sum(path in pair.assumed for path in read)
+    return len(read) - assumed, assumed
+
+
+def read_values(pair: GearPair, *, contact_lost: bool = False) -> frozenset[str]:
+    """Return the fields that `given_and_assumed` counts."""
+    return _read(pair, uncertain_inputs(pair), contact_lost=contact_lost)
 
 
 @functools.cache
@@ -122,13 +140,11 @@ def _default(field: str) -> dict[str, Any] | None:
 
 
 def source_of(pair: GearPair, field: str) -> str | None:
-    """Where a value of a pair comes from; None where the file does not say."""
-    return _source(field, dict(pair.sources))
+    """Where a value of a pair comes from, in the words of the file; None where it does not say.
 
-
-def _source(field: str, sources: Mapping[str, str]) -> str | None:
-    """Where a value comes from: of the field, or of the section that it is in."""
-    parts = field.split(".")
+    It is the source of the field, of the section that it is in, or of a field inside it.
+    """
+    sources, parts = dict(pair.sources), field.split(".")
     paths = [".".join(parts[: len(parts) - n]) for n in range(len(parts))]
     inside = [text for path, text in sources.items() if path.startswith(f"{field}.")]
     return next((sources[path] for path in paths if path in sources), inside[0] if inside else None)

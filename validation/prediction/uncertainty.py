@@ -73,8 +73,8 @@ def uncertainty(
 
     Parameters
     ----------
-    pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where the
-        source of a value says that it is assumed
+    pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where a
+        value is assumed
     samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
     seed : of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
@@ -99,7 +99,7 @@ def uncertainty(
     samples = whole_number("samples", samples, 16, 65536)
     inputs = uncertain_inputs(pair)
     if not inputs:
-        action = "State ranges in [uncertainty], or sources that say what is assumed."
+        action = "State ranges in [uncertainty], or in [assumed] what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
     alone = [(j, share) for j, one in enumerate(inputs) for share in end_shares(one)]
     total = samples + len(alone) + 1

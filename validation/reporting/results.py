@@ -233,7 +233,7 @@ class Results:
     @cached_property
     def inputs(self) -> tuple[int, int]:
         """Number of inputs that are known, and of those that are assumed; see ``given_and_assumed``."""
-        return given_and_assumed(self.given)[:2]
+        return given_and_assumed(self.given, contact_lost=self.prediction.contact_lost)
 
     @cached_property
     def varies(self) -> bool:

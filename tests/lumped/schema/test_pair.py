@@ -82,6 +82,7 @@ class TestVariations:
         data, expected = varied.to_mapping(), nasa.to_mapping()
         del data["sources"], expected["sources"]
         expected["bearings"]["gear"]["loa_stiffness"] = 2e8
+        del expected["assumed"]["bearings.gear.loa_stiffness"]
         assert data == expected
 
     def test_none_restores_the_default(self, nasa):
@@ -184,7 +185,7 @@ class TestJsonSchema:
                         written[key][name] = field["default"]
                         count += 1
         assert count > 20
-        assert load_gear_pair(written) == load_gear_pair(silent)
+        assert leaf_paths(load_gear_pair(written)) == leaf_paths(load_gear_pair(silent))
         rack = schema["$defs"]["BasicRack"]["properties"]
         assert rack["pressure_angle"]["default"] == 20.0
         assert "default" not in schema["properties"]["centre_distance"]

@@ -136,8 +136,8 @@ def test_a_stage_becomes_a_parameter_file_with_units_and_marks(xml, save, tmp_pa
     assert lumped.load_gear_pair(target).gear.teeth == 30
     lines = {line.partition(" = ")[0]: line for line in text.partition("[sources]")[0].splitlines()}
     assert lines["centre_distance"].endswith("# mm")
-    assert lines["roughness"].endswith("# um, assumed")
-    assert lines["law"].endswith("# assumed")
+    assert lines["roughness"].endswith("# um, assumed: ground flanks")
+    assert "# assumed: law III" in lines["law"]
     assert text.startswith("# - the file does not say")
 
 

@@ -1,17 +1,22 @@
 """Does `spurcheck init --teeth` write a complete file of the user's own pair, and nothing of a preset?"""
 
+import re
 import tomllib
 
 import pytest
 from typer.testing import CliRunner
 
-from lumped import load_gear_pair
+from lumped import State, load_gear_pair
 from lumped.schema.pair import leaf_paths
 from validation.cli import app
 from validation.exchange import parameter_text
-from validation.exchange.new_pair_file import GIVEN, new_pair_text
+from validation.exchange.new_pair_file import GIVEN, new_pair_text, reasons
 
 OWN = {"--teeth": "19/41", "--module": "2.5", "--face-width": "20", "--speed": "1450", "--torque": "80"}
+DRAWING = {
+    "teeth": "19/41", "basic_rack.module": 2.5, "gears.face_width": 20.0, "operating.pinion_speed": 1450.0,
+    "operating.pinion_torque": 80.0,
+}  # fmt: skip
 
 
 def init(*more):
@@ -34,8 +39,15 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
     for key, value in expected.items():
         assert found[key] == value
         assert key == "name" or sources[key] == GIVEN
-    assert set(sources) == set(found) - {"name", "description"}
-    assert all(source == GIVEN or source.startswith("assumed: ") for source in sources.values())
+    assert {*sources, *pair.assumed} == set(found) - {"name", "description"}
+    assert not {*sources} & {*pair.assumed}
+    assert {*sources.values()} == {GIVEN}
+    assert {*reasons(pair)} == {*pair.assumed}
+    text = path.read_text(encoding="utf-8").splitlines()
+    lines = [line.split("# ")[1] for line in text if " = " in line and "assumed: " in line]
+    assert len(lines) == len(pair.assumed)
+    assert lines.count("um, assumed: ground flanks") == 2
+    assert "assumed: usual for steel gears, 0.03 to 0.17" in lines
     assert "centre_distance" not in found
 
 
@@ -61,7 +73,7 @@ def test_entries_of_lists_have_their_units_and_remarks():
     shaft = {"segments": [{"length": 200, "diameter": 30}], "gear_position": 90}
     shaft["bearings"] = [{"position": 20} | ball, {"position": 180} | ball]
     pair = load_gear_pair("fzg_c").with_(shafts={"damping_ratio": 0.01, "pinion": shaft, "gear": shaft})
-    stated = {"sources": dict(pair.sources) | {"shafts.gear.bearings.1.position": "assumed"}}
+    stated = {"assumed": pair.assumed.to_mapping() | {"shafts.gear.bearings.1.position": 180}}
     text = parameter_text(pair.to_mapping() | stated)
     assert load_gear_pair(tomllib.loads(text)) == pair.with_(stated)
     places = [line.split("#")[1].strip() for line in text.splitlines() if line.startswith("position = ")]
@@ -78,7 +90,40 @@ def test_few_teeth_get_the_profile_shift_that_they_need(teeth, shift):
     given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
     pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
     assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (shift, 0.0)
-    assert dict(pair.sources)["pinion.profile_shift"].startswith("assumed: ")
+    assert pair.assumed["pinion.profile_shift"] == shift
+    assert "keeps the involute whole" in reasons(pair)["pinion.profile_shift"]
+
+
+def test_a_value_edited_in_the_text_is_known_and_the_rest_assumed():
+    """The user of c4723bf8 typed relief, temperature and shafts, and they counted as assumed."""
+    text = new_pair_text("x", DRAWING)
+    pair = load_gear_pair(tomllib.loads(text))
+    for field, old, new in (
+        ("mesh.backlash", "backlash = 0.115 ", "backlash = 0.116 "),
+        ("friction.law", 'law = "xu_kahraman"', 'law = "coulomb"'),
+        ("mesh.stiffness.model", 'model = "energy"', 'model = "parabolic"'),
+    ):
+        other = text.replace(old, new)
+        if field == "mesh.stiffness.model":  # keys of the other model
+            other = re.sub(r"(hertz|scale) = .*\n", "", other, count=2)
+        varied = load_gear_pair(tomllib.loads(other))
+        assert other != text
+        assert varied.state(field) is State.KNOWN
+        gone = {field} | ({"mesh.stiffness.hertz", "mesh.stiffness.scale"} if "model" in field else set())
+        assert {*pair.assumed} - {*varied.assumed} == gone
+        assert field not in reasons(varied)
+    relief = text.replace("[gear]", "[pinion.tip_relief]\namount = 15\nstart_roll_angle = 30\n\n[gear]", 1)
+    varied = load_gear_pair(tomllib.loads(relief))
+    assert varied.state("pinion.tip_relief.amount") is State.KNOWN
+    assert {*varied.assumed} - {*pair.assumed} == {"pinion.tip_relief.shape"}
+
+
+def test_an_assumption_of_the_user_has_not_the_reason_of_the_program():
+    pair = load_gear_pair(tomllib.loads(new_pair_text("x", DRAWING)))
+    own = pair.with_({"pinion.youngs_modulus": 3.0, "gear.roughness": 1.6})
+    own = own.with_({"assumed": own.assumed.to_mapping() | {"pinion.youngs_modulus": 3.0}})
+    assert reasons(own).keys() == own.assumed.keys() - {"pinion.youngs_modulus"}
+    assert reasons(own)["gear.youngs_modulus"] == "steel"
 
 
 @pytest.mark.parametrize(

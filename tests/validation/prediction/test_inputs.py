@@ -1,12 +1,17 @@
 """Are the uncertain inputs those that the file and the documented defaults state?"""
 
+import tomllib
+
 import numpy as np
 import pytest
 
 import lumped
+from lumped import fields_read
 from lumped.errors import ParameterError
-from tests.unlike_pairs import unlike_pair
-from validation.prediction.inputs import given_and_assumed, uncertain_inputs
+from lumped.schema.pair import leaf_paths
+from tests.unlike_pairs import all_assumed, unlike_pair
+from validation.exchange.new_pair_file import new_pair
+from validation.prediction.inputs import given_and_assumed, read_values, source_of, uncertain_inputs
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 
@@ -52,9 +57,10 @@ def test_a_choice_takes_each_of_its_values_equally_often():
 
 def test_defaults_are_for_values_that_are_assumed_and_for_no_others():
     fields = {one.field for one in uncertain_inputs(PAIR)}
-    assert "mesh.damping_ratio" in fields  # its source: assumed
-    assert "bearings.gear.oloa_stiffness" in fields  # the section's source: assumed
-    assert "mesh.stiffness" in fields  # "assumed model"
+    assert "mesh.damping_ratio" in fields
+    assert "bearings.gear.oloa_stiffness" in fields
+    assert "mesh.stiffness" in fields  # its model is assumed
+    assert "mesh.stiffness_factor" in fields
     assert "operating.pinion_torque" not in fields  # published
     assert "friction.law" not in fields
     assert "pinion.tip_relief.amount" not in fields
@@ -95,9 +101,54 @@ def test_ranges_survive_the_parameter_file():
     assert lumped.load_gear_pair(tomllib.loads(pair.to_toml())) == pair
 
 
-def test_values_without_a_source_are_called_so():
-    assert given_and_assumed(PAIR)[2] == "assumed"
-    assert given_and_assumed(PAIR.with_({"sources": {}}))[2] == "assumed or without a source"
+@pytest.mark.parametrize("words", ["Assumed", "a guess", "estimated", "measured"])
+def test_words_of_sources_change_neither_counts_nor_ranges(words):
+    """The file of a new pair, into whose [sources] a user writes of every value what he likes."""
+    pair = new_pair("23/81", 3.0, 26.0, 2900, 210.0, oil="vg150")
+    given, assumed = given_and_assumed(pair)
+    assert given == 8
+    assert assumed > 20
+    text = pair.with_({"sources": dict.fromkeys(leaf_paths(pair), words)}).to_toml()
+    said = lumped.load_gear_pair(tomllib.loads(text))
+    assert given_and_assumed(said) == (given, assumed)
+    assert repr(uncertain_inputs(said)) == repr(uncertain_inputs(pair))  # a choice has NaN as its ends
+    assert source_of(said, "mesh.damping_ratio") == words
+    known = said.with_({"assumed": {}})
+    assert given_and_assumed(known) == (len(fields_read(pair)), 0)
+    assert uncertain_inputs(known) == ()
+
+
+def test_what_no_chosen_law_reads_is_neither_counted_nor_varied():
+    pair = unlike_pair("rack_25_degrees_always_pushing").with_({"friction.law": "xu_kahraman"})
+    own = read_values(pair)
+    assert sum(given_and_assumed(pair)) == len(own) < len(leaf_paths(pair)) - 7
+    # The stiffness of the teeth may be that of their form, which has a fillet.
+    assert own - fields_read(pair) == {"basic_rack.fillet_radius_coefficient"}
+    fields = {one.field for one in uncertain_inputs(pair)}
+    assert {"lubricant.viscosity", "gear.roughness"} < fields
+    assert "mesh.backlash" not in fields
+    given = {"friction.law": "coulomb", "friction.coefficient": 0.06}
+    fields = {one.field for one in uncertain_inputs(pair.with_(given))}
+    assert not {"lubricant.viscosity", "gear.roughness", "pinion.roughness"} & fields
+    assert given_and_assumed(pair, contact_lost=True)[1] == given_and_assumed(pair)[1] + 1
+
+
+def test_a_law_that_may_be_another_one_has_what_these_read():
+    """Coulomb friction that is assumed: among the samples are laws that read oil and roughness."""
+    pair = unlike_pair("rack_25_degrees_always_pushing").with_({"friction.coefficient": 0.06})
+    pair = all_assumed(pair.with_({"friction.law": "coulomb"}))
+    fields = {one.field for one in uncertain_inputs(pair)}
+    assert {"friction.law", "friction.coefficient", "lubricant.viscosity", "gear.roughness"} < fields
+    assert "lubricant.viscosity" not in fields_read(pair)
+    assert "lubricant.viscosity" in read_values(pair)
+
+
+def test_samples_leave_the_states_of_the_pair():
+    pair = lumped.load_gear_pair("high_contact_ratio_29_47")
+    before = given_and_assumed(pair)
+    for one in uncertain_inputs(pair):
+        pair.with_(dict([one.change(one.at(0.3))]))
+    assert given_and_assumed(pair) == before
 
 
 def test_the_factor_scales_the_stiffness_and_what_follows_from_it():

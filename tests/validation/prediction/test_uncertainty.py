@@ -9,7 +9,7 @@ from scipy.stats import binom, qmc
 import floquet
 import lumped
 from lumped.errors import ParameterError
-from tests.unlike_pairs import unlike_pair
+from tests.unlike_pairs import all_assumed, unlike_pair
 from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.uncertainty import (
     _ends,
@@ -23,26 +23,19 @@ from validation.prediction.uncertainty import (
 )
 
 #: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
+#: Everything is known but the torque.
 LINEAR = unlike_pair("rack_25_degrees_always_pushing").with_(
     {
         "mesh.contact": "prescribed",
-        "friction.law": "none", "operating.pinion_speed": 800.0, "sources": {},
+        "friction.law": "none", "operating.pinion_speed": 800.0, "assumed": {},
         "uncertainty": {"operating.pinion_torque": "+- 4 %"},
     }
 )  # fmt: skip
 
 
-def exact_only(pair: lumped.GearPair) -> lumped.GearPair:
-    """The pair with every value stated, so that only its own ranges vary."""
-    from lumped.schema.pair import leaf_paths
-
-    known = {path: "stated" for path in leaf_paths(pair) if path not in ("name", "description")}
-    return pair.with_({"sources": known})
-
-
 @pytest.fixture(scope="module")
 def torque():
-    return uncertainty(exact_only(LINEAR), 64, seed=3)
+    return uncertainty(LINEAR, 64, seed=3)
 
 
 def test_percentiles_of_a_result_that_grows_with_the_input(torque):
@@ -72,21 +65,21 @@ def test_the_interval_of_a_percentile_has_its_probability(count, percentile):
 
 
 def test_the_same_seed_gives_the_same_samples_and_another_one_others(torque):
-    again = uncertainty(exact_only(LINEAR), 64, seed=3)
-    other = uncertainty(exact_only(LINEAR), 64, seed=4)
+    again = uncertainty(LINEAR, 64, seed=3)
+    other = uncertainty(LINEAR, 64, seed=4)
     np.testing.assert_array_equal(torque["dte_peak_to_peak"], again["dte_peak_to_peak"])
     assert not np.array_equal(torque["dte_peak_to_peak"], other["dte_peak_to_peak"])
 
 
 def test_refused_samples_are_counted():
     """A stiffness table without its file cannot be: half of the samples of this choice are refused."""
-    pair = exact_only(LINEAR).with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
+    pair = LINEAR.with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
     found = uncertainty(pair, 16)
     assert found.attrs["refused"] == 16 - found.sizes["sample"] == 8
 
 
 def test_a_pair_without_uncertain_inputs_is_refused():
-    pair = exact_only(LINEAR).with_({"uncertainty": {}})
+    pair = LINEAR.with_({"uncertainty": {}})
     with pytest.raises(ParameterError, match="uncertainty"):
         uncertainty(pair, 16)
 
@@ -104,10 +97,9 @@ def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
 
 
 def test_the_band_over_speed_is_about_the_sweep(torque):
-    pair = exact_only(LINEAR)
     speeds = np.array([700.0, 900.0, 1100.0])
-    band = speed_band(pair, speeds, torque, 16)
-    middle = lumped.speed_sweep(pair, speeds)["dte_peak_to_peak"].to_numpy()
+    band = speed_band(LINEAR, speeds, torque, 16)
+    middle = lumped.speed_sweep(LINEAR, speeds)["dte_peak_to_peak"].to_numpy()
     np.testing.assert_allclose(band["low"], middle * 0.964, rtol=0.01)
     np.testing.assert_allclose(band["high"], middle * 1.036, rtol=0.01)
 
@@ -124,14 +116,14 @@ def test_the_band_over_speed_is_about_the_sweep(torque):
 def test_a_default_spread_never_refuses_a_value_of_the_file(field, value, low, high):
     """An end that the field cannot have is the value; a shaft's bearing without tilt stiffness has none."""
     pair = LINEAR.with_({"uncertainty": {}, "pinion.tip_relief": {"amount": 5.0, "start_roll_angle": 25.0}})
-    pair = pair.with_({field: value})
-    found = {one.field: one for one in uncertain_inputs(pair.with_({"sources": {field: "assumed"}}))}
+    pair = pair.with_({field: value, "friction.law": "coulomb"})
+    found = {one.field: one for one in uncertain_inputs(pair.with_({"assumed": {field: value}}))}
     ends = (found[field].low, found[field].high) if field in found else (None, None)
     assert ends == pytest.approx((low, high)) if low is not None else ends == (None, None)
 
 
 def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
-    pair = LINEAR.with_({"pinion.deviations": {"tolerance_class": 6}})
+    pair = all_assumed(LINEAR.with_({"pinion.deviations": {"tolerance_class": 6}}))
     found = uncertainty(pair, samples=16)
     assert np.unique(found.value.sel(input="pinion.deviations.seed")).size == 16
     swings = found.revolution_dte_peak_to_peak.values

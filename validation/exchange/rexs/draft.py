@@ -12,7 +12,6 @@ from lumped.fields.units import to_file
 from lumped.schema.pair import stated_unit
 from validation.exchange.rexs.model import ATTRIBUTES, Component, RexsModel, si_from_rexs
 
-ASSUMED = "assumed"
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
 _SMALLEST, _LARGEST = 1e-30, 1e30
 

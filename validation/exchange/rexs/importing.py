@@ -12,8 +12,8 @@ from lumped.fields.units import to_stated
 from lumped.gear_geometry.geometry import theoretical_backlash
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.new_pair_file import completed, stand_in_stiffness
-from validation.exchange.rexs.draft import ASSUMED, Draft, Reading
+from validation.exchange.new_pair_file import completed, marked, stand_in_stiffness
+from validation.exchange.rexs.draft import Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
 from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
 from validation.exchange.rexs.model import VERSIONS, Component, RexsModel, broken
@@ -22,11 +22,6 @@ _GEARS_OF_PAIR = ("pinion", "gear")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
 _NO_HELIX = 1e-9
-#: Assumptions that say more than the word.
-_BECAUSE = {
-    "operating.pinion_torque": "assumed: tangential load over face width and module of 20 N/mm^2",
-    "operating.pinion_speed": "assumed: a round number",
-}
 #: Field of the viscosity law -> attribute of the oil.
 _VISCOSITY_LAW = {
     "kinematic_viscosity_40": "viscosity_at_40_degree_celsius",
@@ -60,8 +55,8 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
 
     Returns
     -------
-    mapping : nested parameters in file units, valid for ``load_gear_pair``; under ``sources`` every value has
-        its component and attribute in the file, or "assumed" where the file says nothing
+    mapping : nested parameters in file units, valid for ``load_gear_pair``; under ``sources`` every value of
+        the file has its component and attribute, under ``assumed`` is every other value
     notes : what was assumed, left out or chosen, in words
 
     Raises
@@ -92,16 +87,13 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     read_reliefs(draft, component, gears, _validated(draft, picked).geometry)
     pair = _validated(draft, picked)
     pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
-    sources = {
-        path: draft.sources.get(path) or _BECAUSE.get(path, ASSUMED)
-        for path in sorted(leaf_paths(pair))
-        if path not in ("name", "description")
-    }
+    values = leaf_paths(pair)
+    pair = marked(pair, {path: source for path, source in draft.sources.items() if path in values})
     if model.version not in VERSIONS:
         known = f"versions {', '.join(VERSIONS)} were checked"
         draft.note(f"the file is of REXS version {shown(model.version) or '(not given)'}; {known}")
-    _note_assumptions(draft, pair, sources)
-    return pair.to_mapping() | {"sources": sources}, tuple(draft.notes)
+    _note_assumptions(draft, pair)
+    return pair.to_mapping(), tuple(draft.notes)
 
 
 def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
@@ -182,15 +174,15 @@ def _validated(draft: Draft, stage: _Stage) -> GearPair:
         raise ParameterError(problems, model.file) from None
 
 
-def _note_assumptions(draft: Draft, pair: GearPair, sources: dict[str, str]) -> None:
-    assumed = [path for path, source in sources.items() if source.startswith(ASSUMED)]
+def _note_assumptions(draft: Draft, pair: GearPair) -> None:
+    sources = dict(pair.sources)
     speed = f"{to_stated(pair.operating.pinion_speed, 'rpm'):g} rpm"
     for key, what in (("speed", speed), ("torque", f"{pair.operating.pinion_torque:g} N m")):
-        if f"operating.pinion_{key}" in assumed:
+        if f"operating.pinion_{key}" in pair.assumed:
             text = f"operating.pinion_{key} is not in the file: {what} is assumed"
             draft.note(f"{text}; give your own, for example with --{key}")
-    if assumed:
-        draft.note("assumed, not known: " + ", ".join(assumed))
+    if pair.assumed:
+        draft.note("assumed, not known: " + ", ".join(pair.assumed))
     for which in _GEARS_OF_PAIR:
         if f"{which}.inertia" not in sources and f"{which}.mass" in sources:
             draft.note(f"{which}.inertia is not in REXS: that of a solid disc is taken, not of its mass")

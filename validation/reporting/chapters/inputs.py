@@ -7,9 +7,11 @@ import re
 from typing import Any
 
 from lumped.path_of_contact import pair_stiffness
+from lumped.schema.assumed import WORDS, State
 from lumped.schema.bodies import bodies_of
-from lumped.schema.pair import leaf_paths, stated_unit
-from validation.prediction.inputs import source_of, uncertain_inputs
+from lumped.schema.pair import GearPair, leaf_paths, stated_unit
+from validation.exchange.new_pair_file import reasons
+from validation.prediction.inputs import read_values, source_of, uncertain_inputs
 from validation.reporting.blocks import Badge, Cell, Content, quantities, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -18,25 +20,22 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.given, results.pair.geometry
-    values = {path: v for path, v in leaf_paths(pair).items() if path not in ("name", "description")}
+    values = {path: v for path, v in leaf_paths(pair).items() if path not in WORDS}
     spreads = {one.field: one.written for one in uncertain_inputs(pair)}
     given, assumed = results.inputs
+    read, why = read_values(pair, contact_lost=results.like.contact_lost), reasons(pair)
+    unread = len(values) - len(read)
     table = table_of(
         "parameters",
-        f"All values: {given} known, {assumed} assumed.",
+        f"All values: {given} known, {assumed} assumed, {unread} that the chosen laws and models do not read.",
         list(values),
         {
             "field": ("field", lambda path: path),
             "value": ("value", lambda path: _shown(values[path])),
             "unit": ("unit", lambda path: _unit(path, values[path])),
-            "source": ("source", lambda path: source_of(pair, path) or "none stated"),
+            "source": ("source", lambda path: source_of(pair, path) or why.get(path, "none stated")),
             "range": ("range", lambda path: spreads.get(path, "")),
-            "state": (
-                "",
-                lambda path: (
-                    Badge("warning", "assumed") if "assumed" in (source_of(pair, path) or "assumed") else ""
-                ),
-            ),
+            "state": ("", lambda path: _state(pair, path) if path in read else "not read"),
         },
     )
     b = bodies_of(pair)
@@ -53,6 +52,11 @@ def write(results: Results) -> Content:
         ("effective mass", b.effective_mass, "kg", "of both gears on the line of action"),
     )
     return Content(f"{assumed} of {given + assumed} values are assumed.", (derived, table))
+
+
+def _state(pair: GearPair, path: str) -> Cell:
+    state = pair.state(path)
+    return Badge("warning", state.value) if state is State.ASSUMED else ""
 
 
 def _shown(value: Any) -> Cell:

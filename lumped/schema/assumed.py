@@ -1,0 +1,223 @@
+"""Which values of a pair are assumed: the record that the table ``[assumed]`` of a parameter file holds.
+
+A field is assumed where the table has its path with the value that the field has. It is known everywhere
+else: where the table does not name it, and where its value was changed since the table was written. Text in
+``[sources]`` decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from enum import Enum
+from functools import lru_cache
+from typing import Annotated, Any
+
+from pydantic import PlainSerializer, PlainValidator
+
+from lumped.errors import FieldProblem, ParameterError, refuse, shown
+from lumped.fields.refusals import field_of, models_in
+from lumped.fields.section import Section
+from lumped.fields.units import Quantity, to_file, to_si
+
+#: A value as a parameter file has it; a list is a tuple.
+Value = float | int | bool | str | tuple[Any, ...]
+#: Tables of a pair that are about its fields and are no values of it.
+ABOUT = ("sources", "assumed", "uncertainty")
+#: Fields that are words for the reader.
+WORDS = ("name", "description")
+
+
+class State(Enum):
+    """Whether a value is known or assumed; the value is the word that a reader gets."""
+
+    KNOWN = "known"
+    ASSUMED = "assumed"
+
+
+class Assumed(Mapping[str, Value]):
+    """Field path -> value in file units that is assumed; in the order of the paths, frozen and hashable."""
+
+    __slots__ = ("_hash", "_values")
+
+    def __init__(self, values: Mapping[str, Value] | None = None) -> None:
+        self._values: dict[str, Value] = dict(sorted((values or {}).items()))
+        self._hash = hash(tuple(self._values.items()))
+
+    def __getitem__(self, path: str) -> Value:
+        """Return the assumed value of a field."""
+        return self._values[path]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the paths of the fields."""
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        """Return the number of fields."""
+        return len(self._values)
+
+    def __hash__(self) -> int:
+        """Pairs are keys of caches."""
+        return self._hash
+
+    def __repr__(self) -> str:
+        """Return it as a dictionary is printed."""
+        return repr(self._values)
+
+    def without(self, *paths: str) -> Assumed:
+        """Return the record without some fields and all fields inside them."""
+        kept = {path: value for path, value in self.items() if not any(within(path, one) for one in paths)}
+        return self if len(kept) == len(self) else Assumed(kept)
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return plain data for a file."""
+        return {path: list(one) if isinstance(one, tuple) else one for path, one in self.items()}
+
+
+def within(path: str, section: str) -> bool:
+    """Whether a path is that of a field or section, or of a field inside it."""
+    return path == section or path.startswith(f"{section}.")
+
+
+def _parsed(table: object) -> Assumed:
+    """The table as written; keys without quotation marks make tables inside it."""
+    if isinstance(table, Assumed):
+        return table
+    if not isinstance(table, Mapping):
+        allowed = "a table: path of a field = the value that is assumed"
+        raise refuse("", shown(table), allowed, 'For example [assumed] with "mesh.backlash" = 0.1.')
+    found: dict[str, Value] = {}
+
+    def walk(inside: Mapping[Any, Any], prefix: str) -> None:
+        for key, value in inside.items():
+            if isinstance(value, Mapping):
+                walk(value, f"{prefix}{key}.")
+            else:
+                found[f"{prefix}{key}"] = _frozen(value)
+
+    walk(table, "")
+    return Assumed(found)
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(map(_frozen, value)) if isinstance(value, (list, tuple)) else value
+
+
+#: The field ``assumed`` of a pair.
+AssumedTable = Annotated[
+    Assumed,
+    PlainValidator(
+        _parsed, json_schema_input_type=dict[str, float | bool | str | list[float | str | list[float]]]
+    ),
+    PlainSerializer(Assumed.to_mapping, return_type=dict[str, Any]),
+]
+
+
+def problems_of(root: type[Section], written: Assumed) -> Iterator[FieldProblem]:
+    """Entries of a table that no field of the model ``root`` can have."""
+    for path, value in written.items():
+        field = f"assumed.{path}"
+        try:
+            unit, allowed = _kind(root, path)
+        except ParameterError as error:
+            yield FieldProblem(field, "unknown key", error.problems[0].allowed, error.problems[0].action)
+            continue
+        if unit is not None and not isinstance(value, tuple) and _si(value, unit) is None:
+            word = isinstance(value, str) and not any(sign.isdigit() for sign in value)
+            if not (word and f"'{value}'" in allowed):
+                action = "Write the value that the field has, or delete the line: then the field is known."
+                yield FieldProblem(field, shown(repr(value)), allowed, action)
+
+
+@lru_cache(maxsize=1024)
+def _kind(root: type[Section], path: str) -> tuple[str | None, str]:
+    """Unit of a field, and what values it may have; a section is refused."""
+    info = field_of(root, path)
+    if path.split(".")[0] in (*ABOUT, *WORDS):
+        raise refuse(path, "unknown key", "a field with a value", "Delete the line.")
+    if inside := models_in(info.annotation):
+        names = ", ".join(f"{path}.{name}" for name in inside[0].model_fields)
+        raise refuse(path, "unknown key", "a field with a value", f"Name its fields: {names}.")
+    marker = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+    return (marker.unit, marker.allowed) if marker else (None, "")
+
+
+def recorded(pair: Section, written: Assumed) -> Assumed:
+    """The record of a pair: entries of the table that its values still have, and defaults that it took.
+
+    A field that the file does not write is assumed at the default of the schema.
+    """
+    defaults = dict(_defaults_taken(pair, ""))
+    values = {path: _value_at(pair, path) for path in (*written, *defaults)}
+    root = type(pair)
+    return Assumed(
+        {
+            path: value
+            for path, value in values.items()
+            if value is not None and (path in defaults or _same(root, path, written[path], value))
+        }
+    )
+
+
+def _defaults_taken(section: Section, prefix: str) -> Iterator[tuple[str, None]]:
+    """Paths of the fields of a section and those inside it that no file or caller gave."""
+    for name in type(section).model_fields:
+        path, value = f"{prefix}{name}", getattr(section, name)
+        if path in ABOUT or path in WORDS:
+            continue
+        if isinstance(value, Section):
+            yield from _defaults_taken(value, f"{path}.")
+        elif isinstance(value, tuple) and value and isinstance(value[0], Section):
+            for number, one in enumerate(value):
+                yield from _defaults_taken(one, f"{path}.{number}.")
+        elif name not in section.model_fields_set and value not in (None, ()):
+            yield path, None
+
+
+def _value_at(pair: Section, path: str) -> Value | None:
+    """Value of a field in file units; None where the pair has none."""
+    *parents, leaf = path.split(".")
+    node: Any = pair
+    for part in parents:
+        if isinstance(node, tuple):
+            node = node[int(part)] if part.isdigit() and int(part) < len(node) else None
+        else:
+            node = (
+                getattr(node, part) if isinstance(node, Section) and part in type(node).model_fields else None
+            )
+    if not isinstance(node, Section) or leaf not in type(node).model_fields:
+        return None
+    value = getattr(node, leaf)
+    if value is None or isinstance(value, Section):
+        return None
+    unit = _kind(type(pair), path)[0]
+    if isinstance(value, tuple):
+        return tuple(_in_file(one, unit) for one in value)
+    one: Value = _in_file(value, unit)
+    return one
+
+
+def _in_file(value: Any, unit: str | None) -> Any:
+    return value if unit is None or isinstance(value, str) else to_file(value, unit)
+
+
+def _same(root: type[Section], path: str, written: Value, value: Value) -> bool:
+    """Whether a value of the table is the one that the field has."""
+    if written == value:
+        return type(written) is not bool or type(value) is bool
+    unit = _kind(root, path)[0]
+    if unit is None:
+        return False
+    if isinstance(written, tuple) and isinstance(value, tuple):
+        return [_si(one, unit) for one in written] == [_si(one, unit) for one in value]
+    number = _si(written, unit)
+    return number is not None and number == _si(value, unit)
+
+
+def _si(value: object, unit: str) -> float | None:
+    """A number or a text with a unit in SI; None where it is neither."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        return None
+    try:
+        return to_si(value, unit)
+    except (ValueError, OverflowError):
+        return None

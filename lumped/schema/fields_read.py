@@ -1,0 +1,117 @@
+"""Which fields of a pair its numbers depend on: those that the chosen laws and models read.
+
+A parameter file holds the parameters of all friction laws, and dimensions that only some stiffness models
+need. Laws and models say what they read (``FrictionLaw.reads``, ``StiffnessModel.reads``); here that is
+translated into fields. All other fields are read always.
+"""
+
+from __future__ import annotations
+
+from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
+from lumped.friction.registry import law_of
+from lumped.friction.table import TABLE
+from lumped.schema.assumed import WORDS, within
+from lumped.schema.changes import fields_of
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair, leaf_paths
+from lumped.stiffness.base import TOOTH_FORM
+
+#: What a friction law reads, by the names of ``ContactPath`` and ``FrictionSettings`` -> fields that it comes
+#: from, see ``own_laws.nominal_contact``; "gears" are both gears.
+FRICTION: dict[str, tuple[str, ...]] = {
+    "coefficient": ("friction.coefficient",),
+    "sharpness": ("friction.sharpness",),
+    "maximum": ("friction.maximum",),
+    "thresholds": ("friction.thresholds",),
+    "effective_modulus": ("gears.youngs_modulus", "gears.poisson_ratio"),
+    "viscosity": ("lubricant.viscosity", "lubricant.viscosity_law"),
+    "pressure_viscosity_k": ("lubricant.pressure_viscosity_k",),
+    "pressure_viscosity_s": ("lubricant.pressure_viscosity_s",),
+    "roughness": ("gears.roughness",),
+    "composite_roughness": ("friction.composite_roughness", "gears.roughness"),
+    "film_length": ("friction.film_length",),
+}
+#: Fields that laws, models or the rest of a pair may leave unread.
+_CONDITIONAL = {
+    *(field for fields in FRICTION.values() for field in fields),
+    *TOOTH_FORM,
+    "friction.table",
+    "gears.density",
+    "basic_rack.addendum_coefficient",
+    "mesh.relief",
+    "mesh.backlash",
+}
+
+
+def fields_read(pair: AnyPair, *, contact_lost: bool = False) -> frozenset[str]:
+    """Return the fields of a pair that its motion, its losses and its stability depend on.
+
+    A field that is not among them changes no number of page 1 of the report. ``mesh.backlash`` is read where
+    contact is lost alone: the prediction has no back sides of teeth, but the second model has, and motions
+    beyond contact loss are followed over twice the backlash.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    contact_lost : whether the motion loses contact
+
+    Returns
+    -------
+    dotted paths of fields that have a value, without the name and the description
+
+    Examples
+    --------
+    >>> pair = load_gear_pair("nasa_28_28")
+    >>> "friction.maximum" in fields_read(pair)
+    False
+    >>> "friction.maximum" in fields_read(pair.with_(law="benedict_kelley"))
+    True
+    """
+    pair = load_gear_pair(pair)
+    used = {*_of_friction(pair), *pair.mesh.stiffness.reads, *_of_bodies(pair)}
+    if contact_lost:
+        used.add("mesh.backlash")
+    unread = [*_both(_CONDITIONAL)]
+    read = [*_both(used)]
+    return frozenset(
+        path
+        for path in leaf_paths(pair)
+        if path not in WORDS
+        and (any(within(path, one) for one in read) or not any(within(path, one) for one in unread))
+    )
+
+
+def _both(fields: set[str]) -> set[str]:
+    """The fields, where "gears" is both gears."""
+    return {one for field in fields for one in fields_of(field)}
+
+
+def _of_friction(pair: GearPair) -> set[str]:
+    friction = pair.friction
+    if friction.law == TABLE:
+        return {"friction.table"}
+    law = law_of(friction)
+    names = set(FRICTION) if law.reads is None else set(law.reads)
+    if "coefficient" in names and friction.coefficient is None:
+        names |= BENEDICT_KELLEY.reads or set()
+    fields = {field for name in names for field in FRICTION[name]}
+    if friction.composite_roughness is not None and "roughness" not in names:
+        fields.discard("gears.roughness")  # the film has its own
+    return fields
+
+
+def _of_bodies(pair: GearPair) -> set[str]:
+    """Fields of both gears that geometry, masses and what holds the gears depend on."""
+    fields: set[str] = set()
+    gears = {"pinion": pair.pinion, "gear": pair.gear}
+    for name, gear in gears.items():
+        if gear.mass is None or gear.inertia is None:
+            fields |= {f"{name}.density", f"{name}.bore"}
+        if gear.addendum is None and gear.tip_diameter is None:
+            fields.add("basic_rack.addendum_coefficient")
+        if gear.tip_relief is not None or gear.root_relief is not None:
+            fields.add("mesh.relief")
+    if pair.healthy is not pair or pair.shafts is not None:
+        # Faults have the strength of the tooth; the second model has the gear on its shaft as a body.
+        fields |= TOOTH_FORM
+    return fields
