@@ -28,10 +28,11 @@ from lumped.friction.table import TABLE
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, existence_problems
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
+from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
-from lumped.schema.shafts import Bearings, Shafts
+from lumped.schema.shafts import Shafts
 from lumped.schema.teeth import TorqueRipple
 
 #: Format of parameter files; a change that older programs would misread raises it.
@@ -148,6 +149,8 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += [problem for path, _ in self.uncertainty for problem in _path_problems(path, "uncertainty")]
         if wrong:
             raise ParameterError(wrong)
+        force = self.operating.pinion_torque / self.geometry.base_radius_pinion
+        self.__dict__["bearings"] = self.bearings.under(force)
         return self
 
     @cached_property
