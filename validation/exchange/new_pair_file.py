@@ -50,7 +50,7 @@ _WHY = {
     "viscosity": "oil warm from running",
     "temperature": "sump of an enclosed gear",
     **dict.fromkeys(("viscosity_index", "pressure_viscosity_k", "pressure_viscosity_s"), "mineral oil"),
-    "law": f"law {LAWS['xu_kahraman'].title}, which knows load, speed, oil and roughness",
+    "law": f"law {LAWS['iso_14179'].title}, which knows load, speed, oil and roughness; between two others",
     "relief": "tip and root relief act where they are given",
     "contact": "a tooth pair touches where the mean load closes its gap",
     "sharpness": "read by law IV alone",
@@ -125,7 +125,7 @@ _STAND_INS: dict[str, Any] = {
     },
     "mesh.damping_ratio": 0.05,
     "mesh.stiffness.model": "energy",
-    "friction.law": "xu_kahraman",
+    "friction.law": "iso_14179",
     "operating.pinion_speed": 1000.0,
 }
 #: Oil temperature where a file has viscosities but no temperature [degC], and dynamic viscosity where it has

@@ -25,7 +25,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
-from validation.prediction.inputs import Input, uncertain_inputs
+from validation.prediction.inputs import Input, forms_beside, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, predicted
 from validation.signals.averages import GEARS, sidebands
 
@@ -71,12 +71,13 @@ def uncertainty(
 
     Returns
     -------
-    xarray.Dataset over ``sample``, ``percentile`` and ``input``. Each quantity q of the prediction, in SI:
-    ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it lies with
+    xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the prediction,
+    in SI: ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it lies with
     a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of a choice
     the smallest and largest result; ``q_rank_correlation`` (input), Spearman's. ``value`` (input, sample)
-    holds the inputs, a choice by its number. Of teeth that differ also the quantities ``TEETH``; teeth of a
-    tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``
+    holds the inputs, a choice by its number; of fields that move together, the first. ``q_form`` (form) is
+    the result with the inputs as given in a form of the model that the range does not hold. Of teeth that
+    differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``
     (counts of samples), ``seed``, and the result with the inputs as given, ``given_q``
 
     Raises
@@ -91,21 +92,22 @@ def uncertainty(
         action = "State ranges in [uncertainty], or sources that say what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
     alone = [(j, share) for j, one in enumerate(inputs) for share in _shares(one)]
-    total = samples + len(alone) + 1
+    forms = forms_beside(pair)
+    total = samples + len(alone) + len(forms) + 1
     done = 0
 
-    def row(changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
+    def row(changes: Sequence[tuple[Input, float]], base: GearPair = pair) -> FloatArray | None:
         nonlocal done
         done += 1
         if progress is not None:
             progress(done / total)
-        return _numbers(pair, changes)
+        return _numbers(base, changes)
 
     given = row(())
     if given is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
     ends = _ends(inputs, [j for j, _ in alone], [row([(inputs[j], share)]) for j, share in alone], given.size)
-    points = _points(_importance(ends), samples, seed)
+    points = sobol_points(_importance(ends), samples, seed)
     rows = [row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]) for point in points]
     kept = np.array([found is not None for found in rows])
     if kept.sum() < _LEAST * samples:
@@ -114,6 +116,11 @@ def uncertainty(
         )
     table = np.stack([found for found in rows if found is not None])
     found = _dataset(pair, inputs, points[kept], table, ends)
+    beside = np.array([_of_form(row((), pair.with_(form)), given.size) for form in forms.values()])
+    for column, name in enumerate(QUANTITIES):
+        attrs = found[name].attrs | {"long_name": f"{found[name].attrs['long_name']}, inputs as given"}
+        found[f"{name}_form"] = ("form", beside[:, column], attrs)
+    found = found.assign_coords(form=("form", list(forms), {"units": "1", "long_name": "form of the model"}))
     names = (name for name in found.data_vars if found[name].dims == ("sample",))
     found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
     found.attrs |= {"refused": samples - len(table), "seed": seed}
@@ -137,7 +144,7 @@ def speed_band(
     ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
     ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
     """
-    table = _each_sample(pair, known, samples, lambda varied: _peaks(varied, speeds_rpm, step_angle))
+    table = _each_sample(pair, known, samples, lambda one: _peaks(one, speeds_rpm, step_angle))
     low, high = np.nanpercentile(table, PERCENTILES[::2], axis=0)
     text = "transmission error, peak to peak"
     return labelled_dataset(
@@ -169,9 +176,9 @@ def _each_sample(
     by_name = dict(zip(known["input"].to_numpy().tolist(), moved, strict=True))
     importance = np.array([by_name.get(one.field, moved.max()) for one in inputs])
     found = []
-    for point in _points(importance, samples, int(known.attrs["seed"])):
+    for point in sobol_points(importance, samples, int(known.attrs["seed"])):
         try:
-            found.append(run(_varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
+            found.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
         except SpurcheckError:
             continue
     return np.array(found)
@@ -208,11 +215,12 @@ def _shares(one: Input) -> list[float]:
     return [PERCENTILES[0] / 100.0, PERCENTILES[-1] / 100.0]
 
 
-def _points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
-    """(samples, inputs) scrambled Sobol points, the first dimensions for the most important inputs.
+def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
+    """Return (samples, inputs) scrambled Sobol points, the first dimensions for the most important inputs.
 
-    Few points fill the planes of later dimensions unevenly: docs/verification/uncertainty.md. Inputs that
-    symmetry makes equal stay in their order, whatever rounding says.
+    ``importance`` (inputs,): a number that grows with what an input moves. Few points fill the planes of
+    later dimensions unevenly: docs/verification/uncertainty.md. Inputs that symmetry makes equal stay in
+    their order, whatever rounding says.
     """
     importance = np.round(importance, 6)
     points = qmc.Sobol(importance.size, rng=np.random.default_rng(seed)).random(samples)
@@ -237,8 +245,19 @@ def _importance(ends: FloatArray) -> FloatArray:
     return np.asarray((width / np.where(largest > 0.0, largest, 1.0)).max(axis=1))
 
 
-def _varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
-    return pair.with_(dict(one.change(one.at(share)) for one, share in changes)) if changes else pair
+def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
+    """Return the pair with inputs at shares of their distributions, 0 to 1.
+
+    Raises
+    ------
+    ParameterError : values that no pair can have together
+    """
+    fields: dict[str, object] = {}
+    for one, share in changes:
+        fields |= one.changes(share)
+    if fields.get("mesh.stiffness") == {"model": pair.mesh.stiffness.model}:
+        del fields["mesh.stiffness"]  # keeps the parameters that the file gives the model
+    return pair.with_(fields) if fields else pair
 
 
 def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
@@ -246,8 +265,8 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
-            varied = _varied(pair, changes)
-            found, own = predicted(varied.healthy), _of_teeth(varied)
+            changed = varied(pair, changes)
+            found, own = predicted(changed.healthy), _of_teeth(changed)
     except SpurcheckError:
         return None
     orders = np.zeros(ORDERS)
@@ -305,6 +324,10 @@ def _dataset(
             "reason": [one.reason for one in inputs],
         },
     )
+
+
+def _of_form(row: FloatArray | None, columns: int) -> FloatArray:
+    return np.full(columns, np.nan) if row is None else row
 
 
 def _number(one: Input, share: float) -> float:

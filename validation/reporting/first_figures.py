@@ -112,4 +112,7 @@ _WHOLE = {
     "mesh.stiffness_factor": "tooth stiffness",
     "lubricant.viscosity_law.temperature": "oil temperature",
     "operating.pinion_torque": "torque",
+    "gears.roughness": "roughness of all flanks",
+    "pinion.inertia": "pinion, mass and inertia",
+    "gear.inertia": "gear, mass and inertia",
 }

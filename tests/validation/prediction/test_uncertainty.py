@@ -14,8 +14,8 @@ from validation.prediction.inputs import uncertain_inputs
 from validation.prediction.uncertainty import (
     _ends,
     _importance,
-    _points,
     percentile_interval,
+    sobol_points,
     speed_band,
     teeth_band,
     transmission_error,
@@ -100,7 +100,7 @@ def test_the_first_dimensions_are_those_of_the_inputs_that_matter_most():
     share = _importance(ends)
     np.testing.assert_allclose(share, [0.2, 1.0, 0.5])
     sobol = qmc.Sobol(3, rng=np.random.default_rng(3)).random(8)
-    np.testing.assert_array_equal(_points(share, 8, 3)[:, [1, 2, 0]], sobol)
+    np.testing.assert_array_equal(sobol_points(share, 8, 3)[:, [1, 2, 0]], sobol)
 
 
 def test_the_band_over_speed_is_about_the_sweep(torque):

@@ -19,7 +19,7 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.pair, results.pair.geometry
     values = {path: v for path, v in leaf_paths(pair).items() if path not in ("name", "description")}
-    spreads = {one.field: one.written for one in uncertain_inputs(pair)}
+    spreads = {part.field: one.written for one in uncertain_inputs(pair) for part in one.parts}
     given, assumed, word = results.inputs
     table = table_of(
         "parameters",
