@@ -72,13 +72,14 @@ def uncertainty(
     Returns
     -------
     xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the prediction,
-    in SI: ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it lies with
-    a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of a choice
-    the smallest and largest result; ``q_rank_correlation`` (input), Spearman's. ``value`` (input, sample)
-    holds the inputs, a choice by its number; of fields that move together, the first. ``q_form`` (form) is
-    the result with the inputs as given in a form of the model that the range does not hold. Of teeth that
-    differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``
-    (counts of samples), ``seed``, and the result with the inputs as given, ``given_q``
+    in SI: ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it
+    lies with a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of
+    a choice the smallest and largest result; ``q_rank_correlation`` (input), Spearman's; ``q_form`` (form),
+    the result with the inputs as given in a form of the model that the range does not hold. ``value``
+    (input, sample) holds the inputs, a choice by its number; of fields that move together, the first. Of
+    teeth that differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every
+    sample. Attributes: ``refused``, ``contact_lost``, ``unstable`` (counts of samples), ``seed``, and the
+    result with the inputs as given, ``given_q``
 
     Raises
     ------
