@@ -1,6 +1,7 @@
 """Inputs of a pair that are not known exactly, and what each may be: as stated, or by documented defaults.
 
-A range is log-uniform where both ends are positive and one is at least twice the other, else uniform. Fields
+A range is log-uniform where factors state it, or where both ends are positive and one is at least twice the
+other, else uniform. So a value is the median of factors up and down, and of as much up as down. Fields
 that one cause moves are one input: both directions of a bearing, the flanks of both gears, mass and inertia.
 """
 
@@ -44,17 +45,18 @@ _TIED = (
 
 @dataclass(frozen=True)
 class Part:
-    """A field that an input moves: the ends of its range in file units, NaN of a choice."""
+    """A field that an input moves, ends in file units, NaN of a choice; ``geometric`` is log-uniform."""
 
     field: str
     low: float = math.nan
     high: float = math.nan
+    geometric: bool = False
 
     def at(self, share: float) -> float:
         """The value that a share of the distribution lies below, in file units."""
         if self.field.endswith(".seed"):
             return int(self.low + (self.high - self.low) * share)
-        if self.low > 0.0 and self.high >= _WIDE * self.low:
+        if self.geometric:
             return float(self.low * (self.high / self.low) ** share)
         return self.low + (self.high - self.low) * share
 
@@ -156,7 +158,11 @@ def _blanks(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
         default = _default(field)
         of_disc = {"inertia": getattr(own, f"inertia_{gear}"), "mass": getattr(own, f"mass_{gear}")}
         parts = [
-            Part(f"{gear}.{key}", *_ends(field, default["spread"], value, str(stated_unit(f"{gear}.{key}"))))
+            _part(
+                f"{gear}.{key}",
+                _ends(field, default["spread"], value, str(stated_unit(f"{gear}.{key}"))),
+                default["spread"],
+            )
             for key, value in of_disc.items()
             if default is not None
             and getattr(getattr(pair, gear), key) is None
@@ -240,8 +246,19 @@ def _by_default(pair: GearPair, field: str, spread: object, reason: str) -> Inpu
         low, high = (
             end if _allowed(pair, field, end) else value for end in _ends(field, spread, value, unit)
         )
-        return None if low == high else Input(field, (Part(field, low, high),), (), unit, spread, reason)
+        return (
+            None
+            if low == high
+            else Input(field, (_part(field, (low, high), spread),), (), unit, spread, reason)
+        )
     return _input(pair, field, spread, reason)
+
+
+def _part(field: str, ends: tuple[float, float], spread: str) -> Part:
+    """A field with its range, as the text states it."""
+    low, high = ends
+    factors = _FACTORS.fullmatch(spread.strip()) is not None
+    return Part(field, low, high, low > 0.0 and (factors or high >= _WIDE * low))
 
 
 def _allowed(pair: GearPair, field: str, value: float) -> bool:
@@ -280,7 +297,7 @@ def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
                 f"values that {field} may have: {error.problems[0].allowed}",
                 "Narrow the range.",
             ) from None
-    return Input(field, (Part(field, low, high),), (), unit, spread, reason)
+    return Input(field, (_part(field, (low, high), spread),), (), unit, spread, reason)
 
 
 def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, float]:
