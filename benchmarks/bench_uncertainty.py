@@ -1,6 +1,6 @@
 """How well do 128 samples of the uncertain inputs tell the percentiles, and 32 samples the band over speed?
 
-    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [--reference 4096]
+    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [rank] [--reference 4096]
 
 The tables of docs/verification/uncertainty.md. Errors are root mean squares over the seeds, in per cent of
 the range from 5 to 95 % of the reference.
@@ -11,7 +11,7 @@ from __future__ import annotations
 import argparse
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from unittest import mock
 
@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from floquet.gear.axes import speed_range
-from lumped import load_gear_pair
+from lumped import GearPair, load_gear_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction import uncertainty as module
 from validation.prediction.uncertainty import speed_band, uncertainty
@@ -115,10 +115,75 @@ def band(reference: int) -> None:
         line(count, speeds, *errors, float(np.abs(off).max()), took)
 
 
+#: New pairs that are unlike each other: teeth, module [mm], width [mm], speed [rpm], torque [N m], what else.
+NAMED = (
+    ("19/41", 2.5, 20.0, 1450.0, 80.0, {}),
+    ("25/103", 1.5, 12.0, 1500.0, 10.0, {}),
+    ("18/35", 0.5, 5.0, 3000.0, 0.02, {"gears.youngs_modulus": "3 GPa", "gears.density": 1400.0}),
+    ("22/95", 14.0, 300.0, 400.0, 12_000.0, {}),
+)
+DRAWN, DRAWN_SEED = 20, 7
+
+
+def drawn_pairs() -> Iterator[GearPair]:
+    """The named pairs and others of random size, speed and load, half of them with a relief of the tips."""
+    rng = np.random.default_rng(DRAWN_SEED)
+    for teeth, *numbers, more in NAMED:
+        yield new_pair(teeth, *numbers, more)
+    for _ in range(DRAWN - len(NAMED)):
+        pinion = int(rng.integers(17, 42))
+        gear = int(pinion * rng.uniform(1.0, 4.5))
+        module = float(f"{np.exp(rng.uniform(0.0, np.log(10.0))):.2g}")
+        width = round(module * rng.uniform(6.0, 12.0), 1)
+        velocity, diameter = np.exp(rng.uniform(0.0, np.log(30.0))), 1e-3 * module * pinion
+        speed = round(60.0 * velocity / (np.pi * diameter))
+        intensity = np.exp(rng.uniform(np.log(5e6), np.log(40e6)))
+        torque = float(f"{0.5e-6 * intensity * width * module * diameter:.3g}")
+        pair = new_pair(f"{pinion}/{gear}", module, width, speed, torque)
+        if rng.random() < 0.5:
+            amount = np.exp(rng.uniform(np.log(5.0), np.log(25.0))) * min(1.0, module / 3.0)
+            pair = with_relief(pair, round(float(amount), 1))
+        yield pair
+
+
+def with_relief(pair: GearPair, amount: float) -> GearPair:
+    """The pair with an assumed tip relief [um] from the outer point of single contact on."""
+    g = pair.geometry
+    starts = {
+        "pinion": (g.L_XA + g.base_pitch) / g.base_radius_pinion,
+        "gear": (g.L_XY - g.L_XD + g.base_pitch) / g.base_radius_gear,
+    }
+    tips = {
+        f"{name}.tip_relief": {"amount": amount, "start_roll_angle": round(float(np.degrees(start)), 2)}
+        for name, start in starts.items()
+    }
+    return pair.with_(tips | {"sources": dict(pair.sources) | dict.fromkeys(tips, "assumed")})
+
+
+def rank(reference: int) -> None:
+    """Share of the samples below the result as given, and the median over it; efficiency as the loss."""
+    print("\nRank of the result as given [%], and median over it\n")
+    line("pair", *QUANTITIES, "contact lost")
+    ranks = []
+    for pair in drawn_pairs():
+        found = uncertainty(pair, SAMPLES)
+        own = {name: float(found.attrs[f"given_{name}"]) for name in QUANTITIES}
+        drawn = {name: found[name].to_numpy() for name in QUANTITIES}
+        ranks.append([100.0 * float(np.mean(drawn[name] < own[name])) for name in QUANTITIES])
+        median = [float(np.median(drawn[name])) / own[name] for name in QUANTITIES[:-1]]
+        median.append((1.0 - float(np.median(drawn["efficiency"]))) / (1.0 - own["efficiency"]))
+        cells = [f"{r:.0f}, {m:.2f}" for r, m in zip(ranks[-1], median, strict=True)]
+        line(pair.name, *cells, found.attrs["contact_lost"])
+    inside = [int(np.sum((one >= 20.0) & (one <= 80.0))) for one in np.transpose(ranks)]
+    line("from 20 to 80 %", *(f"{count} of {len(ranks)}" for count in inside), "")
+
+
 def main(names: Sequence[str], reference: int) -> None:
     warnings.simplefilter("ignore")
-    for name in names or (*PAIRS, "order", "band"):
-        {"order": order, "band": band}.get(name, lambda n, name=name: samples(name, n))(reference)
+    for name in names or (*PAIRS, "order", "band", "rank"):
+        {"order": order, "band": band, "rank": rank}.get(name, lambda n, name=name: samples(name, n))(
+            reference
+        )
 
 
 if __name__ == "__main__":

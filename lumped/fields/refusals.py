@@ -194,7 +194,9 @@ def _location(
 
 
 def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
-    """Values of ``model`` or ``kind`` in a parameter file that choose this member of a union."""
+    """What chooses this member of a union: values of ``model`` or ``kind`` in a file, or its own ``tag``."""
+    if tag := getattr(model, "tag", None):
+        return (tag,)
     info = model.model_fields.get("model") or model.model_fields.get("kind")
     return get_args(info.annotation) if info and get_origin(info.annotation) is Literal else ()
 

@@ -13,6 +13,7 @@ from lumped.errors import ParameterError, refuse
 from lumped.fields.refusals import field_of, unknown_key
 from lumped.fields.section import Section
 from lumped.schema.assumed import ABOUT, WORDS, within
+from lumped.schema.bearings import ROLLING, STIFFNESSES, RollingBearing
 
 _GEARS = ("pinion", "gear")
 #: Short name -> the fields that it sets.
@@ -82,6 +83,8 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     data = pair.to_mapping()
     sources: dict[str, str] = data.setdefault("sources", {})
     assumed: dict[str, Any] = data.setdefault("assumed", {})
+    for gear in _GEARS:
+        _other_bearing(pair, data, gear, changes)
     # The model first: it decides which other keys its table may have.
     for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request
@@ -104,6 +107,31 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
         if path not in (*WORDS, *ABOUT) and value is not None:
             sources[path] = "varied by the user"
     return data
+
+
+def _other_bearing(pair: Section, data: dict[str, Any], gear: str, changes: Mapping[str, Any]) -> None:
+    """Make springs of a gear's rolling bearings where a stiffness is named; type, number or size end springs.
+
+    The springs have the stiffness of the bearings at the pair's load, in the direction that is not named.
+    """
+    start = f"bearings.{gear}."
+    named = {path.removeprefix(start) for path in changes if path.startswith(start)}
+    springs, rolling = not named.isdisjoint(STIFFNESSES), not named.isdisjoint(ROLLING)
+    section: dict[str, Any] = data["bearings"][gear]
+    own = getattr(pair.__dict__["bearings"], gear)
+    outdated: tuple[str, ...]
+    if springs and not rolling and isinstance(own, RollingBearing):
+        data["bearings"][gear] = own.springs
+        outdated = ROLLING
+    elif rolling and not springs and not isinstance(own, RollingBearing):
+        for key in STIFFNESSES:
+            section.pop(key, None)
+        outdated = STIFFNESSES
+    else:
+        return
+    for table in (data["sources"], data.get("uncertainty", {})):
+        for key in outdated:
+            table.pop(start + key, None)
 
 
 def _reads(pair: Section, path: str, value: object) -> bool:

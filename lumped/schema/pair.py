@@ -29,10 +29,11 @@ from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, exist
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
+from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
-from lumped.schema.shafts import Bearings, Shafts
+from lumped.schema.shafts import Shafts
 from lumped.schema.teeth import TorqueRipple
 
 #: Format of parameter files; a change that older programs would misread raises it.
@@ -155,6 +156,8 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += problems_of(type(self), self.assumed)
         if wrong:
             raise ParameterError(wrong)
+        force = self.operating.pinion_torque / self.geometry.base_radius_pinion
+        self.__dict__["bearings"] = self.bearings.under(force)
         return self
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""Schema of what holds the gears: springs of the 6-DOF model, or shafts in bearings with coupled inertias."""
+"""Schema of the shafts that bear the gears: segments, bearings and coupled inertias."""
 
 from __future__ import annotations
 
@@ -10,30 +10,6 @@ from pydantic import Field, model_validator
 from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
-
-#: From a hair to a spring that is rigid beside any tooth.
-_SPRING = Quantity("N/m", at_least=1e-6, at_most=1e30)
-
-
-class Bearing(Section):
-    """Radial support of one gear, along (LOA) and off (OLOA) the line of action."""
-
-    loa_stiffness: Annotated[float, _SPRING] = Field(description="stiffness along the LOA")
-    oloa_stiffness: Annotated[float, _SPRING] = Field(description="stiffness off the LOA")
-    loa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
-        description="damping ratio of the gear mass on the LOA stiffness"
-    )
-    oloa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
-        description="damping ratio of the gear mass on the OLOA stiffness"
-    )
-
-
-class Bearings(Section):
-    """Bearings of both shafts."""
-
-    pinion: Bearing
-    gear: Bearing
-
 
 _SIZE = "Give the size as drawn; check the unit."
 _PLACE = Quantity("mm", at_least=0, at_most=1e5, action="Measure it from the shaft's end at z = 0.")

@@ -12,10 +12,12 @@ from typing import Any
 
 import tomli_w
 
+from lumped.bearings.rolling import across_ratio, assumed_bearing
 from lumped.errors import ParameterError
 from lumped.fields.units import to_si
 from lumped.friction.registry import LAWS
 from lumped.schema.assumed import ABOUT, WORDS, within
+from lumped.schema.bearings import STIFFNESSES
 from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
 from lumped.schema.own_laws import is_own
@@ -26,6 +28,14 @@ GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
 _WHY = {
     "_stiffness": "of rolling bearing, shaft and housing together; see the guide on bearings",
+    **dict.fromkeys(("pinion.type", "gear.type"), "balls on shafts up to 50 mm, else rollers"),
+    **dict.fromkeys(("pinion.number", "gear.number"), "8 balls or 12 rollers"),
+    **dict.fromkeys(("pinion.size", "gear.size"), "0.3 of a shaft that the torque loads by 30 MPa"),
+    "contact_angle": "radial bearings",
+    **dict.fromkeys(("pinion.bearings", "gear.bearings"), "a shaft in two bearings"),
+    **dict.fromkeys(
+        ("pinion.stiffness_factor", "gear.stiffness_factor"), "that of the bearings alone, in a rigid housing"
+    ),
     "mesh.damping_ratio": "usual for steel gears, 0.03 to 0.17",
     "damping_ratio": "shaft on rolling bearings; see the guide on bearings",
     "roughness": "ground flanks",
@@ -44,7 +54,7 @@ _WHY = {
     "viscosity": "oil warm from running",
     "temperature": "sump of an enclosed gear",
     **dict.fromkeys(("viscosity_index", "pressure_viscosity_k", "pressure_viscosity_s"), "mineral oil"),
-    "law": f"law {LAWS['xu_kahraman'].title}, which knows load, speed, oil and roughness",
+    "law": f"law {LAWS['iso_14179'].title}, which knows load, speed, oil and roughness; between two others",
     "relief": "tip and root relief act where they are given",
     "contact": "a tooth pair touches where the mean load closes its gap",
     "sharpness": "read by law IV alone",
@@ -108,20 +118,21 @@ def new_pair(
 #: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened
 #: steel gears of any size.
 _LOAD_INTENSITY = 20e6
-_BEARING = {"stiffness": 1e8, "damping_ratio": 0.05}
+#: Damping ratio of a gear on its bearings: the formula c = 1.25e-5 s k gives 0.03 to 0.25 for most pairs, but
+#: it was measured below the frequencies of gears (docs/theory/bearings.md).
+_BEARING_DAMPING = 0.05
 #: Field -> value in file units that stands in where a file has none.
 _STAND_INS: dict[str, Any] = {
     "pinion.roughness": 0.4,
     "gear.roughness": 0.4,
     **{
-        f"bearings.{gear}.{line}_{key}": value
+        f"bearings.{gear}.{line}_damping_ratio": _BEARING_DAMPING
         for gear in ("pinion", "gear")
         for line in ("loa", "oloa")
-        for key, value in _BEARING.items()
     },
     "mesh.damping_ratio": 0.05,
     "mesh.stiffness.model": "finite_elements",
-    "friction.law": "xu_kahraman",
+    "friction.law": "iso_14179",
     "operating.pinion_speed": 1000.0,
 }
 #: Oil temperature where a file has viscosities but no temperature [degC], and dynamic viscosity where it has
@@ -306,6 +317,8 @@ def completed(values: Mapping[str, Any]) -> dict[str, Any]:
         module, width = (to_si(full[path], "mm") for path in ("basic_rack.module", "pinion.face_width"))
         radius = 0.5 * module * full["pinion.teeth"]  # of the reference circle
         full["operating.pinion_torque"] = float(f"{_LOAD_INTENSITY * width * module * radius:.3g}")
+    for gear in ("pinion", "gear"):
+        full |= _assumed_bearing(gear, full)
     root: dict[str, Any] = {}
     for path, value in full.items():
         *parents, leaf = path.split(".")
@@ -314,3 +327,25 @@ def completed(values: Mapping[str, Any]) -> dict[str, Any]:
             node = node.setdefault(parent, {})
         node[leaf] = value
     return root
+
+
+def _assumed_bearing(gear: str, known: Mapping[str, Any]) -> dict[str, Any]:
+    """What is not known of a gear's bearings: those of its shaft's torque, or the second of two springs."""
+    start = f"bearings.{gear}."
+    own = {path.removeprefix(start): value for path, value in known.items() if path.startswith(start)}
+    try:
+        torque = (
+            to_si(known["operating.pinion_torque"], "N*m") * known[f"{gear}.teeth"] / known["pinion.teeth"]
+        )
+        kind, number, size = assumed_bearing(torque, own.get("type"))
+        across = across_ratio(kind, number)
+        springs = {key: to_si(own[key], "N/m") for key in STIFFNESSES if key in own}
+    except (ValueError, TypeError, KeyError, ZeroDivisionError):  # the pair refuses it, in the user's words
+        (kind, number, size), across, springs = assumed_bearing(1.0), 1.0, {}
+    if springs:
+        along, off = springs.get(STIFFNESSES[0]), springs.get(STIFFNESSES[1])
+        other = {STIFFNESSES[0]: None if off is None else off / across}
+        other |= {STIFFNESSES[1]: None if along is None else along * across}
+        return {start + key: float(f"{other[key]:.3g}") for key in STIFFNESSES if key not in own}
+    rolling = {"type": kind, "number": number, "size": float(f"{min(max(1e3 * size, 0.01), 1e3):.3g}")}
+    return {start + key: value for key, value in rolling.items() if key not in own}

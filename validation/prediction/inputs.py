@@ -1,17 +1,20 @@
 """Inputs of a pair that are not known exactly, and what each may be: as stated, or by documented defaults.
 
-A range is log-uniform where both ends are positive and one is at least twice the other, else uniform.
+A range is log-uniform where factors state it, or where both ends are positive and one is at least twice the
+other, else uniform. So a value is the median of factors up and down, and of as much up as down. Fields
+that one cause moves are one input: both directions of a bearing, the flanks of both gears, mass and inertia.
 """
 
 from __future__ import annotations
 
 import fnmatch
 import functools
+import math
 import re
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from typing import Any
 
@@ -19,6 +22,7 @@ from lumped.errors import ParameterError, refuse
 from lumped.fields.units import to_si, to_stated
 from lumped.friction.registry import LAWS
 from lumped.schema.assumed import State
+from lumped.schema.bodies import bodies_of
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import GearPair, field_at, leaf_paths, stated_unit
 from lumped.stiffness.registry import MODELS
@@ -35,34 +39,69 @@ _SEEDS = 2**31
 _CHOICES: Mapping[str, tuple[str, ...]] = {"friction.law": tuple(LAWS), "mesh.stiffness": tuple(MODELS)}
 
 
+#: Fields that one cause moves -> the name of what moves them.
+_TIED = (
+    (re.compile(r"((?:shafts\.\w+\.)?bearings\.\w+)\.o?loa_(stiffness|damping_ratio)"), r"\1.\2"),
+    (re.compile(r"(?:pinion|gear)\.(roughness)"), r"gears.\1"),
+)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A field that an input moves, ends in file units, NaN of a choice; ``geometric`` is log-uniform."""
+
+    field: str
+    low: float = math.nan
+    high: float = math.nan
+    geometric: bool = False
+
+    def at(self, share: float) -> float:
+        """The value that a share of the distribution lies below, in file units."""
+        if self.field.endswith(".seed"):
+            return int(self.low + (self.high - self.low) * share)
+        if self.geometric:
+            return float(self.low * (self.high / self.low) ** share)
+        return self.low + (self.high - self.low) * share
+
+
 @dataclass(frozen=True)
 class Input:
-    """One value that is not known exactly: ends of its range in file units, NaN where it has ``choices``.
+    """One thing that is not known exactly, with the fields that it moves together.
 
-    ``written`` is the spread as the file or the default states it, ``reason`` why so far.
+    ``field`` is its name: that of the field, or of what several fields have in common, such as
+    ``bearings.pinion.stiffness``. ``choices``: the names between which it chooses, else empty. ``written`` is
+    the spread as the file or the default states it, ``reason`` why so far and from where.
     """
 
     field: str
-    low: float
-    high: float
+    parts: tuple[Part, ...]
     choices: tuple[str, ...]
     unit: str
     written: str
     reason: str
 
+    @property
+    def low(self) -> float:
+        """Lower end of the first field."""
+        return self.parts[0].low
+
+    @property
+    def high(self) -> float:
+        """Upper end of the first field."""
+        return self.parts[0].high
+
     def at(self, share: float) -> float | str:
-        """The value that a share of the distribution lies below, in file units."""
-        if self.field.endswith(".seed"):
-            return int(self.low + (self.high - self.low) * share)
+        """The value of the first field that a share of the distribution lies below, in file units."""
         if self.choices:
             return self.choices[min(int(share * len(self.choices)), len(self.choices) - 1)]
-        if self.low > 0.0 and self.high >= _WIDE * self.low:
-            return float(self.low * (self.high / self.low) ** share)
-        return self.low + (self.high - self.low) * share
+        return self.parts[0].at(share)
 
-    def change(self, value: float | str) -> tuple[str, Any]:
-        """Field and value as ``GearPair.with_`` takes them."""
-        return self.field, {"model": value} if self.field == "mesh.stiffness" else value
+    def changes(self, share: float) -> dict[str, Any]:
+        """Every field with its value at a share of the distribution, as ``GearPair.with_`` takes them."""
+        if self.choices:
+            name = self.at(share)
+            return {self.field: {"model": name} if self.field == "mesh.stiffness" else name}
+        return {part.field: part.at(share) for part in self.parts}
 
 
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
@@ -79,7 +118,8 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
         if deviations is not None and deviations.tolerance_class is not None:
             words = f"class {deviations.tolerance_class}"
             reason = "the class says how large errors are, and not which: every seed is another gear of it"
-            found.append(Input(f"{gear}.deviations.seed", 1, _SEEDS, (), "1", words, reason))
+            seed = Part(f"{gear}.deviations.seed", 1, _SEEDS)
+            found.append(Input(seed.field, (seed,), (), "1", words, reason))
     candidates = [*leaf_paths(pair), "mesh.stiffness", "mesh.stiffness_factor"]
     assumed: list[Input] = []
     for field in dict.fromkeys(candidates):
@@ -95,7 +135,60 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
             if (value := _by_default(pair, field, spread, default["reason"])) is not None:
                 assumed.append(value)
     read = _read(pair, [*found, *assumed])
-    return (*found, *(one for one in assumed if one.choices or one.field in read))
+    assumed = [one for one in assumed if one.choices or one.field in read]
+    return (*found, *_together(assumed), *_blanks(pair, stated))
+
+
+def _together(inputs: Iterable[Input]) -> Iterator[Input]:
+    """The inputs, those that one cause moves as one; one that stands alone keeps the name of its field."""
+    groups: dict[str, list[Input]] = {}
+    for one in inputs:
+        names = (pattern.sub(name, one.field) for pattern, name in _TIED if pattern.fullmatch(one.field))
+        groups.setdefault(next(names, one.field), []).append(one)
+    for name, tied in groups.items():
+        parts = tuple(part for one in tied for part in one.parts)
+        yield tied[0] if len(tied) == 1 else replace(tied[0], field=name, parts=parts)
+
+
+def _blanks(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
+    """Mass and inertia of each gear, where the solid disc stands for a blank that is not known.
+
+    They move together; a bore that is known says the shape of the blank.
+    """
+    own = bodies_of(pair)
+    for gear in ("pinion", "gear"):
+        field = f"{gear}.inertia"
+        default = _default(field)
+        of_disc = {"inertia": getattr(own, f"inertia_{gear}"), "mass": getattr(own, f"mass_{gear}")}
+        parts = [
+            _part(
+                f"{gear}.{key}",
+                _ends(field, default["spread"], value, str(stated_unit(f"{gear}.{key}"))),
+                default["spread"],
+            )
+            for key, value in of_disc.items()
+            if default is not None
+            and getattr(getattr(pair, gear), key) is None
+            and not _covered(f"{gear}.{key}", stated)
+        ]
+        if default is None or not parts or not is_assumed(pair, f"{gear}.bore"):
+            continue
+        unit = str(stated_unit(parts[0].field))
+        yield Input(parts[0].field, tuple(parts), (), unit, default["spread"], default["reason"])
+
+
+def forms_beside(pair: GearPair) -> dict[str, dict[str, Any]]:
+    """Forms of the model that the range does not hold: name -> what changes the pair to it.
+
+    The other contact, and, where the stiffness model is uncertain, the models that are not among its choices.
+    """
+    other = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
+    forms: dict[str, dict[str, Any]] = {f"mesh.contact = {other}": {"mesh.contact": other}}
+    models = next((one.choices for one in uncertain_inputs(pair) if one.field == "mesh.stiffness"), None)
+    for name in MODELS if models else ():
+        if name != "table" and name not in (models or ()):
+            forms[f"mesh.stiffness = {name}"] = {"mesh.stiffness": {"model": name}}
+    return forms
 
 
 def is_assumed(pair: GearPair, field: str) -> bool:
@@ -107,9 +200,10 @@ def _read(pair: GearPair, inputs: Iterable[Input], *, contact_lost: bool = False
     """Fields that a pair reads with its laws and models, and with those that its inputs may be instead."""
     read = fields_read(pair, contact_lost=contact_lost)
     for one in inputs:
-        for name in one.choices:
+        for place in range(len(one.choices)):
             with suppress(ParameterError):  # a law or model that the pair cannot have
-                read |= fields_read(pair.with_(dict([one.change(name)])), contact_lost=contact_lost)
+                chosen = pair.with_(one.changes((place + 0.5) / len(one.choices)))
+                read |= fields_read(chosen, contact_lost=contact_lost)
     return read & leaf_paths(pair).keys()
 
 
@@ -181,8 +275,19 @@ def _by_default(pair: GearPair, field: str, spread: object, reason: str) -> Inpu
         low, high = (
             end if _allowed(pair, field, end) else value for end in _ends(field, spread, value, unit)
         )
-        return None if low == high else Input(field, low, high, (), unit, spread, reason)
+        return (
+            None
+            if low == high
+            else Input(field, (_part(field, (low, high), spread),), (), unit, spread, reason)
+        )
     return _input(pair, field, spread, reason)
+
+
+def _part(field: str, ends: tuple[float, float], spread: str) -> Part:
+    """A field with its range, as the text states it."""
+    low, high = ends
+    factors = _FACTORS.fullmatch(spread.strip()) is not None
+    return Part(field, low, high, low > 0.0 and (factors or high >= _WIDE * low))
 
 
 def _allowed(pair: GearPair, field: str, value: float) -> bool:
@@ -202,7 +307,7 @@ def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
             allowed = f"at least two of {', '.join(known)}" if known else f"a range: {_WRITTEN}"
             raise refuse(where, ", ".join(map(str, spread)), allowed, "Correct the list.")
         text = " or ".join(map(str, spread))
-        return Input(field, float("nan"), float("nan"), tuple(map(str, spread)), "1", text, reason)
+        return Input(field, (Part(field),), tuple(map(str, spread)), "1", text, reason)
     field_at(field)
     unit = stated_unit(field)
     value = leaf_paths(pair).get(field)
@@ -221,7 +326,7 @@ def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
                 f"values that {field} may have: {error.problems[0].allowed}",
                 "Narrow the range.",
             ) from None
-    return Input(field, low, high, (), unit, spread, reason)
+    return Input(field, (_part(field, (low, high), spread),), (), unit, spread, reason)
 
 
 def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, float]:

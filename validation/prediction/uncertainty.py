@@ -27,7 +27,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
-from validation.prediction.inputs import Input, uncertain_inputs
+from validation.prediction.inputs import Input, forms_beside, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, Prediction, predicted
 from validation.signals.averages import GEARS, sidebands
 
@@ -82,13 +82,15 @@ def uncertainty(
 
     Returns
     -------
-    xarray.Dataset over ``sample``, ``percentile`` and ``input``. Each quantity q of the prediction, in SI:
-    ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it lies with
-    a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of a choice
-    the smallest and largest result; ``q_rank_correlation`` (input), Spearman's. ``value`` (input, sample)
-    holds the inputs, a choice by its number. Of teeth that differ also the quantities ``TEETH``; teeth of a
-    tolerance class are drawn anew in every sample. Attributes: ``refused``, ``contact_lost``, ``unstable``,
-    ``lost_or_unstable`` (counts of samples), ``seed``, and the result with the inputs as given, ``given_q``
+    xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the prediction,
+    in SI: ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it
+    lies with a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of
+    a choice the smallest and largest result; ``q_rank_correlation`` (input), Spearman's; ``q_form`` (form),
+    the result with the inputs as given in a form of the model that the range does not hold. ``value``
+    (input, sample) holds the inputs, a choice by its number; of fields that move together, the first. Of
+    teeth that differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every
+    sample. Attributes: ``refused``, ``contact_lost``, ``unstable``, ``lost_or_unstable`` (counts of samples),
+    ``seed``, and the result with the inputs as given, ``given_q``
 
     Raises
     ------
@@ -102,15 +104,16 @@ def uncertainty(
         action = "State ranges in [uncertainty], or in [assumed] what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
     alone = [(j, share) for j, one in enumerate(inputs) for share in end_shares(one)]
-    total = samples + len(alone) + 1
+    forms = forms_beside(pair)
+    total = samples + len(alone) + len(forms) + 1
     done = 0
 
-    def row(changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
+    def row(changes: Sequence[tuple[Input, float]], base: GearPair = pair) -> FloatArray | None:
         nonlocal done
         done += 1
         if progress is not None:
             progress(done / total)
-        return _numbers(pair, changes)
+        return _numbers(base, changes)
 
     given = row(())
     if given is None:
@@ -125,6 +128,11 @@ def uncertainty(
         )
     table = np.stack([found for found in rows if found is not None])
     found = _dataset(pair, inputs, points[kept], table, ends)
+    beside = np.array([_of_form(row((), pair.with_(form)), given.size) for form in forms.values()])
+    for column, name in enumerate(QUANTITIES):
+        attrs = found[name].attrs | {"long_name": f"{found[name].attrs['long_name']}, inputs as given"}
+        found[f"{name}_form"] = ("form", beside[:, column], attrs)
+    found = found.assign_coords(form=("form", list(forms), {"units": "1", "long_name": "form of the model"}))
     names = (name for name in found.data_vars if found[name].dims == ("sample",))
     found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
     found.attrs |= {"refused": samples - len(table), "seed": seed}
@@ -234,10 +242,11 @@ def end_shares(one: Input) -> list[float]:
 
 
 def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
-    """(samples, inputs) scrambled Sobol points, the first dimensions for the most important inputs.
+    """Return (samples, inputs) scrambled Sobol points, the first dimensions for the most important inputs.
 
-    Few points fill the planes of later dimensions unevenly: docs/verification/uncertainty.md. Inputs that
-    symmetry makes equal stay in their order, whatever rounding says.
+    ``importance`` (inputs,): a number that grows with what an input moves. Few points fill the planes of
+    later dimensions unevenly: docs/verification/uncertainty.md. Inputs that symmetry makes equal stay in
+    their order, whatever rounding says.
     """
     importance = np.round(importance, 6)
     points = qmc.Sobol(importance.size, rng=np.random.default_rng(seed)).random(samples)
@@ -263,8 +272,18 @@ def importance_of(ends: FloatArray) -> FloatArray:
 
 
 def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
-    """The pair with each input at its share of the distribution."""
-    return pair.with_(dict(one.change(one.at(share)) for one, share in changes)) if changes else pair
+    """Return the pair with inputs at shares of their distributions, 0 to 1.
+
+    Raises
+    ------
+    ParameterError : values that no pair can have together
+    """
+    fields: dict[str, object] = {}
+    for one, share in changes:
+        fields |= one.changes(share)
+    if fields.get("mesh.stiffness") == {"model": pair.mesh.stiffness.model}:
+        del fields["mesh.stiffness"]  # keeps the parameters that the file gives the model
+    return pair.with_(fields) if fields else pair
 
 
 def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
@@ -332,6 +351,10 @@ def _dataset(
             "reason": [one.reason for one in inputs],
         },
     )
+
+
+def _of_form(row: FloatArray | None, columns: int) -> FloatArray:
+    return np.full(columns, np.nan) if row is None else row
 
 
 def _number(one: Input, share: float) -> float:

@@ -97,7 +97,8 @@ def plain_name(field: str) -> str:
         owner = f"bearing {int(number) + 1} of the {place[1]} shaft" if number else f"{place[1]} bearing"
         kind = "damping" if "damping" in what else "stiffness"
         line = {"loa": "along", "oloa": "off"}.get(what.partition("_")[0])
-        return f"{owner}, {kind} {f'{line} the line of action' if line else 'against tilting'}"
+        tilting = " against tilting" if "tilt" in what else ""
+        return f"{owner}, {kind}{f' {line} the line of action' if line else tilting}"
     return field.replace(".", " ").replace("_", " ")
 
 
@@ -107,4 +108,7 @@ _WHOLE = {
     "mesh.stiffness_factor": "tooth stiffness",
     "lubricant.viscosity_law.temperature": "oil temperature",
     "operating.pinion_torque": "torque",
+    "gears.roughness": "roughness of all flanks",
+    "pinion.inertia": "pinion, mass and inertia",
+    "gear.inertia": "gear, mass and inertia",
 }

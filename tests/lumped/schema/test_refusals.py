@@ -61,6 +61,8 @@ def complete(nasa, shaft_tables):
             data[parents[0]]["faults"] = [dict(next(one for one in FAULTS if leaf in one))]
         if parents[:2] == ["operating", "torque_ripple"]:
             data["operating"]["torque_ripple"] = [{"shaft": "pinion", "order": 1, "amplitude": 1.0}]
+        if parents and parents[0] == "bearings" and leaf in ("size", "contact_angle", "stiffness_factor"):
+            data["bearings"][parents[1]] = {"type": "ball", "number": 9, "size": 7.9}
         if parents and parents[0] == "shafts":
             data["shafts"] = copy.deepcopy(shaft_tables)
         node_at(data, parents)[leaf] = value

@@ -24,6 +24,7 @@ FAULTS = [
      "pit_depth": 33.3}],
     [{"kind": "chip", "tooth": 28, "roll_angle": 27.3}],
 ]  # fmt: skip
+ROLLERS = {"type": "roller", "number": 13, "size": 9.1, "contact_angle": 12.3, "stiffness_factor": 0.71}
 MORE = {
     "mesh.stiffness": [
         {"model": "energy", "ramp_length": 0.3},
@@ -45,6 +46,8 @@ MORE = {
         for gear in ("pinion", "gear")
     },
     "operating.brake_torque": [56.3],
+    "bearings.pinion": [ROLLERS],
+    "bearings.gear": [ROLLERS | {"type": "ball", "number": 7}],
     "operating.torque_ripple": [[{"shaft": "gear", "order": 2, "amplitude": 2.1, "phase": 33.3}]],
     "mesh.first_teeth": [[3, 5]],
     **{f"{gear}.mounting": [{"eccentricity": 12.3, "phase": 31.7}] for gear in ("pinion", "gear")},

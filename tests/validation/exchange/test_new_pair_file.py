@@ -60,12 +60,14 @@ def test_what_options_do_not_name_is_set_and_counts_as_given():
     pair = load_gear_pair(tomllib.loads(result.output))
     assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (0.4, 0.0)
     assert (pair.pinion.face_width, pair.gear.face_width) == (0.02, 0.018)
-    assert (pair.bearings.pinion.loa_stiffness, pair.bearings.gear.loa_stiffness) == (2e8, 1e8)
+    # The second spring of the pinion follows from the first, as of 8 balls; the gear's bearings are assumed.
+    assert (pair.bearings.pinion.loa_stiffness, pair.bearings.pinion.oloa_stiffness) == (2e8, 0.46 * 2e8)
+    assert pair.bearings.gear.type == "ball"
     assert (pair.mesh.stiffness.model, pair.mesh.backlash) == ("energy", 0.05e-3)
     given = {path for path, source in dict(pair.sources).items() if source == GIVEN}
     assert given >= {"pinion.profile_shift", "gear.face_width", "mesh.stiffness.model"}
     assert given >= {"pinion.tip_relief.amount", "bearings.pinion.loa_stiffness"}
-    assert not given & {"gear.profile_shift", "bearings.gear.loa_stiffness", "mesh.stiffness.scale"}
+    assert not given & {"gear.profile_shift", "bearings.pinion.oloa_stiffness", "mesh.stiffness.scale"}
 
 
 def test_entries_of_lists_have_their_units_and_remarks():

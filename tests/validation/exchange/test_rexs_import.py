@@ -58,7 +58,7 @@ def test_every_value_has_its_place_in_the_file_or_is_marked_assumed(xml, save):
     assert pair.assumed.to_mapping() == assumed
     assert sources["pinion.teeth"] == "REXS model.rexs cylindrical_gear 21/number_of_teeth"
     assert sources["operating.pinion_torque"] == "REXS model.rexs external_load 33/torque_around_u_axis"
-    for path in ("pinion.roughness", "friction.law", "bearings.gear.loa_stiffness", "lubricant.viscosity"):
+    for path in ("pinion.roughness", "friction.law", "bearings.gear.size", "lubricant.viscosity"):
         assert path in assumed
     assert all(s.startswith("REXS model.rexs ") for s in sources.values())
     assert any("friction.law" in note for note in notes)

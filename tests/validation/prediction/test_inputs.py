@@ -6,12 +6,22 @@ import numpy as np
 import pytest
 
 import lumped
+from floquet.gear.axes import GEAR_AXES
 from lumped import fields_read
 from lumped.errors import ParameterError
+from lumped.schema.bodies import bodies
 from lumped.schema.pair import leaf_paths
+from lumped.stiffness.registry import MODELS
 from tests.unlike_pairs import all_assumed, unlike_pair
 from validation.exchange.new_pair_file import new_pair
-from validation.prediction.inputs import given_and_assumed, read_values, source_of, uncertain_inputs
+from validation.prediction.inputs import (
+    forms_beside,
+    given_and_assumed,
+    read_values,
+    source_of,
+    uncertain_inputs,
+)
+from validation.prediction.uncertainty import varied
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 
@@ -52,13 +62,13 @@ def test_a_wide_range_of_positive_values_is_log_uniform_and_a_narrow_one_uniform
 def test_a_choice_takes_each_of_its_values_equally_often():
     found = input_of(stated("mesh.stiffness", ["energy", "parabolic"]), "mesh.stiffness")
     assert [found.at(u) for u in (0.0, 0.49, 0.51, 1.0)] == ["energy", "energy", "parabolic", "parabolic"]
-    assert PAIR.with_(dict([found.change("energy")])).mesh.stiffness.model == "energy"
+    assert PAIR.with_(found.changes(0.9)).mesh.stiffness.model == "parabolic"
 
 
 def test_defaults_are_for_values_that_are_assumed_and_for_no_others():
     fields = {one.field for one in uncertain_inputs(PAIR)}
     assert "mesh.damping_ratio" in fields
-    assert "bearings.gear.oloa_stiffness" in fields
+    assert "bearings.gear.stiffness" in fields
     assert "mesh.stiffness" in fields  # its model is assumed
     assert "mesh.stiffness_factor" in fields
     assert "operating.pinion_torque" not in fields  # published
@@ -70,6 +80,107 @@ def test_defaults_are_for_values_that_are_assumed_and_for_no_others():
 def test_what_the_file_states_takes_the_place_of_a_default():
     found = input_of(stated("mesh.damping_ratio", "0.04 .. 0.06"), "mesh.damping_ratio")
     assert (found.written, found.reason) == ("0.04 .. 0.06", "stated in the file")
+
+
+PLASTIC = {"gears.youngs_modulus": "3 GPa", "gears.density": 1400}
+NEW = {
+    "plastic": new_pair("18/35", 0.5, 5, 3000, 0.02, PLASTIC),
+    "industrial": new_pair("19/41", 2.5, 20, 1450, 80, oil="vg220"),
+    "large ratio": new_pair("25/103", 1.5, 12, 1500, 10, {"bearings.gear.loa_stiffness": 9e7}),
+    "wind": new_pair("22/95", 14, 300, 400, 12000),
+}
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_an_assumed_value_is_the_middle_of_its_range(name):
+    """Half of the samples of an input lie below the value that is assumed, as far as it is a number."""
+    pair, values = NEW[name], leaf_paths(NEW[name])
+    numbers = [one for one in uncertain_inputs(pair) if not one.choices]
+    assert {"mesh.damping_ratio", "gears.roughness", "pinion.inertia"} < {one.field for one in numbers}
+    for one in numbers:
+        for part in one.parts:
+            own = values.get(part.field, 1.0)
+            if part.field.endswith((".inertia", ".mass")):
+                gear, _, key = part.field.partition(".")
+                own = getattr(bodies(pair), f"{key}_{gear}")
+            assert part.at(0.5) == pytest.approx(own, rel=1e-9), part.field
+
+
+@pytest.mark.parametrize("name", NEW)
+def test_the_assumed_friction_law_is_between_the_others_and_the_stiffness_has_both_methods(name):
+    inputs = {one.field: one for one in uncertain_inputs(NEW[name])}
+    own = NEW[name].friction.law
+    mean = {
+        law: GEAR_AXES["friction_coefficient"].own(NEW[name].with_(law=law))
+        for law in inputs["friction.law"].choices
+    }
+    assert sum(mu < mean[own] for mu in mean.values()) == sum(mu > mean[own] for mu in mean.values()) == 1
+    assert set(inputs["mesh.stiffness"].choices) >= {"finite_elements", "energy"}
+
+
+def test_both_directions_of_a_bearing_and_both_gears_flanks_are_one_input():
+    pair = lumped.load_gear_pair("high_contact_ratio_29_47")  # four unlike bearings
+    pair = pair.with_(
+        {"sources": {"bearings": "assumed", "pinion.roughness": "assumed", "gear.roughness": "assumed"}}
+    )
+    for gear in ("pinion", "gear"):
+        one, own = input_of(pair, f"bearings.{gear}.stiffness"), getattr(pair.bearings, gear)
+        for share in (0.0, 0.3, 1.0):
+            moved = getattr(varied(pair, [(one, share)]).bearings, gear)
+            factor = moved.loa_stiffness / own.loa_stiffness
+            assert factor == pytest.approx(0.5 * 4.0**share)
+            assert moved.oloa_stiffness / own.oloa_stiffness == pytest.approx(factor)
+    rough = varied(pair, [(input_of(pair, "gears.roughness"), 1.0)])
+    ratios = [getattr(rough, g).roughness / getattr(pair, g).roughness for g in ("pinion", "gear")]
+    assert ratios == pytest.approx([1.5, 1.5])
+    fields = [part.field for one in uncertain_inputs(pair) for part in one.parts]
+    assert len(set(fields)) == len(fields)
+
+
+def test_a_direction_whose_stiffness_is_known_does_not_move():
+    pair = PAIR.with_({"sources": {"bearings": "assumed", "bearings.gear.oloa_stiffness": "tap test"}})
+    one = input_of(pair, "bearings.gear.loa_stiffness")
+    assert list(one.changes(0.1)) == ["bearings.gear.loa_stiffness"]
+
+
+def test_mass_and_inertia_of_an_assumed_blank_move_together_and_those_of_a_known_one_do_not():
+    pair = NEW["large ratio"]
+    heavy, own = bodies(varied(pair, [(input_of(pair, "gear.inertia"), 1.0)])), bodies(pair)
+    assert heavy.inertia_gear / own.inertia_gear == pytest.approx(1.25)
+    assert heavy.mass_gear / own.mass_gear == pytest.approx(1.25)
+    assert heavy.mass_pinion == own.mass_pinion
+    drawn = pair.with_({"sources": dict(pair.sources) | {"gear.bore": "drawing"}})
+    assert "gear.inertia" not in {one.field for one in uncertain_inputs(drawn)}
+    weighed = pair.with_({"gear.mass": 2.0, "gear.inertia": 3e-3})
+    assert not {"gear.inertia", "gear.mass"} & {one.field for one in uncertain_inputs(weighed)}
+
+
+def test_a_model_that_stays_keeps_its_parameters():
+    pair = PAIR.with_({"mesh.stiffness": {"model": "parabolic", "end_ratio": 0.61}, "sources": {}})
+    one = input_of(pair, "mesh.stiffness")
+    shares = {name: (number + 0.5) / len(one.choices) for number, name in enumerate(one.choices)}
+    assert varied(pair, [(one, shares["parabolic"])]).mesh.stiffness.end_ratio == 0.61
+    assert varied(pair, [(one, shares["energy"])]).mesh.stiffness.model == "energy"
+
+
+def test_every_model_of_the_stiffness_and_both_contacts_are_in_the_range_or_beside_it():
+    for pair in (*NEW.values(), NEW["wind"].with_({"mesh.contact": "prescribed"})):
+        beside = forms_beside(pair)
+        models = {f"mesh.stiffness = {name}" for name in MODELS if name != "table"}
+        varied_models = {f"mesh.stiffness = {name}" for name in input_of(pair, "mesh.stiffness").choices}
+        assert models <= varied_models | set(beside)
+        assert not varied_models & set(beside)
+        assert sum(pair.with_(change).mesh.contact != pair.mesh.contact for change in beside.values()) == 1
+    measured = NEW["wind"].with_({"sources": dict(NEW["wind"].sources) | {"mesh.stiffness": "test"}})
+    known = dict.fromkeys(p for p in leaf_paths(measured) if p.startswith("mesh.stiffness"))
+    measured = measured.with_({"sources": dict(measured.sources) | dict.fromkeys(known, "test")})
+    assert set(forms_beside(measured)) == {"mesh.contact = prescribed"}
+
+
+def test_every_default_names_its_source():
+    for pair in NEW.values():
+        for one in uncertain_inputs(pair):
+            assert one.reason.startswith(("published", "estimate", "computed")), one.field
 
 
 @pytest.mark.parametrize(("field", "spread", "words"), [
@@ -147,7 +258,7 @@ def test_samples_leave_the_states_of_the_pair():
     pair = lumped.load_gear_pair("high_contact_ratio_29_47")
     before = given_and_assumed(pair)
     for one in uncertain_inputs(pair):
-        pair.with_(dict([one.change(one.at(0.3))]))
+        pair.with_(one.changes(0.3))
     assert given_and_assumed(pair) == before
 
 

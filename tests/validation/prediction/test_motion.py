@@ -103,7 +103,7 @@ def test_a_motion_that_newton_does_not_find_is_the_one_a_run_settles_to():
         {
             "teeth": "31/57", "basic_rack.module": 3.0, "gears.face_width": 25.0,
             "operating.pinion_speed": 12000.0, "operating.pinion_torque": 150.0,
-            "mesh.stiffness.model": "rectangular",
+            "mesh.stiffness.model": "rectangular", "bearings.stiffness": 1e8, "friction.law": "xu_kahraman",
         },
     )  # fmt: skip
     pair = lumped.load_gear_pair(tomllib.loads(text))

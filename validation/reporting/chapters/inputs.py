@@ -21,7 +21,7 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.given, results.pair.geometry
     values = {path: v for path, v in leaf_paths(pair).items() if path not in WORDS}
-    spreads = {one.field: one.written for one in uncertain_inputs(pair)}
+    spreads = {part.field: one.written for one in uncertain_inputs(pair) for part in one.parts}
     given, assumed = results.inputs
     read, why = read_values(pair, contact_lost=results.like.contact_lost), reasons(pair)
     unread = len(values) - len(read)

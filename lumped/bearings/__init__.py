@@ -1,0 +1,1 @@
+"""Stiffness of the bearings that hold the gears, from what a catalogue says of them."""
