@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped import fields_read
 from lumped.errors import ParameterError
+from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
 from tests.unlike_pairs import all_assumed, unlike_pair
 from validation.exchange.new_pair_file import new_pair
