@@ -25,7 +25,6 @@ from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import MeshElements
 from lumped.schema.assumed import State
 from lumped.schema.bodies import Bodies, bodies
-from lumped.schema.fields_read import fields_read
 from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
 from lumped.schema.meeting_teeth import meeting_teeth, revolution, tooth_gaps
 from lumped.schema.pair import GearPair
@@ -49,7 +48,6 @@ __all__ = [
     "State",
     "bodies",
     "condensed_bearings",
-    "fields_read",
     "flank_tolerances",
     "geometry",
     "json_schema",

@@ -15,7 +15,7 @@ from lumped.errors import ParameterError
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Modules that hold no mathematics of gears, so that there is nothing to cite.
 BOOKKEEPING = re.compile(
-    r"lumped\.(errors|schema\.(pair|files))"
+    r"lumped\.(errors|schema\.(assumed|pair|files))"
     r"|floquet\.engine\.chart"
     r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|measurements\.record)\b.*"
     r"|validation\.verification\.(checks|evidence)"

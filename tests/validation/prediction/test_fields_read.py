@@ -13,14 +13,14 @@ import pytest
 import floquet
 import lumped
 import multibody
-from lumped import LawRangeWarning, ParameterError, fields_read
+from lumped import LawRangeWarning, ParameterError
 from lumped.friction import registry
 from lumped.friction.base import ContactPath, FrictionSettings
 from lumped.friction.registry import LAWS
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.schema import fields_read as translation
 from lumped.schema.changes import fields_of
-from lumped.schema.fields_read import FRICTION
+from lumped.schema.fields_read import FRICTION, fields_read
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness.base import TOOTH_FORM
 from tests.unlike_pairs import UNLIKE, unlike_pair

@@ -7,9 +7,9 @@ import pytest
 
 import lumped
 from floquet.gear.axes import GEAR_AXES
-from lumped import fields_read
 from lumped.errors import ParameterError
 from lumped.schema.bodies import bodies
+from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness.registry import MODELS
 from tests.unlike_pairs import all_assumed, unlike_pair

@@ -18,8 +18,9 @@ from validation.exchange import new_pair
 from validation.files.formatting import prose, read_table
 from validation.prediction.inputs import kind_of
 from validation.prediction.uncertainty import LONG_STEP, _peaks
+from validation.reporting.blocks import Badge
 from validation.reporting.build import findings
-from validation.reporting.chapters import contact_loss, second_program, stability
+from validation.reporting.chapters import contact_loss, inputs, second_program, stability
 from validation.reporting.first_figures import plain_name
 from validation.reporting.page_one import _remark, page_one
 from validation.reporting.results import QUICK, Hazard, Results
@@ -39,8 +40,8 @@ def speed_of(written):
 
 def inputs_of(written):
     """Numbers of inputs that are given and assumed."""
-    assumed = sum(bool(one["state"]) for one in written.table("parameters"))
-    return str(len(written.table("parameters")) - assumed), str(assumed)
+    states = [one["state"] for one in written.table("parameters")]
+    return str(states.count("")), str(len(states) - states.count("") - states.count("not read"))
 
 
 def test_page_1_prints_the_numbers(written):
@@ -445,12 +446,29 @@ def _not_varied():
     return results
 
 
-@pytest.mark.parametrize("what", ["sources", "stiff shafts", "slender shafts"])
+@pytest.mark.parametrize("words", ["Assumed", "a guess", "estimated"])
+def test_words_of_a_source_make_no_absolute_level(words):
+    """They were a source like a measurement: 0 values assumed, and usable for absolute levels."""
+    less = _not_varied()
+    said = Results(
+        less.pair.with_({"sources": dict.fromkeys((*leaf_paths(less.pair), "mesh.stiffness"), words)}),
+        less.effort,
+    )
+    said.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
+    assert said.inputs == less.inputs
+    assert page_one(said).verdict is page_one(less).verdict is Verdict.COMPARE
+    table = inputs.write(said).blocks[1]
+    rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
+    assert all(row["source"] == words for row in rows)
+    assert sum(isinstance(row["state"], Badge) for row in rows) == less.inputs[1] > 20
+
+
+@pytest.mark.parametrize("what", ["known", "stiff shafts", "slender shafts"])
 def test_more_information_never_gives_a_worse_verdict(what):
-    """A pair on springs, and the same with every source stated, and on shafts, where contact is kept too."""
+    """A pair on springs, and the same with every value known, and on shafts, where contact is kept too."""
     given = known("calm")
     changes = {
-        "sources": {"sources": dict.fromkeys((*leaf_paths(given.pair), "mesh.stiffness"), "drawing")},
+        "known": {"assumed": {}},
         "stiff shafts": shafts_of(60, 6e8),
         "slender shafts": shafts_of(20, 2e8),
     }
@@ -462,7 +480,7 @@ def test_more_information_never_gives_a_worse_verdict(what):
     values = sum(less.inputs)
     assert f"{less.inputs[1]} of {values} inputs are assumed, and they were not varied." in poorer.headline
     on_springs = ", on the springs of [bearings]"
-    if what == "sources":  # all is known: for absolute levels, and nothing to vary
+    if what == "known":  # all is known: for absolute levels, and nothing to vary
         assert (first.verdict, first.actions) == (Verdict.ABSOLUTE, ())
         more.__dict__["inputs"] = (values - 1, 1)  # of no stated range
         assert page_one(more).verdict is Verdict.UNCERTAIN

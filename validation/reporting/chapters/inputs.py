@@ -27,7 +27,8 @@ def write(results: Results) -> Content:
     unread = len(values) - len(read)
     table = table_of(
         "parameters",
-        f"All values: {given} known, {assumed} assumed, {unread} that the chosen laws and models do not read.",
+        f"All values: {given} known, {assumed} assumed, {unread} that the chosen laws and models do not "
+        "read.",
         list(values),
         {
             "field": ("field", lambda path: path),
