@@ -169,9 +169,16 @@ class ResponseBranches:
         there = self.pair.with_({"operating.pinion_speed": speed_rpm})
         return [GearOrbit(there, orbit) for orbit in self.response.at(there.geometry.mesh_period)]
 
-    @cached_property
+    @property
     def jumps(self) -> tuple[Jump, ...]:
-        """Where the root mean square changes at once by a tenth or more, on running up and down.
+        """Where the root mean square changes at once by a tenth or more, on running up and down."""
+        return tuple(
+            one for one in self.losses if not abs(one.dte_rms_after - one.dte_rms) < JUMP * one.dte_rms
+        )
+
+    @cached_property
+    def losses(self) -> tuple[Jump, ...]:
+        """Where a motion loses its stability or ends, and what comes behind, with and without a jump.
 
         At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
         speed further on. Where a motion that does not repeat ends is found within 0.1 %. Of a search within
@@ -196,10 +203,7 @@ class ResponseBranches:
                     n = last_run.orbit.n if last_run.orbit else 0
                     load = last_run.largest_load
                     result.append(_jump(self._cycle * end.rate, rising, end.size, load, n, end.after))
-        changed = (
-            jump for jump in result if not abs(jump.dte_rms_after - jump.dte_rms) < JUMP * jump.dte_rms
-        )
-        return tuple(sorted(changed, key=lambda jump: jump.speed_rpm))
+        return tuple(sorted(result, key=lambda jump: jump.speed_rpm))
 
     @cached_property
     def attractors(self) -> tuple[GearAttractor, ...]:

@@ -178,7 +178,8 @@ class Member:
         """
         return long_run(
             self.family.at(period), orbit.start, period, orbit.parameter,
-            settle=_AWAY, observe=_OBSERVE, amplitude=self.limits.amplitude, deadline=deadline,
+            settle=_AWAY, observe=_OBSERVE, most_cycles=_MOST_CYCLES, amplitude=self.limits.amplitude,
+            deadline=deadline,
         )  # fmt: skip
 
     def exactly(self, motion: Motion, orbits: list[Orbit], deadline: Deadline = ENDLESS) -> LongRun:

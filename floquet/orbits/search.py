@@ -6,6 +6,7 @@ Sources: docs/theory/orbits.md, "Branches" and "Jumps within a time".
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
@@ -280,6 +281,8 @@ class _Search:
         """Look everywhere: see `find_response`."""
         report = progress or (lambda done: None)
         self.primaries(report)
+        self.slot = self.deadline.share(_WINDOW)
+        self.look_behind()
         self.doublings()
         self.subharmonics()
         self.finish()
@@ -296,6 +299,7 @@ class _Search:
                         self.settle(inside, tell)
                 except OutOfTimeError:
                     self._late.add(window)
+                self.slot = self.deadline
                 self.look_behind()
             self.doublings()
             self.finish()
@@ -319,7 +323,7 @@ class _Search:
                     if self._touches(trace, window):
                         self._resume(index, trace)
                 whole = self.from_linear(window)
-                self.look_behind()
+                self.look_behind(folds=True)
                 touched = any(self._touches(trace, window) for trace in self._cut.values())
                 again += [] if whole and not touched else [window]
             pending = again
@@ -335,6 +339,7 @@ class _Search:
             self.slot = self.deadline.share(_WINDOW)
             self.following = self.slot.share(_FOLLOWING)
             self._resume(index, self._cut[index])
+        self.slot = self.deadline
         self.look_behind()
 
     @staticmethod
@@ -362,20 +367,22 @@ class _Search:
             self._left += map(float, rates)
         return True
 
-    def look_behind(self) -> None:
-        """Let runs say what happens behind each loss of stability; of a search without limit on demand."""
+    def look_behind(self, folds: bool = False) -> None:
+        """Let runs say what happens behind each loss of stability, or behind folds alone.
+
+        Folds come first: most jumps are there. A search without limit leaves it to who asks for the jumps.
+        """
         if not self.deadline.limited:
             return
-        for b, period in sorted(
-            self._unknown_behind(), key=lambda one: self._away(1.0 / one[0].orbit.period)
-        ):
-            if self.slot.passed:
+
+        def urgency(one: tuple[Bifurcation, float]) -> tuple[bool, float]:
+            return one[0].kind != "fold", self._away(1.0 / one[0].orbit.period)
+
+        for b, period in sorted(self._unknown_behind(), key=urgency):
+            if self.slot.passed or (folds and b.kind != "fold"):
                 return
-            with_time = self.slot.share(_RUN)
-            try:
-                self.behind[b.orbit] = self.member.leads_to(b.orbit, period, with_time)
-            except (OutOfTimeError, NumericalError):
-                continue
+            with suppress(OutOfTimeError, NumericalError):
+                self.behind[b.orbit] = self.member.leads_to(b.orbit, period, self.slot.share(_RUN))
 
     def response_at(self, period: float) -> list[Orbit]:
         """All orbits that were found at a period."""
@@ -457,7 +464,7 @@ class _Search:
                     self.following = self.slot.share(_FOLLOWING)
                     start = single.start * np.repeat([1.0, 1.0 / n], single.start.size // 2)
                     self.follow_near(start, single.period / n, n, single.parameter)
-                    self.look_behind()
+                    self.look_behind(folds=True)
 
     # Single branches.
 
@@ -549,7 +556,7 @@ class _Search:
             self.slot = self.deadline.share(_BRANCH)
             self.following = self.slot.share(_FOLLOWING)
             self._double(Continuation(self.family, 2 * branch.n, self._limits(2 * branch.n)), point.orbit)
-            self.look_behind()
+            self.look_behind(folds=True)
 
     def _undoubled(self) -> list[tuple[Branch, Bifurcation]]:
         """Period doublings in the range whose branches were not followed."""

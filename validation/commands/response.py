@@ -31,6 +31,7 @@ def response(
     map_: str | None = None,
     speeds: int = 800,
     back_side: bool = False,
+    budget: float | None = None,
     supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
@@ -59,6 +60,7 @@ def response(
         (um), and find what removes them; default 26 values of the range that is searched.
     speeds : With --map: number of speeds.
     back_side : Also let the back sides of the teeth touch.
+    budget : Processor time of the search (s); what it leaves open is printed. Default: no limit.
     """
     import numpy as np
 
@@ -76,9 +78,12 @@ def response(
     whole_number("--periods", periods, 1, 8)
     with progress_bar("branches") as tell:
         many, cycles = 20 if seeds is None else seeds, range(1, periods + 1)
-        found = floquet.response_branches(pair, None, cycles, seeds=many, back_side=back_side, progress=tell)
+        found = floquet.response_branches(
+            pair, None, cycles, seeds=many, back_side=back_side, seconds=budget, progress=tell
+        )
     if as_json:
-        lists = {name: getattr(found, name) for name in ("jumps", "attractors", "gaps", "bifurcations")}
+        names = ("jumps", "attractors", "gaps", "bifurcations", "open")
+        lists = {name: getattr(found, name) for name in names}
         about = {"gear_pair": pair.name, "supports": "springs", "speeds_rpm": list(found.speeds_rpm)}
         print_json(about | lists | {"basins": _basins(found)})
     else:
@@ -114,6 +119,12 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
     if rows:
         show(f"{pair.name} on springs: jumps", "pinion speed | running | from | to", rows)
     lines = [] if rows else ["no jumps: one stable motion leads to the next"]
+    if found.open:
+        lines = [] if rows else ["no jumps were found in the time"]
+        ranges = ", ".join(f"{number(low, 5)} to {number(high, 5)} rpm" for low, high in found.open)
+        lines.append(
+            f"the processor time left open: {ranges}; a larger --budget or a smaller --range goes on"
+        )
     if found.contact_kept:
         runs = found.response.runs
         looked = f"{runs} runs from far starts found no other" if runs else "no others were looked for"
