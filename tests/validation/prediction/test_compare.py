@@ -14,12 +14,12 @@ from tests.unlike_pairs import unlike_pair
 from validation.prediction import compare as module
 from validation.prediction.compare import as_read, common_draws, compare, of_hundred, ranking
 
-from .test_uncertainty import LINEAR, exact_only
+from .test_uncertainty import LINEAR
 
 #: Its transmission error is in proportion to the torque, its dynamic factor does not depend on it.
-TORQUE = exact_only(LINEAR).with_({"uncertainty": {"operating.pinion_torque": "+- 4 %"}})
+TORQUE = LINEAR.with_({"uncertainty": {"operating.pinion_torque": "+- 4 %"}})
 GREATER = TORQUE.with_(torque=1.02 * TORQUE.operating.pinion_torque)
-RELIEVED = exact_only(unlike_pair("rack_25_degrees_always_pushing")).with_(
+RELIEVED = unlike_pair("rack_25_degrees_always_pushing").with_(
     {
         "mesh.relief": "static",
         "uncertainty": {
@@ -85,7 +85,7 @@ def test_what_variants_have_in_common_is_one_draw():
 
 
 def test_a_range_that_stays_hides_a_difference_and_is_told():
-    first = exact_only(LINEAR).with_({"uncertainty": {DAMPING: "0.02 .. 0.1"}, DAMPING: 0.04})
+    first = LINEAR.with_({"uncertainty": {DAMPING: "0.02 .. 0.1"}, DAMPING: 0.04})
     second = first.with_({DAMPING: 0.07})
     assert drawn(first, second) == {DAMPING: ["A", "B"]}
     (remark,) = compare(first, second, samples=16).attrs["remarks"]
@@ -162,12 +162,12 @@ def test_what_no_variant_changes_is_equal():
 
 
 def test_a_machine_without_prediction_in_one_variant_counts_in_none():
-    tables = exact_only(LINEAR).with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
+    tables = LINEAR.with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
     plain = TORQUE.with_(gear__face_width=31.0)
     found = compare(plain, tables, samples=16)
     assert found.attrs["refused"] == 16 - found.sizes["sample"] == 8
     assert found["dte_peak_to_peak"].notnull().all()
-    never = exact_only(LINEAR).with_({"uncertainty": {"mesh.stiffness": ["table", "table"]}})
+    never = LINEAR.with_({"uncertainty": {"mesh.stiffness": ["table", "table"]}})
     with pytest.raises(NumericalError, match="Only 0 of 16 samples have a prediction in every variant"):
         compare(plain, never, samples=16)
 
