@@ -14,6 +14,7 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 
 import numpy as np
+
 from lumped.gear_geometry.geometry import Wheel
 from lumped.path_function import PathFunction
 from lumped.stiffness.base import Material, MeshingPair
