@@ -51,7 +51,7 @@ def libraries() -> tuple[_Threads, ...]:
     """Every OpenBLAS that came with the wheels of numpy and scipy, which have loaded it."""
     result = []
     for package in (np, scipy):
-        root = Path(package.__file__).parent
+        (root,) = map(Path, package.__path__)
         places = (root.with_name(f"{root.name}.libs"), root / ".dylibs")
         for path in sorted(path for place in places for path in place.glob("*openblas*")):
             library = ctypes.CDLL(str(path))

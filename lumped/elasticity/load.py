@@ -68,8 +68,8 @@ def flank_load(
     a, b = np.moveaxis(at, -1, 0)
     for axis, motion, field in ((0, 0, area), (1, 1, area), (0, 2, -b * area), (1, 2, a * area)):
         np.add.at(even[:, axis, motion], elements, field @ square)
-    rigid, even = rigid.reshape(-1, 3), even.reshape(-1, 3)
-    load += even @ np.linalg.solve(rigid.T @ even, rigid.T @ (reading - load))
+    motions, forces = rigid.reshape(-1, 3), even.reshape(-1, 3)
+    load += forces @ np.linalg.solve(motions.T @ forces, motions.T @ (reading - load))
     held = chi * area
     taken = np.array([(held * x).sum(), (held * y).sum(), (held * (a * y - b * x)).sum()])
     return load, reading, taken

@@ -41,7 +41,7 @@ def plane_compliance(
 
     Involutes, fillets and bodies are those of the pair, the load of a tooth moves the next ones, and
     contacts are as wide as under the operating torque on a single pair. The first call for a gear takes
-    about half a second; the result is kept in the user's cache folder.
+    a tenth of a second; the result is kept in the user's cache folder.
 
     Parameters
     ----------

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from lumped.elasticity import gear
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import contact_softening, pair_compliance
 from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width
@@ -111,7 +110,9 @@ def test_a_variation_solves_again_only_the_gears_whose_form_it_changes(change, s
     pair = new_pair("21/34", 3.0, 25.0, 1450.0, 80.0)
     pair.mesh.stiffness.curve(pair)
     count = []
-    monkeypatch.setattr(gear, "cached", lambda folder, sources, inputs, compute: count.append(1) or compute())
+    monkeypatch.setattr(
+        "lumped.elasticity.gear.cached", lambda folder, sources, inputs, compute: count.append(1) or compute()
+    )
     varied = pair.with_(change)
     varied.mesh.stiffness.curve(varied)
     varied.mesh.stiffness.neighbours(varied)

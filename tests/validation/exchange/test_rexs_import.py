@@ -8,7 +8,7 @@ import pytest
 import lumped
 from lumped import ParameterError
 from lumped.schema.pair import leaf_paths
-from validation.exchange import gear_pair_from_rexs
+from validation.exchange import gear_pair_from_rexs, write_rexs
 
 
 def _relief(kind, depth, start, at, shape="linear"):
@@ -191,6 +191,15 @@ def test_tip_relief_becomes_a_roll_angle_and_an_amount_at_the_tip(xml, save, sha
     assert relief["start_roll_angle"] == pytest.approx(math.degrees(roll(start)), rel=1e-11)
     carried = ((roll(tip) - roll(start)) / (roll(stated) - roll(start))) ** power
     assert relief["amount"] == pytest.approx(20.0 * carried, rel=1e-11)  # twelve digits are written
+
+
+@pytest.mark.parametrize(("bore", "model"), [(20.0, "finite_elements"), (95.0, "energy")])
+def test_tooth_stiffness_is_assumed_as_of_a_new_pair(bore, model, tmp_path):
+    # What holds a thin rim decides its stiffness, so that finite elements of the gear alone do not.
+    write_rexs(lumped.load_gear_pair("fzg_c").with_({"gear.bore": bore}), tmp_path / "pair.rexs")
+    mapping, _ = gear_pair_from_rexs(tmp_path / "pair.rexs")
+    assert mapping["mesh"]["stiffness"]["model"] == model
+    assert mapping["sources"]["mesh.stiffness.model"].startswith("assumed")
 
 
 def test_values_that_cannot_be_assumed_are_asked_for_all_at_once(xml, save):
