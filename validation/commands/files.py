@@ -56,8 +56,8 @@ def init(
 ) -> None:
     """Write a commented parameter file to edit.
 
-    Every value has its unit beside it, and its source at the end of the file. A bare number means that unit;
-    text may carry any unit of the same kind, such as "200 lbf*in".
+    Every value has its unit beside it. A bare number means that unit; text may carry any unit of the same
+    kind, such as "200 lbf*in". At the end of the file stands where values come from, and which are assumed.
 
     REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in. What such a file
     does not say is marked as assumed.
