@@ -1,6 +1,7 @@
 """How well do 128 samples of the uncertain inputs tell the percentiles, and 32 samples the band over speed?
 
-    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [rank] [--reference 4096]
+    python -m benchmarks.bench_uncertainty [19/41] [31/57] [28/28] [shafts] [order] [band] [rank]
+        [--reference 4096]
 
 The tables of docs/verification/uncertainty.md. Errors are root mean squares over the seeds, in per cent of
 the range from 5 to 95 % of the reference.

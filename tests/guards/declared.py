@@ -11,6 +11,7 @@ from typing import Any, get_args, get_origin
 from lumped import GearPair, ParameterError, load_gear_pair
 from lumped.fields.refusals import models_in
 from lumped.fields.units import Quantity
+from lumped.schema.bearings import ROLLING
 from tests.guards.guard import GEARS
 from tests.unlike_pairs import unlike_pair
 
@@ -66,6 +67,12 @@ DECLARED: dict[str, tuple[str, str]] = {
     "centre_distance": ("> 0 mm", _LENGTH),
     "bearings.{gear}.loa_stiffness": (">= 1e-06 N/m and <= 1e+30 N/m", _SPRING),
     "bearings.{gear}.oloa_stiffness": (">= 1e-06 N/m and <= 1e+30 N/m", _SPRING),
+    "bearings.{gear}.size": (">= 0.01 mm and <= 1000 mm", _SIZE),
+    "bearings.{gear}.contact_angle": (
+        ">= 0 deg and <= 60 deg",
+        "radial and angular contact bearings; thrust bearings hold no gear",
+    ),
+    "bearings.{gear}.stiffness_factor": (">= 0.001 and <= 1000", "more is another bearing"),
     "bearings.{gear}.loa_damping_ratio": (">= 0 and <= 2", _DAMPING),
     "bearings.{gear}.oloa_damping_ratio": (">= 0 and <= 2", _DAMPING),
     "shafts.damping_ratio": (">= 0 and <= 1", _DAMPING),
@@ -140,6 +147,8 @@ WHOLE: dict[str, tuple[int, int, str]] = {
     "{gear}.deviations.tolerance_class": (1, 11, "ISO 1328-1:2013"),
     "{gear}.deviations.seed": (0, 2**53, "whole numbers that a float holds, as TOML readers may take it"),
     "{gear}.faults.0.tooth": (1, 1000, "teeth are counted from 1"),
+    "bearings.{gear}.number": (4, 200, "fewer do not centre a ring; slewing rings have hundreds"),
+    "bearings.{gear}.bearings": (1, 12, "as many as a shaft may have"),
     "operating.torque_ripple.0.order": (1, 1000, "periods a turn"),
     "mesh.first_teeth": (1, 1000, "teeth are counted from 1"),
 }
@@ -174,6 +183,8 @@ def with_field(pair: GearPair, path: str, value: object) -> dict[str, Any]:
         data["lubricant"] = {"viscosity_law": grade | {"temperature": 60.0}}
     elif section == "stiffness":
         data["mesh"]["stiffness"] = {"model": _MODELS.get(leaf, "energy")}
+    elif parents[:1] == ["bearings"] and leaf in ROLLING:
+        data["bearings"][section] = {"type": "ball", "number": 9, "size": 7.9}
     elif section == "table":
         data["friction"]["table"] = {"points": [1, 2, 3, 4], "coefficient": [0.05] * 4}
     elif parents[1:2] == ["torque_ripple"]:

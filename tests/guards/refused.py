@@ -180,6 +180,8 @@ def _one_segment(long: bool) -> Callable[[GearPair, str, float], Changes]:
 
 _PAIR, _GEAR, _CONTACT = "lumped/schema/pair.py", "lumped/schema/gear.py", "lumped/schema/contact.py"
 _SHAFTS, _TEETH = "lumped/schema/shafts.py", "lumped/schema/teeth.py"
+_BEARINGS = "lumped/schema/bearings.py"
+_BALLS = {"type": "ball", "number": 8, "size": 6.0}
 _BLANK = {"teeth": 33, "face_width": 15, "roughness": 0.4}
 SCHEMA = (
     Guard(_PAIR, "{gear}.mass", RACK_25, "1e-4 of the solid disc: less is a unit error",
@@ -224,6 +226,12 @@ SCHEMA = (
     Choice(_SHAFTS, "shafts.{gear}.bearings", LONG, "a shaft in one bearing turns about it",
            {"shafts.{gear}.bearings": [_bearing(50.0)]},
            {"shafts.{gear}.bearings": [_bearing(50.0, tilt_stiffness=1e-3)]}, says="two bearings"),
+    Choice(_BEARINGS, "bearings.{gear}.loa_stiffness", FAST, "springs or rolling bearings: neither",
+           {"bearings.{gear}": {"loa_damping_ratio": 0.05, "oloa_damping_ratio": 0.05}},
+           {"bearings.{gear}": _BALLS}, says="either loa_stiffness"),
+    Choice(_BEARINGS, "bearings.{gear}.oloa_stiffness", FAST, "springs or rolling bearings: both",
+           {"bearings.{gear}": _BALLS | {"oloa_stiffness": 1e8}},
+           {"bearings.{gear}": _BALLS}, says="either loa_stiffness"),
     Choice(_GEAR, "{gear}.tip_diameter", FAST, "one tip",
            {"{gear}": _BLANK | {"addendum": 2.0, "tip_diameter": 70.0}},
            {"{gear}": _BLANK | {"tip_diameter": 70.0}},

@@ -29,7 +29,7 @@ def test_everything_that_rexs_can_say_comes_back(preset, tmp_path):
     lost = {path for path in sent if got.get(path) != sent[path]} - {"description"}
     beyond = (
         "bearings.", "mesh.damping_ratio", "mesh.contact", "mesh.stiffness.", "lubricant.viscosity",
-        "friction.composite_roughness",
+        "friction.composite_roughness", "friction.law",
     )  # fmt: skip
     assert all(path.startswith(beyond) for path in lost), lost
     # A tip diameter says what a default addendum said; the geometry is the same to the fifteenth digit.
