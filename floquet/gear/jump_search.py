@@ -16,8 +16,8 @@ from floquet.gear.axes import checked_range, operating_rpm, speed_range
 from floquet.gear.motions import MOST_CYCLES, GearAttractor, GearOrbit
 from floquet.gear.response import Jump, ResponseBranches, compile_kernels, member, within
 from floquet.orbits.deadline import Deadline
-from floquet.orbits.orbit import Orbit
-from floquet.orbits.response import Response
+from floquet.orbits.orbit import Orbit, state_scale
+from floquet.orbits.response import Member, Response
 from floquet.orbits.search import Agenda, find_response
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
@@ -38,6 +38,8 @@ _REACH = 0.2
 #: Speed, over that at which the mesh frequency is the fastest natural one, beyond which the motion of the
 #: linear model starts no large motion of one cycle.
 _BEYOND_RESONANCE = 1.5
+#: Distance from the motion of the linear model, over its size, within which a motion is taken as that.
+_LINEAR = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,8 +70,19 @@ class JumpSearch:
         return tuple(sorted((j for one in self.branches for j in one.jumps), key=lambda j: j.speed_rpm))
 
     @cached_property
+    def losses(self) -> tuple[Jump, ...]:
+        """Losses of stability of all windows by speed, also those behind which beats or chaos begin smoothly.
+
+        See ``ResponseBranches.losses``.
+        """
+        return tuple(sorted((j for one in self.branches for j in one.losses), key=lambda j: j.speed_rpm))
+
+    @cached_property
     def attractors(self) -> tuple[GearAttractor, ...]:
-        """Beats and chaos of all windows by speed, see ``ResponseBranches.attractors``."""
+        """Beats and chaos to which runs from other starts came, by speed; empty without ``seeds``.
+
+        See ``ResponseBranches.attractors``. What begins where a branch loses stability is in ``losses``.
+        """
         found = (attractor for one in self.branches for attractor in one.attractors)
         return tuple(sorted(found, key=lambda attractor: attractor.low_rpm))
 
@@ -151,7 +164,7 @@ def search_jumps(
     the linear model, and what runs do where that branch loses stability; then the other windows, and large
     motions of a resonance above the range, which reach down into it; period doublings; motions of n cycles
     near large ones at 1/n of the speed; then runs from other starts. A branch is followed out of its window
-    until it is stable and keeps contact again, and the window grows by that.
+    until it is stable, keeps contact and is the linear motion again; the window grows by that.
 
     What is found is as right as that of ``response_branches``. Outside the windows no motions are looked for
     but those to which branches lead, and those of n cycles. A motion that attracts no run, or an isolated one
@@ -186,7 +199,7 @@ def search_jumps(
     if above > high:
         one = member(pair, low, above)
     inside = tuple((max(a, low) / cycle, min(b, high) / cycle) for a, b in asked if a < high and b > low)
-    one = replace(one, limits=replace(one.limits, calm=_keeps_contact(inside)))
+    one = replace(one, limits=replace(one.limits, calm=_as_linear(one, inside)))
     compile_kernels(one)
     deadline = Deadline(seconds)
     response = find_response(
@@ -212,13 +225,24 @@ def search_jumps(
     )
 
 
-def _keeps_contact(windows: tuple[Range, ...]) -> Callable[[Orbit], bool]:
-    """Whether a motion outside windows of 1/T is stable and always carries some load."""
+def _as_linear(one: Member, windows: tuple[Range, ...]) -> Callable[[Orbit], bool]:
+    """Whether a motion outside windows of 1/T is stable, always carries load, and is the linear one.
+
+    Where both begin and end their contact gradually single pairs may part, so they differ a little.
+    """
+    known = dict[Orbit, bool]()
+
+    def is_linear(orbit: Orbit) -> bool:
+        start = one.start(orbit.period)[0]
+        return bool((np.abs(orbit.start - start) <= _LINEAR * state_scale(start)).all())
 
     def calm(orbit: Orbit) -> bool:
         rate = 1.0 / orbit.period
-        outside = not any(a <= rate <= b for a, b in windows)
-        return outside and orbit.run.least_load > 0.0 and orbit.stable
+        if any(a <= rate <= b for a, b in windows) or orbit.run.least_load <= 0.0 or not orbit.stable:
+            return False
+        if orbit not in known:
+            known[orbit] = is_linear(orbit)
+        return known[orbit]
 
     return calm
 
