@@ -50,7 +50,8 @@ SHARE = 0.10
 #: explains nothing: a prediction 27 % off whose inputs leave 40 % is neither right nor wrong.
 UNKNOWN = 0.25
 #: Standard uncertainty by inputs that were not varied, share of the measured value.
-NOT_VARIED = 0.125
+NOT_VARIED = UNKNOWN / 2.0
+_AT_LEAST = UNKNOWN * (1.0 - 1e-9)
 #: Probability with which noise alone takes any of all orders beyond its limit.
 _CHANCE = 0.05
 
@@ -183,11 +184,10 @@ class ChannelComparison:
         if self.contradicts_size or self.contradicted_orders.any():
             return Record.CONTRADICTS
         p = self.peak_to_peak
-        apart = abs(p.error) > self._least
-        vague = apart and 2.0 * p.u_val > UNKNOWN * p.measured
-        vague |= bool((self._apart & (self.reach > UNKNOWN * self.scale)).any())
-        unasked = not self.varied and (apart or bool(self._apart.any()))
-        return Record.TOO_UNCERTAIN if self.noisy or vague or unasked else Record.CONFIRMS
+        # Inputs that were not varied leave as much as UNKNOWN.
+        vague = abs(p.error) > self._least and 2.0 * p.u_val >= _AT_LEAST * p.measured
+        vague |= bool((self._apart & (self.reach >= _AT_LEAST * self.scale)).any())
+        return Record.TOO_UNCERTAIN if self.noisy or vague else Record.CONFIRMS
 
     @property
     def _least(self) -> float:

@@ -152,6 +152,20 @@ def test_a_noisy_record_is_too_uncertain_and_never_contradicts():
         assert any("noise" in one.words for one in verdicts)
 
 
+def test_noise_is_no_agreement_where_the_inputs_were_varied():
+    # Close enough by chance, with inputs that leave little: the noise alone decides.
+    found = [
+        compared(
+            "fzg_c", ("dte",), noise=0.7, cycles=20, per_cycle=20.3, seed=seed, samples=varied("fzg_c", 0.01)
+        )
+        for seed in range(12)
+    ]
+    close = [one for one in found if abs(one.peak_to_peak.percent) < 100.0 * SHARE]
+    assert close
+    assert {one.verdict for one in close} == {Record.TOO_UNCERTAIN}
+    assert all(one.leading.noisy for one in close)
+
+
 def test_more_of_a_noisy_record_is_certain():
     short, long = (compared("19/41", noise=1.0, cycles=count) for count in (20, 2000))
     assert (short.verdict, long.verdict) == (Record.TOO_UNCERTAIN, Record.CONFIRMS)
