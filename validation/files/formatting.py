@@ -54,9 +54,17 @@ def quantity(
 
 
 def span(low: float, high: float, unit: str, digits: int = 2) -> str:
-    """A range with one prefix and one unit, and digits that tell its ends apart: "0.90 to 1.6 µm"."""
-    (first, last), name = side_by_side((low, high), unit, digits, measured=True)
-    return f"{first} to {last}{name}"
+    """A range with one prefix and one unit, each end with its digits, more where they read alike."""
+    largest = max(abs(low), abs(high))
+    exponent = prefix_exponent(largest, digits) if largest else None
+    for more in range(digits, digits + 3):
+        first, last = (
+            quantity(end, unit, more, measured=True, exponent=exponent).partition(_SPACE)
+            for end in (low, high)
+        )
+        if first[0] != last[0]:
+            break
+    return f"{first[0]} to {''.join(last)}"
 
 
 def prefix_exponent(value: float, digits: int = 4) -> int:
@@ -84,17 +92,12 @@ def _plain_with(size: float, exponent: int) -> bool:
 
 
 def side_by_side(
-    values: Iterable[float],
-    unit: str,
-    digits: int = 3,
-    beside: Iterable[float] = (),
-    *,
-    measured: bool = False,
+    values: Iterable[float], unit: str, digits: int = 3, beside: Iterable[float] = ()
 ) -> tuple[list[str], str]:
-    """Numbers in SI in the unit of the largest, with digits that tell them apart; and that unit.
+    """Numbers in SI in the unit of the largest, with decimals that tell them apart; and that unit.
 
-    At most three further digits; what is equal then reads the same. ``beside``: other numbers of the same
-    line of a table, whose largest chooses the unit; ``measured`` as of ``number``.
+    ``digits`` of the largest, and at most three further ones; what is equal then reads the same.
+    ``beside``: other numbers of the same line of a table, whose largest chooses the unit.
     """
     values = [float(value) for value in values]
     largest = max(map(abs, list(beside) or values), default=0.0)
@@ -104,8 +107,10 @@ def side_by_side(
         exponent = prefix_exponent(largest, digits)
         factor, name = 10.0**exponent, f"{_SPACE}{_PREFIXES[exponent]}{unit}"
     scaled = [value / factor for value in values]
-    for more in range(4):
-        texts = [number(value, digits + more, measured=measured) for value in scaled]
+    size = max(map(abs, scaled), default=0.0)
+    first = digits - 1 - math.floor(math.log10(size)) if size > 0.0 else 0
+    for places in range(max(first, 0), max(first, 0) + 4):
+        texts = [f"{round(value, places) + 0.0:.{places}f}".replace("-", _MINUS) for value in scaled]
         if len(set(texts)) == len(set(values)):
             break
     return texts, name

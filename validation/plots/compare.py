@@ -15,7 +15,7 @@ from validation.prediction.compare import LARGER, differences, of_hundred
 #: Most machines that are drawn in a row, and half the height over which they are spread.
 _DOTS, _HALF = 256, 0.28
 #: Longest line above the panels.
-_LINE = 110
+_LINE = 100
 #: Height of a row and of what a panel needs besides [inch].
 _ROW, _FRAME = 0.38, 0.55
 
@@ -28,7 +28,7 @@ def compare_figure(found: xr.Dataset) -> Figure:
     """
     others = [str(one) for one in found["variant"].to_numpy()[1:]]
     names = [str(one) for one in found["result"].to_numpy()]
-    height = len(names) * (_FRAME + _ROW * len(others)) + 0.16 * (2 + len(others))
+    height = len(names) * (_FRAME + _ROW * len(others)) + 0.16 * (3 + len(others))
     figure, axes = new_figure(len(names), 1, height=height)
     for ax, name in zip(axes[:, 0], names, strict=True):
         values = found[name].to_numpy()
@@ -60,7 +60,9 @@ def compare_figure(found: xr.Dataset) -> Figure:
         ax.grid(False, axis="y")
     pairs = zip(found["variant"].to_numpy(), found["name"].to_numpy(), strict=True)
     lines = [textwrap.shorten(f"{letter}: {name}", _LINE, placeholder=" ...") for letter, name in pairs]
-    dots = "Dots: possible machines, blue where the variant is better than A, orange where it is worse. "
-    bars = "Bars: 5 to 95 % of them."
-    figure.suptitle("\n".join([*lines, dots + bars]), x=0.01, ha="left", fontsize=9.0)
+    lines += [
+        "Dots: possible machines, blue where the variant is better than A, orange where it is worse.",
+        "Bars: 5 to 95 % of the machines, with the median.",
+    ]
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=9.0)
     return figure

@@ -209,12 +209,12 @@ def said(better, worse, given=(4.2e-6, 3.1e-6), place=(2, 1)):
     [
         (
             said(0.96875, 0.03125),
-            "B is better than A in 97 of 100 possible machines: transmission error 3.1 µm against 4.2 µm.",
+            "B is better than A in 97 of 100 possible machines: transmission error 3.10 µm against 4.20 µm.",
         ),
         (said(0.8125, 0.1875), "B is better than A in 81 of 100"),
         (
             said(0.78125, 0.21875),
-            "No difference that these inputs can show: transmission error 3.1 µm against 4.2 µm; "
+            "No difference that these inputs can show: transmission error 3.10 µm against 4.20 µm; "
             "B is better than A in 78 of 100 possible machines.",
         ),
         (said(0.21875, 0.78125), "No difference that these inputs can show: transmission error 4.2"),
@@ -228,9 +228,12 @@ def test_the_sentence_says_who_is_better_and_where_nobody_is(case, words):
 
 
 def test_numbers_beside_each_other_have_one_unit_and_are_told_apart():
-    assert as_read("dte_peak_to_peak", np.array([3.1e-6, 9.5e-7])) == (["3.1", "0.95"], "\u00a0µm")
+    assert as_read("dte_peak_to_peak", np.array([3.1e-6, 9.5e-7])) == (["3.10", "0.95"], "\u00a0µm")
     assert as_read("dynamic_factor", np.array([1.0402, 1.0398])) == (["1.0402", "1.0398"], "")
     assert as_read("efficiency", np.array([0.99571, 0.9961])) == (["99.57", "99.61"], "\u00a0%")
+    tiny = np.array([-6.6e-7, 5.2e-5]), 2, np.array([6.2e-5, 7e-5])
+    assert as_read("dte_peak_to_peak", *tiny) == (["−1", "52"], "\u00a0µm")
+    assert as_read("tooth_load", np.array([-1e-9, 0.5]), 2) == (["0.00", "0.50"], "")
     assert as_read("bearing_rms", np.array([0.0, 0.0])) == (["0", "0"], "\u00a0N")
 
 
