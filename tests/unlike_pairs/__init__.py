@@ -27,6 +27,16 @@ def unlike_pair(name: str) -> GearPair:
     return all_assumed(load_gear_pair(Path(__file__).with_name(f"{name}.toml")))
 
 
+def but_known(pair: GearPair, *fields: str) -> GearPair:
+    """Return a pair of which these fields, or all inside them, are known."""
+    assumed = {
+        path: value
+        for path, value in pair.assumed.to_mapping().items()
+        if not any(f"{path}.".startswith(f"{one}.") for one in fields)
+    }
+    return pair.with_(assumed=assumed)
+
+
 def all_assumed(pair: GearPair) -> GearPair:
     """Return a pair of which nothing is known."""
     return pair.with_(assumed={path: v for path, v in leaf_paths(pair).items() if path not in WORDS})

@@ -67,7 +67,7 @@ _EQUAL = 1e-9
 _LEAST = 0.5
 #: Fields of the machine round the gears and of the model: their deviation is common to variants whose values
 #: differ, while a part of another size is another part, with a deviation of its own.
-_COMMON = ("operating.*", "lubricant.*", "friction.*", "mesh.stiffness*", "mesh.damping_ratio")
+_COMMON = ("operating.*", "lubricant.*", "friction.*", "mesh.stiffness*", "mesh.damping_ratio", "*.inertia")
 #: What happens in some machines -> its short name.
 FLAGS = {
     "contact_lost": "contact is lost",

@@ -8,34 +8,34 @@ import pytest
 import lumped
 from lumped.outcomes import Absent, Outcome
 from tests.unlike_pairs import unlike_pair
-from validation.exchange.new_pair_file import new_pair
 from validation.prediction.budget import error_budget
 from validation.prediction.motion import predicted
 
 
-@pytest.mark.parametrize("asked", [True, False])
-def test_finite_elements_are_computed_where_they_are_asked_for(asked):
-    pair = unlike_pair("rack_25_degrees_always_pushing")
+@pytest.mark.parametrize("model", ["rectangular", "finite_elements"])
+def test_finite_elements_are_a_row_of_every_other_stiffness(model):
+    pair = unlike_pair("rack_25_degrees_always_pushing").with_({"mesh.stiffness": {"model": model}})
     own, none = predicted(pair), Absent(Outcome.NOT_ASKED)
     known = SimpleNamespace(
         pair=pair, like=own, linear=none, second=none, same_equations=None, uncertainty=none,
-        measured_error=None, finite_elements=asked,
+        measured_error=None,
     )  # fmt: skip
     budget = error_budget(known)
     row = budget.sel(row="stiffness")
     note = dict(zip(budget["row"].to_numpy(), budget.attrs["notes"], strict=True))["stiffness"]
-    if asked:
+    if model == "rectangular":
         other = predicted(pair.with_({"mesh.stiffness": {"model": "finite_elements"}}))
         expected = abs(own.peak_to_peak - other.peak_to_peak)
         assert float(row["dte"]) == pytest.approx(expected, rel=1e-12)
+        assert float(row["result"]) == pytest.approx(other.peak_to_peak, rel=1e-12)
         assert "whole gears" in note
     else:
         assert math.isnan(float(row["dte"]))
-        assert note == "left out of a quick report"
+        assert note == "the pair has it"
 
 
 @pytest.mark.parametrize(("pair", "note"), [
-    (new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80),
+    (unlike_pair("rack_25_degrees_always_pushing"),
      "its contact and dampers are those of the mean load"),
     (unlike_pair("larger_gear_drives_contact_lost"), "teeth pull in the linear motion"),
 ], ids=["pushes", "pulls"])  # fmt: skip
@@ -44,7 +44,7 @@ def test_it_says_that_teeth_pull_only_where_they_do(pair, note):
     assert (float(linear["normal_load"].min()) < 0.0) == ("pull" in note)
     known = SimpleNamespace(
         pair=pair, like=predicted(pair), linear=linear, second=none, same_equations=None,
-        uncertainty=none, measured_error=None, finite_elements=False,
+        uncertainty=none, measured_error=None,
     )  # fmt: skip
     budget = error_budget(known)
     assert dict(zip(budget["row"].to_numpy(), budget.attrs["notes"], strict=True))["linear"] == note

@@ -12,7 +12,7 @@ from lumped.schema.bodies import bodies
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness.registry import MODELS
-from tests.unlike_pairs import all_assumed, unlike_pair
+from tests.unlike_pairs import all_assumed, but_known, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import (
     forms_beside,
@@ -138,7 +138,7 @@ def test_both_directions_of_a_bearing_and_both_gears_flanks_are_one_input():
 
 
 def test_a_direction_whose_stiffness_is_known_does_not_move():
-    pair = PAIR.with_({"sources": {"bearings": "assumed", "bearings.gear.oloa_stiffness": "tap test"}})
+    pair = but_known(all_assumed(PAIR), "bearings.gear.oloa_stiffness")
     one = input_of(pair, "bearings.gear.loa_stiffness")
     assert list(one.changes(0.1)) == ["bearings.gear.loa_stiffness"]
 
@@ -149,14 +149,14 @@ def test_mass_and_inertia_of_an_assumed_blank_move_together_and_those_of_a_known
     assert heavy.inertia_gear / own.inertia_gear == pytest.approx(1.25)
     assert heavy.mass_gear / own.mass_gear == pytest.approx(1.25)
     assert heavy.mass_pinion == own.mass_pinion
-    drawn = pair.with_({"sources": dict(pair.sources) | {"gear.bore": "drawing"}})
+    drawn = but_known(pair, "gear.bore")
     assert "gear.inertia" not in {one.field for one in uncertain_inputs(drawn)}
     weighed = pair.with_({"gear.mass": 2.0, "gear.inertia": 3e-3})
     assert not {"gear.inertia", "gear.mass"} & {one.field for one in uncertain_inputs(weighed)}
 
 
 def test_a_model_that_stays_keeps_its_parameters():
-    pair = PAIR.with_({"mesh.stiffness": {"model": "parabolic", "end_ratio": 0.61}, "sources": {}})
+    pair = all_assumed(PAIR.with_({"mesh.stiffness": {"model": "parabolic", "end_ratio": 0.61}}))
     one = input_of(pair, "mesh.stiffness")
     shares = {name: (number + 0.5) / len(one.choices) for number, name in enumerate(one.choices)}
     assert varied(pair, [(one, shares["parabolic"])]).mesh.stiffness.end_ratio == 0.61
@@ -171,9 +171,7 @@ def test_every_model_of_the_stiffness_and_both_contacts_are_in_the_range_or_besi
         assert models <= varied_models | set(beside)
         assert not varied_models & set(beside)
         assert sum(pair.with_(change).mesh.contact != pair.mesh.contact for change in beside.values()) == 1
-    measured = NEW["wind"].with_({"sources": dict(NEW["wind"].sources) | {"mesh.stiffness": "test"}})
-    known = dict.fromkeys(p for p in leaf_paths(measured) if p.startswith("mesh.stiffness"))
-    measured = measured.with_({"sources": dict(measured.sources) | dict.fromkeys(known, "test")})
+    measured = but_known(NEW["wind"], "mesh.stiffness")
     assert set(forms_beside(measured)) == {"mesh.contact = prescribed"}
 
 
@@ -236,11 +234,11 @@ def test_what_no_chosen_law_reads_is_neither_counted_nor_varied():
     # The stiffness of the teeth may be that of their form, which has a fillet.
     assert own - fields_read(pair) == {"basic_rack.fillet_radius_coefficient"}
     fields = {one.field for one in uncertain_inputs(pair)}
-    assert {"lubricant.viscosity", "gear.roughness"} < fields
+    assert {"lubricant.viscosity", "gears.roughness"} < fields
     assert "mesh.backlash" not in fields
     given = {"friction.law": "coulomb", "friction.coefficient": 0.06}
     fields = {one.field for one in uncertain_inputs(pair.with_(given))}
-    assert not {"lubricant.viscosity", "gear.roughness", "pinion.roughness"} & fields
+    assert not {"lubricant.viscosity", "gears.roughness", "pinion.roughness"} & fields
     assert given_and_assumed(pair, contact_lost=True)[1] == given_and_assumed(pair)[1] + 1
 
 
@@ -249,7 +247,7 @@ def test_a_law_that_may_be_another_one_has_what_these_read():
     pair = unlike_pair("rack_25_degrees_always_pushing").with_({"friction.coefficient": 0.06})
     pair = all_assumed(pair.with_({"friction.law": "coulomb"}))
     fields = {one.field for one in uncertain_inputs(pair)}
-    assert {"friction.law", "friction.coefficient", "lubricant.viscosity", "gear.roughness"} < fields
+    assert {"friction.law", "friction.coefficient", "lubricant.viscosity", "gears.roughness"} < fields
     assert "lubricant.viscosity" not in fields_read(pair)
     assert "lubricant.viscosity" in read_values(pair)
 

@@ -31,7 +31,7 @@ _UNITS = {
     "pressure_angle": "°", "density": "kg/m³", "youngs_modulus": "GPa", "roughness": "µm",
     "sharpness": "1/mm",
     "loa_stiffness": "N/m", "oloa_stiffness": "N/m", "viscosity": "mPa s",
-    "pinion_speed": "rpm", "pinion_torque": "N m",
+    "pinion_speed": "rpm", "pinion_torque": "N m", "size": "mm", "contact_angle": "°",
 }  # fmt: skip
 #: Row of the error budget -> its name.
 _ERRORS = {
