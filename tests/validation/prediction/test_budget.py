@@ -8,6 +8,7 @@ import pytest
 import lumped
 from lumped.outcomes import Absent, Outcome
 from tests.unlike_pairs import unlike_pair
+from validation.exchange.new_pair_file import new_pair
 from validation.prediction.budget import error_budget
 from validation.prediction.motion import predicted
 
@@ -35,7 +36,7 @@ def test_finite_elements_are_a_row_of_every_other_stiffness(model):
 
 
 @pytest.mark.parametrize(("pair", "note"), [
-    (unlike_pair("rack_25_degrees_always_pushing"),
+    (new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80, stiffness="energy"),
      "its contact and dampers are those of the mean load"),
     (unlike_pair("larger_gear_drives_contact_lost"), "teeth pull in the linear motion"),
 ], ids=["pushes", "pulls"])  # fmt: skip

@@ -21,7 +21,8 @@ TORQUE = LINEAR.with_({"uncertainty": {"operating.pinion_torque": "+- 4 %"}})
 GREATER = TORQUE.with_(torque=1.02 * TORQUE.operating.pinion_torque)
 RELIEVED = unlike_pair("rack_25_degrees_always_pushing").with_(
     {
-        "mesh.relief": "static", "assumed": {},
+        "mesh.relief": "static",
+        "assumed": {},
         "uncertainty": {
             "pinion.tip_relief.amount": "+- 2 um",
             "mesh.damping_ratio": "+- 20 %",
