@@ -214,11 +214,10 @@ def agreeing(noise=0.0, **sizes):
     values = np.exp(1j * np.arange(count)) / np.sqrt(count)
     spread = noise**2 / (2 * count) * np.eye(2 * count)
     measured = ComplexOrders(np.arange(1.0, count + 1.0), values, 0.0, spread)
-    none = np.zeros((count, 2, 2))
+    predicted_, none = dataclasses.replace(measured, covariance=0.0 * spread), np.zeros((count, 2, 2))
     size = PeakToPeak(**({"measured": 2.0, "predicted": 2.0} | dict.fromkeys(UNKNOWNS, 0.0) | sizes))
     return ChannelComparison(
-        "te", "dte", "m", "", measured, dataclasses.replace(measured, covariance=0.0 * spread), none, 0.0, 1.0,
-        size, count, varied=True,
+        "te", "dte", "m", "", measured, predicted_, none, 0.0, 1.0, size, count, varied=True,
     )  # fmt: skip
 
 
