@@ -15,12 +15,14 @@ from validation.measurements.record_comparison import (
     NOT_VARIED,
     SHARE,
     UNKNOWN,
+    ChannelComparison,
     PeakToPeak,
     Record,
     compare_record,
 )
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import Varied
+from validation.signals.complex_orders import ComplexOrders
 
 PAIRS = {
     "19/41": lambda: new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80),
@@ -195,6 +197,48 @@ def test_inputs_move_the_prediction_by_as_much_as_their_samples_do():
     found = compared(name, ("dte",), samples=samples).peak_to_peak
     moves = [one.peak_to_peak - given.peak_to_peak for one in samples.samples]
     assert found.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=5e-3)
+
+
+def test_a_phase_that_all_channels_share_is_no_uncertainty_of_the_inputs():
+    # The same motion a fifth of a mesh cycle later: a record would be shifted by as much.
+    given = motion_of("25/103")
+    later = dataclasses.replace(given, cycle=given.cycle.roll(time=102, roll_coords=False))
+    found = compared("25/103", samples=Varied(given, (later,)))
+    for one in found.channels:
+        assert np.sqrt(one.by_inputs.max()) < 1e-3 * one.scale
+
+
+def agreeing(noise=0.0, **sizes):
+    """A channel whose 20 orders agree; ``noise``: of all together over the motion."""
+    count = 20
+    values = np.exp(1j * np.arange(count)) / np.sqrt(count)
+    spread = noise**2 / (2 * count) * np.eye(2 * count)
+    measured = ComplexOrders(np.arange(1.0, count + 1.0), values, 0.0, spread)
+    predicted_, none = dataclasses.replace(measured, covariance=0.0 * spread), np.zeros((count, 2, 2))
+    size = PeakToPeak(**({"measured": 2.0, "predicted": 2.0} | dict.fromkeys(UNKNOWNS, 0.0) | sizes))
+    return ChannelComparison(
+        "te", "dte", "m", "", measured, predicted_, none, 0.0, 1.0, size, count, varied=True,
+    )  # fmt: skip
+
+
+UNKNOWNS = ("record", "inputs", "numerical")
+
+
+@pytest.mark.parametrize(("noise", "verdict"), [(0.24, Record.CONFIRMS), (0.26, Record.TOO_UNCERTAIN)])
+def test_noise_of_many_small_orders_counts_together(noise, verdict):
+    assert agreeing(noise).verdict is verdict
+
+
+@pytest.mark.parametrize(("sizes", "verdict"), [
+    ({"predicted": 1.82, "inputs": 0.9}, Record.CONFIRMS),  # 9 % off: agrees
+    ({"predicted": 1.7, "inputs": 0.2}, Record.CONFIRMS),  # 15 % off, known to 20 %
+    ({"predicted": 1.7, "inputs": 0.26}, Record.TOO_UNCERTAIN),  # known to 26 %
+    ({"predicted": 1.7, "inputs": 0.14}, Record.CONTRADICTS),  # known to 14 %
+    ({"predicted": 2.3, "record": 0.1, "inputs": 0.08, "numerical": 0.07}, Record.CONTRADICTS),  # 14.6 %
+    ({"predicted": 2.3, "record": 0.1, "inputs": 0.09, "numerical": 0.07}, Record.CONFIRMS),  # 15.2 %
+])  # fmt: skip
+def test_the_size_alone_turns_the_verdict(sizes, verdict):
+    assert agreeing(**sizes).verdict is verdict
 
 
 def test_three_uncertainties_add_as_squares():
