@@ -2,14 +2,17 @@
 
 import pickle
 import tomllib
+from pathlib import Path
 
 import pytest
 
 from lumped import ParameterError, State, load_gear_pair, preset_names
 from lumped.schema.files import preset_text
 from lumped.schema.pair import leaf_paths
+from tests import unlike_pairs
 from tests.unlike_pairs import UNLIKE, unlike_pair
 
+FOLDER = Path(unlike_pairs.__file__).parent
 FIELD = "bearings.gear.loa_stiffness"
 
 
@@ -61,7 +64,7 @@ def test_a_default_that_the_file_does_not_write_is_assumed():
 
 
 def test_defaults_inside_lists_and_chosen_sections_are_assumed_too(shaft_tables):
-    pair = unlike_pair("larger_gear_drives_contact_lost").with_(shafts=shaft_tables)
+    pair = load_gear_pair(FOLDER / "larger_gear_drives_contact_lost.toml").with_(shafts=shaft_tables)
     assert pair.assumed["shafts.pinion.bearings.1.loa_damping"] == 0.0
     assert pair.state("shafts.pinion.bearings.1.position") is State.KNOWN
     assert pair.assumed["mesh.stiffness.hertz"] == "weber_banaschek"

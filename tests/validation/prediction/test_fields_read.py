@@ -105,6 +105,7 @@ def test_a_field_that_is_not_read_changes_no_number(name, law):
     {"mesh.stiffness": [3e8, 3.3e8, 3.4e8, 3.1e8, 2.7e8, 2.6e8, 2.8e8, 3e8]},
     {"pinion.mass": 0.9, "pinion.inertia": 4e-4, "gear.mass": 2.1, "gear.inertia": 3e-3},
     {"gear.deviations": {"tolerance_class": 6}},
+    {"pinion.faults": [{"kind": "crack", "tooth": 2, "depth": 0.6}]},
     {"mesh.contact": "prescribed", "mesh.relief": "ignored"},
     {"lubricant.viscosity_law": {"iso_vg": 150, "temperature": 65}, "friction.law": "none"},
 ], ids=lambda changes: next(iter(changes)))  # fmt: skip
@@ -112,6 +113,18 @@ def test_values_that_take_the_place_of_others_leave_those_unread(changes):
     for name in ("rack_25_degrees_always_pushing", "larger_gear_drives_contact_lost"):
         pair = PAIRS[name].with_(changes)
         assert differences(pair) == []
+
+
+def test_a_gear_on_a_shaft_is_a_body_of_its_material():
+    """The rim turns against the bore, whatever the stiffness of the teeth is."""
+    known = {"pinion.mass": 4.1, "pinion.inertia": 6e-3, "gear.mass": 9.3, "gear.inertia": 5e-2}
+    model = {"model": "rectangular", "pair_stiffness": 3e8}
+    pair = PAIRS["contact_ratio_2_3_on_shafts"].with_(
+        known | {"mesh.stiffness": model, "friction.law": "none"}
+    )
+    assert {"gear.poisson_ratio", "pinion.bore"} <= fields_read(pair)
+    assert "gear.density" in unread(pair)
+    assert differences(pair) == []
 
 
 def test_a_law_of_the_user_reads_its_table_alone():
