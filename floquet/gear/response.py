@@ -57,6 +57,8 @@ if TYPE_CHECKING:
 
     from floquet.orbits.orbit import Orbit
 
+#: Difference of speed and size within which two ends of motions are one; so many neighbours by speed.
+_SAME_END, _NEAR = 1e-7, 8
 #: Part of the range that counts as a gap between stable motions.
 _GAP = 5e-4
 
@@ -203,7 +205,13 @@ class ResponseBranches:
                     n = last_run.orbit.n if last_run.orbit else 0
                     load = last_run.largest_load
                     result.append(_jump(self._cycle * end.rate, rising, end.size, load, n, end.after))
-        return tuple(sorted(result, key=lambda jump: jump.speed_rpm))
+        result.sort(key=lambda jump: jump.speed_rpm)
+        # A branch that was cut by the time may have been met again from another start.
+        return tuple(
+            one
+            for j, one in enumerate(result)
+            if not any(_same_end(one, other) for other in result[max(j - _NEAR, 0) : j])
+        )
 
     @cached_property
     def attractors(self) -> tuple[GearAttractor, ...]:
@@ -366,6 +374,14 @@ def _jump(rpm: float, rising: bool, size: FloatArray, load: float, n: int, after
     before = float(size[0]), float(size[2] - size[1]), load, n
     behind = after.rms, peak_to_peak(after), after.largest_load, after.kind
     return Jump(rpm, rising, *before, *behind, after.orbit.n if after.orbit else 0)
+
+
+def _same_end(one: Jump, other: Jump) -> bool:
+    """Whether two losses of stability are one."""
+    pairs = (one.speed_rpm, other.speed_rpm), (one.dte_rms, other.dte_rms)
+    return (one.rising, one.n) == (other.rising, other.n) and all(
+        abs(a - b) <= _SAME_END * a for a, b in pairs
+    )
 
 
 def within(

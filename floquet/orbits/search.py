@@ -319,9 +319,9 @@ class _Search:
             for j, window in enumerate(pending):
                 self.slot = self.deadline.share(max(_WINDOW, 1.0 / (len(pending) - j)))
                 self.following = self.slot.share(_FOLLOWING)
-                for index, trace in [*self._cut.items()]:
+                for trace in [*self._cut.values()]:
                     if self._touches(trace, window):
-                        self._resume(index, trace)
+                        self._resume(trace)
                 whole = self.from_linear(window)
                 self.look_behind(folds=True)
                 touched = any(self._touches(trace, window) for trace in self._cut.values())
@@ -338,7 +338,7 @@ class _Search:
             )
             self.slot = self.deadline.share(_WINDOW)
             self.following = self.slot.share(_FOLLOWING)
-            self._resume(index, self._cut[index])
+            self._resume(self._cut[index])
         self.slot = self.deadline
         self.look_behind()
 
@@ -358,7 +358,8 @@ class _Search:
             rates = np.array(sorted(rates, key=self._away))
         found = False
         for j, rate in enumerate(map(float, rates)):
-            if self.following.passed:
+            # A branch that was cut may lead to where the next motion starts.
+            if self.following.passed or any(self._touches(trace, window) for trace in self._cut.values()):
                 return False
             state, parameter = self.start(1.0 / rate)
             found |= self.follow_near(state, 1.0 / rate, 1, parameter)
@@ -468,14 +469,22 @@ class _Search:
 
     # Single branches.
 
-    def known(self, orbit: Orbit) -> bool:
-        """Whether a motion lies on a branch that was found."""
+    def known(self, orbit: Orbit, besides: Branch | None = None) -> bool:
+        """Whether a motion lies on a branch that was found, besides one."""
         return any(
             same_motion(orbit, other, 1e-5)
             for branch in self.branches
-            if branch.n == orbit.n
+            if branch.n == orbit.n and branch is not besides
             for other in branch.at(orbit.period)
         )
+
+    def twice(self, orbits: Sequence[Orbit], besides: Branch | None = None) -> bool:
+        """Whether the motions of a path are on other branches.
+
+        Near a fold `known` may miss a motion, but not at all places of a branch.
+        """
+        inner = [orbits[part * len(orbits) // 4] for part in (1, 2, 3)]
+        return sum(self.known(orbit, besides) for orbit in inner) > 1
 
     def follow_near(self, start: FloatArray, period: float, n: int, parameter: float) -> bool:
         """Whether there is a motion near a start; its branch is followed unless it has fewer cycles."""
@@ -516,13 +525,9 @@ class _Search:
         return replace(self.limits, fastest=min(self.limits.fastest, step * self.reported[1]))
 
     def add(self, trace: _Trace) -> None:
-        """Keep a path as a branch, unless it turns out to be one that is known.
-
-        Near a fold `known` may miss a motion, but not at all places of a branch.
-        """
+        """Keep a path as a branch, unless it turns out to be one that is known."""
         orbits = trace.path.orbits
-        inner = [orbits[part * len(orbits) // 4] for part in (1, 2, 3)]
-        if sum(self.known(orbit) for orbit in inner) > 1:
+        if self.twice(orbits):
             return
         trace.left = list(range(len(orbits) - 1))
         self.branches.append(self._refined(trace))
@@ -533,15 +538,21 @@ class _Search:
         trace.refine(self._away, self.slot.share(_FOLLOWING))
         return trace.branch()
 
-    def _resume(self, index: int, trace: _Trace) -> None:
-        """Go on with a branch for which there was no time."""
-        try:
-            trace.extend(self.following)
-        except NumericalError:
-            trace.up.end = "lost"
-        self.branches[index] = self._refined(trace)
-        if not trace.unfinished:
-            del self._cut[index]
+    def _resume(self, trace: _Trace) -> None:
+        """Go on with a branch for which there was no time, unless another one has come to be the same."""
+        index = next(i for i, other in self._cut.items() if other is trace)
+        if not self.twice(trace.path.orbits, self.branches[index]):
+            try:
+                trace.extend(self.following)
+            except NumericalError:
+                trace.up.end = "lost"
+            self.branches[index] = self._refined(trace)
+            if trace.unfinished:
+                return
+        del self._cut[index]
+        if self.twice(trace.path.orbits, self.branches[index]):
+            del self.branches[index]
+            self._cut = {i - (i > index): other for i, other in self._cut.items()}
 
     def doublings(self) -> None:
         """Follow the branches that leave period doublings, as long as their cycles are wanted."""

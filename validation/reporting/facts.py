@@ -150,7 +150,7 @@ def _jumps(results: Results) -> Fact:
         roaming = " and ".join(sorted({str(one.kind) for one in search.attractors}))
         claim = f"{' and '.join(one for one in (jumps, roaming) if one)} found"
     elif not search.windows:
-        claim = "the linear motion keeps contact, so the pair cannot jump"
+        claim = "contact is kept, so no jump was looked for"
     scope = _over(results, searched, motion)
     return Fact("jumps", claim, float(len(inside)), "1", scope, "search_jumps")
 

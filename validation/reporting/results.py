@@ -432,7 +432,7 @@ class Results:
     def second_words(self) -> str:
         """Whether both programs agree, in a sentence; by the numbers of page 1 that differ most."""
         words = self._second_words
-        return words if self.teeth is None else f"With like teeth: {words[0].lower()}{words[1:]}"
+        return words if self.teeth is None else f"With like teeth, {words[0].lower()}{words[1:]}"
 
     @property
     def _second_words(self) -> str:

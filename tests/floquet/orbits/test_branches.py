@@ -6,10 +6,11 @@ from scipy.linalg import expm
 
 from floquet.orbits.bifurcations import doubling_direction
 from floquet.orbits.branch import Continuation, Family, Limits
-from floquet.orbits.long_run import long_run, lyapunov_exponent
+from floquet.orbits.deadline import Deadline, OutOfTimeError
+from floquet.orbits.long_run import _run, long_run, lyapunov_exponent
 from floquet.orbits.orbit import find_orbit
 from floquet.orbits.response import Member
-from floquet.orbits.search import find_response
+from floquet.orbits.search import _Trace, find_response
 from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 
@@ -94,3 +95,74 @@ def test_a_long_run_tells_chaos_from_a_periodic_motion():
     assert run.kind == "periodic"
     assert run.orbit is not None
     assert run.orbit.start == pytest.approx(orbit.start, abs=1e-8)
+
+
+class Looks(Deadline):
+    """A deadline that has passed after so many looks at it."""
+
+    def __init__(self, looks):
+        super().__init__(1e9)
+        self.looks = looks
+
+    @property
+    def passed(self):
+        self.looks -= 1
+        return self.looks < 0
+
+    def share(self, part):
+        return Looks(self.looks)
+
+
+def away(rate):
+    return abs(np.log(rate / 0.3))
+
+
+@pytest.mark.parametrize("rate", [0.11, 0.3, 0.9])
+def test_a_branch_followed_in_parts_is_the_branch_followed_at_once(rate):
+    """The same points, folds at the same speeds and in their places, however often the time ends."""
+    system = meissner(e=0.3, damping=0.3)
+    along = Continuation(Family(lambda T: system, True), 1, LIMITS)
+    orbit = find_orbit(system, np.array([1.0, 0.0]), 1.0 / rate)
+
+    def trace(looks):
+        limit = Looks(looks)
+        up, down = (along.follow(orbit, way, deadline=limit.share(0.5)) for way in (1.0, -1.0))
+        result = _Trace(along, up, down, down.end, [], [])
+        result.left = list(range(len(result.path.orbits) - 1))
+        result.refine(away, limit)
+        return result
+
+    whole, parts, turns = trace(10**9), trace(7), 0
+    while parts.unfinished:
+        parts.extend(Looks(9))
+        parts.refine(away, Looks(1))
+        turns += 1
+    assert turns > 3
+    one, two = whole.branch(), parts.branch()
+    assert parts.ends == whole.ends == ("range", "range")
+    assert two.rates == pytest.approx(one.rates, rel=1e-9)
+    folds = [b for b in one.bifurcations if b.kind == "fold"]
+    assert len(folds) == 2
+    assert [b.kind for b in two.bifurcations] == [b.kind for b in one.bifurcations]
+    assert [b.place for b in two.bifurcations] == pytest.approx([b.place for b in one.bifurcations], rel=1e-6)
+
+
+def test_a_long_run_in_parts_is_the_run_at_once():
+    """A deadline that does not pass changes nothing but rounding; one that has passed says so."""
+    system = meissner(e=0.6, damping=0.1)
+    T = 1.0 / 0.29
+    one = long_run(system, np.array([1.3, 0.2]), T, settle=100, observe=100)
+    two = long_run(system, np.array([1.3, 0.2]), T, settle=100, observe=100, deadline=Deadline(1e9))
+    assert (one.kind, one.rms) == (two.kind, pytest.approx(two.rms, rel=1e-9))
+    with pytest.raises(OutOfTimeError):
+        long_run(system, np.array([1.3, 0.2]), T, deadline=Deadline(0.0))
+
+
+def test_parts_of_a_run_join_to_the_run():
+    system = meissner(e=0.3, damping=0.1)
+    start, T = np.array([1.5, 0.2]), 2.0  # it decays: the extremes are of the first part
+    whole, parts = system.run(start, T, 100), _run(system, start, T, 100, 0.0, Deadline(1e9))
+    assert 0.0 < whole.least_load < 0.9 * system.run(whole.end, T, 10).least_load
+    assert parts.end == pytest.approx(whole.end, rel=1e-9)
+    for name in ("mean", "mean_square", "least", "most", "largest_load", "least_load"):
+        assert getattr(parts, name) == pytest.approx(getattr(whole, name), rel=1e-8, abs=1e-12), name

@@ -29,8 +29,9 @@ def branches():
 def test_the_command_prints_the_jump_to_the_beats(branches, monkeypatch):
     """On running up the pair jumps at the fold to beats; speeds without a stable motion are named."""
 
-    def known(pair, speeds, periods, *, seeds, back_side, progress):
+    def known(pair, speeds, periods, *, seeds, back_side, seconds, progress):
         assert pair == branches.pair
+        assert seconds is None
         assert (speeds, [*periods], seeds, back_side) == (None, [1], 12, False)
         return branches
 
@@ -94,3 +95,12 @@ def test_an_axis_that_the_pair_does_not_have_is_refused():
         ("torque=1", "NAME"),
     ):
         assert text in refused("response", *MAPPED, "--map", axis)
+
+
+def test_the_command_says_what_a_budget_left_open():
+    """Too little time for one branch: no claim that there are no jumps."""
+    done = run("response", *PAIR, "--periods", 1, "--seeds", 0, "--budget", 0.001)
+    assert done.exit_code == 0, done.output
+    assert "the time left open: 12,000 to 14,000 rpm" in done.stdout
+    assert "one stable motion leads to the next" not in done.stdout
+    assert refused("response", *PAIR, "--budget", 0)

@@ -30,7 +30,7 @@ KINDS: dict[str, Callable[[], GearPair]] = {
     "class": lambda: new_pair("21/34", 3.0, 25, 2000, 150, {
         "pinion.deviations": {"tolerance_class": 5}, "gear.deviations": {"tolerance_class": 5}}),
     "fault": lambda: new_pair("20/27", 2.0, 15, 1200, 40, {
-        "pinion.faults": [{"kind": "pitch_error", "tooth": 3, "amount": 12}]}),
+        "pinion.faults": [{"kind": "crack", "tooth": 3, "depth": 1.2, "angle": 60}]}),
     "shafts": lambda: new_pair("19/41", 2.5, 20, 1450, 80, {
         "shafts": {"damping_ratio": 0.03, "pinion": _shaft(30, 2e8), "gear": _shaft(38, 3e8)}}),
     "plastic": lambda: new_pair("17/40", 0.5, 5, 3000, 0.02, {
