@@ -311,9 +311,6 @@ class _Search:
         if self.agenda is not None and self.agenda.above > self.reported[1]:
             pending.append((self.reported[1], self.agenda.above))
         count = len(pending)
-        if self.agenda is None:
-            self.from_linear(pending[0], lambda done: report(0.4 * done))
-            return
         while pending and not self.deadline.passed:
             again = list[Window]()
             for j, window in enumerate(pending):
@@ -322,7 +319,7 @@ class _Search:
                 for trace in [*self._cut.values()]:
                     if self._touches(trace, window):
                         self._resume(trace)
-                whole = self.from_linear(window)
+                whole = self.from_linear(window, partial(_tell, report, 0.0, 0.4 / count))
                 self.look_behind(folds=True)
                 touched = any(self._touches(trace, window) for trace in self._cut.values())
                 again += [] if whole and not touched else [window]

@@ -122,9 +122,7 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
     if found.open:
         lines = [] if rows else ["no jumps were found in the time"]
         ranges = ", ".join(f"{number(low, 5)} to {number(high, 5)} rpm" for low, high in found.open)
-        lines.append(
-            f"the processor time left open: {ranges}; a larger --budget or a smaller --range goes on"
-        )
+        lines.append(f"the time left open: {ranges}; go on with a larger --budget or a smaller --range")
     if found.contact_kept:
         runs = found.response.runs
         looked = f"{runs} runs from far starts found no other" if runs else "no others were looked for"

@@ -101,6 +101,6 @@ def test_the_command_says_what_a_budget_left_open():
     """Too little time for one branch: no claim that there are no jumps."""
     done = run("response", *PAIR, "--periods", 1, "--seeds", 0, "--budget", 0.001)
     assert done.exit_code == 0, done.output
-    assert "the time left open: 12,000 to 14,000 rpm" in done.stdout
+    assert "the time left open: 12000 to 14000 rpm" in done.stdout
     assert "one stable motion leads to the next" not in done.stdout
     assert refused("response", *PAIR, "--budget", 0)
