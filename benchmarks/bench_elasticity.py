@@ -20,7 +20,7 @@ from unittest import mock
 import numpy as np
 
 from lumped import GearPair, plane_compliance
-from lumped.blas import one_thread
+from lumped.elasticity.blas import one_thread
 from lumped.elasticity.gear import FINE, flank_compliance
 from lumped.stiffness import finite_elements
 from lumped.stiffness.finite_elements import elastic_teeth

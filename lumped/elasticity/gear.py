@@ -11,8 +11,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from lumped.blas import one_thread
 from lumped.cache import cached
+from lumped.elasticity.blas import one_thread
 from lumped.elasticity.ring import Support, compliances
 from lumped.elasticity.sector import Sector, sector, stations
 from lumped.errors import NumericalError

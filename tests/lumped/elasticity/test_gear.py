@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lumped import NumericalError, blas
+from lumped import NumericalError
 from lumped.cache import cached
+from lumped.elasticity import blas
 from lumped.elasticity import gear as module
 from lumped.elasticity.elements import assembled, plane_law
 from lumped.elasticity.gear import COARSE, FINE, PlaneGear, flank_compliance
