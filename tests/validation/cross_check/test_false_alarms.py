@@ -104,10 +104,11 @@ def test_the_variant_of_a_pair_with_a_change_of_regime_is_not_refused():
 
 
 def own(teeth, module, width, speed, torque, *more):
-    """A pair as ``spurcheck init --teeth`` makes it."""
+    """A pair as ``spurcheck init --teeth`` makes it, on equal springs, without friction at C."""
     given = {
         "teeth": teeth, "mesh.stiffness.model": "rectangular", "basic_rack.module": module,
         "gears.face_width": width, "operating.pinion_speed": speed, "operating.pinion_torque": torque,
+        "bearings.stiffness": 1e8, "friction.law": "xu_kahraman",
     }  # fmt: skip
     pair = lumped.load_gear_pair(tomllib.loads(new_pair_text("own", given)))
     return pair.with_({key: value for one in more for key, value in one.items()})
