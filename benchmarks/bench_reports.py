@@ -88,7 +88,7 @@ def timed(pair: GearPair, *, quick: bool) -> str:
     damping = pair.mesh.damping_ratio
     return (
         f"{pair.name:9} {pair.pinion.teeth}/{pair.gear.teeth} damping {damping:.3f}: {used:6.1f} s, "
-        f"{used / max(one, 1e-3):6.0f} predictions; jumps {search.seconds:5.1f} s, {len(search.windows)} windows"
+        f"{used / max(one, 1e-3):5.0f} predictions; jumps {search.seconds:4.1f} s, windows {len(search.windows)}"
         f"{left}; {written.first.headline[:70]}"
     )
 
