@@ -18,7 +18,7 @@ from floquet.gear.response import Jump, ResponseBranches, compile_kernels, membe
 from floquet.orbits.deadline import Deadline
 from floquet.orbits.orbit import Orbit, state_scale
 from floquet.orbits.response import Member, Response
-from floquet.orbits.search import Agenda, find_response
+from floquet.orbits.search import Agenda, find_response, merged
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from lumped.model.periodic_system import Supports, on_springs
@@ -52,8 +52,8 @@ class JumpSearch:
     speeds_rpm : slowest and fastest speed of interest [rpm]
     windows : speeds that were searched, (low, high) [rpm]: those asked for, and those to which branches led
     branches : for each window with motions what was found in it, by speed
-    open : windows in which the processor time did not suffice [rpm]: what was found there is right, but there
-        may be more
+    open : speeds at which the processor time did not suffice, or to which what was not followed may lead
+        [rpm]: what was found there is right, but there may be more
     seconds : processor time that was used [s]
     """
 
@@ -133,16 +133,7 @@ def contact_loss_windows(sweep: xr.Dataset, speeds: Range) -> tuple[Range, ...]:
             # Where both lines meet.
             place = (y[j + 1] - y[j] + before * x[j] - behind * x[j + 1]) / (before - behind)
             lost[j] = x[j] < place < x[j + 1] and y[j] + before * (place - x[j]) <= 0.0
-    result = list[Range]()
-    for j in map(int, np.flatnonzero(lost)):
-        one, two = max(float(x[j]), low), min(float(x[j + 1]), high)
-        if one >= two:
-            continue
-        if result and one <= result[-1][1]:
-            result[-1] = result[-1][0], two
-        else:
-            result.append((one, two))
-    return tuple(result)
+    return merged([(float(x[j]), float(x[j + 1])) for j in map(int, np.flatnonzero(lost))], (low, high))
 
 
 @warned_once()
@@ -207,7 +198,7 @@ def search_jumps(
         periods=wanted,
         seeds=seeds,
         progress=progress,
-        agenda=Agenda((low / cycle, high / cycle), inside, above / cycle, here / cycle),
+        agenda=Agenda((low / cycle, high / cycle), inside, above / cycle, _REACH, here / cycle),
         deadline=deadline,
     )
     used, range_rpm = deadline.used, (low, high)

@@ -52,12 +52,14 @@ class Agenda:
     reported : slowest and fastest 1/T whose jumps are of interest [1/s]
     windows : ranges of 1/T in which motions may be another than the linear one [1/s]
     above : 1/T up to which large motions start that reach down into the range [1/s]
+    reach : part of its speed to which a branch that is not followed may lead down
     first : 1/T of most interest [1/s]
     """
 
     reported: Window
     windows: tuple[Window, ...]
     above: float
+    reach: float
     first: float
 
     def away(self, rate: float) -> float:
@@ -174,6 +176,20 @@ class _Trace:
         return Branch(self.along.family, self.along.n, orbits, tuple(self.found), self.ends)
 
 
+def merged(parts: Iterable[Window], inside: Window) -> tuple[Window, ...]:
+    """Ranges within one range, in order and without overlap."""
+    result = list[Window]()
+    for one, two in sorted(parts):
+        start, end = max(one, inside[0]), min(two, inside[1])
+        if start >= end:
+            continue
+        if result and start <= result[-1][1]:
+            result[-1] = result[-1][0], max(end, result[-1][1])
+        else:
+            result.append((start, end))
+    return tuple(result)
+
+
 def _tell(report: Callable[[float], None], before: float, share: float, done: float) -> None:
     """Report the finished fraction of a part."""
     report(before + share * done)
@@ -230,34 +246,27 @@ class _Search:
             for far, orbits in groupby(branch.orbits, key=lambda o: branch.n > 1 or not self._calm(o)):
                 rates = [1.0 / orbit.period for orbit in orbits]
                 parts += [(min(rates) * (1.0 - _SAME), max(rates) * (1.0 + _SAME))] if far else []
-        low, high = self.reported
-        result = list[Window]()
-        for one, two in sorted(parts):
-            start, end = max(one, low), min(two, high)
-            if start >= end:
-                continue
-            if result and start <= result[-1][1]:
-                result[-1] = result[-1][0], max(end, result[-1][1])
-            else:
-                result.append((start, end))
-        return tuple(result)
+        return merged(parts, self.reported)
 
     def _open(self, windows: tuple[Window, ...]) -> tuple[Window, ...]:
-        """Windows in which something is left to do."""
+        """Speeds at which something is left to do, and those to which what is left may lead."""
         if not self.deadline.limited:
             return ()
-        low, high = self.reported
-        left = [*self._left, *(b.orbit.period**-1 for b, _ in self._unknown_behind())]
-        left += [1.0 / b.orbit.period for _, b in self._undoubled()]
-        late = [*self._late]
+        high = self.reported[1]
+        behind = [1.0 / b.orbit.period for b, _ in self._unknown_behind()]
+        late = [*self._late, *((rate, rate) for rate in self._left)]
+        late += [(1.0 / b.orbit.period, 1.0 / b.orbit.period) for _, b in self._undoubled()]
         for trace in self._cut.values():
             rates = [1.0 / o.period for o in trace.path.orbits]
             late.append((min(rates), max(rates)))
-        # What comes from above the range may lead anywhere.
-        if any(one >= high for one, _ in late):
-            return ((low, high),)
-        late += [(rate, rate) for rate in left]
-        return tuple(w for w in windows if any(one <= w[1] and two >= w[0] for one, two in late))
+        reach = self.agenda.reach if self.agenda else 0.0
+        parts = [(rate * (1.0 - _SAME), rate * (1.0 + _SAME)) for rate in behind]
+        for one, two in late:
+            # Up to the next window, in which motions of their own start.
+            above = min((w[0] for w in windows if w[0] > two), default=high)
+            parts.append((min(one, reach * two), max(two, above)))
+        touched = [w for w in windows if any(one <= w[1] and two >= w[0] for one, two in parts)]
+        return merged([*parts, *touched], self.reported)
 
     def _calm(self, orbit: Orbit) -> bool:
         return self.limits.calm is not None and self.limits.calm(orbit)

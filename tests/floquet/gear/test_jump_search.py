@@ -118,15 +118,19 @@ class Ticks:
         return self.now
 
 
-@pytest.mark.parametrize("seconds", [3.0, 50.0, 110.0, 170.0, 230.0, 320.0, 350.0, 380.0])
-def test_what_is_found_in_a_time_is_right_and_the_rest_is_named(shifted, everywhere, monkeypatch, seconds):
+@pytest.mark.parametrize("window", [(20_000.0, 47_000.0), (26_000.0, 28_000.0)])
+@pytest.mark.parametrize("seconds", [3.0, 50.0, 110.0, 170.0, 230.0, 320.0, 500.0])
+def test_what_is_found_in_a_time_is_right_and_the_rest_is_named(
+    shifted, everywhere, monkeypatch, seconds, window
+):
     """Whenever the time ends: each jump is one of the whole search, each that is missing lies in ``open``.
 
-    In 380 s of which each look takes one the branch is cut several times, and all is found in the end.
+    Also where its branch has not come out of a window yet. In 500 s, of which each look takes one, the branch
+    is cut several times, and all is found in the end.
     """
     monkeypatch.setattr(clock, "time", Ticks())
     found = floquet.search_jumps(
-        shifted, [(20_000.0, 47_000.0)], seconds=seconds, seeds=0, speeds=LARGE_SHIFTS, first=24_000.0
+        shifted, [window], seconds=seconds, seeds=0, speeds=LARGE_SHIFTS, first=24_000.0
     )
     true, own = speeds_of(everywhere), speeds_of(found.jumps)
     assert len(set(own)) == len(own)
@@ -134,7 +138,7 @@ def test_what_is_found_in_a_time_is_right_and_the_rest_is_named(shifted, everywh
     for one in true:
         known = any(abs(one - other) < 0.05 for other in own)
         assert known or any(low <= one <= high for low, high in found.open)
-    assert (found.open == ()) == (seconds > 370.0)
+    assert found.open if seconds < 300.0 else seconds < 400.0 or not found.open
 
 
 def test_an_end_behind_which_no_run_had_time_leaves_its_window_open(shifted, monkeypatch):
