@@ -31,7 +31,7 @@ _UNITS = {
     "pressure_angle": "°", "density": "kg/m³", "youngs_modulus": "GPa", "roughness": "µm",
     "sharpness": "1/mm",
     "loa_stiffness": "N/m", "oloa_stiffness": "N/m", "viscosity": "mPa s",
-    "pinion_speed": "rpm", "pinion_torque": "N m",
+    "pinion_speed": "rpm", "pinion_torque": "N m", "size": "mm", "contact_angle": "°",
 }  # fmt: skip
 #: Row of the error budget -> its name.
 _ERRORS = {
@@ -406,6 +406,9 @@ def test_the_tables_of_inputs(written):
     written_as = dict(
         zip(map(str, spreads["input"].to_numpy()), spreads.attrs["written"].split("; "), strict=True)
     )
+    for gear in ("pinion", "gear"):  # both directions of a bearing are one input
+        for way in ("loa", "oloa"):
+            written_as[f"bearings.{gear}.{way}_damping_ratio"] = written_as[f"bearings.{gear}.damping_ratio"]
     table = written.table("parameters")
     for one in table:
         section, _, name = one["field"].rpartition(".")
