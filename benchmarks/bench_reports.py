@@ -86,11 +86,10 @@ def timed(pair: GearPair, *, quick: bool) -> str:
     search = kept[0].jump_search
     left = f", open {sum(b - a for a, b in search.open):.0f} rpm" if search.open else ""
     damping = pair.mesh.damping_ratio
-    return (
-        f"{pair.name:9} {pair.pinion.teeth}/{pair.gear.teeth} damping {damping:.3f}: {used:6.1f} s, "
-        f"{used / max(one, 1e-3):5.0f} predictions; jumps {search.seconds:4.1f} s, windows {len(search.windows)}"
-        f"{left}; {written.first.headline[:70]}"
-    )
+    name = f"{pair.name:9} {pair.pinion.teeth}/{pair.gear.teeth} damping {damping:.3f}"
+    jumps = f"jumps {search.seconds:4.1f} s in {len(search.windows)} windows{left}"
+    whole = f"{used:6.1f} s, {used / max(one, 1e-3):5.0f} predictions"
+    return f"{name}: {whole}; {jumps}; {written.first.headline[:70]}"
 
 
 def main(count: int, seed: int, *, quick: bool, light: bool) -> None:
