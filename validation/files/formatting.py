@@ -30,7 +30,8 @@ def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
         return "0"
     if 1e-3 <= abs(value) < 1e5:
         # Digits before the point are never rounded away: 16663 stays 16660 at four digits, not 1.666e+04.
-        places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+        rounded = abs(float(f"{value:.{digits}g}"))  # 0.99999 to two digits is 1.0
+        places = max(digits - 1 - math.floor(math.log10(rounded)), 0)
         text = f"{float(f'{value:.{digits}g}'):.{places}f}"
         text = text.rstrip("0").rstrip(".") if "." in text and not measured else text
         return text.replace("-", _MINUS)

@@ -146,7 +146,7 @@ def asked(monkeypatch):
 
     def write(pair, out, **options):
         told.update(options, pair=pair, out=out)
-        first = PageOne("a pair", VERDICT.COMPARE, "It compares.", "", (), (), (), "", "", ())
+        first = PageOne("a pair", VERDICT.UNCERTAIN, "It compares.", "", (), (), (), "", "", (), ())
         return Report(out, first, told["failed"], told["findings"], 1.0, told["comparison"])
 
     monkeypatch.setattr("validation.reporting.report", write)

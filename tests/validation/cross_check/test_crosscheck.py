@@ -151,7 +151,8 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
 )
 def test_the_effect_that_is_named_takes_the_difference_with_it(given, quantity, words, left):
     settings = {"cycles": 6, "samples_per_cycle": 128, "fidelities": ("exact",), "variant": False}
-    found = crosscheck(new_pair(*given, mesh__stiffness__model="energy"), **settings)
+    of_springs = {"mesh.stiffness.model": "energy", "law": "xu_kahraman", "bearings.stiffness": 1e8}
+    found = crosscheck(new_pair(*given, of_springs), **settings)
     worst = found.worst("exact")
     assert (found.verdict, worst.quantity) == (Verdict.DIFFERS, quantity)
     told = cause_of_difference(found).replace("\u00a0", " ")

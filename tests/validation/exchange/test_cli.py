@@ -137,7 +137,7 @@ def test_a_stage_becomes_a_parameter_file_with_units_and_marks(xml, save, tmp_pa
     lines = {line.partition(" = ")[0]: line for line in text.partition("[sources]")[0].splitlines()}
     assert lines["centre_distance"].endswith("# mm")
     assert lines["roughness"].endswith("# um, assumed: ground flanks")
-    assert "# assumed: law III" in lines["law"]
+    assert "# assumed: law ISO/TR 14179-2" in lines["law"]
     assert text.startswith("# - the file does not say")
 
 

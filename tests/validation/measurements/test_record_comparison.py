@@ -26,7 +26,7 @@ from validation.signals.complex_orders import ComplexOrders
 
 PAIRS = {
     "19/41": lambda: new_pair("19/41", module=2.5, face_width=20, speed=1450, torque=80),
-    "31/57 contact lost": lambda: new_pair("31/57", module=3, face_width=25, speed=10500, torque=120).with_(
+    "31/57 contact lost": lambda: new_pair("31/57", module=3, face_width=25, speed=12000, torque=150).with_(
         {"mesh.damping_ratio": 0.02, "pinion.tip_relief": None, "gear.tip_relief": None}
     ),
     "fzg_c": lambda: lumped.load_gear_pair("fzg_c"),

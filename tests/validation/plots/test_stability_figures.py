@@ -100,7 +100,7 @@ def test_what_is_undecided_is_dotted_and_not_hatched() -> None:
     }
     assert (spans["..."].min(), spans["..."].max()) == (1500.0, 2500.0)
     assert spans["////"].min() == pytest.approx(2500.0, abs=1.0)
-    assert "dotted" in ax.figure.axes[1].get_ylabel()
+    assert "dotted: undecided" in ax.figure.get_supxlabel()
     line = stability_figure(chart.isel(damping_ratio=0)).axes[0]
     assert line.get_lines()[1].get_xdata().tolist() == [2e3]
 
@@ -109,7 +109,7 @@ def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.01, 0.05, 0.0])
     values = np.array([[0.3, 0.4, 0.35], [0.1, 0.15, 0.12], [0.2, 0.28, 0.25]])
     ax = stability_figure(over_speed_and_damping(x, y, values)).axes[0]
-    assert ax.figure.axes[1].get_ylabel().endswith("\nerror bounds: partly proven")
+    assert ax.figure.get_supxlabel() == "hatched: unstable; error bounds: partly proven"
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
     rows = [[0.12, 0.25, 0.35], [0.1, 0.2, 0.3], [0.15, 0.28, 0.4]]
     assert np.allclose(mesh.get_array(), np.log(rows))  # growth of one period, y upwards

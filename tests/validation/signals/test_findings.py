@@ -180,7 +180,7 @@ def test_page_1_judges_the_teeth_as_given(results) -> None:
     assert first.numbers[0].note == f"over {found.period} mesh cycles; {beside}"
     assert first.numbers[2].note == f"like teeth {like['tooth_load']:.3g}"
     assert not any(math.isfinite(one.second) for one in first.numbers)  # the second program has like teeth
-    assert first.numbers[5].note.endswith(", with like teeth")
+    assert first.numbers[6].note.endswith(", with like teeth")
 
 
 def results_table(results):
@@ -193,7 +193,7 @@ def test_what_a_class_leaves_open_is_told() -> None:
     spread = chapter.write(results).blocks[4].text
     assert "is 1 to 9 µm and the largest sideband 2 to 3 %" in spread
     first = page_one(results).numbers
-    assert first[0].range == "1.0 to 9.0\u00a0µm"
+    assert first[0].range.startswith("1.0 to 9.0\u00a0µm (")
     assert not any(one.range for one in first[1:])  # samples of the other numbers are of like teeth
 
 
