@@ -144,13 +144,13 @@ def _jumps(results: Results) -> Fact:
         return Fact("jumps", claim, math.nan, "1", scope, "search_jumps")
     low, high = searched
     inside = [one for one in search.jumps if low <= one.speed_rpm <= high]
+    jumps = f"{len(inside)} jump{'' if len(inside) == 1 else 's'}" if inside else ""
+    roaming = " and ".join(sorted({one.kind for one in results.roaming if low <= one.speed_rpm <= high}))
     claim = "no jump, beats or chaos was found"
-    if inside or search.attractors:
-        jumps = f"{len(inside)} jump{'' if len(inside) == 1 else 's'}" if inside else ""
-        roaming = " and ".join(sorted({str(one.kind) for one in search.attractors}))
+    if inside or roaming:
         claim = f"{' and '.join(one for one in (jumps, roaming) if one)} found"
     elif not search.windows:
-        claim = "contact is kept, so no jump was looked for"
+        claim = "contact is kept, and no jump was found"
     scope = _over(results, searched, motion)
     return Fact("jumps", claim, float(len(inside)), "1", scope, "search_jumps")
 

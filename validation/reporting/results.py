@@ -494,6 +494,21 @@ class Results:
         self.stage("error budget")
         return error_budget(self)
 
+    @cached_property
+    def roaming(self) -> tuple[Hazard, ...]:
+        """Beats and chaos: what runs settle to, and what a pair does where a motion loses its stability."""
+        own, search = self.operating_rpm, self.jump_search
+        settled = [
+            Hazard(min(max(own, one.low_rpm), one.high_rpm), str(one.kind), "possible")
+            for one in search.attractors
+        ]
+        behind = [
+            Hazard(one.speed_rpm, str(one.after), "possible")
+            for one in search.losses
+            if one.after in ("beats", "chaos")
+        ]
+        return (*settled, *behind)
+
     @property
     def nearest_hazard(self) -> Hazard | None:
         """The unstable speed, jump, beats or chaos nearest to the operating speed."""
@@ -505,11 +520,7 @@ class Results:
             Hazard(jump.speed_rpm, "jump", f"running {'up' if jump.rising else 'down'}")
             for jump in self.jump_search.jumps
         ]
-        found += [
-            Hazard(min(max(own, one.low_rpm), one.high_rpm), str(one.kind), "possible")
-            for one in self.jump_search.attractors
-        ]
-        return min(found, key=lambda one: abs(one.speed_rpm - own), default=None)
+        return min([*found, *self.roaming], key=lambda one: abs(one.speed_rpm - own), default=None)
 
 
 #: Kind of a hazard -> the hazard with its article.

@@ -12,7 +12,7 @@ from lumped.errors import ParameterError
 from lumped.model.equations import structure
 from multibody.contact.machine import bearing_constants
 from tests.unlike_pairs import unlike_pair
-from validation.exchange.new_pair_file import new_pair
+from validation.exchange.new_pair_file import new_pair, reasons
 
 #: Palmgren's approach of both rings [mm] at one steel element: 0.00044 (Q^2/d)^(1/3) at a ball and
 #: 0.000077 Q^0.9/l^0.8 at a roller (load Q in N, sizes in mm; NSK catalogue E728g, section 5).

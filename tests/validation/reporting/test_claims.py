@@ -81,7 +81,7 @@ def test_where_no_jump_was_looked_for_the_linear_motion_keeps_contact(results):
     """At speeds of its own, between those of the report."""
     search, claim = results.jump_search, facts(results)["jumps"]
     if search.windows:
-        assert claim.claim != "contact is kept, so no jump was looked for"
+        assert claim.claim != "contact is kept, and no jump was found"
         return
     pair, static = without_shafts(results.pair), results.like.static_force
     for rpm in np.geomspace(*claim.scope.speeds_rpm, 23):

@@ -140,7 +140,7 @@ def test_the_verdict(written):
         for text, name in zip(re.fullmatch(pattern, headline).groups(), names, strict=True):
             assert_relative(text, *ends[name])
         where = f"From {0.1 * speed:g} to {2.0 * speed:g} rpm"
-        kept = "contact is kept, so no jump was looked for"
+        kept = "contact is kept, and no jump was found"
         assert reason.endswith(f"{where} no speed is unstable, and {kept}.")
         resonance = written.document["facts"]["resonance"]
         near = abs(resonance["value"] / speed) <= 0.05
