@@ -152,16 +152,6 @@ class PathFunction:
         return cls(np.array([low, high]), np.array([[value]]), np.empty(0))
 
     @classmethod
-    def interpolated(
-        cls, function: Callable[[FloatArray], FloatArray], low: float, high: float
-    ) -> PathFunction:
-        """One polynomial through a vectorised callable, nearly a polynomial itself, at Chebyshev points."""
-        half = 0.5 * np.array([high - low])
-        series = _values(function, np.array([low]), half, _NODES) @ _TO_SERIES
-        powers = series @ _TO_POWERS / half ** np.arange(FIT_DEGREE + 1)
-        return cls(np.array([low, high]), powers.T[::-1], np.empty(0))
-
-    @classmethod
     def fit(
         cls,
         function: Callable[[FloatArray], FloatArray],

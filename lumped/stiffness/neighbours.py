@@ -14,9 +14,10 @@ from collections.abc import Callable
 from functools import lru_cache, partial
 
 import numpy as np
+from numpy.polynomial import Chebyshev, Polynomial
 
 from lumped.gear_geometry.geometry import Wheel
-from lumped.path_function import PathFunction
+from lumped.path_function import FIT_DEGREE, PathFunction
 from lumped.stiffness.base import Material, MeshingPair
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
@@ -56,7 +57,10 @@ def coupled_pairs(
     result = []
     for apart in range(1, math.floor((high - low) / g.base_pitch) + 1):
         # Analytic and nearly constant: one polynomial for the whole path.
-        result.append(PathFunction.interpolated(partial(moved, apart), low, high - apart * g.base_pitch))
+        ends = (low, high - apart * g.base_pitch)
+        series = Chebyshev.interpolate(partial(moved, apart), FIT_DEGREE, ends).convert(kind=Polynomial)
+        powers = np.asarray(series(Polynomial([low, 1.0])).coef, dtype=np.float64)
+        result.append(PathFunction(np.array(ends), powers[::-1, None], np.empty(0)))
     return tuple(result)
 
 
