@@ -247,8 +247,6 @@ COUNTS = {
     "floquet.revolution_multipliers": (".cycles", ".multipliers", ".rates"),
     "lumped.static_sharing": (".pinion_tooth", ".gear_tooth", ".largest_load"),
     "validation.predict": (".mesh_cycles",),
-    # A millionth of them is 1e-11 of the driving power, of which they are differences.
-    "multibody.power_balance": (".mesh_elastic", ".mesh_stiffness"),
     "validation.measurements.evaluate": (".measurement", ".points"),  # the record is another one
 }
 

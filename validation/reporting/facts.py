@@ -7,7 +7,6 @@ fact then says so, over the same scope.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import xarray as xr
@@ -87,7 +86,19 @@ def percent(share: float) -> str:
 
 def facts(results: Results) -> dict[str, Fact]:
     """Return every claim of a report by its key; those of what was computed already cost nothing."""
-    found = (fact(results) for fact in _FACTS)
+    found = (
+        _contact(results),
+        _stable(results),
+        _instability(results),
+        _jumps(results),
+        _left_open(results),
+        _resonance(results),
+        _trouble(results),
+        _levels(results),
+        _second_program(results),
+        _record(results),
+        _inputs(results),
+    )
     return {one.key: one for one in found if one is not None}
 
 
@@ -243,18 +254,3 @@ def _inputs(results: Results) -> Fact:
     known, assumed = results.inputs
     claim = f"{assumed} of {known + assumed} inputs are assumed"
     return Fact("inputs", claim, float(assumed), "1", _scope(results), "given_and_assumed")
-
-
-_FACTS: tuple[Callable[[Results], Fact | None], ...] = (
-    _contact,
-    _stable,
-    _instability,
-    _jumps,
-    _left_open,
-    _resonance,
-    _trouble,
-    _levels,
-    _second_program,
-    _record,
-    _inputs,
-)

@@ -304,6 +304,68 @@ def test_a_form_of_the_model_outside_the_range_is_named():
     )  # fmt: skip
 
 
+def test_the_claims(written):
+    """Each fact of report.json, and its row in the table of claims, against the saved data."""
+    found, table = written.document["facts"], written.table("claims")
+    assert [plain(one["claim"]).lower() for one in table] == [
+        f"{plain(one['claim'])}.".lower() for one in found.values()
+    ]
+    assert [one["by"] if "by" in one else one["computed_by"] for one in table] == [
+        one["computed_by"] for one in found.values()
+    ]
+    (speed, _), lost = speed_of(written), of_motion(written, "prediction")["least_force"] == 0.0
+    assert found["contact"]["claim"] == ("the teeth lose contact" if lost else "contact is kept")
+    here, over = [speed, speed], [0.1 * speed, 2.0 * speed]
+    for key, one in found.items():
+        scope = one["scope"]
+        assert scope["effort"] == "small report"
+        assert (scope["supports"], scope["teeth"]) == ("springs", "alike")
+        wide = key in ("unstable_speeds", "jumps", "resonance")
+        assert scope["speeds_rpm"] == pytest.approx(over if wide else here)
+    samples = written.data("uncertainty")
+    unloaded, count = int((samples["least_force"].to_numpy() <= 0.0).sum()), samples.sizes["sample"]
+    unstable = int(samples.attrs["unstable"])
+    words = [f"{unloaded} lose contact"] if unloaded else []
+    words += [f"{unstable} are unstable"] if unstable else []
+    what = " and ".join(words) or "none loses contact or is unstable"
+    assert found["trouble"]["claim"] == f"of {count} possible machines {what}"
+    if not unstable:
+        assert found["trouble"]["value"] == pytest.approx(unloaded / count)
+    order, share, side, hertz = re.fullmatch(
+        r"order (\d+) is ([\d.]+) % (above|below) the .* \((\d+) Hz\)", plain(found["resonance"]["claim"])
+    ).groups()
+    frequencies = [one["frequency"]["value"] for one in written.table("modes")]
+    frequency = min(frequencies, key=lambda one: abs(one - float(hertz)))
+    assert abs(frequency - float(hertz)) < 0.51
+    apart = int(order) * own.mesh_frequency(written.parameters) / frequency - 1.0
+    assert 100.0 * abs(apart) == pytest.approx(float(share), rel=0.06)
+    assert side == ("above" if apart > 0.0 else "below")
+    assert found["resonance"]["value"] == pytest.approx(speed / (1.0 + apart) - speed)
+
+
+def test_the_windows_of_contact_loss(written):
+    """Windows that were searched: the ranges of the saved motions."""
+    text = plain(written.sentences["contact_loss"])
+    shown = re.findall(r"([\d.]+) to ([\d.]+)(?= rpm;| and)", text.partition("lost at")[2])
+    ranges = [written.data(name).attrs for name in motions_of(written)]
+    for one in ranges:
+        ends = one["speed_low_rpm"], one["speed_high_rpm"]
+        assert any(tuple(map(float, two)) == pytest.approx(ends, rel=1e-4) for two in shown), (ends, text)
+
+
+def test_forms_outside_the_range_are_named_and_no_others(written):
+    first, budget = written.document["numbers"]["dte_peak_to_peak"], written.data("budget")
+    if of_motion(written, "prediction")["least_force"] == 0.0:
+        return
+    remark = plain(written.result.first.remark)
+    for form, size in zip(budget.attrs["forms"].split("; "), budget["result"].to_numpy(), strict=True):
+        if form and np.isfinite(size):
+            outside = not first["low"] <= size <= first["high"]
+            assert (f"{form}, " in remark) == outside
+            if outside:
+                own.assert_printed(remark.partition(f"{form}, ")[2].partition(" µm")[0] + " µm", size, "m", 3)
+
+
 def test_findings(written):
     first = of_motion(written, "prediction")
     lost = first["least_force"] == 0.0

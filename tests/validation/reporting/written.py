@@ -49,7 +49,8 @@ PAIRS = {
         | {"basic_rack.pressure_angle": 25.0, "basic_rack.fillet_radius_coefficient": 0.22}
     ),
     "lost": lambda: pair("lost", "57/31", 6500.0, 275.0).with_(
-        UNLIKE_GEARS | {"pinion.profile_shift": -0.14, "gear.profile_shift": 0.22}
+        UNLIKE_GEARS
+        | {"pinion.profile_shift": -0.14, "gear.profile_shift": 0.22, "friction.law": "xu_kahraman"}
     ),
 }
 
