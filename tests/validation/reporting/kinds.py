@@ -28,7 +28,7 @@ KINDS: dict[str, Callable[[], GearPair]] = {
     "jump near": lambda: _without_relief(7450.0),
     "jump far": lambda: _without_relief(6500.0),
     "class": lambda: new_pair("21/34", 3.0, 25, 2000, 150, {
-        "pinion.deviations": {"tolerance_class": 5}, "gear.deviations": {"tolerance_class": 5}}),
+        "pinion.deviations": {"tolerance_class": 5}, "gear.deviations": {"tolerance_class": 6}}),
     "fault": lambda: new_pair("20/27", 2.0, 15, 1200, 40, {
         "pinion.faults": [{"kind": "crack", "tooth": 3, "depth": 1.2, "angle": 60}]}),
     "shafts": lambda: new_pair("19/41", 2.5, 20, 1450, 80, {

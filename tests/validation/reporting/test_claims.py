@@ -19,6 +19,7 @@ from lumped.outcomes import Absent
 from tests.validation.reporting.kinds import KINDS
 from tests.validation.reporting.written import plain
 from validation.prediction.inputs import read_values
+from validation.reporting.chapters import response
 from validation.reporting.facts import facts
 from validation.reporting.page_one import page_one
 from validation.reporting.results import QUICK, Effort, Results
@@ -197,6 +198,10 @@ def test_teeth_as_given_lead():
     like = lumped.steady_state(results.given.healthy, contact="unilateral")
     assert f"like teeth {1e6 * float(like.attrs['dte_peak_to_peak']):.3g}" in plain(first.note)
     assert first.value > 2.0 * float(like.attrs["dte_peak_to_peak"])
+    # K_v is of the coarser class of the file.
+    rows = response.write(results).blocks[0].rows
+    note = next(row[2] for row in rows if str(row[0]).startswith("K_v"))
+    assert note.endswith("tolerances of class 6")
 
 
 def test_a_scope_is_what_was_computed(results):
