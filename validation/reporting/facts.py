@@ -208,9 +208,9 @@ def _trouble(results: Results) -> Fact | None:
         return None
     count, lost = int(found.sizes["sample"]), int(found.attrs["contact_lost"])
     unstable, either = (int(found.attrs[name]) for name in ("unstable", "lost_or_unstable"))
-    parts = [f"{lost} lose contact"] if lost else []
-    parts += [f"{unstable} are unstable"] if unstable else []
-    claim = f"of {count} possible machines {' and '.join(parts) or 'none loses contact or is unstable'}"
+    parts = [f"{lost} of {count} possible machines lose contact"] if lost else []
+    parts += [f"{unstable} of {count} are unstable"] if unstable else []
+    claim = " and ".join(parts) or f"none of {count} possible machines loses contact or is unstable"
     scope = _scope(results, teeth="alike", inputs=f"{count} samples")
     return Fact("trouble", claim, either / count, "1", scope, "uncertainty")
 

@@ -54,6 +54,8 @@ class Number:
     @property
     def digits(self) -> int:
         """Digits that the range supports: two where it is wider than 5 % to each side, else three."""
+        if self.key == "trouble":  # a share of some hundred samples
+            return 2
         wide = math.isfinite(self.low) and self.high - self.low > 0.1 * abs(self.value)
         return 2 if wide else 3
 
@@ -171,7 +173,7 @@ def rows(results: Results, known: dict[str, Fact]) -> tuple[Number, ...]:
     trouble = known.get("trouble")
     if trouble is not None and trouble.value > 0.0:
         label = "Possible machines that lose contact or are unstable"
-        note, scope = trouble.claim.removeprefix("of "), trouble.scope.words
+        note, scope = trouble.claim, trouble.scope.words
         found.append(Number("trouble", label, trouble.value, "%", note=note, scope=scope))
     return tuple(found)
 

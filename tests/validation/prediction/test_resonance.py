@@ -1,4 +1,4 @@
-"""Is the resonance that is named the nearest one that matters? All crossings are looked at, by other motions."""
+"""Is the resonance that is named the nearest one that matters? All crossings are looked at, each by itself."""
 
 import math
 
