@@ -1,4 +1,4 @@
-"""Is the resonance that is named the nearest one that matters? All crossings are looked at, each by itself."""
+"""Is the resonance that is named the nearest one that matters? All crossings are looked at in turn."""
 
 import math
 
