@@ -194,7 +194,7 @@ def _hazard_row(results: Results, fact: Fact) -> Number:
     if hazard is not None:
         far, note = hazard.speed_rpm - own, f"{hazard.words} at {rpm(hazard.speed_rpm)}"
     else:
-        note = "jumps were not searched to the end" if searched is None else f"none {fact.scope.speeds}"
+        note = "jumps were not searched to the end" if searched is None else f"none found {fact.scope.speeds}"
     return Number("hazard", label, far, "rpm", note=note + results.on_springs, scope=fact.scope.words)
 
 

@@ -229,7 +229,7 @@ def test_what_the_budget_left_open_is_said_and_not_claimed():
     )  # fmt: skip
     first = page_one(results)
     row = next(one for one in first.numbers if one.key == "hazard")
-    assert plain(row.note) == "none from 650 to 7000 rpm"
+    assert plain(row.note) == "none found from 650 to 7000 rpm"
     assert "jumps from 7000 to 9900 rpm were not searched to the end" in plain(first.reason).lower()
     assert first.actions[0].command == "spurcheck response pair.toml --range 7000..9900"
     vars(results)["jump_search"] = type(search)(

@@ -154,7 +154,11 @@ def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
     if found is None:
         assert number["value"] is None
         own.assert_says(
-            number["note"], r"none from (.*) to (.*) rpm", (0.1 * speed, "1"), (2.0 * speed, "1"), digits=5
+            number["note"],
+            r"none found from (.*) to (.*) rpm",
+            (0.1 * speed, "1"),
+            (2.0 * speed, "1"),
+            digits=5,
         )
         return
     assert number["value"] == close(found[0] - speed)
