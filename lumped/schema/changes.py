@@ -11,9 +11,12 @@ import numpy as np
 
 from lumped.errors import ParameterError, refuse
 from lumped.fields.refusals import field_of, unknown_key
+from lumped.fields.scope import about_teeth
 from lumped.fields.section import Section
+from lumped.lubrication.viscosity import grade_of
 from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.bearings import ROLLING, STIFFNESSES, RollingBearing
+from lumped.schema.relief import STARTS
 
 _GEARS = ("pinion", "gear")
 #: Short name -> the fields that it sets.
@@ -25,6 +28,7 @@ SHORT_NAMES = {
     "stiffness": ("mesh.stiffness",),
     "damping": ("mesh.damping_ratio",),
     "module": ("basic_rack.module",),
+    "pressure_angle": ("basic_rack.pressure_angle",),
     "viscosity": ("lubricant.viscosity",),
     "oil": ("lubricant.viscosity_law.iso_vg",),
     "temperature": ("lubricant.viscosity_law.temperature",),
@@ -38,7 +42,6 @@ SHORT_NAMES = {
     },
 }
 _TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")
-_OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
 
 #: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
 _STIFFNESS = "mesh.stiffness.model"
@@ -47,6 +50,11 @@ _ALTERNATIVES = (
     ("pinion.addendum", "pinion.tip_diameter"),
     ("gear.addendum", "gear.tip_diameter"),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
+    *(
+        tuple(f"{gear}.{end}_relief.{start}" for start in STARTS)
+        for gear in ("pinion", "gear")
+        for end in ("tip", "root")
+    ),
 )
 
 
@@ -59,17 +67,16 @@ def fields_of(name: str) -> tuple[str, ...]:
 
 
 def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Return field path -> value; teeth may be "19/41" or a tuple, oil "vg220" or 220."""
+    """Return field path -> value; teeth may be "19/41" or a tuple, oil "ISO VG 220", "vg220" or 220."""
     values: dict[str, Any] = {}
     for name, value in request.items():
         if name == "teeth":
             if (teeth := _TEETH.fullmatch(str(value))) is None:
-                raise refuse("teeth", value, "PINION/GEAR", "For example 19/41.")
+                action = about_teeth(str(value)) or "For example 19/41."
+                raise refuse("teeth", value, "PINION/GEAR", action)
             values |= dict(zip(fields_of(name), map(int, teeth.groups()), strict=True))
         elif name == "oil":
-            if (grade := _OIL.fullmatch(str(value))) is None:
-                raise refuse("oil", value, "an ISO viscosity grade", "For example vg220.")
-            values[SHORT_NAMES[name][0]] = int(grade[1])
+            values[SHORT_NAMES[name][0]] = grade_of(value, "oil")
         else:
             values |= dict.fromkeys(fields_of(name), value)
     return values

@@ -4,30 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.faults.base import Flank
 from lumped.faults.registry import AnyFault
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
+from lumped.schema.relief import ProfileRelief
 from lumped.schema.teeth import Deviations, Mounting
 
 _MODULUS = "Steel has 206 GPa; write the unit where it is another one: '206000 MPa'."
 _SIZE = "Give the size as drawn; check the unit."
-
-
-class ProfileRelief(Section):
-    """Deviation of a flank from the involute by design, growing from a roll angle to the flank's end."""
-
-    shape: Literal["linear", "parabolic"] = Field("linear", description="growth over roll angle")
-    amount: Annotated[float, Quantity("um", at_least=0, at_most=1000)] = Field(
-        description="material removed at the end of the flank, normal to it"
-    )
-    start_roll_angle: Annotated[float, Quantity("deg", above=0, at_most=180)] = Field(
-        description="roll angle at which the relief starts"
-    )
 
 
 class BasicRack(Section):
@@ -125,6 +115,20 @@ class Gear(Section):
     def has_own_teeth(self) -> bool:
         """Whether its teeth or its turns differ."""
         return self.deviations is not None or self.eccentricity > 0.0 or bool(self.faults)
+
+    def with_relief_on(self, flank: Flank) -> Self:
+        """The gear with the roll angles at which its reliefs start on a flank; itself where it states them.
+
+        Raises
+        ------
+        ParameterError : a relief that does not start on the active flank
+        """
+        located = {
+            f"{end}_relief": relief.on(flank, f"{end}_relief")
+            for end, relief in (("tip", self.tip_relief), ("root", self.root_relief))
+            if relief is not None and not relief.by_angle
+        }
+        return self.model_copy(update=located) if located else self
 
     @model_validator(mode="after")
     def _fits_its_teeth(self) -> Self:

@@ -156,6 +156,8 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += problems_of(type(self), self.assumed)
         if wrong:
             raise ParameterError(wrong)
+        for which, name in enumerate(("pinion", "gear")):
+            self.__dict__[name] = self._with_relief(name, self.flank(which))
         force = self.operating.pinion_torque / self.geometry.base_radius_pinion
         self.__dict__["bearings"] = self.bearings.under(force)
         return self
@@ -223,6 +225,14 @@ class GearPair(Section, metaclass=_InOurWords):
         tip = 0.5 * rack.module * gear.teeth + (addendum if gear.addendum is None else gear.addendum)
         tip = tip if gear.tip_diameter is None else 0.5 * gear.tip_diameter
         return Wheel(tooth, tip, gear.face_width, gear.bore)
+
+    def _with_relief(self, name: str, flank: Flank) -> Gear:
+        gear: Gear = getattr(self, name)
+        try:
+            return gear.with_relief_on(flank)
+        except ParameterError as error:
+            problems = [replace(one, field=f"{name}.{one.field}") for one in error.problems]
+            raise ParameterError(problems, self.name) from None
 
     def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
         """Mass or inertia that no gear of this size has: its vibration would take years to compute."""
