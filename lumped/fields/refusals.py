@@ -26,7 +26,12 @@ _UNION_PARTS = {"int", "float", "str"}
 _ELSEWHERE = {
     ("quality", "accuracy", "accuracy_grade", "quality_class"): "Write deviations.tolerance_class in the "
     "section of the gear (ISO 1328), or delete it: then all teeth are alike.",
-    ("oil", "oil_grade", "grade", "vg"): "Write viscosity_law = { iso_vg = 220, temperature = 70 } in lubricant, "
+    (
+        "oil",
+        "oil_grade",
+        "grade",
+        "vg",
+    ): "Write viscosity_law = { iso_vg = 220, temperature = 70 } in lubricant, "
     "with the grade and the temperature (degC) of your oil.",
     ("power", "input_power"): "Write pinion_torque: in N m it is 9549.3 times the power in kW over the "
     "speed in rpm.",

@@ -52,8 +52,8 @@ PLANETARY = Limit(
     "planetary stages",
     ("sun", "carrier", "epicyclic"),
     ("planet", "planets", "planetary"),
-    "Planetary stages are not computed: one pinion drives one external gear. The mesh of sun and planet alone "
-    "can be computed as a pair, on fixed axes and with its share of the torque.",
+    "Planetary stages are not computed: one pinion drives one external gear. The mesh of sun and planet "
+    "alone can be computed as a pair, on fixed axes and with its share of the torque.",
 )
 CROWNING = Limit(
     "crowning",

@@ -140,8 +140,8 @@ def _in_degrees(text: str) -> str:
     below = all(Decimal(parts[place]) < 60 for place in stated[1:])
     if not (whole and below):
         raise ValueError(
-            f"'{text}' is no angle: beside a larger part, minutes and seconds are below 60, and the last part "
-            "alone has decimals; write degrees: '20.5 deg'"
+            f"'{text}' is no angle: beside a larger part, minutes and seconds are below 60, and the last "
+            "part alone has decimals; write degrees: '20.5 deg'"
         )
     sixtieths = zip(parts, (1, 60, 3600), strict=True)
     angle = sum((Decimal(part) / part_of for part, part_of in sixtieths if part is not None), Decimal(0))

@@ -1,9 +1,9 @@
 """Places on an involute: diameter, roll angle and roll length, each from the others in closed form.
 
-The tangent from a point at radius r to the base circle has the length L = sqrt(r^2 - r_b^2), which is the roll
-length of a profile chart, and L = r_b phi for the roll angle phi. While the gear turns by d phi, the point of
-contact moves by r_b d phi along the line of action, so a difference of roll lengths is a length along the path
-of contact.
+The tangent from a point at radius r to the base circle has the length L = sqrt(r^2 - r_b^2), which is the
+roll length of a profile chart, and L = r_b phi for the roll angle phi. While the gear turns by d phi, the
+point of contact moves by r_b d phi along the line of action, so a difference of roll lengths is a length
+along the path of contact.
 
 Sources: ISO 21771 (roll angle and roll length); ISO 1328-1 (the length axis of a profile chart).
 """

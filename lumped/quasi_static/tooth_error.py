@@ -20,8 +20,8 @@ from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.relief import ProfileRelief
     from lumped.schema.pair import GearPair
+    from lumped.schema.relief import ProfileRelief
 
 
 def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatArray:

@@ -13,9 +13,9 @@ from lumped.errors import ParameterError, refuse
 from lumped.fields.refusals import field_of, unknown_key
 from lumped.fields.scope import about_teeth
 from lumped.fields.section import Section
-from lumped.lubrication.viscosity import grade_of
 from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.bearings import ROLLING, STIFFNESSES, RollingBearing
+from lumped.schema.oil_grade import grade_of
 from lumped.schema.relief import STARTS
 
 _GEARS = ("pinion", "gear")
@@ -56,6 +56,9 @@ _ALTERNATIVES = (
         for end in ("tip", "root")
     ),
 )
+#: Field whose default follows others -> those others.
+_FILLET = "basic_rack.fillet_radius_coefficient"
+_OF_FILLET = ("basic_rack.pressure_angle", "basic_rack.dedendum_coefficient")
 
 
 def fields_of(name: str) -> tuple[str, ...]:
@@ -92,6 +95,9 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     assumed: dict[str, Any] = data.setdefault("assumed", {})
     for gear in _GEARS:
         _other_bearing(pair, data, gear, changes)
+    rack: Any = pair.__dict__["basic_rack"]
+    if any(path in changes for path in _OF_FILLET) and assumed.get(_FILLET) == rack.assumed_fillet:
+        del assumed[_FILLET], data["basic_rack"]["fillet_radius_coefficient"]  # the default of the new rack
     # The model first: it decides which other keys its table may have.
     for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request

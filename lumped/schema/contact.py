@@ -17,13 +17,13 @@ from lumped.friction.registry import LAWS, NAMES, NO_TABLE, file_name
 from lumped.friction.table import TABLE, FrictionTable
 from lumped.lubrication.viscosity import (
     ZERO_CELSIUS,
-    grade_of,
     grade_viscosity,
     kinematic_viscosity,
     midpoint,
     oil_density,
     walther_constants,
 )
+from lumped.schema.oil_grade import grade_of
 from lumped.stiffness.registry import AnyStiffness
 
 

@@ -16,6 +16,9 @@ from lumped.gear_geometry.roll_angle import diameter_of, roll_angle_of
 #: Fields of which one states where a relief starts.
 STARTS = ("start_roll_angle", "start_diameter", "length")
 _TO = "start_roll_angle, start_diameter or length"
+_ON_IT = "Start the relief on the active flank."
+#: Default of the roll angle; a pair sets it from the other two.
+_NOT_STATED: Any = None
 
 
 class ProfileRelief(Section):
@@ -26,25 +29,23 @@ class ProfileRelief(Section):
     it starts. In a pair ``start_roll_angle`` has a value in each case; a file keeps what was written.
     """
 
-    model_config = ConfigDict(
-        json_schema_extra={"oneOf": [{"required": [name], "properties": {name: {}}} for name in STARTS]}
-    )
+    model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [name]} for name in STARTS]})
 
     shape: Literal["linear", "parabolic"] = Field("linear", description="growth over roll angle")
     amount: Annotated[float, Quantity("um", at_least=0, at_most=1000)] = Field(
         description="material removed at the end of the flank, normal to it"
     )
     start_roll_angle: Annotated[float, Quantity("deg", above=0, at_most=180, optional=True)] = Field(
-        None, description="roll angle at which the relief starts; or give start_diameter or length"
+        _NOT_STATED, description="roll angle at which the relief starts; or give start_diameter or length"
     )
     start_diameter: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
         None, description="diameter at which the relief starts, instead of start_roll_angle"
     )
     length: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
         None,
-        description="instead of start_roll_angle: roll length of the relief, from its start to the flank's end, "
-        "as on the length axis of a profile chart (ISO 1328-1) and along the path of contact; not along the "
-        "flank nor radially",
+        description="roll length of the relief from its start to the flank's end, instead of "
+        "start_roll_angle: on the length axis of a profile chart (ISO 1328-1), and along the path of "
+        "contact; not along the flank nor radially",
     )
 
     @model_validator(mode="after")
@@ -93,17 +94,15 @@ class ProfileRelief(Section):
         """The refusal of a relief that does not start on the active flank, by the field that states it."""
         radius, ends = flank.wheel.tooth.base_radius, (flank.start, flank.tip)
         if self.length is not None:
-            field, value = "length", f"{1e3 * self.length:.6g} mm"
             allowed = f"> 0 and < {1e3 * (flank.tip - flank.start):.4f} mm, the active flank"
-        elif self.start_diameter is not None:
-            field, value = "start_diameter", f"{1e3 * self.start_diameter:.6g} mm"
+            return refuse(f"{kind}.length", f"{1e3 * self.length:.6g} mm", allowed, _ON_IT)
+        if self.start_diameter is not None:
             low, high = (1e3 * diameter_of(end / radius, radius) for end in ends)
-            allowed = f"{low:.4f} to {high:.4f} mm"
-        else:
-            field, value = "start_roll_angle", f"{math.degrees(self.start_roll_angle):.4g} deg"
-            low, high = (math.degrees(end / radius) for end in ends)
-            allowed = f"{low:.4f} to {high:.4f} deg"
-        return refuse(f"{kind}.{field}", value, allowed, "Start the relief on the active flank.")
+            value, allowed = f"{1e3 * self.start_diameter:.6g} mm", f"{low:.4f} to {high:.4f} mm"
+            return refuse(f"{kind}.start_diameter", value, allowed, _ON_IT)
+        low, high = (math.degrees(end / radius) for end in ends)
+        value, allowed = f"{math.degrees(self.start_roll_angle):.4g} deg", f"{low:.4f} to {high:.4f} deg"
+        return refuse(f"{kind}.start_roll_angle", value, allowed, _ON_IT)
 
     def to_mapping(self) -> dict[str, Any]:
         """Return plain data in file units, with the start as it was stated."""

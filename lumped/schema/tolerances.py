@@ -15,7 +15,6 @@ import numpy as np
 from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
 
-
 _CLASS = re.compile(
     r"\s*(?:(?P<body>DIN\s+EN\s+ISO|DIN\s+ISO|ISO|DIN)[\s-]*(?P<number>\d{4}(?:-\d)?(?::\d{4})?)?[\s,:-]*)?"
     r"(?:class|grade|quality|qualität|q)?\s*(?P<of>\d{1,2})\s*",
@@ -45,12 +44,14 @@ def tolerance_class_of(value: object) -> object:
     if not found or (number and not number.startswith("396" if german else "1328")):
         action = "Write the class of ISO 1328-1, 1 to 11: a smaller number is a more accurate gear."
         if "agma" in value.lower():
-            action += " Quality numbers of AGMA 2000 count the other way: 17 less the number is about the class."
+            action += (
+                " Quality numbers of AGMA 2000 count the other way: 17 less the number is about the class."
+            )
         raise refuse("", shown(repr(value)), "1 to 11, or text such as 'ISO 6' or 'DIN 6'", action)
     if german:
         warnings.warn(
-            f"{shown(value)!r} is read as class {found['of']} of ISO 1328-1:2013: DIN 3962 has its own table of "
-            "tolerances, which is near. Give measured deviations where the difference matters.",
+            f"{shown(value)!r} is read as class {found['of']} of ISO 1328-1:2013: DIN 3962 has its own table "
+            "of tolerances, which is near. Give measured deviations where the difference matters.",
             UserWarning,
             stacklevel=2,
         )
