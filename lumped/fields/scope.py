@@ -43,10 +43,10 @@ INTERNAL = Limit(
 )
 SEVERAL_MESHES = Limit(
     "several meshes",
-    ("stages", "stage", "idler", "idlers", "meshes"),
-    ("idler",),
-    "A file has one mesh of two gears. Compute each mesh as a pair of its own; what a pair does to its "
-    "neighbour through a shared gear or shaft is not computed.",
+    ("stages", "stage", "meshes"),
+    ("idler", "idlers"),
+    "A file has one mesh of two gears. Compute each mesh as a pair of its own; how meshes act on each other "
+    "through a shared gear or shaft is not computed.",
 )
 PLANETARY = Limit(
     "planetary stages",
@@ -59,22 +59,22 @@ CROWNING = Limit(
     "crowning",
     ("barrelling", "barreling", "end_relief"),
     ("crown", "crowning", "crowned"),
-    "The mesh is plane: the load is even over the face width, as crowning is to make it in a "
-    "misaligned mesh. Delete it; tip_relief and root_relief are what changes the profile.",
+    "The mesh is plane: the load is even over the face width, and crowning does not act. Delete it; "
+    "tip_relief and root_relief change the profile.",
 )
 LEAD = Limit(
     "lead corrections",
-    ("lead", "flank_line", "end_easing", "face_load_factor", "khb", "k_h_beta"),
+    ("flank_line", "end_easing", "face_load_factor", "khb", "k_h_beta"),
     ("lead",),
-    "The mesh is plane: flanks are straight and parallel over the face width. Delete it; deviations "
-    "between the teeth go into deviations.",
+    "The mesh is plane: flanks are straight and parallel over the face width. Delete it; deviations of "
+    "single teeth go into deviations.",
 )
 MISALIGNMENT = Limit(
     "misalignment",
     ("tilt", "skew", "inclination", "parallelism", "f_sigma_beta", "fbx", "fby"),
     ("misalign", "misaligned", "misalignment"),
-    "The axes are parallel and the load is even over the face width. Delete it; a run-out of a gear is "
-    "mounting.eccentricity in its section, and a softer mesh mesh.stiffness_factor.",
+    "The axes are parallel and the load is even over the face width. Delete it; the run-out of a gear is "
+    "mounting.eccentricity in its section, and mesh.stiffness_factor makes the mesh softer.",
 )
 
 #: Everything that a drawing may have and no file, in the order of the page of limits.

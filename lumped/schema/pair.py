@@ -354,10 +354,10 @@ class GearPair(Section, metaclass=_InOurWords):
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
             A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
-            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``viscosity``, ``oil``
-            ("vg220", with ``temperature``) and, of both gears, ``teeth`` ("19/41"), ``face_width``,
-            ``roughness``. ``gears.`` in front of a key means both gears, ``bearings.stiffness`` all four
-            directions.
+            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``pressure_angle``,
+            ``viscosity``, ``oil`` ("ISO VG 220", with ``temperature``) and, of both gears, ``teeth``
+            ("19/41"), ``face_width``, ``roughness``. ``gears.`` in front of a key means both gears,
+            ``bearings.stiffness`` all four directions.
 
         ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
         into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).

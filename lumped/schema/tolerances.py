@@ -27,7 +27,8 @@ def tolerance_class_of(value: object) -> object:
 
     "ISO 6", "ISO 1328-1:2013 class 6", "Q6" and "6" are class 6 of ISO 1328-1:2013. "DIN 6" is class 6 of
     DIN 3962, which has a table of its own: it is read as the ISO class of the same number, with a warning.
-    For modules of 1 to 2 mm, f_p and F_p of class 6 differ by less than a fifth (docs/theory/teeth.md).
+    For modules of 1 to 2 mm and diameters of 50 to 560 mm, f_p and F_p of class 6 differ by less than a fifth
+    (docs/theory/teeth.md).
 
     Raises
     ------

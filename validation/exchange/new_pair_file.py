@@ -92,7 +92,8 @@ def new_pair(
     speed : of the pinion [rpm]
     torque : on the pinion [N m]
     changes : what else is known, by the names and paths of ``pair.with_``: ``{"oil": "vg220",
-        "pinion.profile_shift": 0.4}``
+        "pinion.profile_shift": 0.4}``. What is assumed of the basic rack follows what is known of it: the
+        fillet radius pressure angle and dedendum, the dedendum the addendum
     name : of the pair; default from the numbers of teeth
     **fields : the same as ``changes``: ``oil="vg220"``, ``pinion__profile_shift=0.4``
 
