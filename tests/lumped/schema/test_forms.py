@@ -16,6 +16,7 @@ from lumped.schema.oil_grade import grade_of
 from lumped.schema.tolerances import tolerance_class_of
 from multibody.contact.machine import circles, reliefs
 from tests.unlike_pairs import unlike_pair
+from validation.exchange import gear_pair_from_rexs, write_rexs
 
 RELIEFS = ("tip_relief", "root_relief")
 PAIRS = ["rack_25_degrees_always_pushing", "contact_ratio_2_3_on_shafts", "heavily_relieved_under_load"]
@@ -87,6 +88,16 @@ def test_the_multibody_model_starts_a_relief_by_its_own_formulas():
                 rows = reliefs(one, circles(one))
                 assert [(row[0], row[3]) for row in rows] == [(which, pytest.approx(9e-6))]
                 assert rows[0][1] == pytest.approx(place / base, rel=1e-11)
+
+
+def test_a_relief_by_length_leaves_as_the_diameter_of_its_start(tmp_path):
+    """REXS has a diameter; the base circle and the tip give it from the roll length."""
+    pair = spurcheck.new_pair("23/38", **DRAWING, changes={"gear.tip_relief": {"amount": 17, "length": 2.3}})
+    base, tip, _ = ends(pair, "gear")
+    write_rexs(pair, tmp_path / "pair.rexs")
+    mapping, _ = gear_pair_from_rexs(tmp_path / "pair.rexs")
+    found = load_gear_pair(mapping).gear.tip_relief
+    assert found.start_roll_angle == pytest.approx((tip - 2.3) / base, rel=1e-9)
 
 
 def test_a_length_moves_with_the_tip_and_a_diameter_stays():
