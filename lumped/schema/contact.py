@@ -23,6 +23,7 @@ from lumped.lubrication.viscosity import (
     oil_density,
     walther_constants,
 )
+from lumped.schema.oil_grade import grade_of
 from lumped.stiffness.registry import AnyStiffness
 
 
@@ -68,11 +69,20 @@ class Mesh(Section):
     )
 
 
+def _grade(value: object) -> object:
+    """A grade that text names; a number is checked as one."""
+    return grade_of(value) if isinstance(value, str) else value
+
+
 class ViscosityLaw(Section):
     """Dynamic viscosity from temperature (Walther, ASTM D341): of an ISO VG grade, or of two viscosities."""
 
-    iso_vg: Annotated[int, Field(strict=True)] | None = Field(
-        None, description="ISO 3448 viscosity grade, e.g. 100; or give the two kinematic viscosities"
+    iso_vg: Annotated[
+        Annotated[int, Field(strict=True)] | None,
+        BeforeValidator(_grade, json_schema_input_type=int | str | None),
+    ] = Field(
+        None,
+        description="ISO 3448 viscosity grade, 100 or 'ISO VG 100'; or give the two kinematic viscosities",
     )
     viscosity_index: Annotated[float, Quantity("1", at_least=0, at_most=400)] = Field(
         95.0, description="viscosity index of the grade, ASTM D2270"

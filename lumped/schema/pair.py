@@ -175,6 +175,8 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += problems_of(type(self), self.assumed)
         if wrong:
             raise ParameterError(wrong)
+        for which, name in enumerate(("pinion", "gear")):
+            self.__dict__[name] = self._with_relief(name, self.flank(which))
         force = self.operating.pinion_torque / self.geometry.base_radius_pinion
         self.__dict__["bearings"] = self.bearings.under(force)
         return self
@@ -313,6 +315,14 @@ class GearPair(Section, metaclass=_InOurWords):
             tip = tooth.reference_radius + rack.module * (rack.addendum_coefficient + shift) + alteration
         return Wheel(tooth, tip, gear.face_width, gear.bore)
 
+    def _with_relief(self, name: str, flank: Flank) -> Gear:
+        gear: Gear = getattr(self, name)
+        try:
+            return gear.with_relief_on(flank)
+        except ParameterError as error:
+            problems = [replace(one, field=f"{name}.{one.field}") for one in error.problems]
+            raise ParameterError(problems, self.name) from None
+
     def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
         """Mass or inertia that no gear of this size has: its vibration would take years to compute."""
         gear: Gear = getattr(self, name)
@@ -434,10 +444,10 @@ class GearPair(Section, metaclass=_InOurWords):
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
             A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
-            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``viscosity``, ``oil``
-            ("vg220", with ``temperature``) and, of both gears, ``teeth`` ("19/41"), ``face_width``,
-            ``roughness``. ``gears.`` in front of a key means both gears, ``bearings.stiffness`` all four
-            directions.
+            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``pressure_angle``,
+            ``viscosity``, ``oil`` ("ISO VG 220", with ``temperature``) and, of both gears, ``teeth``
+            ("19/41"), ``face_width``, ``roughness``. ``gears.`` in front of a key means both gears,
+            ``bearings.stiffness`` all four directions.
 
         ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
         into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
