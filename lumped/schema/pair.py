@@ -31,7 +31,7 @@ from lumped.schema import own_laws
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
-from lumped.schema.contact import Friction, Lubricant, Mesh
+from lumped.schema.contact import Friction, Lubricant, Mesh, without_assumed_defaults
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.shafts import Shafts
 from lumped.schema.teeth import TorqueRipple
@@ -141,6 +141,12 @@ class GearPair(Section, metaclass=_InOurWords):
         "'/ 2 .. * 2', or a list of choices",
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _stiffness_decides_again(cls, data: Any) -> Any:
+        """Contact and relief that a file has as assumed defaults are left to its stiffness."""
+        return without_assumed_defaults(data, {"contact": "loaded", "relief": "static"})
+
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
         problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
@@ -149,6 +155,7 @@ class GearPair(Section, metaclass=_InOurWords):
         if self.friction.law == TABLE and self.friction.table is not None and not problems:
             problems += self.friction.table.problems(self.geometry)
         problems += [*self._teeth_that_are_not("pinion", 0), *self._teeth_that_are_not("gear", 1)]
+        problems += [*self._relief_counted_twice()]
         if problems:
             raise ParameterError(problems, self.name)
         wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
@@ -245,6 +252,23 @@ class GearPair(Section, metaclass=_InOurWords):
         for number, fault in enumerate(gear.faults):
             for one in fault.problems(self.flank(which)):
                 yield replace(one, field=f"{name}.faults.{number}.{one.field}")
+
+    def _relief_counted_twice(self) -> Iterator[FieldProblem]:
+        """Relief beside a stiffness of the whole mesh, which has the profile in it."""
+        reliefs = [one for gear in (self.pinion, self.gear) for one in (gear.tip_relief, gear.root_relief)]
+        acts = self.mesh.relief == "static" and any(one is not None and one.amount > 0.0 for one in reliefs)
+        if self.mesh.stiffness.whole_mesh and acts:
+            allowed = "'ignored' where mesh.stiffness is that of the whole mesh, which has the profile in it"
+            action = (
+                "Write mesh.relief = 'ignored', or leave it out: relief then counts once. If it is the curve "
+                "of one tooth pair, write kind = 'pair' in mesh.stiffness: then relief = 'static' stays."
+            )
+            yield FieldProblem("mesh.relief", "static", allowed, action)
+
+    @property
+    def stiffness_words(self) -> str:
+        """What stiffness is given, for a reader: of the whole mesh or of one tooth pair."""
+        return self.mesh.stiffness.words
 
     @property
     def nominal_contact(self) -> ContactPath:
@@ -356,9 +380,10 @@ class GearPair(Section, metaclass=_InOurWords):
           ``sliding_velocity``, ``entraining_velocity`` [m/s], ``slide_to_roll``, ``hertz_pressure`` [Pa],
           ``film_thickness`` [m], ``film_parameter``; called with numbers at the operating point.
         - law as an array: mu at equal distances from A to D.
-        - stiffness as a text: the name of a model; as a number: that of the mesh, constant [N/m].
+        - stiffness as a text: the name of a model; as a number: that of the whole mesh, constant [N/m].
         - stiffness as a function: of ``xi``, one pair from A to D, or of ``phase`` from 0 to 1, all pairs
-          over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included.
+          over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included. That
+          of the whole mesh is used as given: contact is prescribed, relief is in it.
         - columns: a mapping or DataFrame such as ``{"position [mm]": ..., "coefficient": ...}``,
           ``{"phase": ..., "stiffness [N/um]": ...}``.
 
