@@ -75,6 +75,8 @@ class OperatingPoint(Section):
     )
 
 
+#: Fields that a stiffness decides where they are not known.
+_BESIDE = ("mesh.contact", "mesh.relief")
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
 
@@ -394,12 +396,14 @@ class GearPair(Section, metaclass=_InOurWords):
         request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
         fields = by_fields(request)
         own = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
+        # Contact and relief are judged with the stiffness that they are given for.
+        beside = {path: fields.pop(path) for path in _BESIDE if path in fields and "mesh.stiffness" in own}
         pair = self._changed(fields) if fields or not own else self
         for path, value in own.items():
             if path == "friction.law":
                 pair = pair._changed(own_laws.own_friction(pair.nominal_contact, value))
             else:
-                pair = pair._changed(own_laws.own_stiffness(pair.geometry, value))
+                pair = pair._changed(own_laws.own_stiffness(pair.geometry, value) | beside)
                 pair.mesh.stiffness.curve(pair)  # a table that does not fit is refused here
         return pair
 
