@@ -50,7 +50,7 @@ def without_assumed_defaults(data: Any, defaults: Mapping[str, str]) -> Any:
     Parameters
     ----------
     data : of a pair as a file has it; anything else is returned as it is
-    defaults : field of the mesh -> its default; ``Mesh.by_stiffness`` of the stiffness that the data come from
+    defaults : field of the mesh -> its default; ``Mesh.by_stiffness`` of the pair they come from
     """
     if not isinstance(data, Mapping):
         return data
@@ -87,8 +87,8 @@ class Mesh(Section):
     relief: Literal["ignored", "static"] = Field(
         "static",
         description="'static': tip and root relief, where given, enter as unloaded error, and a pair touches "
-        "where it carries load at the mean torque; 'ignored': perfect involutes from A to D. With a stiffness "
-        "of the whole mesh, which has the profile in it, the default is 'ignored'",
+        "where it carries load at the mean torque; 'ignored': perfect involutes from A to D. With a "
+        "stiffness of the whole mesh, which has the profile in it, the default is 'ignored'",
     )
     contact: Annotated[Literal["prescribed", "loaded"], BeforeValidator(_contact)] = Field(
         "loaded",

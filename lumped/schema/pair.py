@@ -273,6 +273,16 @@ class GearPair(Section, metaclass=_InOurWords):
         return self.mesh.stiffness.words
 
     @property
+    def stiffness_note(self) -> str:
+        """What follows from a stiffness of the whole mesh, in a sentence; empty with that of a tooth pair."""
+        if not self.mesh.stiffness.whole_mesh:
+            return ""
+        return (
+            f"mesh.stiffness is the {self.stiffness_words}: contact is prescribed, and tip and root relief "
+            "are part of the stiffness."
+        )
+
+    @property
     def nominal_contact(self) -> ContactPath:
         """What friction laws see, see ``lumped.path_of_contact.contact_path``."""
         gears, torque = (self.pinion, self.gear), self.operating.pinion_torque

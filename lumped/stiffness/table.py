@@ -37,6 +37,8 @@ _LARGEST_GAP = 0.25
 _FIT_TOLERANCE = 1e-10
 #: Positions closer than this fraction of a base pitch are one.
 _SAME = 1e-9
+#: Rounding of positions over a base pitch, several times over.
+_ROUNDING = 1e-12
 
 
 class TableStiffness(StiffnessModel):
@@ -49,8 +51,8 @@ class TableStiffness(StiffnessModel):
     model: Literal["table"] = "table"
     kind: Literal["pair", "total"] = Field(
         "pair",
-        description="pair: stiffness of one tooth pair from A to D; total: of the whole mesh over a mesh cycle, load over "
-        "transmission error, used as given",
+        description="pair: stiffness of one tooth pair from A to D; total: of the whole mesh over a "
+        "mesh cycle, load over transmission error, used as given",
     )
     axis: Literal["position_mm", "roll_angle_deg", "phase"] = Field(
         description="what 'points' are: distance from X [mm], pinion roll angle [deg], or cycles after A [1]"
@@ -114,7 +116,7 @@ class TableStiffness(StiffnessModel):
         return _shared(_total_curve(position, stiffness, self, g), self.ramp_length, pair)
 
     def total(self, geometry: Geometry, phase: FloatArray) -> FloatArray:
-        """Stiffness of the whole mesh at phases of any shape [mesh cycles after A], straight from the table [N/m].
+        """Stiffness of the whole mesh at phases of any shape, in mesh cycles after A, from the table [N/m].
 
         The curve of each pair is made from it; here nothing is shared out, so that checks can hold the sum of
         the pairs against it. Only for ``kind = "total"``.
@@ -204,7 +206,7 @@ def _neighbour_breaks(
 
 def _check_gaps(gap: float, geometry: Geometry) -> None:
     # Positions are sums of lengths: a quarter of a cycle may come out longer by their rounding.
-    if gap > (_LARGEST_GAP + _SAME) * geometry.base_pitch:
+    if gap > (_LARGEST_GAP + _ROUNDING) * geometry.base_pitch:
         raise refuse(
             "mesh.stiffness.points",
             f"a gap of {gap / geometry.base_pitch:.3f} mesh cycles",
