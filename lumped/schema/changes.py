@@ -85,7 +85,8 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     data = pair.to_mapping()
     if any(within(path, _SECTION) for path in changes):
         mesh: Mesh = pair.__dict__["mesh"]
-        data = without_assumed_defaults(data, mesh.by_stiffness)
+        left = {name: value for name, value in mesh.by_stiffness.items() if f"mesh.{name}" not in changes}
+        data = without_assumed_defaults(data, left)
     sources: dict[str, str] = data.setdefault("sources", {})
     assumed: dict[str, Any] = data.setdefault("assumed", {})
     for gear in _GEARS:
