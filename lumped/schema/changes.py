@@ -15,6 +15,7 @@ from lumped.fields.scope import about_teeth
 from lumped.fields.section import Section
 from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.bearings import ROLLING, STIFFNESSES, RollingBearing
+from lumped.schema.contact import Mesh, without_assumed_defaults
 from lumped.schema.oil_grade import grade_of
 from lumped.schema.relief import STARTS
 
@@ -44,7 +45,7 @@ SHORT_NAMES = {
 _TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")
 
 #: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
-_STIFFNESS = "mesh.stiffness.model"
+_SECTION, _STIFFNESS = "mesh.stiffness", "mesh.stiffness.model"
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
     *((f"{gear}.addendum", f"{gear}.tip_diameter", f"{gear}.tip_alteration") for gear in _GEARS),
@@ -87,9 +88,14 @@ def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
 def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the plain data of a pair with other values of some fields: known ones, with the user as source.
 
-    A field that is given the value that it has is known too, where it was assumed.
+    A field that is given the value that it has is known too, where it was assumed. Another stiffness decides
+    anew what contact and relief are, where they are assumed.
     """
     data = pair.to_mapping()
+    if any(within(path, _SECTION) for path in changes):
+        mesh: Mesh = pair.__dict__["mesh"]
+        left = {name: value for name, value in mesh.by_stiffness.items() if f"mesh.{name}" not in changes}
+        data = without_assumed_defaults(data, left)
     sources: dict[str, str] = data.setdefault("sources", {})
     assumed: dict[str, Any] = data.setdefault("assumed", {})
     for gear in _GEARS:
@@ -104,7 +110,7 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
             continue
         outdated = [path]
         if path == _STIFFNESS:
-            outdated.append(_STIFFNESS.rpartition(".")[0])
+            outdated.append(_SECTION)
             _assign(type(pair), data, outdated[-1], {})
         for group in _ALTERNATIVES:
             if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):

@@ -173,21 +173,26 @@ def _rows(known: Known) -> Iterator[Row]:
     yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
     has_finite_elements = pair.mesh.stiffness.model == "finite_elements"
     stiffness: dict[str, object] | str = {"mesh.stiffness": {"model": "finite_elements"}}
+    if has_finite_elements:
+        stiffness = "the pair has it"
     contact, form = (
         ("prescribed", "contact prescribed from A to D")
         if pair.mesh.contact == "loaded"
         else ("loaded", "contact that follows the load")
     )
+    other_contact: dict[str, object] | str = {"mesh.contact": contact}
+    if pair.mesh.stiffness.whole_mesh:  # a curve that is used as given decides both
+        stiffness = other_contact = "the stiffness of the whole mesh is given, with its contact"
     others: tuple[tuple[str, str, str, Prediction | Absent, str], ...] = (
         ("contact", "form of the contact", "prescribed from A to D, or following the load",
-         _varied(known, {"mesh.contact": contact}), form),
+         _varied(known, other_contact), form),
         ("second", "exact contact and finite motions", "by the multibody model", known.second,
          "second program"),
         ("supports", "springs in place of shafts", "without the modes of the shafts",
          Absent(Outcome.FAILED, "no shafts are given") if pair.shafts is None else
          _predicted(without_shafts, pair), ""),
         ("stiffness", "tooth stiffness by finite elements", "plane finite elements of the whole gears",
-         _varied(known, "the pair has it" if has_finite_elements else stiffness),
+         _varied(known, stiffness),
          "tooth stiffness by finite elements"),
     )  # fmt: skip
     for key, name, note, other, form in others:

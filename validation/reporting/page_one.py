@@ -67,7 +67,7 @@ class Number:
     @property
     def range(self) -> str:
         """The range as printed, with its ends relative to the result; empty where there is none."""
-        if not math.isfinite(self.low):
+        if not math.isfinite(self.low) or not self.value:
             return ""
         if self.unit == "%":  # a share of one, which has per cents of its own
             low, high = (_printed(end, "%", self.digits) for end in (self.low, self.high))
