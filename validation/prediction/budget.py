@@ -89,7 +89,8 @@ def error_budget(known: Known) -> xr.Dataset:
     prediction = known.like
     rows = list(_rows(known))
     sizes = np.array([row.sizes for row in rows])
-    share = 100.0 * sizes[:, 0] / prediction.peak_to_peak
+    # Of a mesh that does not vibrate no error has a share.
+    share = 100.0 * sizes[:, 0] / (prediction.peak_to_peak or np.nan)
     texts = ("transmission error, peak to peak", "largest tooth load", "bearing force, rms")
     columns = zip(
         ("dte", "tooth_force", "bearing_force"),
@@ -100,7 +101,7 @@ def error_budget(known: Known) -> xr.Dataset:
     )
     # The linear model and the other contact are poorer than the prediction: no errors of it.
     own = np.array([np.nan if row.key in _POORER else size for row, size in zip(rows, share, strict=True)])
-    largest = rows[int(np.nanargmax(own))]
+    largest = rows[0 if np.isnan(own).all() else int(np.nanargmax(own))]
     return labelled_dataset(
         {
             "share": ("row", share, "%", "error, share of the transmission error's peak to peak"),

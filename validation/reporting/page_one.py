@@ -297,7 +297,7 @@ def advice_on_inputs(results: Results) -> list[Action]:
     actions: dict[str, Action] = {}
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1))):
         low, high = swing[j].min(), swing[j].max()
-        if high - low < _COUNTS * given:
+        if high - low <= _COUNTS * given:
             break
         field = str(found["input"].to_numpy()[j])
         kind = kind_of(field)

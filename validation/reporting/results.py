@@ -36,6 +36,7 @@ from validation.measurements.record_comparison import RecordComparison, compare_
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
+    NOTHING,
     ORDERS,
     QUANTITIES,
     Motion,
@@ -61,8 +62,6 @@ from validation.validity.plausibility import parameter_warnings
 _SLACK = 1e-9
 #: A curve over speed passes through the table's value within this share: it is computed with other samples.
 _SAME = 2e-3
-#: Vibration over the mean deflection that is rounding.
-_NOTHING = 1e-12
 #: Numbers of page 1 in a sentence.
 SHORT = {
     "dte_peak_to_peak": "transmission error",
@@ -581,18 +580,17 @@ def _broken(results: Results) -> Iterator[str]:
     # Where the linear motion stands in, what pulling teeth do may be more than the shafts bring.
     if not prediction.reason and not 0.0 < numbers["efficiency"] <= 1.0 + _SLACK:
         yield f"the efficiency is {numbers['efficiency']:.4g}"
-    sampled = float(np.ptp(prediction.cycle["dte"].to_numpy()))
-    if not sampled * (1.0 - _SLACK) <= prediction.peak_to_peak <= 1.05 * sampled + 1e-12:
+    dte = prediction.cycle["dte"].to_numpy()
+    sampled, rounding = float(np.ptp(dte)), NOTHING * float(np.abs(dte).max())
+    if not sampled * (1.0 - _SLACK) - rounding <= prediction.peak_to_peak <= 1.05 * sampled + 1e-12:
         yield "the peak to peak is not that of the motion"
     rms, orders = numbers["bearing_rms"], prediction.bearing_orders
-    if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6):
+    if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6) + (NOTHING * prediction.static_force) ** 2:
         yield "the orders of the bearing force carry more than its rms"
     linear = results.linear
     if not isinstance(linear, Absent) and results.pair.shafts is None:
         at = results.sweep.interp(speed=results.operating_rpm)["dte_peak_to_peak"]
         given = float(linear.attrs["dte_peak_to_peak"])
-        # Where nothing vibrates, such as on a constant stiffness, both are rounding of the mean.
-        rounding = _NOTHING * float(np.abs(linear["dte"]).max())
         if abs(float(at) - given) > _SAME * given + rounding:
             yield "the curve over speed misses the value at the operating speed"
     found = results.uncertainty
