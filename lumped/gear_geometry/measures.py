@@ -1,7 +1,8 @@
 """What a gear drawing states and a shop measures: span, dimension over balls, and the table of a pair.
 
-Sources: ISO 21771 (DIN 3960) for diameters, tooth thickness, generating profile shift, backlash and clearance;
-DIN 21773 (before it DIN 3960, section 3.8) for the span over k teeth and the dimension over two balls.
+Sources: ISO 21771 (DIN 3960) for diameters, tooth thickness, generating profile shift, backlash and
+clearance; DIN 21773 (before it DIN 3960, section 3.8) for the span over k teeth and the dimension over two
+balls.
 
 Teeth are measured as they are made. The thinning ``mesh.backlash`` is that of both gears together, along the
 line of action; each gear is taken to have half of it. The span of each gear is then shorter than the
@@ -66,8 +67,9 @@ def ball_touching_at(tooth: ToothProfile, radius: float) -> float:
 def over_balls(tooth: ToothProfile, ball: float) -> float:
     """Return M_dK, the dimension over two balls in spaces that lie as opposite as they can [m].
 
-    inv(alpha_K) = D_M / d_b - eta_b; M_dK = d_b / cos(alpha_K) + D_M with an even number of teeth, with an odd
-    one d_b cos(pi / (2 z)) / cos(alpha_K) + D_M. ``ball`` is the diameter D_M [m].
+    inv(alpha_K) = D_M / d_b - eta_b; M_dK = d_b / cos(alpha_K) + D_M with an even number of teeth, with an
+    odd one d_b cos(pi / (2 z)) / cos(alpha_K) + D_M. ``ball`` is the diameter D_M [m], eta_b as for
+    `ball_touching_at`.
 
     >>> tooth = ToothProfile(18, 21e-3, math.radians(20.0), 0.389, 1.25, 0.38)
     >>> round(1e3 * over_balls(tooth, 45e-3), 3)
@@ -109,9 +111,9 @@ def as_made(tooth: ToothProfile, thinning: float) -> ToothProfile:
     return replace(tooth, profile_shift=tooth.profile_shift - less)
 
 
-def _row(label: str, symbol: str, unit: str) -> Any:
-    """A field of a record that knows how it is shown."""
-    return field(metadata={"label": label, "symbol": symbol, "unit": unit})
+def _as(label: str, symbol: str, unit: str, decided_by: str = "") -> dict[str, str]:
+    """How a field of a record is shown, and the field of the parameter file that decides it."""
+    return {"label": label, "symbol": symbol, "unit": unit, "decided_by": decided_by}
 
 
 @dataclass(frozen=True)
@@ -136,22 +138,22 @@ class GearMeasures:
     over_balls : M_dK with these balls, of the teeth as made [m]
     """
 
-    teeth: int = _row("number of teeth", "z", "")
-    profile_shift: float = _row("profile shift coefficient", "x", "")
-    tip_alteration: float = _row("tip alteration", "k m", "mm")
-    reference_diameter: float = _row("reference diameter", "d", "mm")
-    base_diameter: float = _row("base diameter", "d_b", "mm")
-    tip_diameter: float = _row("tip diameter", "d_a", "mm")
-    root_diameter: float = _row("root diameter", "d_f", "mm")
-    form_diameter: float = _row("root form diameter", "d_Ff", "mm")
-    operating_diameter: float = _row("operating pitch diameter", "d_w", "mm")
-    tooth_thickness: float = _row("tooth thickness on the reference circle", "s", "mm")
-    tip_thickness: float = _row("tooth thickness on the tip circle", "s_a", "mm")
-    tip_clearance: float = _row("clearance of its root", "c", "mm")
-    teeth_spanned: int = _row("number of teeth spanned", "k", "")
-    span: float | None = _row("span", "W_k", "mm")
-    ball_diameter: float = _row("ball diameter", "D_M", "mm")
-    over_balls: float = _row("dimension over two balls", "M_dK", "mm")
+    teeth: int = field(metadata=_as("number of teeth", "z", "", "teeth"))
+    profile_shift: float = field(metadata=_as("profile shift coefficient", "x", "", "profile_shift"))
+    tip_alteration: float = field(metadata=_as("tip alteration", "k m", "mm", "tip_alteration"))
+    reference_diameter: float = field(metadata=_as("reference diameter", "d", "mm"))
+    base_diameter: float = field(metadata=_as("base diameter", "d_b", "mm"))
+    tip_diameter: float = field(metadata=_as("tip diameter", "d_a", "mm", "tip_alteration"))
+    root_diameter: float = field(metadata=_as("root diameter", "d_f", "mm"))
+    form_diameter: float = field(metadata=_as("root form diameter", "d_Ff", "mm"))
+    operating_diameter: float = field(metadata=_as("operating pitch diameter", "d_w", "mm"))
+    tooth_thickness: float = field(metadata=_as("tooth thickness on the reference circle", "s", "mm"))
+    tip_thickness: float = field(metadata=_as("tooth thickness on the tip circle", "s_a", "mm"))
+    tip_clearance: float = field(metadata=_as("clearance of its root", "c", "mm"))
+    teeth_spanned: int = field(metadata=_as("number of teeth spanned", "k", ""))
+    span: float | None = field(metadata=_as("span", "W_k", "mm"))
+    ball_diameter: float = field(metadata=_as("ball diameter", "D_M", "mm"))
+    over_balls: float = field(metadata=_as("dimension over two balls", "M_dK", "mm"))
 
 
 @dataclass(frozen=True)
@@ -163,12 +165,15 @@ class TableRow:
     label, symbol : of the quantity
     unit : "mm", "deg" or "" for a pure number
     values : of pinion and gear, or one value of the pair; a text where a measure does not exist
+    decided_by : for each value the field of the parameter file that decides it, for ``pair.state``; empty
+        where several fields do
     """
 
     label: str
     symbol: str
     unit: str
     values: tuple[float | int | str, ...]
+    decided_by: tuple[str, ...] = ()
 
     def texts(self) -> tuple[str, ...]:
         """Return the values as text: lengths to 1 um, angles to 0.001 deg, coefficients to 0.0001."""
@@ -192,15 +197,17 @@ class GearTable:
     contact_ratio : epsilon_alpha [-]
     """
 
-    module: float = _row("module", "m", "mm")
-    pressure_angle: float = _row("pressure angle", "alpha", "deg")
+    module: float = field(metadata=_as("module", "m", "mm", "basic_rack.module"))
+    pressure_angle: float = field(metadata=_as("pressure angle", "alpha", "deg", "basic_rack.pressure_angle"))
     pinion: GearMeasures
     gear: GearMeasures
-    centre_distance: float = _row("centre distance", "a", "mm")
-    operating_pressure_angle: float = _row("operating pressure angle", "alpha_w", "deg")
-    normal_backlash: float = _row("normal backlash", "j_n", "mm")
-    circumferential_backlash: float = _row("circumferential backlash", "j_t", "mm")
-    contact_ratio: float = _row("transverse contact ratio", "epsilon_alpha", "")
+    centre_distance: float = field(metadata=_as("centre distance", "a", "mm", "centre_distance"))
+    operating_pressure_angle: float = field(metadata=_as("operating pressure angle", "alpha_w", "deg"))
+    normal_backlash: float = field(metadata=_as("normal backlash", "j_n", "mm", "mesh.backlash"))
+    circumferential_backlash: float = field(
+        metadata=_as("circumferential backlash", "j_t", "mm", "mesh.backlash")
+    )
+    contact_ratio: float = field(metadata=_as("transverse contact ratio", "epsilon_alpha", ""))
 
     def rows(self) -> tuple[TableRow, ...]:
         """Return the rows of the table in the order of a drawing: basic rack, gears, assembly."""
@@ -211,13 +218,13 @@ class GearTable:
             if one.name == "pinion":
                 for of_gear in fields(self.pinion):
                     values = getattr(self.pinion, of_gear.name), getattr(self.gear, of_gear.name)
-                    yield _shown(of_gear.metadata, values)
+                    yield _shown(of_gear.metadata, values, ("pinion.", "gear."))
             elif one.name != "gear":
-                yield _shown(one.metadata, (getattr(self, one.name),))
+                yield _shown(one.metadata, (getattr(self, one.name),), ("",))
 
     def __str__(self) -> str:
         """Return the table as aligned text: quantity, symbol, unit, pinion and gear or the pair."""
-        lines = [("", "", "", "pinion", "gear")]
+        lines: list[tuple[str, ...]] = [("", "", "", "pinion", "gear")]
         lines += [(row.label, row.symbol, row.unit, *row.texts(), "")[:5] for row in self.rows()]
         widths = [max(len(line[column]) for line in lines) for column in range(5)]
         texts = (
@@ -230,11 +237,12 @@ class GearTable:
         return "\n".join(text.rstrip() for text in texts)
 
 
-def _shown(about: Any, values: tuple[float | int | None, ...]) -> TableRow:
+def _shown(about: Any, values: tuple[float | int | None, ...], sections: tuple[str, ...]) -> TableRow:
     """Row of a field with this metadata: values in SI become those of a drawing."""
     scale = {"mm": 1e3, "deg": math.degrees(1.0), "": 1}[about["unit"]]
     shown = tuple("not measurable" if one is None else one * scale for one in values)
-    return TableRow(about["label"], about["symbol"], about["unit"], shown)
+    deciding = tuple(section + about["decided_by"] for section in sections) if about["decided_by"] else ()
+    return TableRow(about["label"], about["symbol"], about["unit"], shown, deciding)
 
 
 class _Thinned(Protocol):
@@ -275,13 +283,13 @@ def gear_table(
     pair : a GearPair
     teeth_spanned : numbers of teeth k of the drawings; default those whose span touches the flanks nearest
         to the circle of diameter d + 2 x m
-    balls : ball diameters D_M of the drawings [m]; default balls that touch there, rounded up to 0.25 mm (below
-        2.5 mm to 0.05 mm), and so large that they stand out of the tip circle
+    balls : ball diameters D_M of the drawings [m]; default balls that touch there, rounded up to 0.25 mm
+        (below 2.5 mm to 0.05 mm), and so large that they stand out of the tip circle
 
     Notes
     -----
-    Each gear has half of ``pair.mesh.backlash``; thickness, span and dimension over balls are of teeth as made.
-    With unequal thinning use `as_made` with `span` and `over_balls`.
+    Each gear has half of ``pair.mesh.backlash``; thickness, span and dimension over balls are of teeth as
+    made. With unequal thinning use `as_made` with `span` and `over_balls`.
     """
     g, (first, second) = pair.geometry, pair.wheels
     thinning = 0.5 * pair.mesh.backlash
@@ -340,7 +348,7 @@ def _measured(
 
 
 def _measuring_radius(tooth: ToothProfile, form: float, tip: float) -> float:
-    """Radius on which flanks are best measured: r + x m, or the middle of the involute where that is not on it."""
+    """Radius on which flanks are measured: r + x m, or, where that is off the involute, its middle."""
     shifted = tooth.reference_radius + tooth.profile_shift * tooth.module
     return shifted if form < shifted < tip else 0.5 * (form + tip)
 

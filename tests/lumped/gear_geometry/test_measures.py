@@ -52,8 +52,8 @@ def flank(tooth, length):
 @settings(max_examples=60, deadline=None)
 @given(teeth())
 def test_span_is_the_distance_of_planes_that_touch_two_flanks(tooth):
-    # The outer flanks of k teeth, turned so that both are cut at right angles by one line: the distance of the
-    # two points is the least one between a point of one flank and the plane through the other one's normal.
+    # The outer flanks of k teeth, turned so that both are cut at right angles by one line: the distance of
+    # the two points is that of two planes that touch the flanks there.
     k = teeth_spanned(tooth, shifted_radius(tooth))
     half_turn = math.pi * (k - 1) / tooth.teeth
 
@@ -181,7 +181,7 @@ def test_a_span_that_touches_no_involute_is_no_number():
 
 
 def test_balls_stand_out_of_the_tip_circle():
-    # A contact ratio of 2.3 takes long teeth: the ball that touches on the shifted circle is below their tips.
+    # A contact ratio of 2.3 takes long teeth: a ball that touches on the shifted circle is below their tips.
     pair = unlike_pair("contact_ratio_2_3_on_shafts")
     table = gear_table(pair)
     for wheel, one in zip(pair.wheels, (table.pinion, table.gear), strict=True):
@@ -199,3 +199,15 @@ def test_the_text_has_a_line_for_every_row():
     line = next(line for line in lines if "d_a" in line.split())
     assert line.split()[-3:] == ["mm", "82.636", "118.544"]
     assert all(row.unit in ("", "mm", "deg") and row.label and row.symbol for row in table.rows())
+
+
+def test_a_row_knows_which_field_decides_it():
+    # The tips of this pair are given; those of a pair without them are assumed, and change with their field.
+    given, free = load_gear_pair("fzg_c"), load_gear_pair("nasa_28_28")
+    for row in gear_table(given).rows():
+        assert len(row.decided_by) in (0, len(row.values)), row.label
+        for path in row.decided_by:
+            given.state(path)  # raises for a name that is no field
+    tips = next(row for row in gear_table(given).rows() if row.symbol == "d_a")
+    assert [given.state(path).value for path in tips.decided_by] == ["known", "known"]
+    assert [free.state(path).value for path in tips.decided_by] == ["assumed", "assumed"]

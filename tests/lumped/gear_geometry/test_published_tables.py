@@ -125,7 +125,7 @@ def test_teeth_with_allowances_measure_as_printed(name):
             assert_printed(1e3 * over_balls(tooth, ball), made["over_balls"][which], where)
             arc = (0.5 * math.pi + 2.0 * tooth.profile_shift * math.tan(alpha)) * tooth.module
             assert_printed(1e3 * arc, made["tooth_thickness"][which], where)
-        # the same teeth at the end of the tolerance of the centre distance: shifts are those of the nominal one
+        # The same teeth at the end of the tolerance of the centre distance.
         shifts = {
             f"{gear}.profile_shift": s
             for gear, s in zip(("pinion", "gear"), nominal.profile_shifts, strict=True)
@@ -167,7 +167,7 @@ def test_backlash_of_gears_made_with_other_shifts():
     )
     normal = theoretical_backlash(pinion, gear, pair.geometry.operating_pressure_angle)
     assert_printed(1e3 * normal, generated["normal_backlash"], "j_n")
-    # The same by thinning the teeth of the nominal shifts: half of it for each, or another share, is one pair.
+    # The same by thinning the teeth of the nominal shifts.
     as_thinned = gear_table(loaded(given["inputs"], **{"mesh.backlash": 1e3 * normal}))
     assert as_thinned.normal_backlash == pytest.approx(normal, abs=1e-15)
     assert_printed(1e3 * as_thinned.circumferential_backlash, generated["circumferential_backlash"], "j_t")
