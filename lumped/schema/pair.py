@@ -238,17 +238,23 @@ class GearPair(Section, metaclass=_InOurWords):
         shifts = self.pinion.profile_shift, self.gear.profile_shift
         if self.centre_distance is None or None in shifts:
             return problems
+        own = {name: getattr(self, name) for name in GearPair.model_fields}
+        of_shifts = GearPair.model_construct(**own | {"centre_distance": None})
         try:
-            free = self._geometry_at(None)
+            free = of_shifts._geometry_at(None)
         except ParameterError:
             return problems
-        if existence_problems(*self.wheels, free, self.mesh.backlash):
+        if existence_problems(*of_shifts.wheels, free, self.mesh.backlash):
             return problems
         value = f"{self.centre_distance * 1e3:.6g} mm with the profile shifts {shifts[0]:g} and {shifts[1]:g}"
-        with suppress(ParameterError):  # a centre distance below that of the base circles has no backlash
-            play = theoretical_backlash(
-                *self.wheels, self._geometry_at(self.centre_distance).operating_pressure_angle
-            )
+        about = f"about {free.centre_distance * 1e3:.6g} mm for these shifts"
+        allowed = f"normal backlash >= 0 and <= {_LARGEST_PLAY:g} modules, so {about}"
+        try:
+            angle = self._geometry_at(self.centre_distance).operating_pressure_angle
+        except ParameterError as error:  # no geometry, so no backlash: a centre distance below the base radii
+            allowed = f"{error.problems[0].allowed}, {about}"
+        else:
+            play = theoretical_backlash(*self.wheels, angle)
             if not problems and play <= _LARGEST_PLAY * self.basic_rack.module:
                 return problems
             value += f", backlash {play * 1e3:.4f} mm{': the teeth wedge' if play < 0.0 else ''}"
@@ -261,10 +267,6 @@ class GearPair(Section, metaclass=_InOurWords):
             if 2.0 * LEAST_SHIFT <= total <= 2.0 * LARGEST_SHIFT:
                 actions.append(f"or the profile shifts (their sum is then {total:.4f})")
         actions.append("or correct the wrong one. Teeth that are thinned on purpose: mesh.backlash")
-        allowed = (
-            f"normal backlash >= 0 and <= {_LARGEST_PLAY:g} modules, so about "
-            f"{free.centre_distance * 1e3:.6g} mm for these shifts"
-        )
         first = FieldProblem("centre_distance", value, allowed, f"{', '.join(actions)}.")
         return [first, *(problem for problem in problems if problem.field not in _OF_THE_MESH)]
 

@@ -34,10 +34,10 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
-from multibody.contact.cut_teeth import profile_shifts, root_radius
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import event_table
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
+from multibody.gears.cut_teeth import profile_shifts, root_radius
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]

@@ -43,7 +43,7 @@ _WHY = {
         ("pressure_angle", "addendum_coefficient", "dedendum_coefficient", "fillet_radius_coefficient"),
         "standard basic rack, ISO 53",
     ),
-    "profile_shift": "none without a centre distance; else what it asks for, shared between the gears",
+    "profile_shift": "what the centre distance asks for, shared between both gears; none without one",
     "tip_alteration": "keeps the clearance of the basic rack",
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
@@ -258,8 +258,8 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
             lines.append(line)
             for path, value in follows.items():
                 if path.rpartition(".")[0] == found[2]:
-                    entry = f"# {path.rpartition('.')[2]} = {_short(value)}"
-                    lines.append(_commented(entry, path, assumed))
+                    comment = f"# {path.rpartition('.')[2]} = {_short(value)}"
+                    lines.append(_commented(comment, path, assumed))
             continue
         elif entry := _ENTRY.match(line):  # the paths of [sources] and [assumed] have quotation marks
             line = _commented(line, f"{section}{entry[1]}", assumed)
