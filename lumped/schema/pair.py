@@ -542,6 +542,12 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
     return result
 
 
+def field_values(pair: GearPair) -> dict[str, Any]:
+    """Return `leaf_paths` and, where a file does not give them, the profile shifts and tips that follow."""
+    written = leaf_paths(pair)
+    return written | {path: value for path, value in pair.assumed.items() if path not in written}
+
+
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
     """Return the gear pair of plain data in file units, or refuse it in the user's words.
 

@@ -9,7 +9,7 @@ from typing import Any
 from lumped.path_of_contact import pair_stiffness
 from lumped.schema.assumed import WORDS, State
 from lumped.schema.bodies import bodies_of
-from lumped.schema.pair import GearPair, leaf_paths, stated_unit
+from lumped.schema.pair import GearPair, field_values, stated_unit
 from validation.exchange.drawing_table import HEADINGS, drawing_rows
 from validation.exchange.new_pair_file import reasons
 from validation.prediction.inputs import read_values, source_of, uncertain_inputs
@@ -21,7 +21,7 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.given, results.pair.geometry
-    values = {path: v for path, v in leaf_paths(pair).items() if path not in WORDS}
+    values = {path: v for path, v in field_values(pair).items() if path not in WORDS}
     spreads = {part.field: one.written for one in uncertain_inputs(pair) for part in one.parts}
     given, assumed = results.inputs
     read, why = read_values(pair, contact_lost=results.like.contact_lost), reasons(pair)
