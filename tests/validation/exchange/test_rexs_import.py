@@ -63,7 +63,7 @@ def test_every_value_has_its_place_in_the_file_or_is_marked_assumed(xml, save):
     for path in ("pinion.roughness", "friction.law", "bearings.gear.size", "lubricant.viscosity"):
         assert path in assumed
     assert all(s.startswith("REXS model.rexs ") for s in sources.values())
-    (summary,) = [note for note in notes if "values are assumed" in note]
+    (summary,) = [note for note in notes if "weighs most" in note]
     assert summary.startswith(f"{len(assumed | follows)} values")
     assert len(summary) < 300
     assert any("does not say which gear drives" in note for note in notes)

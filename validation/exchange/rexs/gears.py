@@ -10,11 +10,7 @@ from validation.exchange.rexs.draft import Draft, Reading
 from validation.exchange.rexs.model import NOT_TAKEN, Component, derived_number
 
 #: Field -> attribute of the gear, and of its material.
-_BLANK = {
-    "face_width": "face_width",
-    "bore": "inner_diameter",
-    "mass": "mass_of_component",
-}
+_BLANK = {"bore": "inner_diameter", "mass": "mass_of_component"}
 _MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
 #: Attribute of the flank's roughness, up to 1.7 and of 2.0.0 -> how many Ra it is; Rz = 6 Ra (ISO 6336-2).
 _ROUGHNESS = {

@@ -23,8 +23,8 @@ from validation.exchange.rexs.remarks import note_what_is_assumed
 from validation.exchange.rexs.tooth_system import read_tooth_system
 
 _GEARS_OF_PAIR = ("pinion", "gear")
-#: Fields of the tooth system and the blanks: what the user gives of them decides the pair that is read.
-_TOOTH_SYSTEM = ("basic_rack.", "centre_distance", "pinion.", "gear.")
+#: Starts of the fields that the file and the user give together; others of the user replace those of the pair.
+_READ_WITH = ("basic_rack.", "centre_distance", "pinion.", "gear.", "lubricant.")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
 _NO_HELIX = 1e-9
@@ -88,8 +88,8 @@ def gear_pair_from_rexs(
     model = read_rexs(path)
     picked, notes = _chosen(model, stage)
     given = by_fields(changes or {})
-    of_teeth = {name: value for name, value in given.items() if name.startswith(_TOOTH_SYSTEM)}
-    draft, component = Draft(model, of_teeth, notes=notes), picked.component
+    with_file = {path: value for path, value in given.items() if path.startswith(_READ_WITH)}
+    draft, component = Draft(model, with_file, notes=notes), picked.component
     gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, picked.gears), strict=True))
     read_gears(draft, gears)
     read_tooth_system(draft, component, gears)
@@ -101,7 +101,7 @@ def gear_pair_from_rexs(
     pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     values = leaf_paths(pair)
     pair = marked(pair, {path: source for path, source in draft.sources.items() if path in values})
-    if later := {name: value for name, value in given.items() if name not in of_teeth}:
+    if later := {path: value for path, value in given.items() if path not in with_file}:
         pair = pair.with_(later)
         sources = dict(pair.sources) | dict.fromkeys(later, GIVEN)
         pair = load_gear_pair(pair.to_mapping() | {"sources": sources})
@@ -225,12 +225,16 @@ def _read_lubricant(draft: Draft, stage: Component) -> None:
     places = [stage, *model.of_type("gear_casing")]
     oils = [oil for place in places for oil in model.referenced(place, "lubricant")]
     oils = oils or (only if len(only := model.of_type("lubricant")) == 1 else [])
+    law = "lubricant.viscosity_law"
+    if any(path in draft.given for path in ("lubricant.viscosity", f"{law}.iso_vg")):
+        if f"{law}.iso_vg" in draft.given:
+            draft.take(f"{law}.temperature", draft.first(places, "temperature_lubricant"))
+        return
     if not oils:
         return
     v40, v100, density = (draft.number(oils[0], attribute) for attribute in _VISCOSITY_LAW.values())
     viscosity = draft.first(places, "operating_viscosity")
     if v40 is not None and v100 is not None:
-        law = "lubricant.viscosity_law"
         draft.take_all(law, oils[0], _VISCOSITY_LAW)
         draft.take(f"{law}.temperature", draft.first(places, "temperature_lubricant"))
     elif viscosity is not None and density is not None:

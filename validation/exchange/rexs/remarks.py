@@ -9,21 +9,23 @@ from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.tooth_system import places
 
 _GEARS = ("pinion", "gear")
-#: What is assumed, in the order in which it is named -> ends of the paths that belong to it: first what
-#: decides the geometry and the load, then supports and damping, then lubricant and friction, then the rest.
+#: What is assumed, in the order in which it is named -> ends or starts of the paths that belong to it: first
+#: what decides the geometry and the load, then supports and damping, then lubricant and friction, then the rest.
 _GROUPS: dict[str, tuple[str, ...]] = {
     "profile shifts": (".profile_shift",),
     "tips": (".tip_alteration", ".addendum_coefficient"),
-    "root": (".dedendum_coefficient", ".fillet_radius_coefficient"),
+    "roots": (".dedendum_coefficient", ".fillet_radius_coefficient"),
     "speed": (".pinion_speed",),
-    "torque": (".pinion_torque", ".brake_torque"),
+    "torque": (".pinion_torque",),
     "backlash": (".backlash",),
     "bearings": ("bearings.",),
-    "mesh": ("mesh.",),
+    "damping of the mesh": ("mesh.damping_ratio",),
+    "tooth stiffness": ("mesh.",),
     "lubricant": ("lubricant.",),
-    "friction": ("friction.", ".roughness"),
+    "friction": ("friction.",),
+    "roughness": (".roughness",),
     "material": (".youngs_modulus", ".poisson_ratio", ".density"),
-    "blank": (".bore",),
+    "bores": (".bore",),
 }
 
 
@@ -38,8 +40,8 @@ def note_what_is_assumed(draft: Draft, pair: GearPair, gears: dict[str, Componen
             draft.note(f"{text}; give your own with --{key}")
     if pair.assumed:
         draft.note(
-            f"{len(pair.assumed)} values are assumed, not known, first those that weigh most: {_grouped(pair)}. "
-            "The file marks each of them"
+            f"{len(pair.assumed)} values are not in the file and are assumed; what weighs most stands first: "
+            f"{_grouped(pair)}"
         )
     for which in _GEARS:
         if f"{which}.inertia" not in dict(pair.sources) and f"{which}.mass" in dict(pair.sources):
@@ -51,15 +53,14 @@ def note_what_is_assumed(draft: Draft, pair: GearPair, gears: dict[str, Componen
 
 
 def _grouped(pair: GearPair) -> str:
-    """Assumed fields by group: one field by its path, several by the group and their number."""
+    """Assumed fields in groups; a field of no group by its path."""
     rest = list(pair.assumed)
     words = []
     for name, ends in _GROUPS.items():
-        inside = [p for p in rest if any(p.startswith(e) if e[0] != "." else p.endswith(e) for e in ends)]
+        inside = [path for path in rest if path.endswith(ends) or path.startswith(ends)]
         rest = [path for path in rest if path not in inside]
-        if inside:
-            words.append(inside[0] if len(inside) == 1 else f"{name} ({len(inside)})")
-    return ", ".join([*words, *([f"others ({len(rest)})"] if rest else [])])
+        words += [name] if inside else []
+    return ", ".join([*words, *rest])
 
 
 def _note_shifts(draft: Draft, pair: GearPair) -> None:
@@ -91,9 +92,9 @@ def _note_tips(draft: Draft, pair: GearPair, gears: dict[str, Component]) -> Non
         k, rack = to_stated(pair.tip_alteration, "mm"), pair.basic_rack.addendum_coefficient
         named = " and ".join(f"{which}.tip_diameter" for which in open_tips)
         draft.note(
-            f"{named}: not in the file ({places('tip_diameter')}); {tips} is assumed, by the addendum "
-            f"coefficient {rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm): contact ratio "
-            f"{pair.geometry.contact_ratio:.3f}. Hold it against the drawing, or give it: --set "
+            f"{named} not in the file ({places('tip_diameter')}): {tips} assumed, by the addendum coefficient "
+            f"{rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm), which makes the contact ratio "
+            f"{pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: --set "
             f"{open_tips[0]}.tip_diameter=VALUE"
         )
     for which, gear in gears.items():

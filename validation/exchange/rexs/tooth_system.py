@@ -78,6 +78,7 @@ def read_tooth_system(draft: Draft, stage: Component, gears: dict[str, Component
     both = tuple(gears.values())
     for which, gear in gears.items():
         _read_teeth(draft, which, gear)
+        draft.take(f"{which}.face_width", _read(draft, "face_width", gear))
         _need(draft, f"{which}.face_width", "face_width", gear)
     module = _common(draft, "module", both, "Gears that mesh have one module.")
     angle = _common(draft, "pressure_angle", both, _MESH)
@@ -131,8 +132,8 @@ def _need(draft: Draft, path: str, quantity: str, *components: Component, instea
         path,
         f"not in {draft.model.file}, REXS {version}",
         f"for {' or '.join(c.label for c in components)}: {places(quantity)}{instead}",
-        "It decides the geometry, so nothing stands in for it. Export it from the program that wrote the file, "
-        f"or give it: spurcheck init --from-rexs FILE --set {path}=VALUE.",
+        "It decides the geometry, so nothing stands in for it. Export it from the program that wrote the "
+        f"file, or give it: spurcheck init --from-rexs FILE --set {path}=VALUE.",
     )
 
 
@@ -169,8 +170,8 @@ def _refuse_helix(draft: Draft, gears: tuple[Component, ...]) -> None:
             "helix angle",
             f"not in {draft.model.file}",
             f"0 in {places('helix_angle')}",
-            "It decides whether these are spur gears. Export it from the program that wrote the file, or write "
-            "the attribute into the file: 0 for a spur gear.",
+            "It decides whether these are spur gears. Export it from the program that wrote the file, or "
+            "write the attribute into the file: 0 for a spur gear.",
         )
 
 
@@ -201,27 +202,34 @@ def _from_sum(draft: Draft, total: Reading, paths: list[str], missing: list[str]
         if (known := draft.si(other)) is not None:
             draft.take(missing[0], Reading(total.si - known, f"{total.where}, less {other}"))
         return
-    teeth = [draft.values.get(f"{which}.teeth") for which in ("pinion", "gear")]
-    if all(isinstance(z, int) and z > 0 for z in teeth):
-        values = shared(total.si, (int(teeth[0]), int(teeth[1])))
+    if (teeth := _teeth(draft)) is not None:
+        values = shared(total.si, teeth)
         draft.values |= dict(zip(paths, values, strict=True))  # without a source: assumed
         draft.note(
-            f"profile shifts: their sum {total.si:.4g} is in {total.where}; how the gears share it is not in the "
-            f"file, {values[0]:.4g} and {values[1]:.4g} are assumed: give one, --set pinion.profile_shift=VALUE"
+            f"profile shifts are not in the file: their sum {total.si:.4g} is in {total.where}; how the gears "
+            f"share it is assumed, {values[0]:.4f} and {values[1]:.4f}: give one, --set "
+            "pinion.profile_shift=VALUE"
         )
 
 
+def _teeth(draft: Draft) -> tuple[int, int] | None:
+    """Numbers of teeth of pinion and gear, where they are numbers of teeth."""
+    first, second = (draft.values.get(f"{which}.teeth") for which in ("pinion", "gear"))
+    if isinstance(first, int) and isinstance(second, int) and min(first, second) > 0:
+        return first, second
+    return None
+
+
 def _read_tips(draft: Draft, gears: dict[str, Component]) -> None:
-    """Read tip diameters, else the mean of their limits, else addenda, else the rack's addendum coefficient."""
+    """Read tip diameters, else the mean of their limits, else addenda, else the addendum coefficient."""
     coefficients = {which: _read(draft, "addendum_coefficient", gear) for which, gear in gears.items()}
     for which, gear in gears.items():
         if any(f"{which}.{name}" in draft.given for name in _TIPS):
             continue
-        low, high = (draft.number(gear, place.attribute) for place in PLACES["tip_limits"])
+        limits = [draft.number(gear, place.attribute) for place in PLACES["tip_limits"]]
         if (tip := _read(draft, "tip_diameter", gear)) is not None:
             draft.take(f"{which}.tip_diameter", tip)
-        elif low is not None and high is not None:
-            mean = Reading(0.5 * (low.si + high.si), f"{low.where} and maximum_tip_diameter, their mean")
+        elif (mean := _mean(limits)) is not None:
             draft.take(f"{which}.tip_diameter", mean)
         else:
             draft.take(f"{which}.addendum", _read(draft, "addendum", gear))
@@ -232,6 +240,14 @@ def _read_tips(draft: Draft, gears: dict[str, Component]) -> None:
         draft.agreed(used, "Give a tip diameter: --set pinion.tip_diameter=VALUE, and of the gear.")
     elif used:
         draft.take("basic_rack.addendum_coefficient", used[0])
+
+
+def _mean(limits: list[Reading | None]) -> Reading | None:
+    """Mean of the least and the largest value, where the file has both."""
+    ends = [one for one in limits if one is not None]
+    if len(ends) != 2:
+        return None
+    return Reading(0.5 * (ends[0].si + ends[1].si), f"{ends[0].where} and its maximum, their mean")
 
 
 def _read_tool(draft: Draft, gears: dict[str, Component]) -> None:
@@ -253,17 +269,16 @@ def _read_tool(draft: Draft, gears: dict[str, Component]) -> None:
 def _dedenda(draft: Draft, gears: dict[str, Component]) -> list[Reading | None]:
     """h_fP* from root diameters: d_f = m (z + 2 x - 2 h_fP*); a shift may be that of the centre distance."""
     module, angle = draft.si("basic_rack.module"), draft.si("basic_rack.pressure_angle")
-    teeth = [draft.values.get(f"{which}.teeth") for which in gears]
-    if not module or not angle or not all(isinstance(z, int) and z > 0 for z in teeth):
+    teeth = _teeth(draft)
+    if not module or not angle or teeth is None:
         return []
     given = draft.si("pinion.profile_shift"), draft.si("gear.profile_shift")
-    numbers = int(teeth[0]), int(teeth[1])
     try:
-        shifts = resolved_shifts(given, numbers, module, angle, draft.si("centre_distance"))
+        shifts = resolved_shifts(given, teeth, module, angle, draft.si("centre_distance"))
     except ParameterError:  # the pair refuses them, with their places
         return []
     readings = []
-    for gear, z, shift in zip(gears.values(), numbers, shifts, strict=True):
+    for gear, z, shift in zip(gears.values(), teeth, shifts, strict=True):
         if (root := draft.number(gear, "root_diameter")) is not None:
             value = 0.5 * (z + 2.0 * shift - root.si / module)
             readings.append(Reading(value, f"{root.where}, by d_f = m (z + 2 x - 2 h_fP*)"))
