@@ -80,13 +80,15 @@ def rexs_text(stage, version, shifts="coefficient", tips="diameter", left_out=()
     drives : number of the driving gear
     """
     degree = "°" if version in _SIGN else "deg"
+    transverse = None if version == "1.0" else stage.pressure_angle
     flank, data = ("flank_geometry", "stage_gear_data") if version in _OLD else (
         "cylindrical_gear_flank", "cylindrical_stage_gear_data"
     )  # fmt: skip
 
     def component(number, kind, **values):
         units = {
-            "number_of_teeth": "none", "helix_angle_reference_diameter": degree, "normal_pressure_angle": degree,
+            "number_of_teeth": "none", "helix_angle_reference_diameter": degree,
+            "normal_pressure_angle": degree,
             "pressure_angle_in_the_transverse_section": degree, "rotational_speed": "1 / min",
             "addendum_modification_coefficient": "none", "sum_of_addendum_modification_coefficients": "none",
             "addendum_coefficient_basic_profile": "none", "is_driving_gear": "none",
@@ -126,14 +128,14 @@ def rexs_text(stage, version, shifts="coefficient", tips="diameter", left_out=()
             parts.append(
                 component(
                     10 * number + side, flank, normal_pressure_angle=stage.pressure_angle,
-                    pressure_angle_in_the_transverse_section=stage.pressure_angle if version != "1.0" else None,
+                    pressure_angle_in_the_transverse_section=transverse,
                     addendum_modification_coefficient=own,
                     addendum_modification=x * stage.module if shifts == "length" else None,
                     addendum_coefficient_basic_profile=stage.addendum if tips == "coefficient" else None,
                 )
             )  # fmt: skip
-        parts.append(component(10 * number + 3, "rack_shaped_tool", normal_module=stage.module,
-                               addendum_coefficient_reference_profile=1.3, tip_radius_factor=0.25))  # fmt: skip
+        cutter = {"addendum_coefficient_reference_profile": 1.3, "tip_radius_factor": 0.25}
+        parts.append(component(10 * number + 3, "rack_shaped_tool", normal_module=stage.module, **cutter))
         parts.append(component(10 * number + 4, data, is_driving_gear=str(number == drives).lower()))
         relations += [
             relation(10 * number, "flank", gear=10 * number, left=10 * number + 1, right=10 * number + 2),

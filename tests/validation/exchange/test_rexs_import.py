@@ -291,8 +291,8 @@ def test_other_units_of_the_same_kind_are_converted(xml, save):
 
 @pytest.mark.parametrize(("old", "new", "field", "beside"), [
     # a = m (z1 + z2) cos(alpha) / (2 cos(alpha_w)), inv(alpha_w) = inv(alpha) + 2 tan(alpha) x/(z1 + z2)
-    (">50.2<", ">50<", "centre_distance = 50 mm.*0.1 and 0, .*10/center_distance", "50.1971 mm for these shifts"),
-    (">50.2<", ">502<", "centre_distance = 502 mm.*0.1 and 0, .*10/center_distance", "50.1971 mm for these shifts"),
+    (">50.2<", ">50<", "centre_distance = 50 mm.*0.1 and 0, .*10/center_distance", "50.1971 mm for these"),
+    (">50.2<", ">502<", "centre_distance = 502 mm.*0.1 and 0, .*10/center_distance", "50.1971 mm for these"),
     # the base circle, m z cos(alpha) = 37.5877 mm
     (">44.2<", ">1<", "pinion.tip_diameter = 1 mm.*21/tip_diameter", "> 37.5877 mm"),
     (">44.2<", ">48<", "pinion.tip_diameter = 48.0000 mm.*21/tip_diameter", "<= 45.4000 mm"),

@@ -48,7 +48,8 @@ _SECOND = {
     "relations": '<relation id="80" type="stage"><ref id="11" role="stage"/><ref id="23" role="gear_1"/>'
     '<ref id="24" role="gear_2"/></relation>'
     + "".join(
-        f'<relation id="{58 + i}" type="flank"><ref id="{i}" role="gear"/><ref id="43" role="left"/></relation>'
+        f'<relation id="{58 + i}" type="flank"><ref id="{i}" role="gear"/><ref id="43" role="left"/>'
+        "</relation>"
         for i in (23, 24)
     ),
     "components": '<component id="11" type="cylindrical_stage" name="second stage"/>'

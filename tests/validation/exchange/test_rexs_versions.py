@@ -42,7 +42,7 @@ def shifts_of_centre(stage):
 
 
 def wanted(stage, shifts, tips):
-    """The stage that a file has to give: where it has one shift alone, the centre distance leaves the other."""
+    """The stage that a file has to give: beside one shift alone, the centre distance leaves the other."""
     if shifts != "first":
         return stage
     other = shifts_of_centre(stage) - stage.shifts[0]
@@ -244,6 +244,48 @@ def test_what_the_user_gives_stands_in_place_of_the_file(save):
     first = stage.module * (23 + 2.0 * stage.shifts[0] + 2.0)  # the addendum coefficient is not in the file
     assert 2e3 * pair.wheels[0].tip_radius == pytest.approx(first, rel=1e-14)
     assert pair.lubricant.viscosity_law.iso_vg == 220
+    text = rexs_text(stage, "1.4")
+    wider = pair_of(save(text), changes={"face_width": 30, "module": f"{stage.module - 1e-4:.15g} mm"})
+    assert (wider.pinion.face_width, wider.gear.face_width) == (0.03, 0.03)
+    assert wider.basic_rack.module == pytest.approx(1e-3 * stage.module - 1e-7, rel=1e-14)
+    assert dict(wider.sources)["gear.face_width"] == "given by the user"
+
+
+def test_a_tool_may_give_lengths(save):
+    stage = STAGES["23/67"]
+    text = rexs_text(stage, "1.1")
+    factors = '<attribute id="addendum_coefficient_reference_profile" unit="none">1.3</attribute>'
+    radius = '<attribute id="tip_radius_factor" unit="none">0.25</attribute>'
+    assert text.count(factors) == text.count(radius) == 2
+    for old, name, share in ((factors, "addendum_reference_profile", 1.3), (radius, "tip_radius", 0.25)):
+        text = text.replace(old, f'<attribute id="{name}" unit="mm">{share * stage.module!r}</attribute>')
+    rack = pair_of(save(text)).basic_rack
+    assert rack.dedendum_coefficient == pytest.approx(1.3, rel=1e-14)
+    assert rack.fillet_radius_coefficient == pytest.approx(0.25, rel=1e-14)
+
+
+def test_a_root_diameter_is_taken_at_the_shift_of_the_centre_distance(save):
+    stage = STAGES["23/67"]
+    x = shifts_of_centre(stage) - stage.shifts[0]
+    text = rexs_text(stage, "1.2", "first", left_out=("addendum_coefficient_reference_profile",))
+    # d_f = m (z + 2 x - 2 h_fP*) of the second gear, for h_fP* = 1.2
+    root = f'<attribute id="root_diameter" unit="mm">{stage.module * (67 + 2.0 * x - 2.4)!r}</attribute>'
+    head = '<component id="20" type="cylindrical_gear">'
+    rack = pair_of(save(text.replace(head, head + root))).basic_rack
+    assert rack.dedendum_coefficient == pytest.approx(1.2, rel=1e-11)
+
+
+def test_two_addendum_coefficients_without_tip_diameters_are_refused(save):
+    stage = STAGES["23/67"]
+    text = rexs_text(stage, "1.3", tips="coefficient")
+    first, _, second = text.partition('<component id="20"')
+    path = save(f'{first}<component id="20"{second.replace(f">{stage.addendum!r}<", ">0.95<")}')
+    with pytest.raises(ParameterError, match=r"--set pinion\.tip_diameter=VALUE"):
+        gear_pair_from_rexs(path)
+    pair = pair_of(path, changes={"gear.tip_diameter": 80.5})
+    assert pair.basic_rack.addendum_coefficient == stage.addendum
+    pair = pair_of(path, changes={"pinion.tip_diameter": 29.9})
+    assert pair.basic_rack.addendum_coefficient == 0.95
 
 
 def test_a_chamfer_of_the_tip_is_named(save):

@@ -23,7 +23,7 @@ from validation.exchange.rexs.remarks import note_what_is_assumed
 from validation.exchange.rexs.tooth_system import read_tooth_system
 
 _GEARS_OF_PAIR = ("pinion", "gear")
-#: Starts of the fields that the file and the user give together; others of the user replace those of the pair.
+#: Starts of the fields that file and user give together; others of the user replace those of the pair.
 _READ_WITH = ("basic_rack.", "centre_distance", "pinion.", "gear.", "lubricant.")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
@@ -72,8 +72,8 @@ def gear_pair_from_rexs(
     Raises
     ------
     ParameterError : a hostile or broken file; a stage that is helical, internal, planetary, bevel or worm;
-        several stages and no number; a value that decides the geometry and is nowhere in the file: the refusal
-        names component, attribute and versions; a value that is refused, or that contradicts the others
+        several stages and no number; a value that decides the geometry and is nowhere in the file: the
+        refusal names component, attribute and versions; a value that is refused, or contradicts the others
 
     Examples
     --------

@@ -10,7 +10,7 @@ from validation.exchange.rexs.tooth_system import places
 
 _GEARS = ("pinion", "gear")
 #: What is assumed, in the order in which it is named -> ends or starts of the paths that belong to it: first
-#: what decides the geometry and the load, then supports and damping, then lubricant and friction, then the rest.
+#: what decides geometry and load, then supports and damping, then lubricant and friction, then the rest.
 _GROUPS: dict[str, tuple[str, ...]] = {
     "profile shifts": (".profile_shift",),
     "tips": (".tip_alteration", ".addendum_coefficient"),
@@ -75,12 +75,14 @@ def _note_shifts(draft: Draft, pair: GearPair) -> None:
         value = pair.profile_shifts[_GEARS.index(which)]
         other = _GEARS[1 - _GEARS.index(which)]
         draft.note(
-            f"{which}.profile_shift is not in the file: {value:.4f} follows from that of the {other} and {centre}"
+            f"{which}.profile_shift is not in the file: {value:.4f} follows from that of the {other} and "
+            f"{centre}"
         )
     else:
         draft.note(
-            f"profile shifts are not in the file: their sum {first + second:.4f} follows from {centre}; how the "
-            f"gears share it is assumed, {first:.4f} and {second:.4f}: give one, --set pinion.profile_shift=VALUE"
+            f"profile shifts are not in the file: their sum {first + second:.4f} follows from {centre}; how "
+            f"the gears share it is assumed, {first:.4f} and {second:.4f}: give one, --set "
+            "pinion.profile_shift=VALUE"
         )
 
 
@@ -92,10 +94,10 @@ def _note_tips(draft: Draft, pair: GearPair, gears: dict[str, Component]) -> Non
         k, rack = to_stated(pair.tip_alteration, "mm"), pair.basic_rack.addendum_coefficient
         named = " and ".join(f"{which}.tip_diameter" for which in open_tips)
         draft.note(
-            f"{named} not in the file ({places('tip_diameter')}): {tips} assumed, by the addendum coefficient "
-            f"{rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm), which makes the contact ratio "
-            f"{pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: --set "
-            f"{open_tips[0]}.tip_diameter=VALUE"
+            f"{named} not in the file ({places('tip_diameter')}): {tips} assumed, by the addendum "
+            f"coefficient {rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm), which makes "
+            f"the contact ratio {pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: "
+            f"--set {open_tips[0]}.tip_diameter=VALUE"
         )
     for which, gear in gears.items():
         for flank in draft.model.flanks(gear).values():
@@ -103,7 +105,7 @@ def _note_tips(draft: Draft, pair: GearPair, gears: dict[str, Component]) -> Non
             if chamfer is not None and chamfer.si > 0.0:
                 height = f"{to_stated(chamfer.si, 'mm'):g} mm"
                 draft.note(
-                    f"{flank.label}/tooth_tip_chamfer = {height} is left out: contact reaches the tip circle. For "
-                    f"contact that ends at the chamfer give a smaller {which}.tip_diameter"
+                    f"{flank.label}/tooth_tip_chamfer = {height} is left out: contact reaches the tip "
+                    f"circle. For contact that ends at the chamfer give a smaller {which}.tip_diameter"
                 )
                 break

@@ -206,8 +206,8 @@ def _from_sum(draft: Draft, total: Reading, paths: list[str], missing: list[str]
         values = shared(total.si, teeth)
         draft.values |= dict(zip(paths, values, strict=True))  # without a source: assumed
         draft.note(
-            f"profile shifts are not in the file: their sum {total.si:.4g} is in {total.where}; how the gears "
-            f"share it is assumed, {values[0]:.4f} and {values[1]:.4f}: give one, --set "
+            f"profile shifts are not in the file: their sum {total.si:.4f} is in {total.where}; how the "
+            f"gears share it is assumed, {values[0]:.4f} and {values[1]:.4f}: give one, --set "
             "pinion.profile_shift=VALUE"
         )
 
