@@ -77,7 +77,7 @@ def init(
     teeth PINION/GEAR : Start from your own pair instead: 19/41.
     module : With --teeth: module, mm.
     face_width : With --teeth: face width of both gears, mm.
-    oil : With --teeth: ISO viscosity grade, vg220.
+    oil : With --teeth: ISO viscosity grade, "ISO VG 220" or vg220.
     """
     from lumped.errors import ParameterError, refuse
     from lumped.schema.changes import fields_of

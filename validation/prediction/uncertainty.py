@@ -129,6 +129,7 @@ def uncertainty(
     table = np.stack([found for found in rows if found is not None])
     found = _dataset(pair, inputs, points[kept], table, ends)
     beside = np.array([_of_form(row((), pair.with_(form)), given.size) for form in forms.values()])
+    beside = beside.reshape(len(forms), given.size)  # of no form too
     for column, name in enumerate(QUANTITIES):
         attrs = found[name].attrs | {"long_name": f"{found[name].attrs['long_name']}, inputs as given"}
         found[f"{name}_form"] = ("form", beside[:, column], attrs)

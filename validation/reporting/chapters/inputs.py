@@ -49,10 +49,11 @@ def write(results: Results) -> Content:
         ("path of contact, A to D", g.L_XD - g.L_XA, "m"),
         ("mesh frequency", g.mesh_frequency, "Hz"),
         ("pitch line velocity", g.pitch_line_velocity, "m/s"),
-        ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", "all pairs in contact"),
+        ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", pair.stiffness_words),
         ("effective mass", b.effective_mass, "kg", "of both gears on the line of action"),
     )
-    return Content(f"{assumed} of {given + assumed} values are assumed.", (derived, table))
+    words = f"{assumed} of {given + assumed} values are assumed. {pair.stiffness_note}"
+    return Content(words.rstrip(), (derived, table))
 
 
 def _state(pair: GearPair, path: str) -> Cell:
