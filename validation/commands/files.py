@@ -61,7 +61,7 @@ def init(
     kind, such as "200 lbf*in". At the end of the file stands where values come from, and which are assumed.
 
     REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in. What such a file
-    does not say is marked as assumed.
+    does not say is marked as assumed; what decides the geometry is asked for, and --set gives it.
 
     [bold]Examples[/bold]
     spurcheck init
@@ -98,32 +98,34 @@ def init(
         raise refuse("preset", preset, "one of " + ", ".join(preset_names()), action)
     text, name = preset_text(preset), preset
     given = {option: (path, value) for option, (path, value) in own.items() if value is not None}
-    if teeth is None:
-        for option, (_, value) in given.items():
-            raise refuse(option, value, "with --teeth", "Give --teeth PINION/GEAR too, or edit the file.")
-    elif preset != opt.DEFAULT_PAIR or from_rexs is not None:
-        raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
-    else:
+    values = {path: opt.value_of(value) for path, value in given.values()}
+    options = {field: option for option, (path, _) in given.items() for field in fields_of(path)}
+    options |= dict.fromkeys(("pinion.teeth", "gear.teeth", "teeth"), "--teeth") | {"oil": "--oil"}
+    if teeth is not None:
+        if preset != opt.DEFAULT_PAIR or from_rexs is not None:
+            raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
         for option in own:
             if option not in given and own[option][0] in sizes:
                 raise refuse(option, "missing", "a value beside --teeth", "Give it.")
         name = f"pair_{re.sub('[^0-9]+', '_', teeth)}"
         if output is not None and str(output) != "-":
             name = output.stem
-        values = {path: opt.value_of(value) for path, value in given.values()}
-        options = {field: option for option, (path, _) in given.items() for field in fields_of(path)}
-        options |= dict.fromkeys(("pinion.teeth", "gear.teeth", "teeth"), "--teeth") | {"oil": "--oil"}
+    elif from_rexs is None:
+        for option, (_, value) in given.items():
+            action = "Give --teeth PINION/GEAR too, or edit the file."
+            raise refuse(option, value, "with --teeth or --from-rexs", action)
+    if stage is not None and from_rexs is None:
+        raise refuse("--stage", stage, "a stage of the file of --from-rexs", "Give --from-rexs FILE too.")
+    if from_rexs is not None:
+        mapping, notes = gear_pair_from_rexs(from_rexs, stage, values)
+        for remark in notes:
+            note(remark)
+        text, name = parameter_text(mapping, notes), from_rexs.name.split(".")[0] or "rexs"
+    elif teeth is not None:
         try:
             text = new_pair_text(name, {"teeth": teeth} | values)
         except ParameterError as error:
             raise opt.by_option(error, options, "") from None
-    if from_rexs is not None:
-        mapping, notes = gear_pair_from_rexs(from_rexs, stage)
-        for remark in notes:
-            note(remark)
-        text, name = parameter_text(mapping, notes), from_rexs.name.split(".")[0] or "rexs"
-    elif stage is not None:
-        raise refuse("--stage", stage, "a stage of the file of --from-rexs", "Give --from-rexs FILE too.")
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return

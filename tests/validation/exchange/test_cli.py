@@ -13,6 +13,7 @@ import xarray as xr
 import lumped
 from lumped.model.averaged import averaged_state_space
 from tests.validation.commands.conftest import run
+from tests.validation.exchange.rexs_stages import STAGES, rexs_text
 from validation.exchange import gear_pair_from_rexs, parameter_text
 from validation.studies import load_study, run_sweep
 
@@ -34,6 +35,25 @@ def test_a_pair_comes_back_from_rexs(command, tmp_path):
     assert (code, "wrote pair.REXS" in text) == (0, True)
     mapping, _ = gear_pair_from_rexs(tmp_path / "pair.REXS")
     assert mapping["operating"]["pinion_speed"] == 1234.0
+
+
+def test_what_a_rexs_file_lacks_is_given_with_the_command(command, tmp_path):
+    text = rexs_text(STAGES["23/67"], "1.0", tips="none", left_out=("normal_pressure_angle",))
+    (tmp_path / "old.rexs").write_text(text)
+    code, answer = command("init", "--from-rexs", "old.rexs", "-o", "pair.toml")
+    assert code == 2
+    assert "normal_pressure_angle of flank_geometry (REXS 1.0 to 1.2)" in answer
+    assert "--set basic_rack.pressure_angle=VALUE" in answer
+    assert not (tmp_path / "pair.toml").exists()
+    angle = STAGES["23/67"].pressure_angle
+    given = ("--set", f"basic_rack.pressure_angle={angle!r}", "--speed", "1450", "--oil", "vg220")
+    code, answer = command("init", "--from-rexs", "old.rexs", *given, "-o", "pair.toml")
+    assert code == 0
+    assert answer.index("tip_diameter not in the file") < answer.index("what weighs most stands first")
+    pair = lumped.load_gear_pair(tmp_path / "pair.toml")
+    assert pair.basic_rack.pressure_angle == pytest.approx(np.radians(angle), rel=1e-15)
+    assert pair.lubricant.viscosity_law.iso_vg == 220
+    assert pair.operating.pinion_speed == pytest.approx(1450.0 * np.pi / 30.0, rel=1e-14)
 
 
 def test_the_linear_model_opens_in_python_control_scipy_and_matlab(command, tmp_path):

@@ -55,13 +55,17 @@ def test_every_value_has_its_place_in_the_file_or_is_marked_assumed(xml, save):
     pair = lumped.load_gear_pair(mapping)
     assert {*sources, *assumed} == set(leaf_paths(pair)) - {"name", "description"}
     assert not {*sources} & {*assumed}
-    assert pair.assumed.to_mapping() == assumed
+    # The gear's tip follows from what is written: it stands in no table of the file.
+    follows = {"gear.tip_alteration": 0.0}
+    assert pair.assumed.to_mapping() == assumed | follows
     assert sources["pinion.teeth"] == "REXS model.rexs cylindrical_gear 21/number_of_teeth"
     assert sources["operating.pinion_torque"] == "REXS model.rexs external_load 33/torque_around_u_axis"
     for path in ("pinion.roughness", "friction.law", "bearings.gear.size", "lubricant.viscosity"):
         assert path in assumed
     assert all(s.startswith("REXS model.rexs ") for s in sources.values())
-    assert any("friction.law" in note for note in notes)
+    (summary,) = [note for note in notes if "weighs most" in note]
+    assert summary.startswith(f"{len(assumed | follows)} values")
+    assert len(summary) < 300
     assert any("does not say which gear drives" in note for note in notes)
 
 
@@ -73,12 +77,13 @@ def test_json_with_the_second_gear_driving_and_the_speed_in_a_load_case(json_mod
     where = "REXS model.rexsj shaft 32/rotational_speed (load case 7)"
     assert mapping["sources"]["operating.pinion_speed"] == where
     assert not any("which gear drives" in note for note in notes)
-    assert mapping["assumed"]["basic_rack.pressure_angle"] == 20.0
+    assert mapping["basic_rack"]["pressure_angle"] == 20.0
 
 
 def test_speed_and_torque_that_the_file_does_not_have_are_assumed_aloud(json_model, save_json):
     json_model["model"]["components"] = [c for c in json_model["model"]["components"] if c["id"] != 61]
-    json_model["model"]["relations"] = json_model["model"]["relations"][:1]
+    relations = json_model["model"]["relations"]
+    json_model["model"]["relations"] = [r for r in relations if r["type"] in ("stage", "flank")]
     del json_model["model"]["load_spectrum"]
     mapping, notes = gear_pair_from_rexs(save_json(json_model))
     for key in ("pinion_speed", "pinion_torque"):
@@ -209,7 +214,7 @@ def test_values_that_cannot_be_assumed_are_asked_for_all_at_once(xml, save):
     with pytest.raises(ParameterError) as refused:
         gear_pair_from_rexs(save(text))
     fields = {p.field.rpartition(" ")[2] for p in refused.value.problems}
-    assert fields == {"21/face_width", "22/face_width", "21/number_of_teeth", "22/number_of_teeth"}
+    assert fields == {f"{gear}.{key}" for gear in ("pinion", "gear") for key in ("face_width", "teeth")}
 
 
 @pytest.mark.parametrize(("old", "new", "message"), [
@@ -286,8 +291,8 @@ def test_other_units_of_the_same_kind_are_converted(xml, save):
 
 @pytest.mark.parametrize(("old", "new", "field", "beside"), [
     # a = m (z1 + z2) cos(alpha) / (2 cos(alpha_w)), inv(alpha_w) = inv(alpha) + 2 tan(alpha) x/(z1 + z2)
-    (">50.2<", ">48<", "centre_distance = 48 mm.*10/center_distance", "50.1971 mm for these teeth"),
-    (">50.2<", ">502<", "centre_distance = 502 mm.*10/center_distance", "50.1971 mm for these teeth"),
+    (">50.2<", ">50<", "centre_distance = 50 mm.*0.1 and 0, .*10/center_distance", "50.1971 mm for these"),
+    (">50.2<", ">502<", "centre_distance = 502 mm.*0.1 and 0, .*10/center_distance", "50.1971 mm for these"),
     # the base circle, m z cos(alpha) = 37.5877 mm
     (">44.2<", ">1<", "pinion.tip_diameter = 1 mm.*21/tip_diameter", "> 37.5877 mm"),
     (">44.2<", ">48<", "pinion.tip_diameter = 48.0000 mm.*21/tip_diameter", "<= 45.4000 mm"),
@@ -306,9 +311,7 @@ def test_shafts_of_a_file_are_not_read_and_a_note_says_so(xml, save):
     assert not any("shafts" in note for note in gear_pair_from_rexs(save(xml()))[1])
 
 
-@pytest.mark.parametrize(
-    "version", ["1.0", "1.3", "0.9", "", "one", "1.4.x", "2.1.0", "99999999999999999999.0"]
-)
+@pytest.mark.parametrize("version", ["0.9", "", "one", "1.4.x", "2.1.0", "99999999999999999999.0"])
 def test_other_versions_are_read_where_they_are_understood_and_a_note_names_them(xml, save, version):
     mapping, notes = gear_pair_from_rexs(save(xml(version=version)))
     assert mapping | {"description": ""} == gear_pair_from_rexs(save(xml()))[0] | {"description": ""}

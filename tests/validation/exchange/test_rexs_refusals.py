@@ -46,7 +46,12 @@ def test_other_kinds_of_stages_are_refused_with_the_reason(xml, save, old, new, 
 
 _SECOND = {
     "relations": '<relation id="80" type="stage"><ref id="11" role="stage"/><ref id="23" role="gear_1"/>'
-    '<ref id="24" role="gear_2"/></relation>',
+    '<ref id="24" role="gear_2"/></relation>'
+    + "".join(
+        f'<relation id="{58 + i}" type="flank"><ref id="{i}" role="gear"/><ref id="43" role="left"/>'
+        "</relation>"
+        for i in (23, 24)
+    ),
     "components": '<component id="11" type="cylindrical_stage" name="second stage"/>'
     + "".join(
         f'<component id="{i}" type="cylindrical_gear">'

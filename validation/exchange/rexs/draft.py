@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from lumped.errors import FieldProblem, shown
-from lumped.fields.units import to_file
+from lumped.fields.units import to_file, to_si
 from lumped.schema.pair import stated_unit
+from validation.exchange.new_pair_file import GIVEN
 from validation.exchange.rexs.model import ATTRIBUTES, Component, RexsModel, si_from_rexs
 
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
@@ -25,13 +26,21 @@ class Reading(NamedTuple):
 
 @dataclass
 class Draft:
-    """Collector of one import: values in file units and their places in the file by path of the field."""
+    """Collector of one import: values in file units and their places in the file by path of the field.
+
+    ``given``: values of the user by path of the field; they stand in place of what the file has.
+    """
 
     model: RexsModel
+    given: Mapping[str, Any] = field(default_factory=dict)
     values: dict[str, Any] = field(default_factory=dict)
     sources: dict[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     problems: list[FieldProblem] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.values |= self.given
+        self.sources |= dict.fromkeys(self.given, GIVEN)
 
     def where(self, component: Component, attribute: str) -> str:
         """Name a place in the file as a source: "REXS gearbox.rexs cylindrical_gear 5/face_width"."""
@@ -88,13 +97,23 @@ class Draft:
             self.note(f"{path}: the first value is used for both gears, the file also has {values}")
 
     def put(self, path: str, value: Any, where: str) -> None:
-        """Make anything the value of a field."""
-        self.values[path] = value
-        self.sources[path] = where
+        """Make anything the value of a field, unless the user gives another one."""
+        if path not in self.given:
+            self.values[path] = value
+            self.sources[path] = where
+
+    def si(self, path: str) -> float | None:
+        """Return the value of a field in SI; None where it has none, or none that is a number."""
+        try:
+            return None if path not in self.values else to_si(self.values[path], stated_unit(path) or "1")
+        except ValueError:  # refused with the whole pair
+            return None
 
     def problem(self, where: str, value: str, allowed: str, action: str = "Correct the file.") -> None:
-        """Add a problem, of which the import is refused later."""
-        self.problems.append(FieldProblem(where, value, allowed, action))
+        """Add a problem, of which the import is refused later, once."""
+        found = FieldProblem(where, value, allowed, action)
+        if found not in self.problems:
+            self.problems.append(found)
 
     def note(self, text: str) -> None:
         """Add a note, once."""

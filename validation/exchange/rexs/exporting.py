@@ -142,7 +142,7 @@ def _add_flanks(build: _Builder, pair: GearPair, which: str, number: int) -> Non
     rack, g, gear = pair.basic_rack, pair.geometry, getattr(pair, which)
     own = {
         "normal_pressure_angle": rack.pressure_angle,
-        "addendum_modification_coefficient": gear.profile_shift,
+        "addendum_modification_coefficient": float(pair.profile_shifts[0 if which == "pinion" else 1]),
         "addendum_coefficient_basic_profile": rack.addendum_coefficient,
     }
     cutter = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,15 +11,20 @@ from lumped.arguments import whole_number
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.fields.units import to_stated
 from lumped.gear_geometry.geometry import theoretical_backlash
+from lumped.schema.changes import by_fields
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.new_pair_file import completed, marked, stand_in_stiffness
+from validation.exchange.new_pair_file import GIVEN, completed, marked, stand_in_stiffness
 from validation.exchange.rexs.draft import Draft, Reading
 from validation.exchange.rexs.encodings import read_rexs
-from validation.exchange.rexs.gears import gear_data_of, read_gears, read_reliefs
+from validation.exchange.rexs.gears import read_gears, read_reliefs
 from validation.exchange.rexs.model import VERSIONS, Component, RexsModel, broken
+from validation.exchange.rexs.remarks import note_what_is_assumed
+from validation.exchange.rexs.tooth_system import read_tooth_system
 
 _GEARS_OF_PAIR = ("pinion", "gear")
+#: Starts of the fields that file and user give together; others of the user replace those of the pair.
+_READ_WITH = ("basic_rack.", "centre_distance", "pinion.", "gear.", "lubricant.")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
 _NO_HELIX = 1e-9
@@ -44,7 +50,9 @@ class _Stage(NamedTuple):
         return f"{self.number}: {name} ({teeth}){self.reason and f' - {self.reason}'}"
 
 
-def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dict[str, Any], tuple[str, ...]]:
+def gear_pair_from_rexs(
+    path: str | Path, stage: int | None = None, changes: Mapping[str, Any] | None = None
+) -> tuple[dict[str, Any], tuple[str, ...]]:
     """Read one cylindrical spur stage of a REXS file as parameters of spurcheck.
 
     Parameters
@@ -52,18 +60,20 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     path : XML (.rexs), JSON (.rexsj) or ZIP (.rexsz, .zip)
     stage : number of the stage in the order of the file, 1 the first; may be left out where only one can be
         modelled: otherwise the refusal lists them
+    changes : values that the file does not have, or has otherwise, by the names and paths of ``pair.with_``:
+        ``{"pinion.tip_diameter": 63.4, "speed": 1450}``
 
     Returns
     -------
     mapping : nested parameters in file units, valid for ``load_gear_pair``; under ``sources`` every value of
         the file has its component and attribute, under ``assumed`` is every other value
-    notes : what was assumed, left out or chosen, in words
+    notes : what was chosen, left out or assumed, in words
 
     Raises
     ------
     ParameterError : a hostile or broken file; a stage that is helical, internal, planetary, bevel or worm;
-        several stages and no number; a value that is missing and cannot be assumed, that is refused, or that
-        contradicts the others
+        several stages and no number; a value that decides the geometry and is nowhere in the file: the
+        refusal names component, attribute and versions; a value that is refused, or contradicts the others
 
     Examples
     --------
@@ -77,10 +87,12 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     """
     model = read_rexs(path)
     picked, notes = _chosen(model, stage)
-    draft, component = Draft(model, notes=notes), picked.component
+    given = by_fields(changes or {})
+    with_file = {path: value for path, value in given.items() if path.startswith(_READ_WITH)}
+    draft, component = Draft(model, with_file, notes=notes), picked.component
     gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, picked.gears), strict=True))
-    read_gears(draft, *gears.values())
-    draft.take("centre_distance", draft.number(component, "center_distance"))
+    read_gears(draft, gears)
+    read_tooth_system(draft, component, gears)
     _read_lubricant(draft, component)
     _read_operating_point(draft, component, *gears.values())
     _read_backlash(draft, component, _validated(draft, picked))
@@ -89,10 +101,14 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
     pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     values = leaf_paths(pair)
     pair = marked(pair, {path: source for path, source in draft.sources.items() if path in values})
+    if later := {path: value for path, value in given.items() if path not in with_file}:
+        pair = pair.with_(later)
+        sources = dict(pair.sources) | dict.fromkeys(later, GIVEN)
+        pair = load_gear_pair(pair.to_mapping() | {"sources": sources})
+    note_what_is_assumed(draft, pair, gears)
     if model.version not in VERSIONS:
         known = f"versions {', '.join(VERSIONS)} were checked"
         draft.note(f"the file is of REXS version {shown(model.version) or '(not given)'}; {known}")
-    _note_assumptions(draft, pair)
     return pair.to_mapping(), tuple(draft.notes)
 
 
@@ -174,28 +190,10 @@ def _validated(draft: Draft, stage: _Stage) -> GearPair:
         raise ParameterError(problems, model.file) from None
 
 
-def _note_assumptions(draft: Draft, pair: GearPair) -> None:
-    sources = dict(pair.sources)
-    speed = f"{to_stated(pair.operating.pinion_speed, 'rpm'):g} rpm"
-    for key, what in (("speed", speed), ("torque", f"{pair.operating.pinion_torque:g} N m")):
-        if f"operating.pinion_{key}" in pair.assumed:
-            text = f"operating.pinion_{key} is not in the file: {what} is assumed"
-            draft.note(f"{text}; give your own, for example with --{key}")
-    if pair.assumed:
-        draft.note("assumed, not known: " + ", ".join(pair.assumed))
-    for which in _GEARS_OF_PAIR:
-        if f"{which}.inertia" not in sources and f"{which}.mass" in sources:
-            draft.note(f"{which}.inertia is not in REXS: that of a solid disc is taken, not of its mass")
-    if draft.model.of_type("shaft_section"):
-        draft.note("shafts of the file are not read: describe them and their bearings in [shafts]")
-    if pair.pinion.tip_relief or pair.gear.tip_relief:
-        draft.note("reliefs are read but mesh.relief decides whether the dynamics use them")
-
-
 def _driving_first(draft: Draft, stage: Component, gears: list[Component]) -> tuple[Component, Component]:
     """Return the driving and the driven gear; where the file does not say, gear_1 drives."""
     flags = [
-        [(draft.text(d, "is_driving_gear") or "").lower() for d in gear_data_of(draft, stage, g)]
+        [(draft.text(d, "is_driving_gear") or "").lower() for d in draft.model.gear_data(stage, g)]
         for g in gears
     ]
     first, second = ("true" if {"true", "1"} & set(f) else "false" if f and f[0] else "" for f in flags)
@@ -227,12 +225,16 @@ def _read_lubricant(draft: Draft, stage: Component) -> None:
     places = [stage, *model.of_type("gear_casing")]
     oils = [oil for place in places for oil in model.referenced(place, "lubricant")]
     oils = oils or (only if len(only := model.of_type("lubricant")) == 1 else [])
+    law = "lubricant.viscosity_law"
+    if any(path in draft.given for path in ("lubricant.viscosity", f"{law}.iso_vg")):
+        if f"{law}.iso_vg" in draft.given:
+            draft.take(f"{law}.temperature", draft.first(places, "temperature_lubricant"))
+        return
     if not oils:
         return
     v40, v100, density = (draft.number(oils[0], attribute) for attribute in _VISCOSITY_LAW.values())
     viscosity = draft.first(places, "operating_viscosity")
     if v40 is not None and v100 is not None:
-        law = "lubricant.viscosity_law"
         draft.take_all(law, oils[0], _VISCOSITY_LAW)
         draft.take(f"{law}.temperature", draft.first(places, "temperature_lubricant"))
     elif viscosity is not None and density is not None:
@@ -249,7 +251,7 @@ def _read_operating_point(draft: Draft, stage: Component, *gears: Component) -> 
         teeth = [draft.values.get(f"{which}.teeth", 0) for which in _GEARS_OF_PAIR]
         if other is not None and teeth[0] > 0:
             speed = Reading(other.si * teeth[1] / teeth[0], f"{other.where}, times the gear ratio")
-    torque = draft.first(gear_data_of(draft, stage, pinion), "torque") or _external(draft, shafts, speed)
+    torque = draft.first(draft.model.gear_data(stage, pinion), "torque") or _external(draft, shafts, speed)
     for path, reading in (("operating.pinion_speed", speed), ("operating.pinion_torque", torque)):
         if reading is not None:
             draft.take(path, Reading(abs(reading.si), reading.where))

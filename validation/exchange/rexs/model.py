@@ -23,9 +23,12 @@ _SCALARS = (
     "date_time",
 )  # fmt: skip
 #: Versions whose published database was checked, oldest first.
-VERSIONS = ("1.4", "1.5", "1.6", "1.7", "2.0.0")
+VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0.0")
 #: Versions that can be written. The XML form of 2.0.0 (with or without a namespace) could not be settled.
-WRITTEN = VERSIONS[:-1]
+WRITTEN = ("1.4", "1.5", "1.6", "1.7")
+#: Types of components: from 1.3 on, and up to 1.2, of the same attributes.
+FLANKS = ("cylindrical_gear_flank", "flank_geometry")
+GEAR_DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
 #: REXS unit -> (unit of ``lumped.fields.units``, the REXS unit as text for it).
 UNITS = {
     "none": ("1", ""), "": ("1", ""), "mm": ("mm", "mm"), "mum": ("um", "um"), "deg": ("deg", "deg"),
@@ -42,14 +45,16 @@ _NAMES = {
     ("floating_point_array", "mm"): "support_vector u_axis_vector w_axis_vector",
     ("floating_point", "none"): "addendum_modification_coefficient addendum_coefficient_basic_profile "
     "poisson_ratio addendum_coefficient_reference_profile tip_radius_factor "
-    "tip_corner_radius_factor_reference_profile",
+    "tip_corner_radius_factor_reference_profile sum_of_addendum_modification_coefficients",
     ("floating_point", "mm"): "center_distance minimum_normal_backlash maximum_normal_backlash normal_module "
     "face_width tip_diameter root_diameter inner_diameter addendum_modification tip_relief_depth "
     "root_relief_depth tip_relief_datum_diameter tip_relief_evaluation_reference root_relief_datum_diameter "
-    "root_relief_evaluation_reference",
+    "root_relief_evaluation_reference transverse_module addendum_basic_profile minimum_tip_diameter "
+    "maximum_tip_diameter addendum_reference_profile tip_radius tooth_tip_chamfer",
     ("floating_point", "mum"): "arithmetic_average_roughness_flank averaged_peak_to_valley_height_flank "
     "arithmetic_mean_roughness_flank_iso_4287_1997 mean_peak_to_valley_roughness_flank_iso_4287_1997",
-    ("floating_point", "deg"): "helix_angle_reference_diameter normal_pressure_angle",
+    ("floating_point", "deg"): "helix_angle_reference_diameter normal_pressure_angle "
+    "pressure_angle_in_the_transverse_section",
     ("floating_point", "1 / min"): "rotational_speed",
     ("floating_point", "N m"): "torque torque_around_u_axis",
     ("floating_point", "kW"): "power",
@@ -131,6 +136,27 @@ class RexsModel:
     def referenced(self, component: Component, *types: str) -> list[Component]:
         """Components of some types that this one refers to."""
         return self.related(component, "reference", "origin", "referenced", *types)
+
+    def flanks(self, gear: Component) -> dict[str, Component]:
+        """Return "left" and "right" -> flank of a cylindrical gear, as far as the file has them."""
+        return {
+            side: flank
+            for side in ("left", "right")
+            for flank in self.related(gear, "flank", "gear", side, *FLANKS)
+        }
+
+    def gear_data(self, stage: Component, gear: Component) -> list[Component]:
+        """Components that hold what a gear does in a stage."""
+        kind = "stage_gear_data"
+        of_stage = self.related(stage, kind, "stage", kind, *GEAR_DATA)
+        return [data for data in self.related(gear, kind, "gear", kind) if data in of_stage]
+
+    def tools(self, gear: Component) -> list[Component]:
+        """Rack-shaped tools that cut a gear: of its flanks from 1.3 on, of the gear up to 1.2."""
+        step = ("manufacturing_step", "workpiece", "tool", "rack_shaped_tool")
+        of_flanks = [tool for flank in self.flanks(gear).values() for tool in self.related(flank, *step)]
+        of_gear = self.related(gear, "ordered_reference", "origin", "referenced", "rack_shaped_tool")
+        return of_flanks + of_gear
 
     def neighbours(self, component: Component, *types: str) -> list[Component]:
         """Components of some types that share any relation with this one, each once."""

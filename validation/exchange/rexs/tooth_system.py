@@ -1,0 +1,285 @@
+"""What decides the geometry of a REXS stage: teeth, module, angles, profile shifts, tips and the tool.
+
+None of it is assumed where the file has it in any version's place: ``PLACES`` is that table, of the published
+databases of REXS 1.0 to 2.0.0. The import reads by it, and a refusal prints it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from lumped.errors import ParameterError, shown
+from lumped.gear_geometry.profile_shift import resolved_shifts, shared
+from validation.exchange.rexs.draft import Draft, Reading
+from validation.exchange.rexs.model import FLANKS, Component
+
+_FLANK, _OLD_FLANK = FLANKS
+
+
+class Place(NamedTuple):
+    """One place of a quantity: the type of the component, its attribute, and the versions that have it."""
+
+    component: str
+    attribute: str
+    versions: str
+
+
+def _of_flanks(attribute: str, old: str) -> tuple[Place, Place]:
+    """Places of an attribute of the flanks, which changed their name; ``old``: versions before 1.3."""
+    return Place(_OLD_FLANK, attribute, old), Place(_FLANK, attribute, "1.3 to 2.0.0")
+
+
+#: Quantity -> its places; the first attribute that the file has is read.
+PLACES: dict[str, tuple[Place, ...]] = {
+    "teeth": (Place("cylindrical_gear", "number_of_teeth", "1.0 to 2.0.0"),),
+    "face_width": (Place("cylindrical_gear", "face_width", "1.0 to 2.0.0"),),
+    "module": (
+        Place("cylindrical_gear", "normal_module", "1.0 to 2.0.0"),
+        Place("cylindrical_gear", "transverse_module", "1.2 to 2.0.0"),
+    ),
+    "helix_angle": (Place("cylindrical_gear", "helix_angle_reference_diameter", "1.0 to 2.0.0"),),
+    "pressure_angle": (
+        *_of_flanks("normal_pressure_angle", "1.0 to 1.2"),
+        *_of_flanks("pressure_angle_in_the_transverse_section", "1.1 and 1.2"),
+    ),
+    "profile_shift": (
+        *_of_flanks("addendum_modification_coefficient", "1.0 to 1.2"),
+        *_of_flanks("addendum_modification", "1.2"),
+    ),
+    "profile_shift_sum": (
+        Place("cylindrical_stage", "sum_of_addendum_modification_coefficients", "1.0 to 2.0.0"),
+    ),
+    "centre_distance": (Place("cylindrical_stage", "center_distance", "1.0 to 2.0.0"),),
+    "tip_diameter": (Place("cylindrical_gear", "tip_diameter", "1.0 to 2.0.0"),),
+    "tip_limits": (
+        Place("cylindrical_gear", "minimum_tip_diameter", "1.5 to 2.0.0"),
+        Place("cylindrical_gear", "maximum_tip_diameter", "1.5 to 2.0.0"),
+    ),
+    "addendum": (Place("cylindrical_gear", "addendum_basic_profile", "1.2 to 1.7"),),
+    "addendum_coefficient": _of_flanks("addendum_coefficient_basic_profile", "1.0 to 1.2"),
+}
+#: Attributes of the tool: a factor of the module, or else a length.
+_TOOL = {
+    "dedendum": ("addendum_coefficient_reference_profile", "addendum_reference_profile"),
+    "fillet_radius": (
+        "tip_radius_factor",
+        "tip_corner_radius_factor_reference_profile",
+        "tip_radius",
+    ),
+}
+_LENGTHS = ("addendum_modification", "addendum_reference_profile", "tip_radius")
+_TIPS = ("addendum", "tip_diameter", "tip_alteration")
+_SYMMETRIC = "The flanks of a tooth differ; only symmetric teeth can be modelled."
+_MESH = "Flanks that mesh have one pressure angle, and only symmetric teeth can be modelled."
+
+
+def read_tooth_system(draft: Draft, stage: Component, gears: dict[str, Component]) -> None:
+    """Read what decides the geometry of "pinion" and "gear"; what is nowhere in the file is a problem."""
+    both = tuple(gears.values())
+    for which, gear in gears.items():
+        _read_teeth(draft, which, gear)
+        draft.take(f"{which}.face_width", _read(draft, "face_width", gear))
+        _need(draft, f"{which}.face_width", "face_width", gear)
+    module = _common(draft, "module", both, "Gears that mesh have one module.")
+    angle = _common(draft, "pressure_angle", both, _MESH)
+    for quantity, reading in (("module", module), ("pressure_angle", angle)):
+        draft.take(f"basic_rack.{quantity}", reading)
+        _need(draft, f"basic_rack.{quantity}", quantity, *both)
+    if not any(_read(draft, "helix_angle", gear) for gear in both):
+        _refuse_helix(draft, both)
+    draft.take("centre_distance", _read(draft, "centre_distance", stage))
+    _read_shifts(draft, stage, gears)
+    _read_tips(draft, gears)
+    _read_tool(draft, gears)
+
+
+def _candidates(draft: Draft, component: Component) -> list[Component]:
+    return [component, *draft.model.flanks(component).values()]
+
+
+def _read(draft: Draft, quantity: str, component: Component, why: str = _SYMMETRIC) -> Reading | None:
+    """Read a quantity of a gear or a stage from the first of its places; its flanks have to agree."""
+    parts = _candidates(draft, component)
+    for attribute in dict.fromkeys(place.attribute for place in PLACES[quantity]):
+        types = [place.component for place in PLACES[quantity] if place.attribute == attribute]
+        readings = [draft.number(part, attribute) for part in parts if part.type in types]
+        if any(readings):
+            agreed = draft.agreed(readings, why)
+            return _over_module(draft, agreed, component) if attribute in _LENGTHS else agreed
+    return None
+
+
+def _common(draft: Draft, quantity: str, gears: tuple[Component, ...], why: str) -> Reading | None:
+    """Read what both gears have in common; a gear that does not say it has that of the other one."""
+    return draft.agreed((_read(draft, quantity, gear, why) for gear in gears), why)
+
+
+def _over_module(draft: Draft, length: Reading | None, component: Component) -> Reading | None:
+    """Divide a length by the module: that of the component, else that of the pair."""
+    own = draft.number(component, "normal_module")
+    module = draft.si("basic_rack.module") if own is None else own.si
+    if length is None or not module or module < 0.0:
+        return None
+    return Reading(length.si / module, f"{length.where} over the module")
+
+
+def _need(draft: Draft, path: str, quantity: str, *components: Component, instead: str = "") -> None:
+    """Make a quantity that is nowhere in the file a problem that names its places."""
+    if path in draft.values or _refused(draft, quantity, *components):
+        return
+    version = shown(draft.model.version) or "version not given"
+    draft.problem(
+        path,
+        f"not in {draft.model.file}, REXS {version}",
+        f"for {' or '.join(c.label for c in components)}: {places(quantity)}{instead}",
+        "It decides the geometry, so nothing stands in for it. Export it from the program that wrote the "
+        f"file, or give it: spurcheck init --from-rexs FILE --set {path}=VALUE.",
+    )
+
+
+def _refused(draft: Draft, quantity: str, *components: Component) -> bool:
+    """Whether the file has a quantity, with a value that is a problem already."""
+    attributes = [place.attribute for place in PLACES[quantity]]
+    parts = [part for component in components for part in _candidates(draft, component)]
+    wheres = {draft.where(part, attribute) for part in parts for attribute in attributes}
+    return any(problem.field in wheres for problem in draft.problems)
+
+
+def places(*quantities: str) -> str:
+    """Where REXS has some quantities: attributes, components and versions, for a person."""
+    table = [place for quantity in quantities for place in PLACES[quantity]]
+    return ", or ".join(
+        f"{attribute} of "
+        + " or ".join(f"{p.component} (REXS {p.versions})" for p in table if p.attribute == attribute)
+        for attribute in dict.fromkeys(place.attribute for place in table)
+    )
+
+
+def _read_teeth(draft: Draft, which: str, gear: Component) -> None:
+    teeth = _read(draft, "teeth", gear)
+    if teeth is not None and teeth.si != int(teeth.si):
+        draft.problem(teeth.where, f"{teeth.si:g}", "a whole number")
+    elif teeth is not None:
+        draft.put(f"{which}.teeth", int(teeth.si), teeth.where)
+    _need(draft, f"{which}.teeth", "teeth", gear)
+
+
+def _refuse_helix(draft: Draft, gears: tuple[Component, ...]) -> None:
+    if not _refused(draft, "helix_angle", *gears):
+        draft.problem(
+            "helix angle",
+            f"not in {draft.model.file}",
+            f"0 in {places('helix_angle')}",
+            "It decides whether these are spur gears. Export it from the program that wrote the file, or "
+            "write the attribute into the file: 0 for a spur gear.",
+        )
+
+
+def _read_shifts(draft: Draft, stage: Component, gears: dict[str, Component]) -> None:
+    """Read the profile shifts; one that the file does not have follows from the sum or the centre distance.
+
+    Left to the pair is what the centre distance asks for (DIN 3960). Neither is a problem.
+    """
+    for which, gear in gears.items():
+        draft.take(f"{which}.profile_shift", _read(draft, "profile_shift", gear))
+    paths = [f"{which}.profile_shift" for which in gears]
+    missing = [path for path in paths if path not in draft.values]
+    total = _read(draft, "profile_shift_sum", stage)
+    if not missing or draft.problems:
+        return
+    if total is not None:
+        _from_sum(draft, total, paths, missing)
+    elif "centre_distance" not in draft.values:
+        instead = f"; for {stage.label}: {places('profile_shift_sum', 'centre_distance')}"
+        for path, gear in zip(paths, gears.values(), strict=True):
+            _need(draft, path, "profile_shift", gear, instead=instead)
+
+
+def _from_sum(draft: Draft, total: Reading, paths: list[str], missing: list[str]) -> None:
+    """Take what is missing from the sum of the coefficients: the rest of it, or both by a rule."""
+    if len(missing) == 1:
+        (other,) = set(paths) - set(missing)
+        if (known := draft.si(other)) is not None:
+            draft.take(missing[0], Reading(total.si - known, f"{total.where}, less {other}"))
+        return
+    if (teeth := _teeth(draft)) is not None:
+        values = shared(total.si, teeth)
+        draft.values |= dict(zip(paths, values, strict=True))  # without a source: assumed
+        draft.note(
+            f"profile shifts are not in the file: their sum {total.si:.4f} is in {total.where}; how the "
+            f"gears share it is assumed, {values[0]:.4f} and {values[1]:.4f}: give one, --set "
+            "pinion.profile_shift=VALUE"
+        )
+
+
+def _teeth(draft: Draft) -> tuple[int, int] | None:
+    """Numbers of teeth of pinion and gear, where they are numbers of teeth."""
+    first, second = (draft.values.get(f"{which}.teeth") for which in ("pinion", "gear"))
+    if isinstance(first, int) and isinstance(second, int) and min(first, second) > 0:
+        return first, second
+    return None
+
+
+def _read_tips(draft: Draft, gears: dict[str, Component]) -> None:
+    """Read tip diameters, else the mean of their limits, else addenda, else the addendum coefficient."""
+    coefficients = {which: _read(draft, "addendum_coefficient", gear) for which, gear in gears.items()}
+    for which, gear in gears.items():
+        if any(f"{which}.{name}" in draft.given for name in _TIPS):
+            continue
+        limits = [draft.number(gear, place.attribute) for place in PLACES["tip_limits"]]
+        if (tip := _read(draft, "tip_diameter", gear)) is not None:
+            draft.take(f"{which}.tip_diameter", tip)
+        elif (mean := _mean(limits)) is not None:
+            draft.take(f"{which}.tip_diameter", mean)
+        else:
+            draft.take(f"{which}.addendum", _read(draft, "addendum", gear))
+    without = [w for w in gears if not any(f"{w}.{name}" in draft.values for name in _TIPS)]
+    present = [one for one in coefficients.values() if one is not None]
+    used = [one for which in without if (one := coefficients[which]) is not None] or present
+    if len(without) == len(gears) and len({one.si for one in used}) > 1:
+        draft.agreed(used, "Give a tip diameter: --set pinion.tip_diameter=VALUE, and of the gear.")
+    elif used:
+        draft.take("basic_rack.addendum_coefficient", used[0])
+
+
+def _mean(limits: list[Reading | None]) -> Reading | None:
+    """Mean of the least and the largest value, where the file has both."""
+    ends = [one for one in limits if one is not None]
+    if len(ends) != 2:
+        return None
+    return Reading(0.5 * (ends[0].si + ends[1].si), f"{ends[0].where} and its maximum, their mean")
+
+
+def _read_tool(draft: Draft, gears: dict[str, Component]) -> None:
+    """Read the tool, whose tip makes the root; without one the dedendum follows from the root diameters."""
+    for name, attributes in _TOOL.items():
+        readings = []
+        for gear in gears.values():
+            for tool in draft.model.tools(gear):
+                found = ((a, draft.number(tool, a)) for a in attributes)
+                reading = next(((a, one) for a, one in found if one is not None), None)
+                if reading is not None:
+                    over = reading[0] in _LENGTHS
+                    readings.append(_over_module(draft, reading[1], tool) if over else reading[1])
+        if name == "dedendum" and not readings:
+            readings = _dedenda(draft, gears)
+        draft.take_first(f"basic_rack.{name}_coefficient", readings)
+
+
+def _dedenda(draft: Draft, gears: dict[str, Component]) -> list[Reading | None]:
+    """h_fP* from root diameters: d_f = m (z + 2 x - 2 h_fP*); a shift may be that of the centre distance."""
+    module, angle = draft.si("basic_rack.module"), draft.si("basic_rack.pressure_angle")
+    teeth = _teeth(draft)
+    if not module or not angle or teeth is None:
+        return []
+    given = draft.si("pinion.profile_shift"), draft.si("gear.profile_shift")
+    try:
+        shifts = resolved_shifts(given, teeth, module, angle, draft.si("centre_distance"))
+    except ParameterError:  # the pair refuses them, with their places
+        return []
+    readings = []
+    for gear, z, shift in zip(gears.values(), teeth, shifts, strict=True):
+        if (root := draft.number(gear, "root_diameter")) is not None:
+            value = 0.5 * (z + 2.0 * shift - root.si / module)
+            readings.append(Reading(value, f"{root.where}, by d_f = m (z + 2 x - 2 h_fP*)"))
+    return [*readings]
