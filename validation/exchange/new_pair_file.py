@@ -43,7 +43,7 @@ _WHY = {
         ("pressure_angle", "addendum_coefficient", "dedendum_coefficient", "fillet_radius_coefficient"),
         "standard basic rack, ISO 53",
     ),
-    "profile_shift": "no shift; for few teeth the least that keeps the involute whole",
+    "profile_shift": "no shift: stock gears",
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
     **dict.fromkeys(("density", "youngs_modulus", "poisson_ratio"), "steel"),
@@ -190,35 +190,12 @@ def _why(path: str, value: object) -> str:
 
 def _filled(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
     """The pair of these values with everything else assumed."""
-    pair = _whole(named, values)
+    pair = load_gear_pair(named | completed(values))
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
     if not any(path.startswith("mesh.stiffness.") for path in values):
         pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     return pair
-
-
-def _whole(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
-    """The pair of these values; where it cannot exist so, with the least profile shift that few teeth need.
-
-    Below z = 2/sin^2(alpha) teeth the straight flank of the rack, which reaches a module below its pitch
-    line, cuts into the involute, unless it is withdrawn by x = 1 - z sin^2(alpha)/2 modules (ISO 21771).
-    """
-    try:
-        return load_gear_pair(named | completed(values))
-    except ParameterError as error:
-        shifts = {}
-        for name in ("pinion", "gear"):
-            teeth = values.get(f"{name}.teeth")
-            if isinstance(teeth, int):
-                least = math.ceil(100.0 * (1.0 - 0.5 * teeth * math.sin(math.radians(20.0)) ** 2)) / 100.0
-                shifts[f"{name}.profile_shift"] = max(least, 0.0)
-        if not any(shifts.values()) or any(path in values for path in shifts):
-            raise
-        try:
-            return load_gear_pair(named | completed(values | shifts))
-        except ParameterError:
-            raise error from None
 
 
 def stand_in_stiffness(pair: GearPair) -> str:
