@@ -230,7 +230,7 @@ def _centre_distance(pinion: ToothProfile, gear: ToothProfile, distance: float |
 
 
 Name = Literal["pinion", "gear"]
-_MATE: dict[Name, Name] = {"pinion": "gear", "gear": "pinion"}
+MATE: dict[Name, Name] = {"pinion": "gear", "gear": "pinion"}
 #: Teeth of rounded published data may overlap by this much of a module before the pair is refused.
 _WEDGE_TOLERANCE = 1e-4
 #: Rounding of the length at which the involute begins, in modules.
@@ -263,9 +263,11 @@ class ToothProblem(FieldProblem):
     Attributes
     ----------
     gear : "pinion" or "gear"
+    sense : of the change of its profile shift, 1 to raise it
     """
 
     gear: Name = "pinion"
+    sense: int = 1
 
 
 def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> list[FieldProblem]:
@@ -313,14 +315,14 @@ def _of_one_gear(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator
     value = f"{2e3 * wheel.tip_radius:.4f} mm"
     if _tip_length(wheel) > g.L_XY and mate.tooth.undercut_length == 0.0:
         allowed = f"<= {2e3 * math.hypot(base, g.L_XY):.4f} mm"
-        yield ToothProblem(f"{name}.tip_diameter", value, allowed, _THROUGH_TANGENT_POINT, _MATE[name])
+        yield ToothProblem(f"{name}.tip_diameter", value, allowed, _THROUGH_TANGENT_POINT, MATE[name])
     if g.centre_distance - wheel.tip_radius - mate_root < 0.0:
         action = "The tip would hit the mate's root: lower it or raise the centre distance."
         allowed = f"<= {2e3 * (g.centre_distance - mate_root):.4f} mm"
         yield FieldProblem(f"{name}.tip_diameter", value, allowed, action)
     profile = math.acos(min(1.0, base / wheel.tip_radius))
     if tooth_half_angle(tooth.teeth, tooth.profile_shift, tooth.pressure_angle, profile) <= 0.0:
-        yield ToothProblem(f"{name}.tip_diameter", value, "tip thickness > 0", _POINTED, name)
+        yield ToothProblem(f"{name}.tip_diameter", value, "tip thickness > 0", _POINTED, name, -1)
     if wheel.bore >= 2.0 * tooth.root_radius:
         yield FieldProblem(f"{name}.bore", f"{wheel.bore * 1e3:g} mm", "< root diameter", "Lower the bore.")
 
