@@ -182,6 +182,8 @@ def friction_size(
 ) -> float:
     """Size of the friction coefficient by ``magnitude``, without a formula by the lumped table."""
     f = p[kn.FRICTION :]
+    # An edge that touches beyond its flank keeps the curvature of the involute that ends there.
+    rho_p, rho_g = max(rho_p, p[kn.EDGE_P]), max(rho_g, p[kn.EDGE_G])
     if f[LAW] == TABLE:
         end = int(p[kn.OWN]) if p[kn.OWN] > 0.0 else p.size
         table = p[kn.N_PARAMETERS : end].reshape((-1, int(f[COLUMNS])))
@@ -326,7 +328,8 @@ def _branch(p: FloatArray, xi: float) -> int:
     rolling = p[kn.OMEGA_P] * xi + p[kn.OMEGA_G] * rho_g
     sliding = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * abs(xi - p[kn.L_XP])
     f = p[kn.FRICTION :]
-    return int(branch(f, sliding, rolling, xi, rho_g, f[NOMINAL_LOAD]))
+    rho_p, rho_g = max(xi, float(p[kn.EDGE_P])), max(rho_g, float(p[kn.EDGE_G]))
+    return int(branch(f, sliding, rolling, rho_p, rho_g, f[NOMINAL_LOAD]))
 
 
 def _change(at: Callable[[float], int], low: float, high: float, start: int) -> float:
