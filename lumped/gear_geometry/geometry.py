@@ -116,6 +116,19 @@ class Geometry:
         return (self.tip_length_pinion + self.tip_length_gear - self.L_XY) / self.base_pitch
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What a reader of the drawing should know: whether undercut shortens the contact."""
+        lost = {
+            "start": self.L_XA - (self.L_XY - self.tip_length_gear),
+            "end": self.tip_length_pinion - self.L_XD,
+        }
+        ways = [f"{1e3 * way:.3g} mm at its {end}" for end, way in lost.items() if way > 0.0]
+        if not ways:
+            return ()
+        ratios = f"contact ratio {self.contact_ratio:.3f} instead of {self.tip_contact_ratio:.3f}"
+        return (f"undercut shortens contact by {' and '.join(ways)}: {ratios}",)
+
+    @property
     def mesh_frequency(self) -> float:
         """Mesh cycles per second [Hz]."""
         return 1.0 / self.mesh_period
@@ -330,13 +343,13 @@ def _of_one_gear(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator
 def _interference(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator[FieldProblem]:
     """Where the mate's tip cuts into the teeth of a gear."""
     tooth, base, form = wheel.tooth, wheel.tooth.base_radius, wheel.tooth.form_length
-    field, start = f"{name}.profile_shift", g.L_XY - _tip_length(mate)
+    start = g.L_XY - _tip_length(mate)
     if tooth.undercut_length == 0.0 and start < form - _FORM_TOLERANCE * tooth.module:
         if start >= 0.0:  # else the mate's tip has passed the tangent point
             lowest, circle = (f"diameter {2e3 * math.hypot(base, length):.4f} mm" for length in (start, form))
             value = f"{tooth.profile_shift:g} with contact down to {lowest}"
             allowed = f"contact above the form circle, {circle}"
-            yield ToothProblem(field, value, allowed, _ON_THE_FILLET, name)
+            yield ToothProblem(f"{name}.profile_shift", value, allowed, _ON_THE_FILLET, name)
         return
     if g.centre_distance - mate.tip_radius - tooth.root_radius < 0.0:
         return  # the mate's tip is below the root circle
@@ -344,4 +357,5 @@ def _interference(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterato
     if clearance < -_WEDGE_TOLERANCE * tooth.module:
         value = f"{tooth.profile_shift:g} with the mate's tip {-1e3 * clearance:.4f} mm deep in the tooth"
         action = _IN_THE_TOOTH if tooth.undercut_length > 0.0 else _ON_THE_FILLET
-        yield ToothProblem(field, value, "clearance of the mate's tip >= 0", action, name)
+        allowed = "clearance of the mate's tip >= 0"
+        yield ToothProblem(f"{name}.profile_shift", value, allowed, action, name)

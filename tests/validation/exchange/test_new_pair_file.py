@@ -82,18 +82,18 @@ def test_entries_of_lists_have_their_units_and_remarks():
     assert places == ["mm", "mm", "mm", "mm, assumed"]
 
 
-@pytest.mark.parametrize(
-    ("teeth", "shift"),
-    # 1 - z sin^2(20 deg)/2 = 0.2397 at 13 teeth and 0.0642 at 16; 20 teeth need none.
-    [("13/55", 0.24), ("16/72", 0.07), ("20/90", 0.0)],
-)
-def test_few_teeth_get_the_profile_shift_that_they_need(teeth, shift):
+@pytest.mark.parametrize(("teeth", "centre", "undercut"), [("13/55", 102.0, True), ("20/90", 165.0, False)])
+def test_few_teeth_without_a_profile_shift_are_stock_gears(teeth, centre, undercut):
+    """The centre distance is m (z_1 + z_2)/2; that undercut shortens the contact is said in the file."""
     given = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
     given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
-    pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
-    assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (shift, 0.0)
-    assert pair.assumed["pinion.profile_shift"] == shift
-    assert "keeps the involute whole" in reasons(pair)["pinion.profile_shift"]
+    text = new_pair_text("x", given)
+    pair = load_gear_pair(tomllib.loads(text))
+    assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (0.0, 0.0)
+    assert 1e3 * pair.geometry.centre_distance == pytest.approx(centre, rel=1e-12)
+    assert pair.assumed["pinion.profile_shift"] == 0.0
+    assert "stock gears" in reasons(pair)["pinion.profile_shift"]
+    assert ("# - Undercut shortens contact" in text) == undercut
 
 
 def test_a_value_edited_in_the_text_is_known_and_the_rest_assumed():
