@@ -54,7 +54,7 @@ class ContactPath:
     composite_roughness : R_comp [m]
     film_length : L_x [m]
     edge_pinion, edge_gear : lengths on the base tangents at which an undercut ends the flank [m]; 0 without
-        one. An edge that touches further outside keeps the curvature of the involute that ends there.
+        one. An edge that touches further outside keeps the friction of the involute that ends there.
     """
 
     L_XA: float
@@ -95,9 +95,12 @@ class ContactPath:
 
     def radius(self, xi: FloatArray) -> FloatArray:
         """Reduced radius of curvature rho_r = rho_p rho_g/(rho_p + rho_g) [m], equations (11) and (15)."""
-        rho_p = np.maximum(xi, self.edge_pinion) if self.edge_pinion else xi
-        rho_g = np.maximum(self.L_XY - xi, self.edge_gear) if self.edge_gear else self.L_XY - xi
-        return np.asarray(rho_p * rho_g / self.L_XY)
+        return xi * (self.L_XY - xi) / self.L_XY
+
+    def held(self, xi: FloatArray) -> FloatArray:
+        """Positions at which laws are evaluated: those beyond an edge are at the edge [m]."""
+        low = self.edge_pinion or -math.inf
+        return np.asarray(np.clip(xi, low, self.L_XY - (self.edge_gear or -math.inf)), dtype=np.float64)
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -305,7 +308,7 @@ def _fit(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> Pat
     joints = [xi for xi in (*law.joints(path), *path.edges) if path.L_XA < xi < path.L_XD]
     breaks = sorted([*breaks, *(xi for xi in joints if min(abs(xi - b) for b in breaks) > near)])
     return PathFunction.fit(
-        lambda xi: law.signed(xi, path, settings),
+        lambda xi: law.signed(path.held(xi), path, settings),
         breaks,
         switches,
         tolerance=FIT_TOLERANCE,

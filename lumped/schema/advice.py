@@ -80,15 +80,13 @@ def _beside_the_mate(pair: GearPair, name: Name, sense: int) -> Iterator[str]:
             yield " with ".join(f"{one}.profile_shift = {values[one]['profile_shift']:g}" for one in values)
             return
     module, tip = pair.basic_rack.module, pair.wheels[mate == "gear"].tip_radius
-    others_given = {
-        field: None for field in ("addendum", "tip_alteration") if field in type(pair.gear).model_fields
-    }
+    other_forms = [field for field in ("addendum", "tip_alteration") if field in type(pair.gear).model_fields]
 
     def diameter(step: int) -> float:
         return float(2.0 * (math.floor(100.0 * tip / module) - step) * 0.01 * module)
 
     def lowered(step: int) -> Changes:
-        return {mate: {"tip_diameter": diameter(step), **others_given}}
+        return {mate: {"tip_diameter": diameter(step)} | dict.fromkeys(other_forms)}
 
     if step := _first(pair, lowered, _HUNDREDTHS, _STRIDE):
         yield f"{mate}.tip_diameter = {1e3 * diameter(step):.6g} mm"

@@ -182,8 +182,6 @@ def friction_size(
 ) -> float:
     """Size of the friction coefficient by ``magnitude``, without a formula by the lumped table."""
     f = p[kn.FRICTION :]
-    # An edge that touches beyond its flank keeps the curvature of the involute that ends there.
-    rho_p, rho_g = max(rho_p, p[kn.EDGE_P]), max(rho_g, p[kn.EDGE_G])
     if f[LAW] == TABLE:
         end = int(p[kn.OWN]) if p[kn.OWN] > 0.0 else p.size
         table = p[kn.N_PARAMETERS : end].reshape((-1, int(f[COLUMNS])))
@@ -192,9 +190,19 @@ def friction_size(
 
 
 @compiled
+def at_edge(p: FloatArray, xi: float) -> float:
+    """Position at which the law is evaluated: that of the edge of an undercut for a contact beyond it [m]."""
+    if p[kn.EDGE_P] > 0.0:
+        xi = max(xi, p[kn.EDGE_P])
+    if p[kn.EDGE_G] > 0.0:
+        xi = min(xi, p[kn.L_XY] - p[kn.EDGE_G])
+    return xi
+
+
+@compiled
 def nominal_friction(p: FloatArray, xi: float) -> float:
     """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
-    f = p[kn.FRICTION :]
+    f, xi = p[kn.FRICTION :], at_edge(p, xi)
     distance = xi - p[kn.L_XP]
     sliding = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * abs(distance)
     rho_g = p[kn.L_XY] - xi
@@ -224,7 +232,8 @@ def signed_friction(
     load = max(normal, 0.0) / f[FACE_WIDTH] if flags & kn.FRICTION_LOAD else f[NOMINAL_LOAD]
     speeds = p[kn.OMEGA_P] + p[kn.OMEGA_G]
     if not flags & kn.SLIDING:
-        slide, rho_p, rho_g = flank * speeds * (xi - p[kn.L_XP]), xi, p[kn.L_XY] - xi
+        rho_p = at_edge(p, xi)
+        slide, rho_g = flank * speeds * (rho_p - p[kn.L_XP]), p[kn.L_XY] - rho_p
         rolling = p[kn.OMEGA_P] * rho_p + p[kn.OMEGA_G] * rho_g
     if slide == 0.0:
         return 0.0
@@ -328,8 +337,7 @@ def _branch(p: FloatArray, xi: float) -> int:
     rolling = p[kn.OMEGA_P] * xi + p[kn.OMEGA_G] * rho_g
     sliding = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * abs(xi - p[kn.L_XP])
     f = p[kn.FRICTION :]
-    rho_p, rho_g = max(xi, float(p[kn.EDGE_P])), max(rho_g, float(p[kn.EDGE_G]))
-    return int(branch(f, sliding, rolling, rho_p, rho_g, f[NOMINAL_LOAD]))
+    return int(branch(f, sliding, rolling, xi, rho_g, f[NOMINAL_LOAD]))
 
 
 def _change(at: Callable[[float], int], low: float, high: float, start: int) -> float:

@@ -14,6 +14,7 @@ from lumped.gear_geometry.geometry import existence_problems
 from lumped.gear_geometry.interference import tip_clearance
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.mesh.statics import deciding_ways, end_gaps
+from lumped.model.mesh_cycle import MeshCycle
 from lumped.quasi_static.elements import at_rest
 from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
@@ -362,3 +363,18 @@ def test_an_undercut_pair_moves_by_momentary_load_as_in_its_linear_form():
         np.ptp(lumped.steady_state(pair, contact=one).dte.to_numpy()) for one in ("linear", "unilateral")
     ]
     assert swings[1] == pytest.approx(swings[0], rel=0.1)
+
+
+@pytest.mark.parametrize("law", ["xu_kahraman", "benedict_kelley"])
+def test_friction_beyond_the_edge_is_that_at_the_edge(law):
+    """Contact of 12/60 reaches past the base circle, where an involute would have no curvature."""
+    pair = stock("12/60", mesh__stiffness={"model": "energy"}, law=law)
+    g = pair.geometry
+    low = float(loaded_contact(at_rest(pair)).stiffness.interval[0])
+    assert low < 0.0 < g.L_XA
+    mu = MeshCycle.of(pair).elements.friction(np.array([low, 0.0, 0.9 * g.L_XA, g.L_XA]))
+    assert mu == pytest.approx(np.full(4, mu[-1]), rel=1e-9)
+    one, other = lumped.simulate(pair, cycles=2), multibody.simulate(pair, cycles=2, fidelity="linear")
+    friction = one.friction_force.to_numpy()
+    assert np.isfinite(friction).all()
+    assert np.abs(friction - other.friction_force.to_numpy()).max() < 1e-5 * np.abs(friction).max()
