@@ -129,6 +129,8 @@ def init(
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return
+    for remark in load_gear_pair(tomllib.loads(text)).geometry.notes:
+        note(remark)
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text, new=not force)
     rows = drawing_rows(load_gear_pair(tomllib.loads(text)))
