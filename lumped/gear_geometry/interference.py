@@ -45,11 +45,16 @@ def tip_clearance(
         return math.inf
     radius, outline = radius[reached], outline[reached]
     # Angles of the corner from the line of centres, about the mate's centre and about the gear's.
-    turned = np.arccos(np.clip((centre**2 + mate_tip**2 - radius**2) / (2.0 * centre * mate_tip), -1.0, 1.0))
-    seen = np.arccos(np.clip((centre**2 + radius**2 - mate_tip**2) / (2.0 * centre * radius), -1.0, 1.0))
+    turned, seen = _angle_between(centre, mate_tip, radius), _angle_between(centre, radius, mate_tip)
     # With the flanks touching at the pitch point, the corner is corner_half - mate_half off the line.
     path = half + ratio * (turned + mate_half - corner_half) - seen
     return float((radius * (path - outline)).min())
+
+
+def _angle_between(one: float, other: FloatArray | float, opposite: FloatArray | float) -> FloatArray:
+    """Angle of two sides of a triangle [rad], by ratios: squares of the least lengths are no numbers."""
+    cosine = 0.5 * (one / other + other / one - (opposite / one) * (opposite / other))
+    return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)), dtype=np.float64)
 
 
 def _outline(tooth: ToothProfile, tip: float) -> tuple[FloatArray, FloatArray]:

@@ -102,11 +102,16 @@ class ToothLaws:
         return np.asarray(found, dtype=np.float64)
 
     def _relief_starts(self) -> list[list[float]]:
-        gears = (self.pair.pinion, self.pair.gear)
-        return [
-            [flank.length(gear.tip_relief.start_roll_angle)] if gear.tip_relief is not None else []
-            for gear, flank in zip(gears, self.flanks, strict=True)
-        ]
+        """Lengths on the base tangent of each gear at which a tip relief that acts starts [m]."""
+        found: list[list[float]] = []
+        for gear, flank in zip((self.pair.pinion, self.pair.gear), self.flanks, strict=True):
+            relief = gear.tip_relief
+            own = gear.deviations is not None and gear.deviations.tip_relief is not None
+            if relief is None or not (own or self.pair.mesh.relief == "static"):
+                found.append([])
+            else:
+                found.append([flank.length(relief.start_roll_angle)])
+        return found
 
     def of_kind(self, kind: int, xi: FloatArray) -> Records:
         """LAWS of a kind at positions of any shape."""

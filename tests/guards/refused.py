@@ -441,6 +441,9 @@ def _ramp(model: str, **more: Any) -> Callable[[GearPair, str, float], Changes]:
 _TOTAL = {"kind": "total", "axis": "phase", "points": [0.0, 0.25, 0.5, 0.75, 1.0], "stiffness": [2e8] * 5}
 
 
+_WHOLE = {"model": "table"} | _TOTAL
+
+
 def _reaching(first: bool, model: str) -> Callable[[GearPair, str, float], Changes]:
     """A table from A to D [mm] of which one end is elsewhere."""
 
@@ -512,6 +515,14 @@ STIFFNESS = (
       for kind in ("total", "pair")),
     Guard(_TABLE, "mesh.stiffness.stiffness", FAST, "equal phases have equal values, to a part in a thousand",
           most=1e-3, sets=_again, judge=curve, near=1e-2),
+    Choice("lumped/schema/contact.py", "mesh.contact", FAST, "load over transmission error has contact in it",
+           {"mesh.stiffness": _WHOLE, "mesh.contact": "loaded"}, {"mesh.stiffness": _WHOLE},
+           says="whole mesh"),
+    Choice("lumped/schema/pair.py", "mesh.relief", RELIEVED, "load over transmission error has relief in it",
+           {"mesh.stiffness": _WHOLE, "mesh.relief": "static"},
+           {"mesh.stiffness": _WHOLE, "mesh.relief": "static",
+            **{f"{gear}.{end}_relief": None for gear in ("pinion", "gear") for end in ("tip", "root")}},
+           says="whole mesh"),
     Guard(_TABLES, "mesh.stiffness.stiffness", FAST, "1000 N/um is no spur gear mesh", most=1e12,
           sets=_one_value),
     Guard(_TABLES, "mesh.stiffness.stiffness", FAST, "teeth resist: above 0", least=0.0, near=1e-300,

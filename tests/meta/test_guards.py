@@ -53,6 +53,14 @@ NAMES_ELSEWHERE = {
         "table",
     ): "the law without its table: the row of lumped/schema/contact.py",
     ("lumped/friction/table.py", "points"): "rows of lumped/fields/tables.py, tests/lumped/fields",
+    (
+        "lumped/quasi_static/relief_optimum.py",
+        "kind",
+    ): "a relief that the stiffness has in it: tests/lumped/quasi_static/test_whole_mesh",
+    (
+        "lumped/quasi_static/transmission_error.py",
+        "extended",
+    ): "an argument: tests/lumped/quasi_static/test_whole_mesh",
     ("lumped/fields/units.py", "unit"): "a unit of another kind: tests/lumped/fields/test_units",
 }
 

@@ -134,7 +134,7 @@ def budget_figure(data: xr.Dataset) -> Figure:
     colours = [RED if i == largest else BLUE for i in range(values.size)]
     ax.barh(place, np.where(known, values, floor), left=0.0, height=0.6, color=colours)
     ax.set_xscale("log")
-    ax.set_xlim(floor, max(200.0, 2.0 * float(np.nanmax(values))))
+    ax.set_xlim(floor, max(200.0, 2.0 * float(values[known].max(initial=0.0))))
     for at, value, fine in zip(place, values, known, strict=True):
         words = f"{number(value, 2)} %" if fine else "0" if value == 0.0 else "not known"
         write_beside(ax, words, (value if fine else floor, at), (3, 0), va="center")

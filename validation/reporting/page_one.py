@@ -160,7 +160,7 @@ _ROWS = {
 def rows(results: Results, known: dict[str, Fact]) -> tuple[Number, ...]:
     """The rows of the table: result, range of the samples, second program."""
     prediction, second = results.prediction, results.second
-    notes = {"bearing_rms": _orders(results)} | _as_given(results)
+    notes = {"bearing_rms": _orders(results) if prediction.bearing_rms else ""} | _as_given(results)
     found = [_row(results, key, known["contact"], notes.get(key, "")) for key in _ROWS]
     if prediction.contact_lost:  # the bearing force gives way
         of_second = math.nan

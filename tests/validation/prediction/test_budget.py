@@ -49,3 +49,32 @@ def test_it_says_that_teeth_pull_only_where_they_do(pair, note):
     )  # fmt: skip
     budget = error_budget(known)
     assert dict(zip(budget["row"].to_numpy(), budget.attrs["notes"], strict=True))["linear"] == note
+
+
+def test_what_a_stiffness_of_the_whole_mesh_decides_is_no_error_of_it():
+    """It comes with its contact and from elsewhere: neither another contact nor other teeth are beside it."""
+    pair = unlike_pair("heavily_relieved_under_load").healthy
+    given = pair.with_({"mesh.contact": None, "mesh.relief": None}, stiffness=[3e8, 3.4e8, 3.2e8, 2.9e8, 3e8])
+    none = Absent(Outcome.NOT_ASKED)
+    known = SimpleNamespace(
+        pair=given, like=predicted(given), linear=none, second=none, same_equations=None, uncertainty=none,
+        measured_error=None,
+    )  # fmt: skip
+    budget = error_budget(known)
+    notes = dict(zip(budget["row"].to_numpy(), budget.attrs["notes"], strict=True))
+    for row in ("contact", "stiffness"):
+        assert math.isnan(float(budget["dte"].sel(row=row)))
+        assert notes[row] == "the stiffness of the whole mesh is given, with its contact"
+
+
+def test_a_mesh_that_does_not_vibrate_has_no_shares():
+    pair = unlike_pair("heavily_relieved_under_load").healthy
+    pair = pair.with_({"mesh.contact": None, "mesh.relief": None, "friction.law": "none"}, stiffness=3e8)
+    none = Absent(Outcome.NOT_ASKED)
+    own = predicted(pair)
+    assert own.peak_to_peak == own.bearing_rms == 0.0
+    known = SimpleNamespace(
+        pair=pair, like=own, linear=none, second=none, same_equations=None, uncertainty=none,
+        measured_error=None,
+    )  # fmt: skip
+    assert error_budget(known)["share"].isnull().all()

@@ -33,6 +33,13 @@ PAIRS = {name: unlike_pair(name) for name in UNLIKE} | {
 pytestmark = pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
 
 
+#: A stiffness of the whole mesh; contact and relief, which the files know, are left to it.
+WHOLE = {
+    "mesh.stiffness": [3e8, 3.3e8, 3.4e8, 3.1e8, 2.7e8, 2.6e8, 2.8e8, 3e8],
+    "mesh.contact": None, "mesh.relief": None,
+}  # fmt: skip
+
+
 def unread(pair: lumped.GearPair) -> list[str]:
     """Fields with a value that the pair does not read."""
     return sorted(leaf_paths(pair).keys() - fields_read(pair) - {"name", "description"})
@@ -45,6 +52,10 @@ def moved(pair: lumped.GearPair, fields: list[str]) -> lumped.GearPair:
         value, name = values[path], path.rpartition(".")[2]
         if isinstance(value, list):
             changes[path] = [1.02 * one for one in value]
+        elif pair.mesh.stiffness.whole_mesh and path in ("mesh.contact", "mesh.relief"):
+            continue  # it has no other value
+        elif name == "shape":
+            changes[path] = {"linear": "parabolic", "parabolic": "linear"}[value]
         elif name == "relief":
             changes[path] = {"static": "ignored", "ignored": "static"}[value]
         elif isinstance(value, int):
@@ -102,7 +113,8 @@ def test_a_field_that_is_not_read_changes_no_number(name, law):
     {"friction.law": "coulomb", "friction.coefficient": 0.05},
     {"mesh.stiffness": {"model": "rectangular", "pair_stiffness": 3e8}},
     {"mesh.stiffness": {"model": "parabolic", "peak": 4e8, "end_ratio": 0.6}},
-    {"mesh.stiffness": [3e8, 3.3e8, 3.4e8, 3.1e8, 2.7e8, 2.6e8, 2.8e8, 3e8]},
+    WHOLE,
+    WHOLE | {"gear.deviations": {"tolerance_class": 6}},
     {"pinion.mass": 0.9, "pinion.inertia": 4e-4, "gear.mass": 2.1, "gear.inertia": 3e-3},
     {"gear.deviations": {"tolerance_class": 6}},
     {"pinion.faults": [{"kind": "crack", "tooth": 2, "depth": 0.6}]},
@@ -113,6 +125,15 @@ def test_values_that_take_the_place_of_others_leave_those_unread(changes):
     for name in ("rack_25_degrees_always_pushing", "larger_gear_drives_contact_lost"):
         pair = PAIRS[name].with_(changes)
         assert differences(pair) == []
+
+
+def test_a_stiffness_of_the_whole_mesh_has_contact_and_profile_in_it():
+    pair = PAIRS["heavily_relieved_under_load"].healthy
+    profile = {"mesh.contact", "mesh.relief", "pinion.tip_relief.amount"}
+    assert profile <= fields_read(pair)
+    given = pair.with_(WHOLE)
+    assert profile <= {*unread(given)}
+    assert differences(given) == []
 
 
 def test_a_gear_on_a_shaft_is_a_body_of_its_material():

@@ -175,6 +175,18 @@ def test_every_model_of_the_stiffness_and_both_contacts_are_in_the_range_or_besi
     assert set(forms_beside(measured)) == {"mesh.contact = prescribed"}
 
 
+@pytest.mark.parametrize("stiffness", [5e8, lambda phase: 5e8 + 3e7 * np.cos(2 * np.pi * phase)])
+def test_beside_a_stiffness_of_the_whole_mesh_stands_nothing_that_it_decides(stiffness):
+    """It is used as given: another contact is none of its forms, and its size and model are known."""
+    for pair in NEW.values():
+        given = pair.with_(stiffness=stiffness)
+        assert forms_beside(given) == {}
+        left = {part.field for one in uncertain_inputs(given) for part in one.parts}
+        assert not {"mesh.stiffness", "mesh.stiffness_factor", "mesh.contact", "mesh.relief"} & left
+        assert not any("_relief" in field for field in left)
+    assert len(forms_beside(NEW["wind"])) > 0
+
+
 def test_every_default_names_its_source():
     for pair in NEW.values():
         for one in uncertain_inputs(pair):
