@@ -68,6 +68,8 @@ def _doubt(results: Results, facts: Mapping[str, Fact]) -> str | None:
     spreads = {name: results.spread(name) for name in RANGED}
     known = {name: spread for name, spread in spreads.items() if spread is not None}
     record, assumed = results.measured_error, results.inputs[1]
+    if not known and "samples" in facts:
+        return facts["samples"].claim
     if not known and results.varies:
         return f"{facts['inputs'].claim}, and they were not varied"
     widest = max(known, key=lambda name: max(-known[name][0], known[name][1]), default="")
