@@ -122,3 +122,7 @@ class LikeTeethWarning(UserWarning):
 
 class ResolutionWarning(UserWarning):
     """A function that can only be sampled has features narrower than the samples that were taken first."""
+
+
+class OldFormatWarning(UserWarning):
+    """A parameter file of an older format means something else than the same text in today's format."""

@@ -140,7 +140,7 @@ def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
         ("pinion", pair.pinion, g.base_radius_pinion, recess, later, -earlier),
         ("gear", pair.gear, g.base_radius_gear, approach, earlier, -later),
     ):
-        changes |= {f"{name}.addendum": None, f"{name}.tip_diameter": 2e3 * math.hypot(radius, flank)}
+        changes[f"{name}.tip_diameter"] = 2e3 * math.hypot(radius, flank)
         for end, relief, moved in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
             if relief is not None:
                 start = relief.start_roll_angle + moved / radius

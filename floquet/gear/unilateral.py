@@ -21,7 +21,6 @@ from floquet.gear.axes import (
 )
 from floquet.orbits.branch import Family
 from floquet.orbits.system import Contact, ContactSystem
-from lumped.gear_geometry.tooth_profile import tooth_half_angle
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import PathFunction, shifted
@@ -110,16 +109,14 @@ class _Flank:
 
 def _coast_flank(pair: GearPair, cycle: MeshCycle, rows: FloatArray) -> _Flank:
     """The back sides: their line of action is the mirror image of the driving one in the line of centres."""
-    g, rack = pair.geometry, pair.basic_rack
+    g = pair.geometry
     r_p, r_g = g.base_radius_pinion, g.base_radius_gear
     # The line of action makes the angle pi - 2 alpha_w with that of the driving flanks.
     angle = np.pi - 2.0 * g.operating_pressure_angle
     x, y = np.cos(angle), np.sin(angle)
     normal = np.array([r_p, -r_g, -x, x, -y, y])
     arm = np.array([[0.0, 1.0], [-g.L_XY, 1.0], [y, 0.0], [-y, 0.0], [-x, 0.0], [x, 0.0]])
-    thickness = (
-        2.0 * r_p * tooth_half_angle(pair.pinion.teeth, pair.pinion.profile_shift, rack.pressure_angle, 0.0)
-    )
+    thickness = 2.0 * r_p * pair.wheels[0].tooth.base_half_angle
     thickness -= 0.5 * pair.mesh.backlash
     place = thickness + 2.0 * r_p * g.operating_pressure_angle - g.L_XA + 0.5 * g.normal_backlash
     pitch = g.base_pitch

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from lumped.errors import FieldProblem, refuse
-from lumped.gear_geometry.tooth_profile import ToothProfile, inverse_involute, involute, tooth_half_angle
+from lumped.gear_geometry.profile_shift import distance_without_backlash, operating_pressure_angle
+from lumped.gear_geometry.tooth_profile import ToothProfile, tooth_half_angle
 
 
 @dataclass(frozen=True)
@@ -188,21 +189,10 @@ def _build(
 
 def _centre_distance(pinion: ToothProfile, gear: ToothProfile, distance: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
-    teeth, alpha = pinion.teeth + gear.teeth, pinion.pressure_angle
-    base = 0.5 * pinion.module * teeth * math.cos(alpha)
-    if distance is not None:
-        if distance <= base:
-            allowed = f"> {base * 1e3:.4f} mm, the sum of the base radii"
-            raise refuse("centre_distance", f"{distance * 1e3:.6g} mm", allowed, "Raise the centre distance.")
-        return distance, math.acos(base / distance)
-    shift = pinion.profile_shift + gear.profile_shift
-    value = involute(alpha) + 2.0 * shift / teeth * math.tan(alpha)
-    if value < 0.0:
-        allowed = f"sum > {-0.5 * teeth * involute(alpha) / math.tan(alpha):.4g}"
-        action = "Raise the profile shifts or give centre_distance."
-        raise refuse("pinion.profile_shift", f"sum {shift:g}", allowed, action)
-    alpha_w = inverse_involute(value)
-    return base / math.cos(alpha_w), alpha_w
+    teeth, module, alpha = pinion.teeth + gear.teeth, pinion.module, pinion.pressure_angle
+    if distance is None:
+        distance = distance_without_backlash(teeth, module, alpha, pinion.profile_shift + gear.profile_shift)
+    return distance, operating_pressure_angle(teeth, module, alpha, distance)
 
 
 #: Teeth of rounded published data may overlap by this much of a module before the pair is refused.

@@ -141,10 +141,11 @@ def _kind(root: type[Section], path: str) -> tuple[str | None, str]:
     return (marker.unit, marker.allowed) if marker else (None, "")
 
 
-def recorded(pair: Section, written: Assumed) -> Assumed:
+def recorded(pair: Section, written: Assumed, derived: Mapping[str, Value]) -> Assumed:
     """The record of a pair: entries of the table that its values still have, and defaults that it took.
 
-    A field that the file does not write is assumed at the default of the schema.
+    A field that the file does not write is assumed at the default of the schema; ``derived`` has those whose
+    default follows from other fields.
     """
     defaults = dict(_defaults_taken(pair, ""))
     values = {path: _value_at(pair, path) for path in (*written, *defaults)}
@@ -155,6 +156,7 @@ def recorded(pair: Section, written: Assumed) -> Assumed:
             for path, value in values.items()
             if value is not None and (path in defaults or _same(root, path, written[path], value))
         }
+        | dict(derived)
     )
 
 

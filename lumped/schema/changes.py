@@ -44,8 +44,7 @@ _OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE
 _STIFFNESS = "mesh.stiffness.model"
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
-    ("pinion.addendum", "pinion.tip_diameter"),
-    ("gear.addendum", "gear.tip_diameter"),
+    *((f"{gear}.addendum", f"{gear}.tip_diameter", f"{gear}.tip_alteration") for gear in _GEARS),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
 )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
@@ -9,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from lumped.arguments import nearest
-from lumped.errors import refuse, shown
+from lumped.errors import OldFormatWarning, refuse, shown
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.gear_geometry.geometry import Geometry
-from lumped.schema.pair import FORMAT, GearPair, validated
+from lumped.schema.old_formats import FORMAT, changes_since
+from lumped.schema.pair import GearPair, validated
 
 #: What stands for a gear pair: a preset name, the path of a TOML file, parameters in file units, or the pair.
 AnyPair = GearPair | str | Path | Mapping[str, Any]
@@ -82,8 +84,8 @@ def geometry(pair: AnyPair) -> Geometry:
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``."""
     schema = GearPair.model_json_schema()
-    words = "format of the file; a file without it is of format 1"
-    schema["properties"] |= {"format": {"const": FORMAT, "default": FORMAT, "description": words}}
+    words = "format of the file; a file without it is of format 1, which means other defaults"
+    schema["properties"] |= {"format": {"enum": [1, FORMAT], "default": 1, "description": words}}
     for section in (schema, *schema["$defs"].values()):
         for field in section["properties"].values():
             if field.get("default") in (None, []):  # held so inside, but nothing that a file can say
@@ -108,7 +110,16 @@ def _from_file(source: str | Path) -> GearPair:
     for key, other in _OTHER_FILES.items():
         if key in data and "pinion" not in data:
             raise refuse("file", path, "the parameters of a gear pair", f"This is {other}.")
-    return validated(data, name, folder)
+    data = {"format": 1} | data
+    pair = validated(data, name, folder)
+    if data["format"] != FORMAT:
+        for difference in changes_since(data, pair):
+            text = (
+                f"{name} is of format {data['format']}: {difference}. Write format = {FORMAT} at its top for "
+                "that; write 0 to keep what it means."
+            )
+            warnings.warn(text, OldFormatWarning, stacklevel=3)
+    return pair
 
 
 def _exists(path: Path) -> bool:

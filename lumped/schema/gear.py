@@ -12,6 +12,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.registry import AnyFault
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
+from lumped.gear_geometry.profile_shift import LARGEST_SHIFT, LEAST_SHIFT
 from lumped.schema.teeth import Deviations, Mounting
 
 _MODULUS = "Steel has 206 GPa; write the unit where it is another one: '206000 MPa'."
@@ -80,14 +81,26 @@ class Gear(Section):
     face_width: Annotated[float, Quantity("mm", at_least=0.01, at_most=2000, action=_SIZE)] = Field(
         description="face width"
     )
-    profile_shift: Annotated[float, Quantity("1", at_least=-1.5, at_most=2)] = Field(
-        0.0, description="profile shift coefficient x"
+    profile_shift: Annotated[
+        float | None, Quantity("1", at_least=LEAST_SHIFT, at_most=LARGEST_SHIFT, optional=True)
+    ] = Field(
+        None,
+        description="profile shift coefficient x; default what the centre distance asks for, without one 0",
     )
     addendum: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
-        None, description="addendum, reference to tip circle; default module * (addendum_coefficient + x)"
+        None, description="addendum, reference to tip circle, instead of tip_diameter"
     )
     tip_diameter: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
-        None, description="tip diameter, instead of addendum"
+        None,
+        description="tip diameter; default module * (teeth + 2 x + 2 addendum_coefficient) "
+        "+ 2 tip_alteration",
+    )
+    tip_alteration: Annotated[float | None, Quantity("mm", at_least=-100, at_most=100, optional=True)] = (
+        Field(
+            None,
+            description="tip alteration k m, negative shortens the tooth, instead of tip_diameter; default "
+            "keeps the clearance of the basic rack; 0 does not shorten",
+        )
     )
     bore: Annotated[float, Quantity("mm", at_least=0)] = Field(0.0, description="bore diameter; 0 is solid")
     mass: Annotated[float | None, Quantity("kg", at_least=1e-9, at_most=1e7, optional=True)] = Field(
@@ -149,7 +162,9 @@ class Gear(Section):
 
     @model_validator(mode="after")
     def _one_tip(self) -> Self:
-        if self.addendum is not None and self.tip_diameter is not None:
-            value = f"{self.tip_diameter * 1e3:g} mm"
-            raise refuse("tip_diameter", value, "either addendum or tip_diameter", "Remove one.")
+        names = ("addendum", "tip_diameter", "tip_alteration")
+        given = [name for name in names if getattr(self, name) is not None]
+        if len(given) > 1:
+            value = f"{getattr(self, given[-1]) * 1e3:g} mm beside {' and '.join(given[:-1])}"
+            raise refuse(given[-1], value, f"one of {', '.join(names)}", "Keep one of them.")
         return self

@@ -9,6 +9,7 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -21,11 +22,23 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, made_of
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, QuantityRange, SIValue, to_si, to_stated
+from lumped.fields.units import Quantity, QuantityRange, SIValue, to_file, to_si, to_stated
 from lumped.friction.base import ContactPath
 from lumped.friction.registry import law_of
 from lumped.friction.table import TABLE
-from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, existence_problems
+from lumped.gear_geometry.geometry import (
+    Geometry,
+    Wheel,
+    build_geometry,
+    existence_problems,
+    theoretical_backlash,
+)
+from lumped.gear_geometry.profile_shift import (
+    distance_without_backlash,
+    resolved_shifts,
+    shift_sum,
+    tip_alteration,
+)
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
@@ -33,11 +46,10 @@ from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
+from lumped.schema.old_formats import FORMAT, upgraded
 from lumped.schema.shafts import Shafts
 from lumped.schema.teeth import TorqueRipple
 
-#: Format of parameter files; a change that older programs would misread raises it.
-FORMAT = 1
 #: Largest speed of a pinion [rpm].
 LARGEST_SPEED = 200000.0
 _RUNNING = "Give the running speed; the pinion drives in its positive sense."
@@ -75,6 +87,11 @@ class OperatingPoint(Section):
     )
 
 
+#: Problems that a centre distance of other gears can be the reason of.
+_OF_THE_MESH = ("centre_distance", "contact_ratio", "pinion.tip_diameter", "gear.tip_diameter")
+#: Largest normal backlash over module that a centre distance may leave between teeth as they are cut: the
+#: allowances of ISO/TR 10064-2 are at most half of it, and the centre distance has tolerances of its own.
+_LARGEST_PLAY = 0.2
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
 
@@ -144,7 +161,7 @@ class GearPair(Section, metaclass=_InOurWords):
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
         problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
-        problems = self._with_centre_distance(problems)
+        problems = self._of_contradicting_sizes(problems)
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if self.friction.law == TABLE and self.friction.table is not None and not problems:
             problems += self.friction.table.problems(self.geometry)
@@ -162,8 +179,27 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @model_validator(mode="after")
     def _records_what_it_assumes(self) -> GearPair:
-        self.__dict__["assumed"] = recorded(self, self.assumed)  # nobody has the pair yet
+        self.__dict__["assumed"] = recorded(self, self.assumed, self._assumed_sizes())  # nobody has it yet
         return self
+
+    def _assumed_sizes(self) -> dict[str, float]:
+        """Profile shifts and tip alterations that no file gives and nothing decides: path -> file units.
+
+        A shift that the other one and the centre distance leave no choice is known.
+        """
+        gears = {"pinion": self.pinion, "gear": self.gear}
+        assumed: dict[str, float] = {}
+        free = [name for name, gear in gears.items() if gear.profile_shift is None]
+        if self.centre_distance is None or len(free) > 1:
+            assumed |= {
+                f"{name}.profile_shift": shift
+                for name, shift in zip(gears, self.profile_shifts, strict=True)
+                if name in free
+            }
+        for name, gear in gears.items():
+            if gear.tip_diameter is None and gear.addendum is None and gear.tip_alteration is None:
+                assumed[f"{name}.tip_alteration"] = float(to_file(self.tip_alteration, "mm"))
+        return assumed
 
     def state(self, field: str) -> State:
         """Return whether the value of a field is known or assumed; see ``assumed``.
@@ -185,15 +221,20 @@ class GearPair(Section, metaclass=_InOurWords):
         try:
             return self._geometry_at(self.centre_distance)
         except ParameterError as error:
-            raise ParameterError(self._with_centre_distance(list(error.problems)), self.name) from None
+            raise ParameterError(self._of_contradicting_sizes(list(error.problems)), self.name) from None
 
     def _geometry_at(self, centre_distance: float | None) -> Geometry:
         speed = self.operating.pinion_speed
         return build_geometry(*self.wheels, centre_distance, self.mesh.backlash, speed)
 
-    def _with_centre_distance(self, problems: list[FieldProblem]) -> list[FieldProblem]:
-        """Problems, led by the fixed centre distance where the teeth would mesh without it."""
-        if self.centre_distance is None or not problems:
+    def _of_contradicting_sizes(self, problems: list[FieldProblem]) -> list[FieldProblem]:
+        """Problems, led by a centre distance and profile shifts that contradict each other.
+
+        They do where the teeth as they are cut would wedge, or have a backlash that is larger than any
+        allowance, or cannot mesh although they would at the centre distance of their profile shifts.
+        """
+        shifts = self.pinion.profile_shift, self.gear.profile_shift
+        if self.centre_distance is None or None in shifts:
             return problems
         try:
             free = self._geometry_at(None)
@@ -201,27 +242,69 @@ class GearPair(Section, metaclass=_InOurWords):
             return problems
         if existence_problems(*self.wheels, free, self.mesh.backlash):
             return problems
-        of_it = [problem for problem in problems if problem.field == "centre_distance"]
-        fits = f"{free.centre_distance * 1e3:.6g} mm"
-        allowed = ", ".join([*(problem.allowed for problem in of_it), f"about {fits} for these teeth"])
-        value = of_it[0].value if of_it else f"{self.centre_distance * 1e3:.6g} mm"
-        advice = f"Delete centre_distance or set it to {fits}."
-        action = " ".join([*(problem.action for problem in of_it), advice])
-        first = FieldProblem("centre_distance", value, allowed, action)
-        return [first, *(problem for problem in problems if problem not in of_it)]
+        here = f"{self.centre_distance * 1e3:.6g} mm"
+        value = f"{here} with the profile shifts {shifts[0]:g} and {shifts[1]:g}"
+        if not problems:
+            play = theoretical_backlash(*self.wheels, self.geometry.operating_pressure_angle)
+            if play <= _LARGEST_PLAY * self.basic_rack.module:
+                return problems
+            value += f", normal backlash {play * 1e3:.4g} mm"
+        elif not any(problem.field in _OF_THE_MESH for problem in problems):
+            return problems
+        rack, teeth = self.basic_rack, self.pinion.teeth + self.gear.teeth
+        actions = [f"Delete centre_distance (it is then {free.centre_distance * 1e3:.6g} mm)"]
+        with suppress(ParameterError):  # a centre distance below that of the base circles
+            total = shift_sum(teeth, rack.module, rack.pressure_angle, self.centre_distance)
+            actions.append(f"or the profile shifts (their sum is then {total:.4f})")
+        actions.append("or correct the wrong one. Teeth that are thinned on purpose: mesh.backlash")
+        allowed = (
+            f"profile shifts and centre distance of one pair: about {free.centre_distance * 1e3:.6g} mm for "
+            f"these shifts, or a backlash up to {_LARGEST_PLAY:g} modules"
+        )
+        first = FieldProblem("centre_distance", value, allowed, f"{', '.join(actions)}.")
+        return [first, *(problem for problem in problems if problem.field not in _OF_THE_MESH)]
 
     @cached_property
     def wheels(self) -> tuple[Wheel, Wheel]:
         """Pinion and gear as the basic rack cuts them, SI."""
-        return self._wheel(self.pinion), self._wheel(self.gear)
+        first, second = self.profile_shifts
+        return self._wheel(self.pinion, first), self._wheel(self.gear, second)
 
-    def _wheel(self, gear: Gear) -> Wheel:
+    @cached_property
+    def profile_shifts(self) -> tuple[float, float]:
+        """Profile shift coefficients of pinion and gear: as given, else what the centre distance asks for.
+
+        See ``lumped.gear_geometry.profile_shift.resolved_shifts``.
+        """
+        rack, gears = self.basic_rack, (self.pinion, self.gear)
+        return resolved_shifts(
+            (self.pinion.profile_shift, self.gear.profile_shift),
+            (gears[0].teeth, gears[1].teeth),
+            rack.module,
+            rack.pressure_angle,
+            self.centre_distance,
+        )
+
+    @cached_property
+    def tip_alteration(self) -> float:
+        """Tip alteration k m [m] of a gear that gives none: it keeps the clearance of the basic rack."""
+        rack, teeth, shift = self.basic_rack, self.pinion.teeth + self.gear.teeth, sum(self.profile_shifts)
+        centre = self.centre_distance
+        if centre is None:
+            centre = distance_without_backlash(teeth, rack.module, rack.pressure_angle, shift)
+        return tip_alteration(centre, rack.module, teeth, shift)
+
+    def _wheel(self, gear: Gear, shift: float) -> Wheel:
         rack = self.basic_rack
         sizes = rack.dedendum_coefficient, rack.fillet_radius_coefficient
-        tooth = ToothProfile(gear.teeth, rack.module, rack.pressure_angle, gear.profile_shift, *sizes)
-        addendum = rack.module * (rack.addendum_coefficient + gear.profile_shift)
-        tip = 0.5 * rack.module * gear.teeth + (addendum if gear.addendum is None else gear.addendum)
-        tip = tip if gear.tip_diameter is None else 0.5 * gear.tip_diameter
+        tooth = ToothProfile(gear.teeth, rack.module, rack.pressure_angle, shift, *sizes)
+        if gear.tip_diameter is not None:
+            tip = 0.5 * gear.tip_diameter
+        elif gear.addendum is not None:
+            tip = tooth.reference_radius + gear.addendum
+        else:
+            alteration = self.tip_alteration if gear.tip_alteration is None else gear.tip_alteration
+            tip = tooth.reference_radius + rack.module * (rack.addendum_coefficient + shift) + alteration
         return Wheel(tooth, tip, gear.face_width, gear.bore)
 
     def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
@@ -406,13 +489,10 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
     """Return the gear pair of plain data in file units, or refuse it in the user's words.
 
-    ``source`` says where it comes from; data files that it names are read relative to ``folder``. A file
-    without ``format`` is of format 1.
+    ``source`` says where it comes from; data files that it names are read relative to ``folder``. Data of an
+    older ``format`` mean what they meant then; without one they are of today's.
     """
-    fields = {key: value for key, value in data.items() if key != "format"}
-    if data.get("format", FORMAT) != FORMAT:
-        action = "Use a later release of spurcheck, or correct the number."
-        raise refuse("format", data["format"], f"{FORMAT}, the format of this release", action)
+    fields = upgraded(data)
     return made_of(GearPair, fields, source, folder)
 
 

@@ -34,6 +34,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
+from multibody.contact.cut_teeth import profile_shifts, root_radius
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import event_table
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
@@ -147,8 +148,8 @@ def machine(
     """
     drawn, (mass, inertia) = circles(pair), masses(pair)
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
-    tooth_p = base_tooth_angle(pair, pair.pinion, drawn.base_pinion)
-    tooth_g = base_tooth_angle(pair, pair.gear, drawn.base_gear)
+    tooth_p = base_tooth_angle(pair, 0, drawn.base_pinion)
+    tooth_g = base_tooth_angle(pair, 1, drawn.base_gear)
     relieved, loaded = reliefs(pair, drawn), pair.mesh.contact == "loaded"
     parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
     whole = loaded or parts or flags & (kn.TIP_CONTACT | kn.CLEARANCE)
@@ -264,7 +265,7 @@ def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
         x = fault.depth * math.sin(fault.angle) / (2.0 * half)
         strip = x**2 / (1.0 - x) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)
         row[kn.CRACK] = 6.0 * strip / (gear.youngs_modulus * flank.face_width * half**2)
-        row[kn.ROOT], row[kn.HALF_TOOTH] = centre, 0.5 * base_tooth_angle(pair, gear, radius)
+        row[kn.ROOT], row[kn.HALF_TOOTH] = centre, 0.5 * base_tooth_angle(pair, which, radius)
     elif isinstance(fault, Spall):
         row[kn.SPALL_START], row[kn.SPALL_END] = (
             fault.start_roll_angle * radius,
@@ -376,14 +377,14 @@ def circles(pair: GearPair) -> Circles:
     rack = pair.basic_rack
     cosine = math.cos(rack.pressure_angle)
     r_p, r_g = (0.5 * rack.module * gear.teeth * cosine for gear in (pair.pinion, pair.gear))
-    centre = pair.centre_distance
+    centre = _close_mesh(pair, r_p + r_g) if pair.centre_distance is None else pair.centre_distance
     return Circles(
         base_pinion=r_p,
         base_gear=r_g,
         pitch=math.pi * rack.module * cosine,
-        tip_pinion=_tip_radius(pair, pair.pinion),
-        tip_gear=_tip_radius(pair, pair.gear),
-        centre_distance=_close_mesh(pair, r_p + r_g) if centre is None else centre,
+        tip_pinion=_tip_radius(pair, 0, centre),
+        tip_gear=_tip_radius(pair, 1, centre),
+        centre_distance=centre,
     )
 
 
@@ -431,27 +432,39 @@ def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, f
     return rows
 
 
-def base_tooth_angle(pair: GearPair, gear: Gear, base: float) -> float:
-    """Angle between both flanks of a tooth on the base circle, thinned by its share of the backlash [rad]."""
-    rack = pair.basic_rack
+def base_tooth_angle(pair: GearPair, which: int, base: float) -> float:
+    """Angle between both flanks of a tooth on the base circle, thinned by its share of the backlash [rad].
+
+    ``which``: pinion (0) or gear (1), with the base radius ``base`` [m].
+    """
+    rack, gear, shift = pair.basic_rack, (pair.pinion, pair.gear)[which], profile_shifts(pair)[which]
     alpha = rack.pressure_angle
-    at_reference = (0.5 * math.pi + 2.0 * gear.profile_shift * math.tan(alpha)) / (0.5 * gear.teeth)
+    at_reference = (0.5 * math.pi + 2.0 * shift * math.tan(alpha)) / (0.5 * gear.teeth)
     return at_reference + 2.0 * (math.tan(alpha) - alpha) - 0.5 * pair.mesh.backlash / base
 
 
-def _tip_radius(pair: GearPair, gear: Gear) -> float:
+def _tip_radius(pair: GearPair, which: int, centre_distance: float) -> float:
+    """Tip radius of the pinion (0) or the gear (1) [m]: of the file, else as the rack leaves room for it.
+
+    The tip stays off the mate's root by the clearance of the rack, and does not reach beyond the addendum
+    that the rack gives.
+    """
+    gear, rack = (pair.pinion, pair.gear)[which], pair.basic_rack
     if gear.tip_diameter is not None:
         return gear.tip_diameter / 2.0
-    module, addendum = pair.basic_rack.module, gear.addendum
-    if addendum is None:
-        addendum = (pair.basic_rack.addendum_coefficient + gear.profile_shift) * module
-    return module * gear.teeth / 2.0 + addendum
+    if gear.addendum is not None:
+        return rack.module * gear.teeth / 2.0 + gear.addendum
+    full = rack.module * (0.5 * gear.teeth + rack.addendum_coefficient + profile_shifts(pair)[which])
+    if gear.tip_alteration is not None:
+        return full + gear.tip_alteration
+    clearance = rack.module * (rack.dedendum_coefficient - rack.addendum_coefficient)
+    return min(full, centre_distance - root_radius(pair, 1 - which) - clearance)
 
 
 def _close_mesh(pair: GearPair, base: float) -> float:
     """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
     alpha, teeth = pair.basic_rack.pressure_angle, pair.pinion.teeth + pair.gear.teeth
-    shift = pair.pinion.profile_shift + pair.gear.profile_shift
+    shift = sum(profile_shifts(pair))
 
     def gap(angle: float) -> float:
         grown = (math.tan(angle) - angle) - (math.tan(alpha) - alpha)

@@ -19,10 +19,10 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, eigh, eigvals, eigvalsh
 
 from lumped.errors import refuse
-from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.schema.shafts import CoupledInertia, Shaft
 from lumped.typing import FloatArray, IntArray
+from multibody.contact.cut_teeth import root_radius
 from multibody.shafts.beam import Interval, Reduced, bending, reduce_fields, torsion
 
 #: Stations closer than this are one [m].
@@ -359,14 +359,14 @@ def train(
     highest = enough if given is None else given
     found = []
     sides = (
-        (pair.pinion, pair.shafts.pinion, pair.shafts.motor, -speeds[0]),
-        (pair.gear, pair.shafts.gear, pair.shafts.load, speeds[1]),
+        (pair.shafts.pinion, pair.shafts.motor, -speeds[0]),
+        (pair.shafts.gear, pair.shafts.load, speeds[1]),
     )
-    for i, (gear, shaft, coupled, speed) in enumerate(sides):
+    for i, (shaft, coupled, speed) in enumerate(sides):
         found.append(
             reduced_shaft(
                 shaft,
-                disc(pair, gear, float(mass[i]), float(inertia[i])),
+                disc(pair, i, float(mass[i]), float(inertia[i])),
                 coupled,
                 speed=speed,
                 damping_ratio=pair.shafts.damping_ratio,
@@ -381,12 +381,11 @@ def train(
     )
 
 
-def disc(pair: GearPair, gear: Gear, mass: float, inertia: float) -> Disc:
-    """A gear as a rigid disc whose rim is tied to the shaft by the twist of its bored body (Lame)."""
-    twist = math.inf
+def disc(pair: GearPair, which: int, mass: float, inertia: float) -> Disc:
+    """Pinion (0) or gear (1) as a rigid disc; its bored body twists between shaft and rim (Lame)."""
+    twist, gear = math.inf, (pair.pinion, pair.gear)[which]
     if gear.bore > 0.0:
-        rack = pair.basic_rack
-        root = rack.module * (0.5 * gear.teeth + gear.profile_shift - rack.dedendum_coefficient)
+        root = root_radius(pair, which)
         shear = gear.youngs_modulus / (2.0 * (1.0 + gear.poisson_ratio))
         twist = 4.0 * math.pi * shear * gear.face_width / ((2.0 / gear.bore) ** 2 - 1.0 / root**2)
     return Disc(mass, inertia, 0.5 * inertia + mass * gear.face_width**2 / 12.0, twist)

@@ -76,8 +76,8 @@ def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
     teeth = {
         "pinion.teeth": pair.pinion.teeth + 1,
         "gear.teeth": pair.gear.teeth + 1 + pair.gear.teeth // 8,
-        "pinion.profile_shift": pair.pinion.profile_shift + 0.08,
-        "gear.profile_shift": pair.gear.profile_shift - 0.03,
+        "pinion.profile_shift": pair.profile_shifts[0] + 0.08,
+        "gear.profile_shift": pair.profile_shifts[1] - 0.03,
         "centre_distance": None,
     }
     given, relieved = (
@@ -87,7 +87,7 @@ def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
             for n in names
             if getattr(getattr(pair, g), n) is not None
         }
-        for names in (("addendum", "tip_diameter"), ("tip_relief", "root_relief"))
+        for names in (("addendum", "tip_diameter", "tip_alteration"), ("tip_relief", "root_relief"))
     )
     yield plain | teeth | given
     if relieved:

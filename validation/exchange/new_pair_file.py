@@ -20,8 +20,9 @@ from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.bearings import STIFFNESSES
 from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
+from lumped.schema.old_formats import FORMAT
 from lumped.schema.own_laws import is_own
-from lumped.schema.pair import FORMAT, GearPair, leaf_paths, stated_unit
+from lumped.schema.pair import GearPair, leaf_paths, stated_unit
 from lumped.stiffness.foundation import thin_rims
 
 GIVEN = "given by the user"
@@ -173,7 +174,7 @@ def reasons(pair: GearPair) -> dict[str, str]:
         node: Any = known
         for part in parents:
             node = node[int(part) if isinstance(node, list) else part]
-        del node[leaf]
+        node.pop(leaf, None)  # a default that follows from other fields is not written
     try:
         own = leaf_paths(_filled({"name": pair.name}, _values(known)))
     except ParameterError:  # such as a kind of stiffness that the program would not assume

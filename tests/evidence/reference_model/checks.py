@@ -21,7 +21,6 @@ from scipy.optimize import root
 
 import lumped
 from lumped.model.periodic_system import periodic_system
-from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import friction as fr
@@ -90,7 +89,7 @@ def blanks(pair: GearPair) -> tuple[Blank, Blank]:
     sides = ((pair.pinion, drawn.base_pinion, drawn.tip_pinion), (pair.gear, drawn.base_gear, drawn.tip_gear))
     result = []
     for i, (gear, base, tip) in enumerate(sides):
-        coarse, fine = (_integrals(half_tooth(pair, gear, base, tip, n)) for n in (_POINTS, 2 * _POINTS))
+        coarse, fine = (_integrals(half_tooth(pair, i, base, tip, n)) for n in (_POINTS, 2 * _POINTS))
         # The polygon errs by the square of its steps: a third of the change is left in the finer one.
         left = (fine - coarse) / 3.0
         area, polar = 2.0 * gear.teeth * (fine + left)
@@ -104,10 +103,10 @@ def blanks(pair: GearPair) -> tuple[Blank, Blank]:
     return result[0], result[1]
 
 
-def half_tooth(pair: GearPair, gear: Gear, base: float, tip: float, points: int) -> FloatArray:
+def half_tooth(pair: GearPair, which: int, base: float, tip: float, points: int) -> FloatArray:
     """Outline of half a tooth and half a space from the gear's centre, closed, (k, 2) [m]."""
-    profile = pair.wheels[0 if gear is pair.pinion else 1].tooth
-    half = 0.5 * base_tooth_angle(pair, gear, base)
+    gear, profile = (pair.pinion, pair.gear)[which], pair.wheels[which].tooth
+    half = 0.5 * base_tooth_angle(pair, which, base)
     thinned = profile.base_half_angle - half
     length = np.linspace(math.sqrt(tip**2 - base**2), profile.form_length, points)
     flank_angle, flank_radius = half - length / base + np.arctan(length / base), np.hypot(base, length)

@@ -104,12 +104,12 @@ def test_gears_are_discs_on_shafts_that_turn_against_each_other(setup):
     train, m = setup.machine.train, setup.machine
     turning = train.damping - train.damping.T
     assert turning[0, 1] < 0.0 < turning[3, 4]
-    body = disc(PAIR, PAIR.gear, m.mass[1], m.inertia[1])
+    body = disc(PAIR, 1, m.mass[1], m.inertia[1])
     width, radius = PAIR.gear.face_width, PAIR.geometry.reference_radius_gear
     hole = PAIR.gear.bore / 2
     assert body.tilting == pytest.approx(m.mass[1] * (3 * (radius**2 + hole**2) + width**2) / 12, rel=1e-12)
     assert body.twist_stiffness == pytest.approx(body_twist(PAIR)[1], rel=1e-12)
-    assert np.isinf(disc(PAIR, PAIR.pinion, m.mass[0], m.inertia[0]).twist_stiffness)
+    assert np.isinf(disc(PAIR, 0, m.mass[0], m.inertia[0]).twist_stiffness)
 
 
 def test_bearings_hold_what_teeth_push(run):
