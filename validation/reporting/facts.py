@@ -232,12 +232,12 @@ def samples_words(found: xr.Dataset) -> str:
 
 def sampled_words(what: str, counts: Mapping[str, Any], seconds: float) -> str:
     """What the time left open of a range that few samples give: a clause."""
-    of = f"{counts['taken']} of {counts['asked']} possible machines"
+    of = f"{counts['taken']} of {counts['asked']}"
     end = f"the time of {number(seconds, 3)} s was used up"
     least = least_samples(counts["asked"], LEAST_BAND)
     if counts["samples"] < least:
         return f"there is no {what}: it needs {least} possible machines, and {of} were computed; {end}"
-    return f"the {what} is from {of}; {end}"
+    return f"the {what} is from {of} possible machines; {end}"
 
 
 def _samples(results: Results) -> Fact | None:

@@ -314,7 +314,7 @@ def advice_on_inputs(results: Results) -> list[Action]:
     actions: dict[str, Action] = {}
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1))):
         low, high = swing[j].min(), swing[j].max()
-        if high - low < _COUNTS * given:
+        if not high - low >= _COUNTS * given:  # NaN: it was not moved alone
             break
         field = str(found["input"].to_numpy()[j])
         kind = kind_of(field)

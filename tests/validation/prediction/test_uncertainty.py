@@ -156,7 +156,7 @@ def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
     assert swings.max() < allowed + 1.15 * torque.dte_peak_to_peak.values.max()
     assert ("sideband_ratio" in found, transmission_error(found)) == (True, "revolution_dte_peak_to_peak")
     assert "sideband_ratio" not in torque
-    low, high = teeth_band(pair, torque)[:, 0]
+    low, high = teeth_band(pair, torque)["revolution_dte_peak_to_peak"].to_numpy()
     assert 0.8 * swings.min() < low < np.median(swings) < high < 1.2 * swings.max()
     assert high > 1.12 * low
     with pytest.warns(lumped.LikeTeethWarning):
