@@ -28,9 +28,9 @@ def operating_pressure_angle(
     base = 0.5 * module * teeth * math.cos(pressure_angle)
     if centre_distance <= base:
         allowed = f"> {base * 1e3:.4f} mm, the sum of the base radii"
-        raise refuse(
-            "centre_distance", f"{centre_distance * 1e3:.6g} mm", allowed, "Raise the centre distance."
-        )
+        reference = f"without profile shifts it is {5e2 * module * teeth:.6g} mm"
+        action = f"Check centre_distance, module and the numbers of teeth: {reference}."
+        raise refuse("centre_distance", f"{centre_distance * 1e3:.6g} mm", allowed, action)
     return math.acos(base / centre_distance)
 
 

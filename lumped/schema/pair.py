@@ -34,6 +34,8 @@ from lumped.gear_geometry.geometry import (
     theoretical_backlash,
 )
 from lumped.gear_geometry.profile_shift import (
+    LARGEST_SHIFT,
+    LEAST_SHIFT,
     distance_without_backlash,
     resolved_shifts,
     shift_sum,
@@ -182,13 +184,13 @@ class GearPair(Section, metaclass=_InOurWords):
         self.__dict__["assumed"] = recorded(self, self.assumed, self._assumed_sizes())  # nobody has it yet
         return self
 
-    def _assumed_sizes(self) -> dict[str, float]:
+    def _assumed_sizes(self) -> dict[str, float | str]:
         """Profile shifts and tip alterations that no file gives and nothing decides: path -> file units.
 
         A shift that the other one and the centre distance leave no choice is known.
         """
         gears = {"pinion": self.pinion, "gear": self.gear}
-        assumed: dict[str, float] = {}
+        assumed: dict[str, float | str] = {}
         free = [name for name, gear in gears.items() if gear.profile_shift is None]
         if self.centre_distance is None or len(free) > 1:
             assumed |= {
@@ -198,7 +200,7 @@ class GearPair(Section, metaclass=_InOurWords):
             }
         for name, gear in gears.items():
             if gear.tip_diameter is None and gear.addendum is None and gear.tip_alteration is None:
-                assumed[f"{name}.tip_alteration"] = float(to_file(self.tip_alteration, "mm"))
+                assumed[f"{name}.tip_alteration"] = to_file(self.tip_alteration, "mm")
         return assumed
 
     def state(self, field: str) -> State:
@@ -242,24 +244,26 @@ class GearPair(Section, metaclass=_InOurWords):
             return problems
         if existence_problems(*self.wheels, free, self.mesh.backlash):
             return problems
-        here = f"{self.centre_distance * 1e3:.6g} mm"
-        value = f"{here} with the profile shifts {shifts[0]:g} and {shifts[1]:g}"
-        if not problems:
-            play = theoretical_backlash(*self.wheels, self.geometry.operating_pressure_angle)
-            if play <= _LARGEST_PLAY * self.basic_rack.module:
+        value = f"{self.centre_distance * 1e3:.6g} mm with the profile shifts {shifts[0]:g} and {shifts[1]:g}"
+        with suppress(ParameterError):  # a centre distance below that of the base circles has no backlash
+            play = theoretical_backlash(
+                *self.wheels, self._geometry_at(self.centre_distance).operating_pressure_angle
+            )
+            if not problems and play <= _LARGEST_PLAY * self.basic_rack.module:
                 return problems
-            value += f", normal backlash {play * 1e3:.4g} mm"
-        elif not any(problem.field in _OF_THE_MESH for problem in problems):
+            value += f", backlash {play * 1e3:.4f} mm{': the teeth wedge' if play < 0.0 else ''}"
+        if problems and not any(problem.field in _OF_THE_MESH for problem in problems):
             return problems
         rack, teeth = self.basic_rack, self.pinion.teeth + self.gear.teeth
         actions = [f"Delete centre_distance (it is then {free.centre_distance * 1e3:.6g} mm)"]
         with suppress(ParameterError):  # a centre distance below that of the base circles
             total = shift_sum(teeth, rack.module, rack.pressure_angle, self.centre_distance)
-            actions.append(f"or the profile shifts (their sum is then {total:.4f})")
+            if 2.0 * LEAST_SHIFT <= total <= 2.0 * LARGEST_SHIFT:
+                actions.append(f"or the profile shifts (their sum is then {total:.4f})")
         actions.append("or correct the wrong one. Teeth that are thinned on purpose: mesh.backlash")
         allowed = (
-            f"profile shifts and centre distance of one pair: about {free.centre_distance * 1e3:.6g} mm for "
-            f"these shifts, or a backlash up to {_LARGEST_PLAY:g} modules"
+            f"normal backlash >= 0 and <= {_LARGEST_PLAY:g} modules, so about "
+            f"{free.centre_distance * 1e3:.6g} mm for these shifts"
         )
         first = FieldProblem("centre_distance", value, allowed, f"{', '.join(actions)}.")
         return [first, *(problem for problem in problems if problem.field not in _OF_THE_MESH)]
@@ -409,7 +413,8 @@ class GearPair(Section, metaclass=_InOurWords):
         data = super().to_mapping()
         data.pop("assumed")
         tables = {name: dict(data.pop(name, {})) for name in ("sources", "uncertainty")}
-        tables = {"sources": tables["sources"], "assumed": self.assumed.to_mapping()} | tables
+        written = self.assumed.without(*self._assumed_sizes())  # the others follow from what is written
+        tables = {"sources": tables["sources"], "assumed": written.to_mapping()} | tables
         return data | {name: table for name, table in tables.items() if table}
 
     def to_toml(self) -> str:

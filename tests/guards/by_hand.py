@@ -36,13 +36,9 @@ class ByHand:
         self.pair, self.gear = pair, gear
         self.m, self.alpha = 1e3 * rack.module, float(rack.pressure_angle)
         self.dedendum, self.fillet = rack.dedendum_coefficient, rack.fillet_radius_coefficient
-        self.z, self.x = own.teeth, own.profile_shift
+        self.z, self.x = own.teeth, own.profile_shift or 0.0  # none of these pairs takes it from a
         self.r = 0.5 * self.m * self.z
         self.r_b = self.r * math.cos(self.alpha)
-        addendum = (
-            self.m * (rack.addendum_coefficient + self.x) if own.addendum is None else 1e3 * own.addendum
-        )
-        self.r_a = self.r + addendum if own.tip_diameter is None else 0.5e3 * own.tip_diameter
         self.r_f = self.r - self.m * (self.dedendum - self.x)
         self.base_pitch = math.pi * self.m * math.cos(self.alpha)
         #: Half the tooth's thickness on the base circle, as an angle.
@@ -51,6 +47,21 @@ class ByHand:
     @property
     def mate(self) -> ByHand:
         return ByHand(self.pair, MATE[self.gear])
+
+    @property
+    def r_a(self) -> float:
+        """Of the file, else a - r_f of the mate - clearance of the rack, up to the full addendum."""
+        own, rack = getattr(self.pair, self.gear), self.pair.basic_rack
+        if own.tip_diameter is not None:
+            return 0.5e3 * float(own.tip_diameter)
+        if own.addendum is not None:
+            return self.r + 1e3 * float(own.addendum)
+        full = self.r + self.m * (rack.addendum_coefficient + self.x)
+        if own.tip_alteration is not None:
+            return full + 1e3 * float(own.tip_alteration)
+        clearance = self.m * (self.dedendum - rack.addendum_coefficient)
+        centre = self.base_radii / math.cos(self.operating_angle)
+        return min(full, centre - self.mate.r_f - clearance)
 
     @property
     def base_radii(self) -> float:

@@ -38,6 +38,10 @@ DECLARED: dict[str, tuple[str, str]] = {
     "basic_rack.dedendum_coefficient": ("> 0 and <= 2.5", "ISO 53: 1.25; the mate's addendum and clearance"),
     "basic_rack.fillet_radius_coefficient": (">= 0 and <= 0.6", "ISO 53: 0.38; a full radius has 0.47"),
     "{gear}.face_width": (">= 0.01 mm and <= 2000 mm", _SIZE),
+    "{gear}.tip_alteration": (
+        ">= -100 mm and <= 100 mm",
+        "beyond, it is no alteration of a gear of module 100 mm",
+    ),
     "{gear}.profile_shift": (">= -1.5 and <= 2", "beyond, the tooth lies outside any blank"),
     "{gear}.addendum": ("> 0 mm", _LENGTH),
     "{gear}.tip_diameter": ("> 0 mm", _LENGTH),

@@ -64,18 +64,39 @@ def _least_shift(hand: ByHand) -> float:
     return -0.5 * (hand.z + hand.mate.z) * inv(hand.alpha) / math.tan(hand.alpha) - hand.mate.x
 
 
-_GEOMETRY = "lumped/gear_geometry/geometry.py"
+def _distance_of(hand: ByHand, shift: float) -> float:
+    """Centre distance without backlash of a sum of profile shifts [mm]."""
+    involute = inv(hand.alpha) + 2.0 * shift * math.tan(hand.alpha) / (hand.z + hand.mate.z)
+    return hand.base_radii / math.cos(root_of(lambda angle: inv(angle) - involute, 0.0, 1.4))
+
+
+def _alone(pair: GearPair, gear: str, value: float) -> Changes:
+    """A centre distance beside the profile shift of the mate alone."""
+    return {"centre_distance": value, f"{gear}.profile_shift": None}
+
+
+def _widest(hand: ByHand) -> float:
+    """Centre distance at which the teeth as they are cut have a normal backlash of 0.2 modules [mm]."""
+    thickness = 2.0 * (hand.r_b * hand.psi_b + hand.mate.r_b * hand.mate.psi_b)
+    involute = (thickness - hand.base_pitch + 0.2 * hand.m) / (2.0 * hand.base_radii)
+    return hand.base_radii / math.cos(root_of(lambda angle: inv(angle) - involute, 0.0, 1.4))
+
+
+_GEOMETRY, _SHIFT = "lumped/gear_geometry/geometry.py", "lumped/gear_geometry/profile_shift.py"
 _MANY = {
     "pinion.teeth": 150, "gear.teeth": 161, "shafts": None, "basic_rack.pressure_angle": 14.5,
     "basic_rack.addendum_coefficient": 1.2, "basic_rack.dedendum_coefficient": 2.0,
     "basic_rack.fillet_radius_coefficient": 0.1,
 }  # fmt: skip
 GEOMETRY = (
-    Guard(_GEOMETRY, "centre_distance", RACK_25, "cos(alpha_w) = sum of base radii over centre distance < 1",
+    Guard(_SHIFT, "centre_distance", RACK_25, "cos(alpha_w) = sum of base radii over centre distance < 1",
           least=of(lambda h: h.base_radii), says="the sum of the base radii", beside=True),
     Guard(_GEOMETRY, "{gear}.tip_diameter", RACK_25, "an involute begins at the base circle",
           least=of(lambda h: 2.0 * h.r_b), says="Raise the tip diameter", beside=True),
-    Guard(_GEOMETRY, "pinion.profile_shift", RACK_25, "inv(alpha_w) >= 0 (ISO 21771)",
+    Guard(_SHIFT, "centre_distance", FAST, "a shift that follows from the centre distance is one of a gear",
+          most=of(lambda h: _distance_of(h, 2.0 + h.mate.x)), sets=_alone, beside=True,
+          says="-1.5 to 2 for each"),
+    Guard(_SHIFT, "pinion.profile_shift", RACK_25, "inv(alpha_w) >= 0 (ISO 21771)",
           least=of(_least_shift), sets="{gear}.profile_shift", says="sum >", beside=True,
           after={"pinion.teeth": 14, "gear.teeth": 19}),
     Guard(_GEOMETRY, "basic_rack.module", FAST, "the square of a length is a float",
@@ -226,6 +247,8 @@ SCHEMA = (
     Choice(_SHAFTS, "shafts.{gear}.bearings", LONG, "a shaft in one bearing turns about it",
            {"shafts.{gear}.bearings": [_bearing(50.0)]},
            {"shafts.{gear}.bearings": [_bearing(50.0, tilt_stiffness=1e-3)]}, says="two bearings"),
+    Guard(_PAIR, "centre_distance", FAST, "twice the largest allowance of ISO/TR 10064-2: a contradiction",
+          most=of(_widest), says="normal backlash >= 0 and <= 0.2 modules"),
     Choice(_BEARINGS, "bearings.{gear}.loa_stiffness", FAST, "springs or rolling bearings: neither",
            {"bearings.{gear}": {"loa_damping_ratio": 0.05, "oloa_damping_ratio": 0.05}},
            {"bearings.{gear}": _BALLS}, says="either loa_stiffness"),
@@ -235,7 +258,11 @@ SCHEMA = (
     Choice(_GEAR, "{gear}.tip_diameter", FAST, "one tip",
            {"{gear}": _BLANK | {"addendum": 2.0, "tip_diameter": 70.0}},
            {"{gear}": _BLANK | {"tip_diameter": 70.0}},
-           says="either addendum or tip_diameter"),
+           says="one of addendum, tip_diameter, tip_alteration"),
+    Choice(_GEAR, "{gear}.tip_alteration", FAST, "one tip",
+           {"{gear}": _BLANK | {"addendum": 2.0, "tip_alteration": -0.1}},
+           {"{gear}": _BLANK | {"tip_alteration": -0.1}},
+           says="one of addendum, tip_diameter, tip_alteration"),
     Choice(_GEAR, "{gear}.mounting.eccentricity", UNLIKE_TEETH, "the first harmonic of the deviations is one",
            {"{gear}.mounting": {"eccentricity": 1e-6}},
            {"{gear}.mounting": {"eccentricity": 1e-6}, "{gear}.deviations.first_order": "steps"},

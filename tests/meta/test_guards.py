@@ -39,7 +39,7 @@ NAMES_ELSEWHERE = {
         "lumped/schema/pair.py",
         "centre_distance",
     ): "of other teeth, named first: tests/lumped/schema/test_refusals",
-    ("lumped/schema/pair.py", "format"): "of a later release: tests/lumped/schema/test_pair",
+    ("lumped/schema/old_formats.py", "format"): "of a later release: tests/lumped/schema/test_pair",
     (
         "lumped/schema/tolerances.py",
         "tolerance_class",

@@ -99,7 +99,7 @@ def test_help_is_short_and_dir_has_only_names_for_users() -> None:
 
 def test_a_parameter_file_says_its_format(pair: spurcheck.GearPair) -> None:
     text = pair.to_toml()
-    assert text.startswith("format = 1\n")
+    assert text.startswith("format = 2\n")
     data = tomllib.loads(text)
     old = {key: value for key, value in data.items() if key != "format"}
     assert spurcheck.load_gear_pair(old) == spurcheck.load_gear_pair(data) == pair

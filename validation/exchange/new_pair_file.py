@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import textwrap
 import tomllib
@@ -44,7 +43,8 @@ _WHY = {
         ("pressure_angle", "addendum_coefficient", "dedendum_coefficient", "fillet_radius_coefficient"),
         "standard basic rack, ISO 53",
     ),
-    "profile_shift": "no shift; for few teeth the least that keeps the involute whole",
+    "profile_shift": "none without a centre distance; else what it asks for, shared between the gears",
+    "tip_alteration": "keeps the clearance of the basic rack",
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
     **dict.fromkeys(("density", "youngs_modulus", "poisson_ratio"), "steel"),
@@ -176,10 +176,10 @@ def reasons(pair: GearPair) -> dict[str, str]:
             node = node[int(part) if isinstance(node, list) else part]
         node.pop(leaf, None)  # a default that follows from other fields is not written
     try:
-        own = leaf_paths(_filled({"name": pair.name}, _values(known)))
+        filled = _filled({"name": pair.name}, _values(known))
     except ParameterError:  # such as a kind of stiffness that the program would not assume
         return {}
-    values = pair.assumed.to_mapping()
+    own, values = filled.assumed.to_mapping() | leaf_paths(filled), pair.assumed.to_mapping()
     return {path: _why(path, value) for path, value in values.items() if own.get(path) == value}
 
 
@@ -191,35 +191,12 @@ def _why(path: str, value: object) -> str:
 
 def _filled(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
     """The pair of these values with everything else assumed."""
-    pair = _whole(named, values)
+    pair = load_gear_pair(named | completed(values))
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
     if not any(path.startswith("mesh.stiffness.") for path in values):
         pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     return pair
-
-
-def _whole(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
-    """The pair of these values; where it cannot exist so, with the least profile shift that few teeth need.
-
-    Below z = 2/sin^2(alpha) teeth the straight flank of the rack, which reaches a module below its pitch
-    line, cuts into the involute, unless it is withdrawn by x = 1 - z sin^2(alpha)/2 modules (ISO 21771).
-    """
-    try:
-        return load_gear_pair(named | completed(values))
-    except ParameterError as error:
-        shifts = {}
-        for name in ("pinion", "gear"):
-            teeth = values.get(f"{name}.teeth")
-            if isinstance(teeth, int):
-                least = math.ceil(100.0 * (1.0 - 0.5 * teeth * math.sin(math.radians(20.0)) ** 2)) / 100.0
-                shifts[f"{name}.profile_shift"] = max(least, 0.0)
-        if not any(shifts.values()) or any(path in values for path in shifts):
-            raise
-        try:
-            return load_gear_pair(named | completed(values | shifts))
-        except ParameterError:
-            raise error from None
 
 
 def stand_in_stiffness(pair: GearPair) -> str:
@@ -267,6 +244,8 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
     pair = load_gear_pair(mapping)
     assumed = dict.fromkeys(pair.assumed, "assumed")
     assumed |= {path: f"assumed: {why}" for path, why in reasons(pair).items()}
+    # A default that follows from other fields would contradict them when they change: it is a comment.
+    follows = {path: value for path, value in pair.assumed.items() if path not in leaf_paths(pair)}
     section = ""
     entries: Counter[str] = Counter()  # of a list of tables, those above
     lines = []
@@ -276,6 +255,12 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
             if found[1] == "[[":
                 section += f"{entries[section]}."
                 entries[f"{found[2]}."] += 1
+            lines.append(line)
+            for path, value in follows.items():
+                if path.rpartition(".")[0] == found[2]:
+                    entry = f"# {path.rpartition('.')[2]} = {_short(value)}"
+                    lines.append(_commented(entry, path, assumed))
+            continue
         elif entry := _ENTRY.match(line):  # the paths of [sources] and [assumed] have quotation marks
             line = _commented(line, f"{section}{entry[1]}", assumed)
         lines.append(line)
@@ -292,6 +277,10 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
         )
     ]
     return "\n".join([*head, *([""] if head else []), *lines]) + "\n"
+
+
+def _short(value: object) -> object:
+    return f"{value:.6g}" if isinstance(value, float) else value
 
 
 def _commented(line: str, path: str, assumed: Mapping[str, str]) -> str:

@@ -89,7 +89,7 @@ def test_fzg_c_shifts_and_centre_distance_belong_together():
 
 @pytest.mark.parametrize("spread", [0.05e-3, 0.5e-3])
 def test_backlash_grows_with_the_centre_distance(nasa, spread):
-    start = nasa.with_(mesh__backlash=0)
+    start = nasa.with_(mesh__backlash=0, pinion__profile_shift=0, gear__profile_shift=0)
     a = geometry(start).centre_distance
     base = geometry(start).base_radius_pinion + geometry(start).base_radius_gear
     # Moving the centres apart by da opens the normal gap of both flanks together by 2 sin(alpha_w) da.

@@ -214,7 +214,7 @@ IMPOSSIBLE = [
     (
         {"pinion.profile_shift": 0.1},
         "centre_distance",
-        {"allowed": "backlash >= 0", "action": "set it to 89.2134 mm"},
+        {"allowed": "backlash >= 0", "action": "Delete centre_distance (it is then 89.2134 mm)"},
     ),
     # Full tip radius of the rack: (pi/4 - h tan a) cos a/(1 - sin a) = 0.3179 at 25 deg and h = 1.25.
     (
@@ -242,7 +242,14 @@ def test_a_centre_distance_of_other_teeth_is_named_first(edited):
     data["gear"]["teeth"] = 41
     with pytest.raises(ParameterError) as caught:
         load_gear_pair(data)
-    assert caught.value.problems[0].action.endswith("Delete centre_distance or set it to 95.25 mm.")
+    assert "it is then 95.25 mm" in caught.value.problems[0].action
+    for gear in (
+        "pinion",
+        "gear",
+    ):  # without shifts that contradict it, the drawing of 60 teeth says the same
+        del data[gear]["profile_shift"]
+    with pytest.raises(ParameterError, match="without profile shifts it is 95.25 mm"):
+        load_gear_pair(data)
     data["centre_distance"] = 95.25
     assert load_gear_pair(data).geometry.contact_ratio > 1.5
 

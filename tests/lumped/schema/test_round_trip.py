@@ -65,6 +65,7 @@ MORE = {
 PAIRS = [load_gear_pair(name) for name in preset_names()]
 NASA = load_gear_pair("nasa_28_28")
 PAIRS += [NASA.with_({path: value}) for path, values in MORE.items() for value in values]
+PAIRS.append(NASA.with_({"pinion.tip_alteration": -0.2, "gear.tip_alteration": -0.1}))
 PAIRS.append(NASA.with_(law=lambda sliding_velocity: 0.01 * sliding_velocity))
 
 

@@ -132,7 +132,7 @@ def test_a_stage_becomes_a_parameter_file_with_units_and_marks(xml, save, tmp_pa
     assert result.exit_code == 0
     assert "note: the file does not say which gear drives" in result.stderr
     text = target.read_text(encoding="utf-8")
-    assert tomllib.loads(text) == {"format": 1} | gear_pair_from_rexs(source)[0]
+    assert tomllib.loads(text) == {"format": 2} | gear_pair_from_rexs(source)[0]
     assert lumped.load_gear_pair(target).gear.teeth == 30
     lines = {line.partition(" = ")[0]: line for line in text.partition("[sources]")[0].splitlines()}
     assert lines["centre_distance"].endswith("# mm")
@@ -162,6 +162,6 @@ def test_text_from_elsewhere_cannot_break_out_of_a_comment_or_a_string(xml, save
     evil = "x&#10;[mesh]&#10;damping_ratio = 9 &quot; '''"
     mapping, notes = gear_pair_from_rexs(save(xml().replace('name="first stage"', f'name="{evil}"')))
     text = parameter_text(mapping, (*notes, "a\nb = 1\r\x1b[31m"))
-    assert tomllib.loads(text) == {"format": 1} | mapping
+    assert tomllib.loads(text) == {"format": 2} | mapping
     assert mapping["mesh"]["damping_ratio"] == 0.05
     assert "\x1b" not in text
