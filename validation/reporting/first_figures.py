@@ -111,6 +111,8 @@ _WHOLE = {
     "lubricant.viscosity_law.temperature": "oil temperature",
     "operating.pinion_torque": "torque",
     "gears.roughness": "roughness of all flanks",
+    "pinion.tip_alteration": "pinion, tip diameter",
+    "gear.tip_alteration": "gear, tip diameter",
     "pinion.inertia": "pinion, mass and inertia",
     "gear.inertia": "gear, mass and inertia",
 }
