@@ -80,13 +80,13 @@ class Sampled(Generic[T]):
 class Varied:
     """Predictions with like teeth: ``given`` with the inputs as given, ``samples`` with varied ones.
 
-    ``taken`` of the samples ``asked`` for were begun before the time was used up.
+    ``taken`` of the samples ``asked`` for were begun before the time was used up; 0 of 0 without a limit.
     """
 
     given: Prediction
     samples: tuple[Prediction, ...]
-    taken: int
-    asked: int
+    taken: int = 0
+    asked: int = 0
 
 
 def uncertainty(

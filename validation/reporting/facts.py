@@ -341,9 +341,8 @@ def _record(results: Results) -> Fact | None:
     measured = results.measured_error
     if measured is None:
         return None
-    return Fact(
-        "record", measured.words.removesuffix("."), measured.dte_error, "m", _scope(results), "compare_record"
-    )
+    claim = f"{measured.verdict.text} {measured.words}".removesuffix(".")
+    return Fact("record", claim, measured.dte_error, "m", _scope(results), "compare_record")
 
 
 def _inputs(results: Results) -> Fact:

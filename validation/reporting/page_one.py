@@ -79,7 +79,7 @@ class Number:
             return ""
         if self.unit == "%":  # a share of one, which has per cents of its own
             low, high = (_printed(end, "%", self.digits) for end in (self.low, self.high))
-            return f"{low.removesuffix(' %')} to {high}"
+            return f"{low.removesuffix(' %')} to {high}".replace(" %", "\u00a0%")
         ends = span(self.low, self.high, self.unit, self.digits)
         return f"{ends} ({spread_words((self.low / self.value - 1.0, self.high / self.value - 1.0))})"
 
@@ -262,7 +262,7 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
         found = [Action(flag.action.removesuffix("."), "", "") for flag in results.outside]
     if verdict is Verdict.CONTRADICTED:
         what = "See which channel and which order the record contradicts"
-        found = [Action(what, "chapter “How sure”", "")]
+        found = [Action(what, "chapter “The record”", "")]
     if verdict is Verdict.DO_NOT_RUN:
         hazard = results.nearest_hazard
         if hazard is not None and hazard.kind == "jump":
