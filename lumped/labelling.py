@@ -28,6 +28,10 @@ class Described(Protocol):
     def name(self) -> str:
         """Short name."""
 
+    @property
+    def stiffness_words(self) -> str:
+        """What stiffness is given, of the whole mesh or of one tooth pair."""
+
     def to_toml(self) -> str:
         """All parameters."""
 
@@ -60,6 +64,7 @@ def provenance(pair: Described, **settings: Any) -> dict[str, Any]:
         "gear_pair": pair.name,
         "parameters": text,
         "parameters_sha256": _sha256(text),
+        "stiffness": pair.stiffness_words,
         "teeth": "alike",
         "versions": _versions(),
         "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),

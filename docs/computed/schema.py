@@ -7,6 +7,7 @@ from typing import Any
 
 import lumped
 from computed.markdown import Cell, table, text
+from lumped.fields.scope import LIMITS
 from lumped.friction import LAWS
 
 _LIMITS = (
@@ -100,4 +101,12 @@ def presets() -> str:
     return table(("preset", "what it is", "teeth", "contact ratio"), rows)
 
 
-FILES = {"parameters.md": parameters, "laws.md": laws, "presets.md": presets}
+def scope() -> str:
+    """What a drawing may have and no parameter file, with the sentence that a refusal has."""
+    rows = [
+        (one.subject, ", ".join(f"`{key}`" for key in one.names + one.stems), one.sentence) for one in LIMITS
+    ]
+    return table(("not computed", "keys that mean it", "what spurcheck does instead"), rows)
+
+
+FILES = {"parameters.md": parameters, "laws.md": laws, "presets.md": presets, "scope.md": scope}

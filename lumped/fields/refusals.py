@@ -15,6 +15,7 @@ from pydantic.fields import FieldInfo
 
 from lumped.arguments import nearest
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
+from lumped.fields.scope import about_key, about_teeth
 from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
 
@@ -23,11 +24,15 @@ Model = TypeVar("Model", bound=BaseModel)
 _UNION_PARTS = {"int", "float", "str"}
 #: Keys of other gear programs -> what to do, for they are no misspelt keys of this one.
 _ELSEWHERE = {
-    ("helix", "helix_angle", "beta"): "Delete it: gears are spur gears; helical ones are not computed.",
-    ("internal", "internal_gear", "ring_gear"): "Delete it: both gears are external; others are not "
-    "computed.",
     ("quality", "accuracy", "accuracy_grade", "quality_class"): "Write deviations.tolerance_class in the "
     "section of the gear (ISO 1328), or delete it: then all teeth are alike.",
+    (
+        "oil",
+        "oil_grade",
+        "grade",
+        "vg",
+    ): "Write viscosity_law = { iso_vg = 220, temperature = 70 } in lubricant, "
+    "with the grade and the temperature (degC) of your oil.",
     ("power", "input_power"): "Write pinion_torque: in N m it is 9549.3 times the power in kW over the "
     "speed in rpm.",
     ("module", "normal_module", "pressure_angle"): "Both gears have one rack: write it in basic_rack.",
@@ -102,7 +107,7 @@ def unknown_key(path: str, known: list[str], part: str, root: type[BaseModel] | 
     below = _below(root, path) if root is not None else ""
     close = nearest(part, names)
     guess = below or close if path == part else close or below  # names of sections are like no field's
-    action = _ACTIONS.get(part) or guess or "Remove the key, or correct its name."
+    action = about_key(part) or _ACTIONS.get(part) or guess or "Remove the key, or correct its name."
     return FieldProblem(shown(path) or "(empty)", "unknown key", allowed, action)
 
 
@@ -157,6 +162,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     if parts and not models and field_of(root, path).annotation is int:
         point = isinstance(item.get("input"), float)
         action = "Write it without a point." if point else "Write a whole number in that range."
+        if parts[-1] == "teeth":
+            action = about_teeth(str(item.get("input"))) or action
         return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
     allowed = item["msg"]
     if kind == "tuple_type":

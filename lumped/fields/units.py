@@ -28,7 +28,9 @@ _WORD = "A-Za-zµμ"
 #: Spellings of any quantity, rewritten one after the other.
 _EVERYWHERE: tuple[Rewriting, ...] = (
     (re.compile(r"[·⋅×]"), "*"),
+    (re.compile(r"[−–](?=[\d.])"), "-"),  # signs as word processors set them
     (re.compile(r"\b[A-Z][a-z]{4,}"), lambda found: found[0].lower()),  # Newton, Meter
+    (re.compile(r"\bnewtonmeters?\b"), "newton_meter"),
     # A power written small, raised or not at all: min-1, mm2, N m s^-1; the e of 1e-3 follows a digit.
     (re.compile(rf"(?<![\w.])([{_WORD}]+)(-?[1-4])(?![\w.])"), r"\1^\2"),
     (re.compile(rf"(?<=[{_WORD}²³])-(?=[{_WORD}])"), "*"),  # ft-lbf, newton-meters
@@ -43,6 +45,7 @@ _POUND_FORCE = (
 _TURNS = (
     (re.compile(r"(?<=[\d.])\s+1\s*/\s*min\b"), " rpm"),
     (re.compile(r"(?:\b(?:rev|revs|r|tr|turns?)|(?<![A-Za-z])[Uu])?\s*/\s*min(ute)?\b"), " rpm"),
+    (re.compile(r"(?i:\br\.\s?p\.\s?m\.?)"), "rpm"),
     (re.compile(r"\bmin\^-1|\bmin⁻¹|(?i:(?<![a-z])(rpm|upm)\b)"), "rpm"),
     (re.compile(r"(?<![A-Za-z])(?:rev|revs|r|tr|U)?\s*/\s*s(ec)?\b(?<=[a-zU]/s)"), " rps"),
     (re.compile(r"(?<![A-Za-z])(k?)Hz\b"), r"\1rps"),
@@ -115,7 +118,34 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
 }
 _ZERO_CELSIUS = Decimal("273.15")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
-_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°º%²³⁻¹·⋅×]|%%")
+_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-−–*/^()°º%²³⁻¹·⋅×]|%%")
+_PART = r"(?:(\d+\.?\d*|\.\d+)\s*(?:{})\s*)?"
+#: Degrees, minutes and seconds of arc, each once at most: 20°30', 5', 30", 20 deg 30 arcmin.
+_ANGLE = re.compile(
+    r"\s*([-+−–]?)\s*"
+    + _PART.format(r"°|º|deg(?:rees?)?\b|Grad\b")
+    + _PART.format(r"['′’](?!['′’])|arc\s?min(?:utes?)?\b")
+    + _PART.format(r"[\"″”]|''|′′|’’|arc\s?sec(?:onds?)?\b")
+)
+
+
+def _in_degrees(text: str) -> str:
+    """An angle in degrees, minutes and seconds of arc as degrees, text of another form unchanged."""
+    found = _ANGLE.fullmatch(text)
+    parts = [] if found is None else [found[2], found[3], found[4]]
+    stated = [place for place, part in enumerate(parts) if part is not None]
+    if found is None or not stated or stated == [0]:
+        return re.sub(r"(?<=\d)\s*(?:º|Grad\b)", " deg", text)
+    whole = all("." not in parts[place] for place in stated[:-1])
+    below = all(Decimal(parts[place]) < 60 for place in stated[1:])
+    if not (whole and below):
+        raise ValueError(
+            f"'{text}' is no angle: beside a larger part, minutes and seconds are below 60, and the last "
+            "part alone has decimals; write degrees: '20.5 deg'"
+        )
+    sixtieths = zip(parts, (1, 60, 3600), strict=True)
+    angle = sum((Decimal(part) / part_of for part, part_of in sixtieths if part is not None), Decimal(0))
+    return f"{'-' if found[1] in ('-', '−', '–') else ''}{angle:f} deg"
 
 
 class SIValue(float):
@@ -190,13 +220,14 @@ def to_si(value: float | str, unit: str) -> float:
     if len(value) > 80:
         raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
     # The unit parser drops what it does not know: it would read 1,5 as 15.
-    if odd := _NOT_IN_QUANTITY.search(value):
+    text = _in_degrees(value) if si == "rad" else value
+    if odd := _NOT_IN_QUANTITY.search(text):
         raise ValueError(f"{value!r} has the character {odd[0]!r}; {about_digits(value) or advice}")
     if gap := about_digits(value):
         raise ValueError(f"{value!r}: {gap}")
     if not any(character.isdigit() for character in value):
         raise ValueError(f"'{value}' has no number; {advice}")
-    text = value  # in pint's grammar; "lb" is a force where the stated unit is a torque, else a mass
+    # Into pint's grammar; "lb" is a force where the stated unit is a torque, else a mass.
     for pattern, instead in (*_EVERYWHERE, *_WHERE.get(unit, ())):
         text = pattern.sub(instead, text)
     try:
@@ -216,6 +247,8 @@ def to_si(value: float | str, unit: str) -> float:
         if quantity.to_root_units().units != registry.Quantity(1, si).to_root_units().units:
             if unit == "rpm" and quantity.check("1/[time]"):
                 advice = "turns or radians? Write Hz (turns a second), rpm or rad/s"
+            if unit == "mPa*s" and quantity.check("[length]**2/[time]"):
+                advice = _about_kinematic(value, 1e6 * float(quantity.to("m**2/s").magnitude))
             raise ValueError(f"'{value}' is not {meaning}; {advice}")
         result = float(quantity.to(si).magnitude)
     except (InvalidOperation, Overflow, OverflowError):
@@ -223,6 +256,16 @@ def to_si(value: float | str, unit: str) -> float:
     if not math.isfinite(result):
         raise ValueError(f"'{value}' is no finite quantity; {advice}")
     return result
+
+
+def _about_kinematic(text: str, viscosity: float) -> str:
+    """What to write instead of a kinematic viscosity [mm^2/s] where a dynamic one is read."""
+    return (
+        "it is a kinematic viscosity. Where it is the oil's at 40 degC, as on a data sheet, write instead of "
+        f"viscosity: viscosity_law = {{ iso_vg = '{text}', temperature = 70 }}, with your oil temperature. "
+        "Where it holds at the contact inlet, write it times the density there: "
+        f"'{viscosity * 0.87:.4g} mPa*s' for 870 kg/m^3"
+    )
 
 
 def to_file(value: float, unit: str) -> float | str:

@@ -48,7 +48,8 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     count = default_samples(period) if samples_per_cycle is None else samples_per_cycle
     count = whole_number("samples_per_cycle", count, 1, 65536)
     tables = mesh_tables(laws, 1.0, count)
-    # With prescribed contact too, pairs touch where their own gaps close.
+    # With prescribed contact too, pairs touch where their own gaps close; with a stiffness of the whole mesh
+    # within A to D.
     tables = tables._replace(law=tables.law._replace(windows=False))
     approach, each = static_loads(tables, 0, period)
     loads = each["static"].transpose(2, 0, 1)

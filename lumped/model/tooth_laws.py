@@ -34,6 +34,8 @@ from lumped.typing import FloatArray, IntArray
 _INSIDE = 1e-11
 #: Share of the gap of a tip's corner that is left when the line of action is longer or shorter.
 _LEAST_GAP = 0.8
+#: Way over the base pitch of corners that no deflection brings into the path of contact.
+_CORNERS_OUT = 0.1
 #: Way over the base pitch by which slopes are taken: rounding of gaps leaves 1e-10 of a slope of a relief.
 _DIFFERENCE = 2e-6
 _NO_PHASES = np.empty(0)
@@ -152,10 +154,14 @@ class ToothLaws:
         return found
 
     def ends(self, kind: int) -> tuple[float, ...]:
-        """FLANKS of a kind."""
+        """FLANKS of a kind.
+
+        With a stiffness of the whole mesh pairs touch from A to D, deflected or not: corners are further out.
+        """
         g = self.geometry
+        out = _CORNERS_OUT * g.base_pitch if self.pair.mesh.stiffness.whole_mesh else 0.0
         tips = [
-            min([fault.end(flank) for fault in faults], default=flank.tip)
+            min([fault.end(flank) for fault in faults], default=flank.tip + out)
             for flank, faults in zip(self.flanks, self.faults[kind], strict=True)
         ]
         beyond, radii = (

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from lumped.arguments import real_number
+from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Geometry
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
@@ -65,9 +66,14 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
 
     Raises
     ------
-    ParameterError : the design torque is not positive
+    ParameterError : the design torque is not positive, or the stiffness is that of the whole mesh, which has
+        the profile in it
     """
     pair = load_gear_pair(pair)
+    if pair.mesh.stiffness.whole_mesh:
+        allowed = "a model, or the curve of one tooth pair: that of the whole mesh has the profile in it"
+        action = "Write kind = 'pair' with such a curve, or with_(stiffness='finite_elements')."
+        raise refuse("mesh.stiffness.kind", "total", allowed, action)
     given = pair.operating.pinion_torque if torque is None else torque
     moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
     plain_tips = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)

@@ -9,21 +9,19 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.errors import refuse
 from lumped.mesh.statics import corner_gaps
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.gear import ProfileRelief
     from lumped.schema.pair import GearPair
+    from lumped.schema.relief import ProfileRelief
 
 
 def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatArray:
@@ -107,11 +105,6 @@ def _reliefs(pair: GearPair) -> list[_Relief]:
             if relief is None or relief.amount == 0.0:
                 continue
             if not root < relief.start_roll_angle * radius < tip:
-                raise refuse(
-                    f"{which}.{name}_relief.start_roll_angle",
-                    f"{math.degrees(relief.start_roll_angle):.4g} deg",
-                    f"{math.degrees(root / radius):.4f} to {math.degrees(tip / radius):.4f} deg",
-                    "Start the relief on the active flank.",
-                )
+                raise relief.off(pair.flank(int(which == "gear")), f"{which}.{name}_relief")
             found.append(_Relief(relief, end / radius, radius, origin, sense))
     return found

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, refuse
 from lumped.labelling import labelled_dataset, provenance
 from lumped.path_of_contact import pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening
@@ -59,17 +59,23 @@ class MeshPositions:
     coupling: FloatArray
 
 
-def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
+def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool | None = None) -> MeshPositions:
     """Stiffness and unloaded error of the tooth pairs over one mesh cycle.
 
     Parameters
     ----------
     pair : a validated gear pair
     phases : positions per mesh cycle, evenly spaced from a pair at A
-    extended : whether deflection lets pairs touch before A and behind D
+    extended : whether deflection lets pairs touch before A and behind D; default True, and False with a
+        stiffness of the whole mesh, which is used as given and has contact and profile in it
+
+    Raises
+    ------
+    ParameterError : ``extended=True`` with a stiffness of the whole mesh
     """
     pair = load_gear_pair(pair)
     phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")
+    extended = _extended(pair, extended)
     g = pair.geometry
     reach = REACH if extended else 0.0
     ahead = np.arange(math.floor(-reach), math.ceil(g.contact_ratio + reach) + 1)
@@ -77,7 +83,9 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
     xi = g.L_XA + (phase[:, None] + ahead) * g.base_pitch
     inside = _INSIDE * g.base_pitch
     k = pair_stiffness(pair)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
-    e = corner_gap(g, xi) + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
+    e = corner_gap(g, xi)
+    if not pair.mesh.stiffness.whole_mesh:
+        e = e + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
     return MeshPositions(
@@ -91,14 +99,14 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
 
 
 def static_transmission_error(
-    pair: AnyPair, torques: ArrayLike | None = None, *, phases: int = 256, extended: bool = True
+    pair: AnyPair, torques: ArrayLike | None = None, *, phases: int = 256, extended: bool | None = None
 ) -> xr.Dataset:
     """Quasi-static meshing of a gear pair: a Harris map and the load of every tooth pair.
 
     At each position the rigid approach delta and the loads N_i = k_i max(delta - e_i - sum_j w_ij N_j, 0)
     satisfy sum_i N_i = T/r_bp; w_ij is how far pairs move each other, where the stiffness model knows it and
     the mesh is with loaded contact. Stiffness with Weber and Banaschek's contact is taken at each torque;
-    other stiffness does not depend on it.
+    other stiffness does not depend on it. With a stiffness k of the whole mesh delta is T/(r_bp k).
 
     Parameters
     ----------
@@ -114,7 +122,8 @@ def static_transmission_error(
 
     Raises
     ------
-    ParameterError : a negative torque, or a relief that starts outside the active flank
+    ParameterError : a negative torque, a relief that starts outside the active flank, or ``extended=True``
+        with a stiffness of the whole mesh
     NumericalError : contact reaches further beyond the path than the pairs are followed
     """
     pair = load_gear_pair(pair)
@@ -149,8 +158,18 @@ def static_transmission_error(
             "phase": (mesh.phase, "1", "mesh cycles after a pair was at A"),
             "pair": (mesh.ahead, "1", "pitches ahead of the pair that was at A"),
         },
-        provenance(pair) | {"extended_contact": int(bool(extended))},
+        provenance(pair) | {"extended_contact": int(_extended(pair, extended))},
     )
+
+
+def _extended(pair: GearPair, extended: bool | None) -> bool:
+    """Whether pairs are followed beyond A and D; a stiffness of the whole mesh has that contact in it."""
+    whole = pair.mesh.stiffness.whole_mesh
+    if whole and extended:
+        allowed = "False where mesh.stiffness is that of the whole mesh"
+        action = "Leave it out, or give the curve of one tooth pair: kind = 'pair' in mesh.stiffness."
+        raise refuse("extended", True, allowed, action)
+    return not whole if extended is None else bool(extended)
 
 
 def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair) -> FloatArray:

@@ -11,9 +11,13 @@ import numpy as np
 
 from lumped.errors import ParameterError, refuse
 from lumped.fields.refusals import field_of, unknown_key
+from lumped.fields.scope import about_teeth
 from lumped.fields.section import Section
 from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.bearings import ROLLING, STIFFNESSES, RollingBearing
+from lumped.schema.contact import Mesh, without_assumed_defaults
+from lumped.schema.oil_grade import grade_of
+from lumped.schema.relief import STARTS
 
 _GEARS = ("pinion", "gear")
 #: Short name -> the fields that it sets.
@@ -25,6 +29,7 @@ SHORT_NAMES = {
     "stiffness": ("mesh.stiffness",),
     "damping": ("mesh.damping_ratio",),
     "module": ("basic_rack.module",),
+    "pressure_angle": ("basic_rack.pressure_angle",),
     "viscosity": ("lubricant.viscosity",),
     "oil": ("lubricant.viscosity_law.iso_vg",),
     "temperature": ("lubricant.viscosity_law.temperature",),
@@ -38,15 +43,22 @@ SHORT_NAMES = {
     },
 }
 _TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")
-_OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
 
 #: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
-_STIFFNESS = "mesh.stiffness.model"
+_SECTION, _STIFFNESS = "mesh.stiffness", "mesh.stiffness.model"
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
     *((f"{gear}.addendum", f"{gear}.tip_diameter", f"{gear}.tip_alteration") for gear in _GEARS),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
+    *(
+        tuple(f"{gear}.{end}_relief.{start}" for start in STARTS)
+        for gear in ("pinion", "gear")
+        for end in ("tip", "root")
+    ),
 )
+#: Field whose default follows others -> those others.
+_FILLET = "basic_rack.fillet_radius_coefficient"
+_OF_FILLET = ("basic_rack.pressure_angle", "basic_rack.dedendum_coefficient")
 
 
 def fields_of(name: str) -> tuple[str, ...]:
@@ -58,17 +70,16 @@ def fields_of(name: str) -> tuple[str, ...]:
 
 
 def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Return field path -> value; teeth may be "19/41" or a tuple, oil "vg220" or 220."""
+    """Return field path -> value; teeth may be "19/41" or a tuple, oil "ISO VG 220", "vg220" or 220."""
     values: dict[str, Any] = {}
     for name, value in request.items():
         if name == "teeth":
             if (teeth := _TEETH.fullmatch(str(value))) is None:
-                raise refuse("teeth", value, "PINION/GEAR", "For example 19/41.")
+                action = about_teeth(str(value)) or "For example 19/41."
+                raise refuse("teeth", value, "PINION/GEAR", action)
             values |= dict(zip(fields_of(name), map(int, teeth.groups()), strict=True))
         elif name == "oil":
-            if (grade := _OIL.fullmatch(str(value))) is None:
-                raise refuse("oil", value, "an ISO viscosity grade", "For example vg220.")
-            values[SHORT_NAMES[name][0]] = int(grade[1])
+            values[SHORT_NAMES[name][0]] = grade_of(value, "oil")
         else:
             values |= dict.fromkeys(fields_of(name), value)
     return values
@@ -77,13 +88,21 @@ def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
 def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the plain data of a pair with other values of some fields: known ones, with the user as source.
 
-    A field that is given the value that it has is known too, where it was assumed.
+    A field that is given the value that it has is known too, where it was assumed. Another stiffness decides
+    anew what contact and relief are, where they are assumed.
     """
     data = pair.to_mapping()
+    if any(within(path, _SECTION) for path in changes):
+        mesh: Mesh = pair.__dict__["mesh"]
+        left = {name: value for name, value in mesh.by_stiffness.items() if f"mesh.{name}" not in changes}
+        data = without_assumed_defaults(data, left)
     sources: dict[str, str] = data.setdefault("sources", {})
     assumed: dict[str, Any] = data.setdefault("assumed", {})
     for gear in _GEARS:
         _other_bearing(pair, data, gear, changes)
+    rack: Any = pair.__dict__["basic_rack"]
+    if any(path in changes for path in _OF_FILLET) and assumed.get(_FILLET) == rack.assumed_fillet:
+        del assumed[_FILLET], data["basic_rack"]["fillet_radius_coefficient"]  # the default of the new rack
     # The model first: it decides which other keys its table may have.
     for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request
@@ -91,7 +110,7 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
             continue
         outdated = [path]
         if path == _STIFFNESS:
-            outdated.append(_STIFFNESS.rpartition(".")[0])
+            outdated.append(_SECTION)
             _assign(type(pair), data, outdated[-1], {})
         for group in _ALTERNATIVES:
             if value is not None and any(f"{path}.".startswith(f"{one}.") for one in group):

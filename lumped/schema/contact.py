@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -23,6 +24,7 @@ from lumped.lubrication.viscosity import (
     oil_density,
     walther_constants,
 )
+from lumped.schema.oil_grade import grade_of
 from lumped.stiffness.registry import AnyStiffness
 
 
@@ -35,7 +37,40 @@ def _contact(value: object) -> object:
     return "prescribed"
 
 
+#: What to do with a contact that follows the load and a stiffness that has it already.
+_WHOLE = (
+    "Write mesh.contact = 'prescribed', or leave it out: the curve is then used as given. If it is the curve "
+    "of one tooth pair, write kind = 'pair' in mesh.stiffness: then contact = 'loaded' stays."
+)
 Tooth = Annotated[int, Field(ge=1, le=1000, strict=True)]
+
+
+def without_assumed_defaults(data: Any, defaults: Mapping[str, str]) -> Any:
+    """Plain data of a pair without those values of its mesh that are assumed and are a default.
+
+    Parameters
+    ----------
+    data : of a pair as a file has it; anything else is returned as it is
+    defaults : field of the mesh -> its default; ``Mesh.by_stiffness`` of the pair they come from
+    """
+    if not isinstance(data, Mapping):
+        return data
+    mesh, assumed = data.get("mesh"), data.get("assumed")
+    if not isinstance(mesh, Mapping) or not isinstance(assumed, Mapping):
+        return data
+    gone = [
+        name
+        for name, value in defaults.items()
+        if mesh.get(name) == value and assumed.get(f"mesh.{name}") == value
+    ]
+    if not gone:
+        return data
+    paths = [f"mesh.{name}" for name in gone]
+    return {
+        **data,
+        "mesh": {name: value for name, value in mesh.items() if name not in gone},
+        "assumed": {path: value for path, value in assumed.items() if path not in paths},
+    }
 
 
 class Mesh(Section):
@@ -53,12 +88,14 @@ class Mesh(Section):
     relief: Literal["ignored", "static"] = Field(
         "static",
         description="'static': tip and root relief, where given, enter as unloaded error, and a pair touches "
-        "where it carries load at the mean torque; 'ignored': perfect involutes from A to D",
+        "where it carries load at the mean torque; 'ignored': perfect involutes from A to D. With a "
+        "stiffness of the whole mesh, which has the profile in it, the default is 'ignored'",
     )
     contact: Annotated[Literal["prescribed", "loaded"], BeforeValidator(_contact)] = Field(
         "loaded",
         description="'loaded': a pair touches where its gap closes under the mean load, with its tangent "
-        "stiffness there, and the brake balances every loss; 'prescribed': it touches from A to D",
+        "stiffness there, and the brake balances every loss; 'prescribed': it touches from A to D. With a "
+        "stiffness of the whole mesh, which is used as given, the default is 'prescribed'",
     )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"
@@ -67,12 +104,47 @@ class Mesh(Section):
         None, description="teeth of pinion and gear that are at the start of contact A at t = 0; default 1, 1"
     )
 
+    @model_validator(mode="after")
+    def _follows_the_stiffness(self) -> Self:
+        """Contact and relief, where they are not given, are what the stiffness leaves: the only place."""
+        for name, value in self.by_stiffness.items():
+            if name not in self.model_fields_set:
+                self.__dict__[name] = value  # nobody has the section yet
+        if self.stiffness.whole_mesh and self.contact == "loaded":
+            raise refuse(
+                "contact", "loaded", "'prescribed' where mesh.stiffness is that of the whole mesh", _WHOLE
+            )
+        return self
+
+    @property
+    def by_stiffness(self) -> dict[str, str]:
+        """Contact and relief that hold where a file does not say them.
+
+        A stiffness of the whole mesh is load over transmission error: early contact, load sharing gaps and
+        relief are in it already.
+        """
+        whole = self.stiffness.whole_mesh
+        return (
+            {"contact": "prescribed", "relief": "ignored"}
+            if whole
+            else {"contact": "loaded", "relief": "static"}
+        )
+
+
+def _grade(value: object) -> object:
+    """A grade that text names; a number is checked as one."""
+    return grade_of(value) if isinstance(value, str) else value
+
 
 class ViscosityLaw(Section):
     """Dynamic viscosity from temperature (Walther, ASTM D341): of an ISO VG grade, or of two viscosities."""
 
-    iso_vg: Annotated[int, Field(strict=True)] | None = Field(
-        None, description="ISO 3448 viscosity grade, e.g. 100; or give the two kinematic viscosities"
+    iso_vg: Annotated[
+        Annotated[int, Field(strict=True)] | None,
+        BeforeValidator(_grade, json_schema_input_type=int | str | None),
+    ] = Field(
+        None,
+        description="ISO 3448 viscosity grade, 100 or 'ISO VG 100'; or give the two kinematic viscosities",
     )
     viscosity_index: Annotated[float, Quantity("1", at_least=0, at_most=400)] = Field(
         95.0, description="viscosity index of the grade, ASTM D2270"

@@ -31,6 +31,8 @@ FRICTION: dict[str, tuple[str, ...]] = {
     "composite_roughness": ("friction.composite_roughness", "gears.roughness"),
     "film_length": ("friction.film_length",),
 }
+#: The profile of the flanks, beside their involutes.
+_PROFILE = ("mesh.relief", "gears.tip_relief", "gears.root_relief")
 #: Fields that laws, models or the rest of a pair may leave unread.
 _CONDITIONAL = {
     *(field for fields in FRICTION.values() for field in fields),
@@ -38,7 +40,8 @@ _CONDITIONAL = {
     "friction.table",
     "gears.density",
     "basic_rack.addendum_coefficient",
-    "mesh.relief",
+    *_PROFILE,
+    "mesh.contact",
     "mesh.backlash",
 }
 
@@ -68,7 +71,7 @@ def fields_read(pair: AnyPair, *, contact_lost: bool = False) -> frozenset[str]:
     True
     """
     pair = load_gear_pair(pair)
-    used = {*_of_friction(pair), *pair.mesh.stiffness.reads, *_of_bodies(pair)}
+    used = {*_of_friction(pair), *pair.mesh.stiffness.reads, *_of_bodies(pair), *_of_contact(pair)}
     if contact_lost:
         used.add("mesh.backlash")
     unread = [*_both(_CONDITIONAL)]
@@ -109,9 +112,18 @@ def _of_bodies(pair: GearPair) -> set[str]:
             fields |= {f"{name}.density", f"{name}.bore"}
         if gear.addendum is None and gear.tip_diameter is None:
             fields.add("basic_rack.addendum_coefficient")
-        if gear.tip_relief is not None or gear.root_relief is not None:
-            fields.add("mesh.relief")
     if pair.healthy is not pair or pair.shafts is not None:
         # Faults have the strength of the tooth; the second model has the gear on its shaft as a body.
         fields |= TOOTH_FORM
     return fields
+
+
+def _of_contact(pair: GearPair) -> set[str]:
+    """Where pairs touch, and the profile of the flanks; a stiffness of the whole mesh has both in it."""
+    if pair.mesh.stiffness.whole_mesh:
+        # What the tips of single teeth have beyond the relief acts, with its start and shape.
+        own = ("gears.tip_relief.start_roll_angle", "gears.tip_relief.shape")
+        return set() if pair.healthy is pair else set(own)
+    gears = (pair.pinion, pair.gear)
+    relieved = any(one.tip_relief is not None or one.root_relief is not None for one in gears)
+    return {"mesh.contact", *(_PROFILE if relieved else ())}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -12,8 +12,9 @@ from typing import Any
 from lumped.arguments import nearest
 from lumped.errors import OldFormatWarning, refuse, shown
 from lumped.fields.text_file import parse_toml, read_text
+from lumped.fields.units import to_file
 from lumped.gear_geometry.geometry import Geometry
-from lumped.schema.old_formats import FORMAT, changes_since
+from lumped.schema.old_formats import FORMAT
 from lumped.schema.pair import GearPair, validated
 
 #: What stands for a gear pair: a preset name, the path of a TOML file, parameters in file units, or the pair.
@@ -35,6 +36,9 @@ _NO_PAIRS = {
     ".json": "Name the parameter file; of a report it is data/parameters.toml.",
     **dict.fromkeys((".xlsx", ".xls", ".ods"), "Copy its values into a parameter file: 'spurcheck init'."),
 } | dict.fromkeys((".rexs", ".rexsj", ".rexsz"), "Make a parameter file of it: 'spurcheck init --from-rexs'.")
+
+#: Alteration over module that changes no result anybody reads.
+_SMALL = 1e-3
 
 
 @cache
@@ -113,13 +117,39 @@ def _from_file(source: str | Path) -> GearPair:
     data = {"format": 1} | data
     pair = validated(data, name, folder)
     if data["format"] != FORMAT:
-        for difference in changes_since(data, pair):
+        for difference in _changes_since(data, pair):
             text = (
                 f"{name} is of format {data['format']}: {difference}. Write format = {FORMAT} at its top for "
                 "that; write 0 to keep what it means."
             )
             warnings.warn(text, OldFormatWarning, stacklevel=3)
     return pair
+
+
+def _changes_since(data: Mapping[str, Any], pair: GearPair) -> Iterator[str]:
+    """Yield what a file of format 1 means that the same file of today's format would not, one sentence each.
+
+    Parameters
+    ----------
+    data : the file as it was read
+    pair : the pair that was made of it
+    """
+    written = {name: data[name] for name in ("pinion", "gear")}
+    if pair.centre_distance is not None and not any("profile_shift" in gear for gear in written.values()):
+        today = pair.with_({f"{name}.profile_shift": None for name in written})
+        if any(abs(one) > _SMALL for one in today.profile_shifts):
+            shifts = " and ".join(f"{one:.4f}" for one in today.profile_shifts)
+            yield f"no profile shifts are written and 0 is taken; the centre distance asks for {shifts}"
+    unwritten = [
+        name
+        for name, gear in written.items()
+        if not any(key in gear for key in ("tip_alteration", "tip_diameter", "addendum"))
+    ]
+    alteration = pair.tip_alteration
+    if unwritten and abs(alteration) > _SMALL * pair.basic_rack.module:
+        fields = " and ".join(f"{name}.tip_alteration" for name in unwritten)
+        value = to_file(alteration, "mm")
+        yield f"tips are not altered; to keep the clearance takes {fields} = {value:.4g} mm"
 
 
 def _exists(path: Path) -> bool:

@@ -4,31 +4,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.faults.base import Flank
 from lumped.faults.registry import AnyFault
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
 from lumped.gear_geometry.profile_shift import LARGEST_SHIFT, LEAST_SHIFT
+from lumped.schema.relief import ProfileRelief
 from lumped.schema.teeth import Deviations, Mounting
 
 _MODULUS = "Steel has 206 GPa; write the unit where it is another one: '206000 MPa'."
 _SIZE = "Give the size as drawn; check the unit."
-
-
-class ProfileRelief(Section):
-    """Deviation of a flank from the involute by design, growing from a roll angle to the flank's end."""
-
-    shape: Literal["linear", "parabolic"] = Field("linear", description="growth over roll angle")
-    amount: Annotated[float, Quantity("um", at_least=0, at_most=1000)] = Field(
-        description="material removed at the end of the flank, normal to it"
-    )
-    start_roll_angle: Annotated[float, Quantity("deg", above=0, at_most=180)] = Field(
-        description="roll angle at which the relief starts"
-    )
+#: Fillet radius over module of the standard basic rack (ISO 53, type A).
+STANDARD_FILLET = 0.38
 
 
 class BasicRack(Section):
@@ -47,17 +39,40 @@ class BasicRack(Section):
         1.25, description="dedendum over module"
     )
     fillet_radius_coefficient: Annotated[float, Quantity("1", at_least=0, at_most=0.6)] = Field(
-        0.38, description="root fillet radius of the rack over module"
+        STANDARD_FILLET,
+        description="root fillet radius of the rack over module; default 0.38, or 0.95 of the full tip "
+        "radius where the rack's tip has no room for 0.38",
     )
+
+    @property
+    def full_radius_coefficient(self) -> float:
+        """Tip radius over module with which the rack's tooth has no flat tip; negative where it is pointed.
+
+        Half the rack tooth's width at its tip, over module, is pi/4 - h tan a; a tip radius rho between flank
+        and tip takes rho (1 - sin a)/cos a of it.
+        """
+        sine, cosine = math.sin(self.pressure_angle), math.cos(self.pressure_angle)
+        room = 0.25 * math.pi - self.dedendum_coefficient * sine / cosine
+        return room * cosine / (1.0 - sine)
+
+    @property
+    def assumed_fillet(self) -> float:
+        """Fillet radius over module where none is given: that of ISO 53 where it fits the rack's tip.
+
+        Else it is 0.95 of the full tip radius, rounded down to two digits.
+        """
+        full = self.full_radius_coefficient
+        if full >= STANDARD_FILLET:
+            return STANDARD_FILLET
+        return max(math.floor(95.0 * full) / 100.0, 0.0)
 
     @model_validator(mode="after")
     def _tip_has_room(self) -> Self:
-        # Half the rack tooth's width at its tip, over module, is pi/4 - h tan a; a tip radius rho between
-        # flank and tip takes rho (1 - sin a)/cos a of it.
-        sine, cosine = math.sin(self.pressure_angle), math.cos(self.pressure_angle)
-        room = 0.25 * math.pi - self.dedendum_coefficient * sine / cosine
-        largest = room * cosine / (1.0 - sine)
-        if room < 0.0:
+        if "fillet_radius_coefficient" not in self.model_fields_set:
+            self.__dict__["fillet_radius_coefficient"] = self.assumed_fillet
+        largest = self.full_radius_coefficient
+        if largest < 0.0:
+            cosine, sine = math.cos(self.pressure_angle), math.sin(self.pressure_angle)
             raise refuse(
                 "dedendum_coefficient",
                 f"{self.dedendum_coefficient:g}",
@@ -69,7 +84,8 @@ class BasicRack(Section):
                 "fillet_radius_coefficient",
                 f"{self.fillet_radius_coefficient:g}",
                 f"<= {largest:.4f} (full tip radius) for this pressure angle and dedendum",
-                "Lower the fillet radius or the dedendum of the rack.",
+                "Lower the fillet radius or the dedendum of the rack, or delete the fillet radius: one that "
+                "fits is then assumed.",
             )
         return self
 
@@ -138,6 +154,20 @@ class Gear(Section):
     def has_own_teeth(self) -> bool:
         """Whether its teeth or its turns differ."""
         return self.deviations is not None or self.eccentricity > 0.0 or bool(self.faults)
+
+    def with_relief_on(self, flank: Flank) -> Self:
+        """The gear with the roll angles at which its reliefs start on a flank; itself where it states them.
+
+        Raises
+        ------
+        ParameterError : a relief that does not start on the active flank
+        """
+        located = {
+            f"{end}_relief": relief.on(flank, f"{end}_relief")
+            for end, relief in (("tip", self.tip_relief), ("root", self.root_relief))
+            if relief is not None and not relief.by_angle
+        }
+        return self.model_copy(update=located) if located else self
 
     @model_validator(mode="after")
     def _fits_its_teeth(self) -> Self:

@@ -46,7 +46,7 @@ from lumped.schema import own_laws
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
-from lumped.schema.contact import Friction, Lubricant, Mesh
+from lumped.schema.contact import Friction, Lubricant, Mesh, without_assumed_defaults
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
 from lumped.schema.shafts import Shafts
@@ -94,6 +94,8 @@ _OF_THE_MESH = ("centre_distance", "contact_ratio", "pinion.tip_diameter", "gear
 #: Largest normal backlash over module that a centre distance may leave between teeth as they are cut: the
 #: allowances of ISO/TR 10064-2 are at most half of it, and the centre distance has tolerances of its own.
 _LARGEST_PLAY = 0.2
+#: Fields that a stiffness decides where they are not known.
+_BESIDE = ("mesh.contact", "mesh.relief")
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
 
@@ -160,6 +162,12 @@ class GearPair(Section, metaclass=_InOurWords):
         "'/ 2 .. * 2', or a list of choices",
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _stiffness_decides_again(cls, data: Any) -> Any:
+        """Contact and relief that a file has as assumed defaults are left to its stiffness."""
+        return without_assumed_defaults(data, {"contact": "loaded", "relief": "static"})
+
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
         problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
@@ -168,6 +176,7 @@ class GearPair(Section, metaclass=_InOurWords):
         if self.friction.law == TABLE and self.friction.table is not None and not problems:
             problems += self.friction.table.problems(self.geometry)
         problems += [*self._teeth_that_are_not("pinion", 0), *self._teeth_that_are_not("gear", 1)]
+        problems += [*self._relief_counted_twice()]
         if problems:
             raise ParameterError(problems, self.name)
         wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
@@ -175,6 +184,8 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += problems_of(type(self), self.assumed)
         if wrong:
             raise ParameterError(wrong)
+        for which, name in enumerate(("pinion", "gear")):
+            self.__dict__[name] = self._with_relief(name, self.flank(which))
         force = self.operating.pinion_torque / self.geometry.base_radius_pinion
         self.__dict__["bearings"] = self.bearings.under(force)
         return self
@@ -238,17 +249,23 @@ class GearPair(Section, metaclass=_InOurWords):
         shifts = self.pinion.profile_shift, self.gear.profile_shift
         if self.centre_distance is None or None in shifts:
             return problems
+        own = {name: getattr(self, name) for name in GearPair.model_fields}
+        of_shifts = GearPair.model_construct(**own | {"centre_distance": None})
         try:
-            free = self._geometry_at(None)
+            free = of_shifts._geometry_at(None)
         except ParameterError:
             return problems
-        if existence_problems(*self.wheels, free, self.mesh.backlash):
+        if existence_problems(*of_shifts.wheels, free, self.mesh.backlash):
             return problems
         value = f"{self.centre_distance * 1e3:.6g} mm with the profile shifts {shifts[0]:g} and {shifts[1]:g}"
-        with suppress(ParameterError):  # a centre distance below that of the base circles has no backlash
-            play = theoretical_backlash(
-                *self.wheels, self._geometry_at(self.centre_distance).operating_pressure_angle
-            )
+        about = f"about {free.centre_distance * 1e3:.6g} mm for these shifts"
+        allowed = f"normal backlash >= 0 and <= {_LARGEST_PLAY:g} modules, so {about}"
+        try:
+            angle = self._geometry_at(self.centre_distance).operating_pressure_angle
+        except ParameterError as error:  # no geometry, so no backlash: a centre distance below the base radii
+            allowed = f"{error.problems[0].allowed}, {about}"
+        else:
+            play = theoretical_backlash(*self.wheels, angle)
             if not problems and play <= _LARGEST_PLAY * self.basic_rack.module:
                 return problems
             value += f", backlash {play * 1e3:.4f} mm{': the teeth wedge' if play < 0.0 else ''}"
@@ -261,10 +278,6 @@ class GearPair(Section, metaclass=_InOurWords):
             if 2.0 * LEAST_SHIFT <= total <= 2.0 * LARGEST_SHIFT:
                 actions.append(f"or the profile shifts (their sum is then {total:.4f})")
         actions.append("or correct the wrong one. Teeth that are thinned on purpose: mesh.backlash")
-        allowed = (
-            f"normal backlash >= 0 and <= {_LARGEST_PLAY:g} modules, so about "
-            f"{free.centre_distance * 1e3:.6g} mm for these shifts"
-        )
         first = FieldProblem("centre_distance", value, allowed, f"{', '.join(actions)}.")
         return [first, *(problem for problem in problems if problem.field not in _OF_THE_MESH)]
 
@@ -311,6 +324,14 @@ class GearPair(Section, metaclass=_InOurWords):
             tip = tooth.reference_radius + rack.module * (rack.addendum_coefficient + shift) + alteration
         return Wheel(tooth, tip, gear.face_width, gear.bore)
 
+    def _with_relief(self, name: str, flank: Flank) -> Gear:
+        gear: Gear = getattr(self, name)
+        try:
+            return gear.with_relief_on(flank)
+        except ParameterError as error:
+            problems = [replace(one, field=f"{name}.{one.field}") for one in error.problems]
+            raise ParameterError(problems, self.name) from None
+
     def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
         """Mass or inertia that no gear of this size has: its vibration would take years to compute."""
         gear: Gear = getattr(self, name)
@@ -332,6 +353,33 @@ class GearPair(Section, metaclass=_InOurWords):
         for number, fault in enumerate(gear.faults):
             for one in fault.problems(self.flank(which)):
                 yield replace(one, field=f"{name}.faults.{number}.{one.field}")
+
+    def _relief_counted_twice(self) -> Iterator[FieldProblem]:
+        """Relief beside a stiffness of the whole mesh, which has the profile in it."""
+        reliefs = [one for gear in (self.pinion, self.gear) for one in (gear.tip_relief, gear.root_relief)]
+        acts = self.mesh.relief == "static" and any(one is not None and one.amount > 0.0 for one in reliefs)
+        if self.mesh.stiffness.whole_mesh and acts:
+            allowed = "'ignored' where mesh.stiffness is that of the whole mesh, which has the profile in it"
+            action = (
+                "Write mesh.relief = 'ignored', or leave it out: relief then counts once. If it is the curve "
+                "of one tooth pair, write kind = 'pair' in mesh.stiffness: then relief = 'static' stays."
+            )
+            yield FieldProblem("mesh.relief", "static", allowed, action)
+
+    @property
+    def stiffness_words(self) -> str:
+        """What stiffness is given, for a reader: of the whole mesh or of one tooth pair."""
+        return self.mesh.stiffness.words
+
+    @property
+    def stiffness_note(self) -> str:
+        """What follows from a stiffness of the whole mesh, in a sentence; empty with that of a tooth pair."""
+        if not self.mesh.stiffness.whole_mesh:
+            return ""
+        return (
+            f"mesh.stiffness is the {self.stiffness_words}: contact is prescribed, and tip and root relief "
+            "are part of the stiffness."
+        )
 
     @property
     def nominal_contact(self) -> ContactPath:
@@ -432,10 +480,10 @@ class GearPair(Section, metaclass=_InOurWords):
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
             A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
-            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``viscosity``, ``oil``
-            ("vg220", with ``temperature``) and, of both gears, ``teeth`` ("19/41"), ``face_width``,
-            ``roughness``. ``gears.`` in front of a key means both gears, ``bearings.stiffness`` all four
-            directions.
+            ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``pressure_angle``,
+            ``viscosity``, ``oil`` ("ISO VG 220", with ``temperature``) and, of both gears, ``teeth``
+            ("19/41"), ``face_width``, ``roughness``. ``gears.`` in front of a key means both gears,
+            ``bearings.stiffness`` all four directions.
 
         ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
         into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
@@ -444,9 +492,10 @@ class GearPair(Section, metaclass=_InOurWords):
           ``sliding_velocity``, ``entraining_velocity`` [m/s], ``slide_to_roll``, ``hertz_pressure`` [Pa],
           ``film_thickness`` [m], ``film_parameter``; called with numbers at the operating point.
         - law as an array: mu at equal distances from A to D.
-        - stiffness as a text: the name of a model; as a number: that of the mesh, constant [N/m].
+        - stiffness as a text: the name of a model; as a number: that of the whole mesh, constant [N/m].
         - stiffness as a function: of ``xi``, one pair from A to D, or of ``phase`` from 0 to 1, all pairs
-          over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included.
+          over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included. That
+          of the whole mesh is used as given: contact is prescribed, relief is in it.
         - columns: a mapping or DataFrame such as ``{"position [mm]": ..., "coefficient": ...}``,
           ``{"phase": ..., "stiffness [N/um]": ...}``.
 
@@ -457,12 +506,14 @@ class GearPair(Section, metaclass=_InOurWords):
         request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
         fields = by_fields(request)
         own = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
+        # Contact and relief are judged with the stiffness that they are given for.
+        beside = {path: fields.pop(path) for path in _BESIDE if path in fields and "mesh.stiffness" in own}
         pair = self._changed(fields) if fields or not own else self
         for path, value in own.items():
             if path == "friction.law":
                 pair = pair._changed(own_laws.own_friction(pair.nominal_contact, value))
             else:
-                pair = pair._changed(own_laws.own_stiffness(pair.geometry, value))
+                pair = pair._changed(own_laws.own_stiffness(pair.geometry, value) | beside)
                 pair.mesh.stiffness.curve(pair)  # a table that does not fit is refused here
         return pair
 

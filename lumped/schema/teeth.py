@@ -10,12 +10,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
 
 from lumped.errors import FieldProblem, refuse, shown
 from lumped.fields.section import Section
 from lumped.fields.text_file import read_text
 from lumped.fields.units import Quantity, QuantityList
+from lumped.schema.tolerances import tolerance_class_of
 
 #: Column of a file of measured deviations -> field; lengths in um.
 _COLUMNS = {"index_um": "index", "profile_slope_um": "profile_slope", "tip_relief_um": "tip_relief"}
@@ -23,14 +24,20 @@ _COLUMNS = {"index_um": "index", "profile_slope_um": "profile_slope", "tip_relie
 _FORMAT = "a header tooth,index_um[,profile_slope_um][,tip_relief_um], then a row for each tooth: 1, 2, ..."
 _MAX_BYTES = 1_000_000
 
+_Class = Annotated[int, Field(ge=1, le=11)] | str | None
 _LIST = QuantityList("um", at_least=-1000, at_most=1000)
 
 
 class Deviations(Section):
     """Deviations of the teeth of one gear: drawn within a tolerance class, or lists of one value a tooth."""
 
-    tolerance_class: Annotated[int, Field(ge=1, le=11, strict=True)] | None = Field(
-        None, description="ISO 1328-1:2013, 1 to 11: pitch deviations are drawn within its tolerances"
+    tolerance_class: Annotated[
+        Annotated[int, Field(ge=1, le=11, strict=True)] | None,
+        BeforeValidator(tolerance_class_of, json_schema_input_type=_Class),
+    ] = Field(
+        None,
+        description="ISO 1328-1:2013, 1 to 11, also as 'ISO 6' or 'DIN 6': pitch deviations are drawn within "
+        "its tolerances",
     )
     seed: int = Field(1, ge=0, le=2**53, strict=True, description="of the draw; the same gear for each seed")
     index: Annotated[tuple[float, ...] | None, _LIST] = Field(

@@ -7,11 +7,56 @@ from __future__ import annotations
 
 import math
 import random
+import re
+import warnings
 
 import numpy as np
 
-from lumped.errors import refuse
+from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
+
+_CLASS = re.compile(
+    r"\s*(?:(?P<body>DIN\s+EN\s+ISO|DIN\s+ISO|ISO|DIN)[\s-]*(?P<number>\d{4}(?:-\d)?(?::\d{4})?)?[\s,:-]*)?"
+    r"(?:class|grade|quality|qualität|q)?\s*(?P<of>\d{1,2})\s*",
+    re.IGNORECASE,
+)
+
+
+def tolerance_class_of(value: object) -> object:
+    """Return the tolerance class that text names; anything but text unchanged, for the check of a number.
+
+    "ISO 6", "ISO 1328-1:2013 class 6", "Q6" and "6" are class 6 of ISO 1328-1:2013. "DIN 6" is class 6 of
+    DIN 3962, which has a table of its own: it is read as the ISO class of the same number, with a warning.
+    For modules of 1 to 2 mm and diameters of 50 to 560 mm, f_p and F_p of class 6 differ by less than a fifth
+    (docs/theory/teeth.md).
+
+    Raises
+    ------
+    ParameterError : text that names no class of these standards
+
+    >>> tolerance_class_of("ISO 6"), tolerance_class_of("ISO 1328-1:2013 class 7"), tolerance_class_of(8)
+    (6, 7, 8)
+    """
+    if not isinstance(value, str):
+        return value
+    found = _CLASS.fullmatch(value)
+    body, number = (found["body"] or "", found["number"] or "") if found else ("", "")
+    german = body.upper() == "DIN" and not number.startswith("1328")
+    if not found or (number and not number.startswith("396" if german else "1328")):
+        action = "Write the class of ISO 1328-1, 1 to 11: a smaller number is a more accurate gear."
+        if "agma" in value.lower():
+            action += (
+                " Quality numbers of AGMA 2000 count the other way: 17 less the number is about the class."
+            )
+        raise refuse("", shown(repr(value)), "1 to 11, or text such as 'ISO 6' or 'DIN 6'", action)
+    if german:
+        warnings.warn(
+            f"{shown(value)!r} is read as class {found['of']} of ISO 1328-1:2013: DIN 3962 has its own table "
+            "of tolerances, which is near. Give measured deviations where the difference matters.",
+            UserWarning,
+            stacklevel=2,
+        )
+    return int(found["of"])
 
 
 def flank_tolerances(teeth: int, module: float, tolerance_class: int) -> dict[str, float]:

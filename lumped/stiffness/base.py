@@ -79,6 +79,17 @@ class StiffnessModel(Section):
         """What the model depends on of ``TOOTH_FORM``, beside its own section, the circles and the torque."""
         return TOOTH_FORM
 
+    @property
+    def whole_mesh(self) -> bool:
+        """Whether it is the stiffness of the whole mesh, which is used as given, and not of a tooth pair."""
+        return False
+
+    @property
+    def words(self) -> str:
+        """What is given, for a reader: the stiffness of a tooth pair by its model, or as given."""
+        model: str = type(self).model_fields["model"].default
+        return f"stiffness of one tooth pair, model {model}"
+
     @abstractmethod
     def curve(self, pair: MeshingPair) -> PathFunction:
         """Stiffness k_i(xi) of one tooth pair from A to D [N/m]; parameters that do not fit are refused."""

@@ -37,14 +37,22 @@ _LARGEST_GAP = 0.25
 _FIT_TOLERANCE = 1e-10
 #: Positions closer than this fraction of a base pitch are one.
 _SAME = 1e-9
+#: Rounding of positions over a base pitch, several times over.
+_ROUNDING = 1e-12
 
 
 class TableStiffness(StiffnessModel):
-    """Tabulated stiffness: of one pair over the path of contact, or of all pairs over a mesh cycle."""
+    """Tabulated stiffness: of one pair over the path of contact, or of all pairs over a mesh cycle.
+
+    That of all pairs, ``kind = "total"``, is load over transmission error of the whole mesh and is used as
+    given: contact is prescribed, and tip and root relief are part of it (docs/theory/mesh_physics.md).
+    """
 
     model: Literal["table"] = "table"
     kind: Literal["pair", "total"] = Field(
-        "pair", description="stiffness of one pair from A to D, or sum of all pairs over one mesh cycle"
+        "pair",
+        description="pair: stiffness of one tooth pair from A to D; total: of the whole mesh over a "
+        "mesh cycle, load over transmission error, used as given",
     )
     axis: Literal["position_mm", "roll_angle_deg", "phase"] = Field(
         description="what 'points' are: distance from X [mm], pinion roll angle [deg], or cycles after A [1]"
@@ -74,9 +82,25 @@ class TableStiffness(StiffnessModel):
         return self
 
     @property
+    def whole_mesh(self) -> bool:
+        """Whether the curve is the sum of all pairs over a mesh cycle."""
+        return self.kind == "total"
+
+    @property
+    def words(self) -> str:
+        """Whose stiffness is given, with its least and largest value."""
+        low, high = (
+            f"{value:.4g}".replace("e+0", "e") for value in (min(self.stiffness), max(self.stiffness))
+        )
+        size = low if low == high else f"{low} to {high}"
+        return (
+            f"stiffness of {'the whole mesh' if self.whole_mesh else 'one tooth pair'}, as given: {size} N/m"
+        )
+
+    @property
     def reads(self) -> frozenset[str]:
         """The tooth form where a total is shared out; nothing for the curve of one pair."""
-        return READS if self.kind == "total" else frozenset()
+        return READS if self.whole_mesh else frozenset()
 
     def curve(self, pair: MeshingPair) -> PathFunction:
         """By interpolation of the table [N/m].
@@ -86,10 +110,20 @@ class TableStiffness(StiffnessModel):
         """
         g = pair.geometry
         position, stiffness = self._positions(g), np.array(self.stiffness)
-        if self.kind == "pair":
+        if not self.whole_mesh:
             return ramped(_pair_curve(position, stiffness, self, g), self.ramp_length)
         check_ramp_length(self.ramp_length, g.L_XA, g.L_XD)
         return _shared(_total_curve(position, stiffness, self, g), self.ramp_length, pair)
+
+    def total(self, geometry: Geometry, phase: FloatArray) -> FloatArray:
+        """Stiffness of the whole mesh at phases of any shape, in mesh cycles after A, from the table [N/m].
+
+        The curve of each pair is made from it; here nothing is shared out, so that checks can hold the sum of
+        the pairs against it. Only for ``kind = "total"``.
+        """
+        curve = _total_curve(self._positions(geometry), np.array(self.stiffness), self, geometry)
+        place = np.mod(np.asarray(phase, dtype=np.float64), 1.0) * geometry.base_pitch
+        return np.asarray(curve(place), dtype=np.float64)
 
     def _positions(self, g: Geometry) -> FloatArray:
         """Points as xi [m]."""
@@ -116,7 +150,7 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
     phase = np.mod(x - geometry.L_XA, period)
     order = np.argsort(phase, kind="stable")
     phase, y = phase[order], y[order]
-    same = np.diff(phase, append=phase[0] + period) <= 1e-9 * period
+    same = np.diff(phase, append=phase[0] + period) <= _SAME * period
     if same.any():  # several periods, or both ends of one: equal phases must agree
         following = np.roll(y, -1)
         if np.any(np.abs(y - following)[same] > 1e-3 * y[same]):
@@ -171,7 +205,8 @@ def _neighbour_breaks(
 
 
 def _check_gaps(gap: float, geometry: Geometry) -> None:
-    if gap > _LARGEST_GAP * geometry.base_pitch:
+    # Positions are sums of lengths: a quarter of a cycle may come out longer by their rounding.
+    if gap > (_LARGEST_GAP + _ROUNDING) * geometry.base_pitch:
         raise refuse(
             "mesh.stiffness.points",
             f"a gap of {gap / geometry.base_pitch:.3f} mesh cycles",

@@ -31,13 +31,14 @@ from lumped.quasi_static.contacts import contact_of
 from lumped.schema.gear import Gear
 from lumped.schema.meeting_teeth import first_teeth, own_teeth
 from lumped.schema.pair import GearPair
+from lumped.schema.relief import ProfileRelief
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
-from multibody.contact.cut_teeth import profile_shifts, root_radius
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import event_table
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
+from multibody.gears.cut_teeth import profile_shifts, root_radius
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
@@ -422,14 +423,30 @@ def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, f
         (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.reach_gear),
         (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.reach_pinion),
     ):
-        for relief, end in ((gear.tip_relief, tip), (gear.root_relief, drawn.tangent - mate)):
+        for relief, end, sense in (
+            (gear.tip_relief, tip, -1.0),
+            (gear.root_relief, drawn.tangent - mate, 1.0),
+        ):
             own = gear.deviations is not None and gear.deviations.tip_relief is not None
             acts = pair.mesh.relief == "static"
             if relief is None or not (own or (acts and relief.amount != 0.0)):
                 continue
             power, amount = 1.0 if relief.shape == "linear" else 2.0, relief.amount if acts else 0.0
-            rows.append((which, relief.start_roll_angle, end / base, amount, power))
+            start = _relief_start(relief, base, end, sense)
+            rows.append((which, start, end / base, amount, power))
     return rows
+
+
+def _relief_start(relief: ProfileRelief, base: float, end: float, sense: float) -> float:
+    """Roll angle at which a relief starts [rad], of what the file states; `end` is the reach of its end [m].
+
+    The profile angle at radius r is arccos(r_b/r), and its tangent the roll angle.
+    """
+    if relief.length is not None:
+        return (end + sense * relief.length) / base
+    if relief.start_diameter is not None:
+        return math.tan(math.acos(2.0 * base / relief.start_diameter))
+    return relief.start_roll_angle
 
 
 def base_tooth_angle(pair: GearPair, which: int, base: float) -> float:

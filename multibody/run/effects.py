@@ -15,7 +15,11 @@ import numpy as np
 
 from lumped.arguments import some_of
 from lumped.errors import refuse
+from lumped.schema.pair import GearPair
 from multibody.contact import kinematics as kn
+
+#: Form of the contact with a stiffness of the whole mesh.
+WHOLE = "whole mesh"
 
 
 class Effect(NamedTuple):
@@ -23,12 +27,12 @@ class Effect(NamedTuple):
 
     bits : its switches in ``kernels``
     cause : the cause of differences that it belongs to, a key of ``CAUSES``
-    forms : values of ``mesh.contact`` with which it acts where no effects are named
+    forms : forms of the contact, see ``form_of``, with which it acts where no effects are named
     """
 
     bits: int
     cause: str
-    forms: tuple[str, ...] = ("prescribed", "loaded")
+    forms: tuple[str, ...] = ("prescribed", "loaded", WHOLE)
 
 
 EFFECTS: dict[str, Effect] = {
@@ -37,7 +41,9 @@ EFFECTS: dict[str, Effect] = {
     # ... and its line with the actual gear centres.
     "moving_line": Effect(kn.MOVING_LINE, "contact"),
     "sliding_velocity": Effect(kn.SLIDING, "sliding_velocity"),
-    "entry_shift": Effect(kn.ENTRY_SHIFT, "contact"),
+    # Teeth enter and leave where deflected flanks cross the tip circles; a stiffness of the whole mesh has
+    # been measured or computed with that.
+    "entry_shift": Effect(kn.ENTRY_SHIFT, "contact", ("prescribed", "loaded")),
     # After the backlash the back sides touch.
     "contact_loss": Effect(kn.CONTACT_LOSS | kn.BACK_SIDE, "contact"),
     "friction_load": Effect(kn.FRICTION_LOAD, "friction_load", ()),
@@ -61,17 +67,22 @@ CAUSES: dict[str, str] = {
 }
 
 
-def default_effects(contact: str) -> tuple[str, ...]:
-    """Names of the effects that act where none are named, with ``mesh.contact`` of the pair."""
-    return tuple(name for name, effect in EFFECTS.items() if contact in effect.forms)
+def form_of(pair: GearPair) -> str:
+    """Form of the contact: ``mesh.contact`` of the pair, or ``WHOLE`` with a stiffness of the whole mesh."""
+    return WHOLE if pair.mesh.stiffness.whole_mesh else pair.mesh.contact
 
 
-def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "prescribed") -> int:
+def default_effects(form: str) -> tuple[str, ...]:
+    """Names of the effects that act where none are named, with this form of the contact."""
+    return tuple(name for name, effect in EFFECTS.items() if form in effect.forms)
+
+
+def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, form: str = "prescribed") -> int:
     """Return the kernel's switch bits of named effects, or of a mapping name -> bool.
 
-    Names that a mapping leaves out, or all with None, act if they are ``default_effects`` of ``contact``.
+    Names that a mapping leaves out, or all with None, act if they are ``default_effects`` of ``form``.
     """
-    default = default_effects(contact)
+    default = default_effects(form)
     if effects is None:
         names = set(default)
     elif isinstance(effects, Mapping):

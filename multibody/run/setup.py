@@ -24,7 +24,7 @@ from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, Supports, loaded_phase, machine
-from multibody.run.effects import EFFECTS, active_effects, effect_flags
+from multibody.run.effects import EFFECTS, active_effects, effect_flags, form_of
 from multibody.run.integration import Segment, integrate
 from multibody.run.linear_motion import LinearMotion, energy_residual, linear_motion
 from multibody.run.model import ExudynModel, build, from_lumped_state
@@ -125,7 +125,7 @@ def prepare(
         friction_velocity = real_number(
             "friction_velocity", friction_velocity, 0.0, unit="m/s", action="0 switches at once."
         )
-    flags = effect_flags(effects, pair.mesh.contact) or (kn.LINEAR if pair.mesh.contact == "loaded" else 0)
+    flags = effect_flags(effects, form_of(pair)) or (kn.LINEAR if pair.mesh.contact == "loaded" else 0)
     if fidelity == "linear":
         if effects is None:
             flags = 0

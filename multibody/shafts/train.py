@@ -22,7 +22,7 @@ from lumped.errors import refuse
 from lumped.schema.pair import GearPair
 from lumped.schema.shafts import CoupledInertia, Shaft
 from lumped.typing import FloatArray, IntArray
-from multibody.contact.cut_teeth import root_radius
+from multibody.gears.cut_teeth import root_radius
 from multibody.shafts.beam import Interval, Reduced, bending, reduce_fields, torsion
 
 #: Stations closer than this are one [m].

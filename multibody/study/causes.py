@@ -15,7 +15,7 @@ from lumped.model.periodic_system import Supports, supports_of
 from lumped.model.results import needs_pull
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
-from multibody.run.effects import CAUSES, EFFECTS, default_effects
+from multibody.run.effects import CAUSES, EFFECTS, default_effects, form_of
 from multibody.run.flow_map import Orbit, cycles_of, find_orbit
 from multibody.run.setup import prepare
 
@@ -75,7 +75,7 @@ def attribution(
             orbits[names] = orbit, cycles_of(orbit, _SAMPLES)
         return orbits[names][1]
 
-    every = set(default_effects(pair.mesh.contact))
+    every = set(default_effects(form_of(pair)))
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
     contact = groups["contact"] & every
     parts = {cause: own & every for cause, own in groups.items() if own & every}

@@ -186,6 +186,26 @@ def test_the_stiffness_table_of_the_guide_is_read(blocks, root, tmp_path):
     assert max(pair.mesh.stiffness.stiffness) == pytest.approx(90.4e6)
 
 
+def test_the_table_of_the_guide_is_what_its_lines_print(blocks, root, tmp_path, monkeypatch, capsys):
+    page = blocks(root / "docs/how_to/from_the_drawing.md")
+    monkeypatch.chdir(tmp_path)
+    (line,) = (line for b in page if b.language == "sh" for line in b.commands)
+    run(line, root, set())
+    session: dict[str, object] = {}
+    printed = []
+    for block in (b for b in page if b.language == "python"):
+        capsys.readouterr()
+        exec(compile(block.text, "from_the_drawing", "exec"), session)
+        printed.append(capsys.readouterr().out)
+    (table,) = (b.text for b in page if b.language == "text")
+    assert printed[0].strip() == table.strip()
+    (said,) = (re.findall(r"# (0\.\d+)$", b.text, re.M) for b in page if "shift_from_balls(" in b.text)
+    assert [f"{float(value):.4f}" for value in printed[1].split()] == said
+    (limits,) = (tomllib.loads(b.text) for b in page if b.language == "toml")
+    pair = lumped.load_gear_pair("sun_planet.toml").with_(limits)
+    assert dict(pair.uncertainty) == limits["uncertainty"]
+
+
 def test_the_record_of_the_guide_is_valid(blocks, root):
     page = blocks(root / "docs/how_to/measured_data.md")
     (text,) = (b.text for b in page if b.language == "toml")

@@ -54,8 +54,12 @@ DECLARED: dict[str, tuple[str, str]] = {
     "{gear}.roughness": (">= 0 um and <= 50 um", "a rough casting"),
     "{gear}.tip_relief.amount": (">= 0 um and <= 1000 um", _FLANK),
     "{gear}.tip_relief.start_roll_angle": ("> 0 deg and <= 180 deg", _ROLL),
+    "{gear}.tip_relief.start_diameter": ("> 0 mm", _LENGTH),
+    "{gear}.tip_relief.length": ("> 0 mm", _LENGTH),
     "{gear}.root_relief.amount": (">= 0 um and <= 1000 um", _FLANK),
     "{gear}.root_relief.start_roll_angle": ("> 0 deg and <= 180 deg", _ROLL),
+    "{gear}.root_relief.start_diameter": ("> 0 mm", _LENGTH),
+    "{gear}.root_relief.length": ("> 0 mm", _LENGTH),
     "{gear}.mounting.eccentricity": (">= 0 um and <= 1000 um", _FLANK),
     "{gear}.mounting.phase": (">= 0 deg and <= 360 deg", _TURN),
     "{gear}.deviations.index": (">= -1000 um and <= 1000 um", _FLANK),
@@ -173,7 +177,8 @@ def with_field(pair: GearPair, path: str, value: object) -> dict[str, Any]:
     *parents, leaf = path.split(".")
     section = parents[-1] if parents else ""
     if section in ("tip_relief", "root_relief"):
-        data[parents[0]][section] = {"amount": 23.0, "start_roll_angle": 24.0}
+        start = {} if leaf in ("start_diameter", "length") else {"start_roll_angle": 24.0}
+        data[parents[0]][section] = {"amount": 23.0, **start}
     elif section == "mounting":
         data[parents[0]][section] = {}
     elif section == "deviations":

@@ -342,13 +342,29 @@ FAULTS = (
 # ---- quasi_static: relief ---------------------------------------------------------------------------------
 
 RELIEF = tuple(
-    Guard("lumped/quasi_static/tooth_error.py", f"{{gear}}.{which}_relief.start_roll_angle", RACK_25,
+    Guard("lumped/schema/relief.py", f"{{gear}}.{which}_relief.start_roll_angle", RACK_25,
           "it starts on the flank in contact", judge=relief,
           **{end: of(lambda h, at=at: h.roll(getattr(h, at)))},
           sets=lambda pair, gear, value, which=which: {
               f"{gear}.{which}_relief": {"amount": 9.0, "start_roll_angle": value}
           })
     for which in ("tip", "root") for end, at in (("least", "start_length"), ("most", "tip_length"))
+) + tuple(
+    Guard("lumped/schema/relief.py", f"{{gear}}.{which}_relief.start_diameter", UNLIKE_TEETH,
+          "it starts on the flank in contact; r = sqrt(r_b^2 + L^2)",
+          **{end: of(lambda h, at=at: h.tip_diameter(getattr(h, at)))},
+          sets=lambda pair, gear, value, which=which: {
+              f"{gear}.{which}_relief": {"amount": 7.0, "start_diameter": value}
+          })
+    for which in ("tip", "root") for end, at in (("least", "start_length"), ("most", "tip_length"))
+) + tuple(
+    Guard("lumped/schema/relief.py", f"{{gear}}.{which}_relief.length", RELIEVED,
+          "it is shorter than the flank in contact",
+          most=of(lambda h: h.tip_length - h.start_length),
+          sets=lambda pair, gear, value, which=which: {
+              f"{gear}.{which}_relief": {"amount": 7.0, "length": value}
+          })
+    for which in ("tip", "root")
 )  # fmt: skip
 
 

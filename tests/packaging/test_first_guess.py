@@ -103,8 +103,8 @@ def test_a_parameter_file_says_its_format(pair: spurcheck.GearPair) -> None:
     data = tomllib.loads(text)
     old = {key: value for key, value in data.items() if key != "format"}
     assert spurcheck.load_gear_pair(old) == spurcheck.load_gear_pair(data) == pair
-    with pytest.raises(spurcheck.ParameterError, match=r"format = 2.*later release"):
-        spurcheck.load_gear_pair(data | {"format": 2})
+    with pytest.raises(spurcheck.ParameterError, match=r"format = 3.*later release"):
+        spurcheck.load_gear_pair(data | {"format": 3})
 
 
 def test_the_interactive_page_says_how_to_get_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -151,6 +151,8 @@ def gear_pair(
             note(f"{option} = {text} changes nothing in the motion: {why}.")
         if varied.shafts is not None and fields_of(path)[0].startswith("bearings."):
             note(f"{option} = {text} changes nothing on the shafts, which hold the gears: see --supports.")
+    if varied.stiffness_note:
+        note(varied.stiffness_note)
     for warning in parameter_warnings(varied):
         note(warning)
     return varied

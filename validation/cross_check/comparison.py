@@ -299,6 +299,6 @@ def _compared(
         conservation=checks,
         powers=powers,
         orbit=orbit,
-        loss=None if exact is None else loss_agreement(best, exact),
+        loss=None if exact is None else loss_agreement(pair, best, exact),
         pulling=pulling,
     )

@@ -22,8 +22,11 @@ from lumped.model.propagation import fastest_frequency
 from lumped.model.results import corner_force, response
 from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.quasi_static.contacts import contact_of
+from lumped.quasi_static.transmission_error import static_transmission_error
+from lumped.stiffness.table import TableStiffness
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
+from multibody.contact.elements import stiffness_at
 from multibody.contact.machine import Machine
 from validation.cross_check.agreement import Fidelity
 from validation.cross_check.verdict import Judgement
@@ -45,6 +48,9 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _PANELS, _PANEL_ANGLE = 160, 0.7
 #: Rounding of a product of a coefficient and a velocity over the largest one.
 _ROUNDING = 1e-9
+#: Phases at which load over stiffness is checked, and fit error of the shares of all pairs over the largest
+#: stiffness.
+_PHASES, _SHARES = 256, 1e-8
 #: Laws that several checks of one model stand for.
 _FAMILIES = ("action and reaction", "mean bearing load", "power ")
 #: Share of the driving power that the integration may lose at each fidelity: ten times its relative tolerance
@@ -90,6 +96,7 @@ def conservation(
             found += _action_and_reaction(m, name, motion)
         if name != "exact":
             found += _mean_bearing_loads(m, name, motion, pair, variation)
+    found += _load_over_stiffness(pair, m)
     for name, one in powers.items():
         found += _first_law(name, one)
     if "linear" in powers and "lumped" in powers:
@@ -211,6 +218,43 @@ def _friction_takes_power(m: Machine, name: str, motion: xr.Dataset) -> Judgemen
     largest = max(float(np.abs(taken).max()), np.finfo(float).tiny)
     fed_in = max(0.0, -float(taken.min())) / largest
     return Judgement(f"conservation: friction takes power, {name}", fed_in, _ROUNDING, f"{text}; rounding")
+
+
+def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
+    """A stiffness of the whole mesh is load over transmission error: both models must give that error back.
+
+    Nothing to check with the stiffness of a tooth pair.
+    """
+    table = pair.mesh.stiffness
+    if not isinstance(table, TableStiffness) or not table.whole_mesh:
+        return []
+    p, static = m.parameters, static_transmission_error(pair, phases=_PHASES)
+    phase = static["phase"].to_numpy()
+    given = pair.mesh.stiffness_factor * table.total(pair.geometry, phase)
+    force = m.torque_pinion / p[kn.RADIUS_P]
+    # Not at A and D themselves, on which rounding decides whether a pair is there.
+    between = phase + 0.5 / _PHASES
+    place = p[kn.L_XA] + p[kn.PITCH] * (between[:, None] + np.arange(m.pairs))
+    stiffness = np.array([[stiffness_at(m.table, xi) for xi in row] for row in place])
+    second = np.where(place < p[kn.L_XD], stiffness, 0.0).sum(axis=1)
+    errors = {
+        "lumped": (static["transmission_error"].to_numpy()[0], force / given),
+        "exact": (
+            force / second,
+            force / (pair.mesh.stiffness_factor * table.total(pair.geometry, between)),
+        ),
+    }
+    limit = _SHARES * float(given.max() / given.min())
+    return [
+        Judgement(
+            f"conservation: load over stiffness of the whole mesh, {name}",
+            float(np.abs(error / expected - 1.0).max()),
+            limit,
+            "static transmission error at every phase against T_p/r_bp over the stiffness as given; limit: "
+            "the fit of the shares of the pairs",
+        )
+        for name, (error, expected) in errors.items()
+    ]
 
 
 def _action_and_reaction(m: Machine, name: str, motion: xr.Dataset) -> list[Judgement]:

@@ -11,11 +11,14 @@ from dataclasses import dataclass
 
 import xarray as xr
 
+from lumped import GearPair
 from validation.cross_check.verdict import Judgement
 from validation.prediction.motion import losses_of
 
 #: Largest difference of the losses over the loss of the lumped motion that agrees.
 LOSS_LIMIT = 0.05
+#: Share of the driving power that is no loss: the relative tolerance of the integration at "exact".
+_NO_LOSS = 1e-8
 _REASON = (
     "power lost at all places together, over that of the lumped motion; finite motions change it by up to "
     "2 %, published coefficients of friction differ by more"
@@ -30,11 +33,13 @@ class LossAgreement:
     ----------
     lumped, multibody : place of ``validation.prediction.motion.PLACES`` -> mean power lost there [W]
     limit : largest ``difference`` that agrees
+    input_power : driving power, whose rounding is no loss [W]
     """
 
     lumped: Mapping[str, float]
     multibody: Mapping[str, float]
     limit: float = LOSS_LIMIT
+    input_power: float = 0.0
 
     @property
     def total(self) -> float:
@@ -48,9 +53,13 @@ class LossAgreement:
 
     @property
     def difference(self) -> float:
-        """Difference of both totals over that of the lumped motion; infinite where only one model loses."""
+        """Difference of both totals over that of the lumped motion; infinite where only one model loses.
+
+        Losses below ``_NO_LOSS`` of the driving power are what the integration leaves.
+        """
         apart = abs(self.total_multibody - self.total)
-        return apart / self.total if self.total > 0.0 else (math.inf if apart > 0.0 else 0.0)
+        scale = max(self.total, _NO_LOSS * self.input_power)
+        return apart / scale if scale > 0.0 else (math.inf if apart > 0.0 else 0.0)
 
     @property
     def within(self) -> bool:
@@ -63,10 +72,11 @@ class LossAgreement:
         return Judgement("exact: loss", self.difference, self.limit, _REASON)
 
 
-def loss_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
+def loss_agreement(pair: GearPair, lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
     """Compare the losses that a motion of each model carries; None where one of them carries none."""
     own, other = losses_of(lumped), losses_of(multibody)
-    return LossAgreement(own, other) if own and other else None
+    power = pair.operating.pinion_torque * pair.geometry.omega_pinion
+    return LossAgreement(own, other, input_power=power) if own and other else None
 
 
 def sliding_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement:

@@ -19,6 +19,7 @@ from lumped.schema.assumed import ABOUT, WORDS, within
 from lumped.schema.bearings import STIFFNESSES
 from lumped.schema.changes import by_fields, fields_of
 from lumped.schema.files import load_gear_pair
+from lumped.schema.gear import STANDARD_FILLET
 from lumped.schema.old_formats import FORMAT
 from lumped.schema.own_laws import is_own
 from lumped.schema.pair import GearPair, leaf_paths, stated_unit
@@ -43,7 +44,7 @@ _WHY = {
         ("pressure_angle", "addendum_coefficient", "dedendum_coefficient", "fillet_radius_coefficient"),
         "standard basic rack, ISO 53",
     ),
-    "profile_shift": "none without a centre distance; else what it asks for, shared between the gears",
+    "profile_shift": "what the centre distance asks for, shared between both gears; none without one",
     "tip_alteration": "keeps the clearance of the basic rack",
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
@@ -92,7 +93,8 @@ def new_pair(
     speed : of the pinion [rpm]
     torque : on the pinion [N m]
     changes : what else is known, by the names and paths of ``pair.with_``: ``{"oil": "vg220",
-        "pinion.profile_shift": 0.4}``
+        "pinion.profile_shift": 0.4}``. What is assumed of the basic rack follows what is known of it: the
+        fillet radius pressure angle and dedendum, the dedendum the addendum
     name : of the pair; default from the numbers of teeth
     **fields : the same as ``changes``: ``oil="vg220"``, ``pinion__profile_shift=0.4``
 
@@ -122,6 +124,9 @@ _LOAD_INTENSITY = 20e6
 #: Damping ratio of a gear on its bearings: the formula c = 1.25e-5 s k gives 0.03 to 0.25 for most pairs, but
 #: it was measured below the frequencies of gears (docs/theory/bearings.md).
 _BEARING_DAMPING = 0.05
+_FILLET, _DEDENDUM = "basic_rack.fillet_radius_coefficient", "basic_rack.dedendum_coefficient"
+#: Clearance of the standard basic rack over module (ISO 53).
+_CLEARANCE = 0.25
 #: Field -> value in file units that stands in where a file has none.
 _STAND_INS: dict[str, Any] = {
     "pinion.roughness": 0.4,
@@ -186,6 +191,10 @@ def reasons(pair: GearPair) -> dict[str, str]:
 def _why(path: str, value: object) -> str:
     if (path, value) == ("mesh.stiffness.model", "energy"):
         return _OF_THIN_RIMS
+    if path == _FILLET and value != STANDARD_FILLET:
+        return "0.95 of the largest that fits this pressure angle and dedendum"
+    if path == _DEDENDUM and value != 1.0 + _CLEARANCE:
+        return "the addendum and the clearance of the standard basic rack, ISO 53"
     return next((why for end, why in _WHY.items() if path.endswith(end)), "the default of a parameter file")
 
 
@@ -258,8 +267,8 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
             lines.append(line)
             for path, value in follows.items():
                 if path.rpartition(".")[0] == found[2]:
-                    entry = f"# {path.rpartition('.')[2]} = {_short(value)}"
-                    lines.append(_commented(entry, path, assumed))
+                    comment = f"# {path.rpartition('.')[2]} = {_short(value)}"
+                    lines.append(_commented(comment, path, assumed))
             continue
         elif entry := _ENTRY.match(line):  # the paths of [sources] and [assumed] have quotation marks
             line = _commented(line, f"{section}{entry[1]}", assumed)
@@ -298,7 +307,7 @@ def _commented(line: str, path: str, assumed: Mapping[str, str]) -> str:
 
 def completed(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return a full parameter mapping, name and description apart, from known values: path -> file units."""
-    full = _STAND_INS | dict(values)
+    full = _STAND_INS | _assumed_dedendum(values) | dict(values)
     if any(path.startswith("lubricant.viscosity_law") for path in full):
         full.setdefault("lubricant.viscosity_law.temperature", _TEMPERATURE)
     else:
@@ -317,6 +326,15 @@ def completed(values: Mapping[str, Any]) -> dict[str, Any]:
             node = node.setdefault(parent, {})
         node[leaf] = value
     return root
+
+
+def _assumed_dedendum(known: Mapping[str, Any]) -> dict[str, Any]:
+    """The dedendum where the addendum alone is known: it leaves the clearance of the standard basic rack."""
+    try:
+        addendum = to_si(known["basic_rack.addendum_coefficient"], "1")
+    except (ValueError, TypeError, KeyError):  # not known, or the pair refuses it
+        return {}
+    return {_DEDENDUM: round(addendum + _CLEARANCE, 9)}
 
 
 def _assumed_bearing(gear: str, known: Mapping[str, Any]) -> dict[str, Any]:

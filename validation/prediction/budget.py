@@ -89,7 +89,8 @@ def error_budget(known: Known) -> xr.Dataset:
     prediction = known.like
     rows = list(_rows(known))
     sizes = np.array([row.sizes for row in rows])
-    share = 100.0 * sizes[:, 0] / prediction.peak_to_peak
+    # Of a mesh that does not vibrate no error has a share.
+    share = 100.0 * sizes[:, 0] / (prediction.peak_to_peak or np.nan)
     texts = ("transmission error, peak to peak", "largest tooth load", "bearing force, rms")
     columns = zip(
         ("dte", "tooth_force", "bearing_force"),
@@ -100,7 +101,7 @@ def error_budget(known: Known) -> xr.Dataset:
     )
     # The linear model and the other contact are poorer than the prediction: no errors of it.
     own = np.array([np.nan if row.key in _POORER else size for row, size in zip(rows, share, strict=True)])
-    largest = rows[int(np.nanargmax(own))]
+    largest = rows[0 if np.isnan(own).all() else int(np.nanargmax(own))]
     return labelled_dataset(
         {
             "share": ("row", share, "%", "error, share of the transmission error's peak to peak"),
@@ -173,21 +174,26 @@ def _rows(known: Known) -> Iterator[Row]:
     yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
     has_finite_elements = pair.mesh.stiffness.model == "finite_elements"
     stiffness: dict[str, object] | str = {"mesh.stiffness": {"model": "finite_elements"}}
+    if has_finite_elements:
+        stiffness = "the pair has it"
     contact, form = (
         ("prescribed", "contact prescribed from A to D")
         if pair.mesh.contact == "loaded"
         else ("loaded", "contact that follows the load")
     )
+    other_contact: dict[str, object] | str = {"mesh.contact": contact}
+    if pair.mesh.stiffness.whole_mesh:  # a curve that is used as given decides both
+        stiffness = other_contact = "the stiffness of the whole mesh is given, with its contact"
     others: tuple[tuple[str, str, str, Prediction | Absent, str], ...] = (
         ("contact", "form of the contact", "prescribed from A to D, or following the load",
-         _varied(known, {"mesh.contact": contact}), form),
+         _varied(known, other_contact), form),
         ("second", "exact contact and finite motions", "by the multibody model", known.second,
          "second program"),
         ("supports", "springs in place of shafts", "without the modes of the shafts",
          Absent(Outcome.FAILED, "no shafts are given") if pair.shafts is None else
          _predicted(without_shafts, pair), ""),
         ("stiffness", "tooth stiffness by finite elements", "plane finite elements of the whole gears",
-         _varied(known, "the pair has it" if has_finite_elements else stiffness),
+         _varied(known, stiffness),
          "tooth stiffness by finite elements"),
     )  # fmt: skip
     for key, name, note, other, form in others:

@@ -217,9 +217,12 @@ def forms_beside(pair: GearPair) -> dict[str, dict[str, Any]]:
     """Forms of the model that the range does not hold: name -> what changes the pair to it.
 
     The other contact, and, where the stiffness model is uncertain, the models that are not among its choices.
+    A stiffness of the whole mesh is used as given: no other contact goes with it.
     """
     other = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
-    forms: dict[str, dict[str, Any]] = {f"mesh.contact = {other}": {"mesh.contact": other}}
+    forms: dict[str, dict[str, Any]] = {}
+    if not pair.mesh.stiffness.whole_mesh:
+        forms[f"mesh.contact = {other}"] = {"mesh.contact": other}
     models = next((one.choices for one in uncertain_inputs(pair) if one.field == "mesh.stiffness"), None)
     for name in MODELS if models else ():
         if name != "table" and name not in (models or ()):

@@ -35,6 +35,10 @@ _PULLS = -1e-6
 ORDERS = 10
 
 
+#: Vibration over the mean that is rounding: a mesh of constant stiffness without friction stands still.
+NOTHING = 1e-12
+
+
 class Motion(Enum):
     """Which motion the prediction is; the value is the text that a reader gets."""
 
@@ -138,7 +142,8 @@ class Prediction:
     def bearing_rms(self) -> float:
         """Root mean square of the pinion's bearing force about its mean, both directions together [N]."""
         along, off = (float(self.cycle[f"bearing_force_{line}_p"].std()) for line in "xy")
-        return float(np.hypot(along, off))
+        found = float(np.hypot(along, off))
+        return found if found > NOTHING * self.static_force else 0.0
 
     def orders_of(self, name: str) -> FloatArray:
         """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
@@ -243,11 +248,12 @@ def pulls(pair: GearPair, linear: xr.Dataset) -> bool:
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
     """Return the numbers of any periodic motion of either model at even times over its period."""
     attributes = cycle.attrs
+    swing = float(attributes.get("dte_peak_to_peak", cycle_peak_to_peak(cycle, "dte")))
     return Prediction(
         pair=pair,
         motion=motion,
         cycle=cycle,
-        peak_to_peak=float(attributes.get("dte_peak_to_peak", cycle_peak_to_peak(cycle, "dte"))),
+        peak_to_peak=swing if swing > NOTHING * float(np.abs(cycle["dte"]).max()) else 0.0,
         stable=float(attributes.get("spectral_radius", 0.0)) <= UNSTABLE,
         mesh_cycles=int(attributes.get("period_cycles", 1)),
         losses=losses_of(cycle),

@@ -75,7 +75,7 @@ class Number:
     @property
     def range(self) -> str:
         """The range as printed, with its ends relative to the result; empty where there is none."""
-        if not math.isfinite(self.low):
+        if not math.isfinite(self.low) or not self.value:
             return ""
         if self.unit == "%":  # a share of one, which has per cents of its own
             low, high = (_printed(end, "%", self.digits) for end in (self.low, self.high))
@@ -314,7 +314,7 @@ def advice_on_inputs(results: Results) -> list[Action]:
     actions: dict[str, Action] = {}
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1))):
         low, high = swing[j].min(), swing[j].max()
-        if not high - low >= _COUNTS * given:  # NaN: it was not moved alone
+        if not high - low > _COUNTS * given:  # NaN: it was not moved alone
             break
         field = str(found["input"].to_numpy()[j])
         kind = kind_of(field)

@@ -36,6 +36,7 @@ from validation.measurements.record_comparison import RecordComparison, compare_
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
+    NOTHING,
     ORDERS,
     QUANTITIES,
     Motion,
@@ -296,7 +297,7 @@ class Results:
             return ()  # the search is on springs
         own = self.like.peak_to_peak
         stable = [one for one in self.jump_search.at(self.operating_rpm) if one.stable]
-        others = [one for one in stable if abs(one.peak_to_peak / own - 1.0) > _APART]
+        others = [one for one in stable if abs(one.peak_to_peak - own) > _APART * own]
         return tuple(sorted(others, key=lambda one: one.peak_to_peak))
 
     @property
@@ -493,7 +494,7 @@ class Results:
         else:
             low, _, high = found[f"{name}_percentile"].to_numpy().tolist()
         result = self.prediction.numbers[name]
-        return (low / result - 1.0, high / result - 1.0) if math.isfinite(low) else None
+        return (low / result - 1.0, high / result - 1.0) if result and math.isfinite(low) else None
 
     def rank(self, name: str) -> float:
         """Share of the samples below the result as given [-]; NaN where no samples tell it."""
@@ -595,17 +596,18 @@ def _broken(results: Results) -> Iterator[str]:
     # Where the linear motion stands in, what pulling teeth do may be more than the shafts bring.
     if not prediction.reason and not 0.0 < numbers["efficiency"] <= 1.0 + _SLACK:
         yield f"the efficiency is {numbers['efficiency']:.4g}"
-    sampled = float(np.ptp(prediction.cycle["dte"].to_numpy()))
-    if not sampled * (1.0 - _SLACK) <= prediction.peak_to_peak <= 1.05 * sampled + 1e-12:
+    dte = prediction.cycle["dte"].to_numpy()
+    sampled, rounding = float(np.ptp(dte)), NOTHING * float(np.abs(dte).max())
+    if not sampled * (1.0 - _SLACK) - rounding <= prediction.peak_to_peak <= 1.05 * sampled + 1e-12:
         yield "the peak to peak is not that of the motion"
     rms, orders = numbers["bearing_rms"], prediction.bearing_orders
-    if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6):
+    if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6) + (NOTHING * prediction.static_force) ** 2:
         yield "the orders of the bearing force carry more than its rms"
     linear = results.linear
     if not isinstance(linear, Absent) and results.pair.shafts is None:
         at = results.sweep.interp(speed=results.operating_rpm)["dte_peak_to_peak"]
         given = float(linear.attrs["dte_peak_to_peak"])
-        if abs(float(at) / given - 1.0) > _SAME:
+        if abs(float(at) - given) > _SAME * given + rounding:
             yield "the curve over speed misses the value at the operating speed"
     found = results.uncertainty
     if isinstance(found, xr.Dataset):

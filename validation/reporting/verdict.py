@@ -76,10 +76,10 @@ def _doubt(results: Results, facts: Mapping[str, Fact]) -> str | None:
         return f"{facts['inputs'].claim}, and they were not varied"
     widest = max(known, key=lambda name: max(-known[name][0], known[name][1]), default="")
     if widest and max(-known[widest][0], known[widest][1]) > ABSOLUTE:
-        first = facts["levels"].claim
-        if widest == "dte_peak_to_peak":
-            return first
-        return f"{first}, {SHORT[widest]} {spread_words(known[widest])}"
+        claims = [facts["levels"].claim] if "levels" in facts else []  # a mesh that vibrates has them
+        if widest != "dte_peak_to_peak":
+            claims.append(f"{SHORT[widest]} {spread_words(known[widest])}")
+        return ", ".join(claims)
     if record is not None and record.verdict is Record.CONFIRMS:
         return None
     return f"{facts['inputs'].claim}, and no record confirms the prediction" if assumed else None

@@ -44,7 +44,16 @@ SPELLINGS = [
     ("degC", 333.15, "60 °C|60°C|60 C|60 degC|140 F|140 °F|333.15 K"),
     ("degC", 233.15, "-40 degF|-40 degC"),
     ("deg", math.pi / 9, "20°|20 °|20 deg|20 degrees"),
+    ("deg", math.pi / 9, "20º|20 Grad|+20°|1200'|1200 arcmin|72000 arcsec|72000\""),
     ("deg", 0.349, "0.349 rad"),
+    ("deg", math.radians(20.5), "20°30'|20° 30′|20 deg 30 arcmin|20°30'0\"|20.5 degrees|1230'"),
+    ("deg", math.radians(14.5 + 15.25 / 3600), "14°30'15.25\"|14° 30′ 15.25″|14°30'15.25''"),
+    ("deg", -math.radians(5 / 60), "-5'|−5′|-5 arcminutes|-300 arcsec"),
+    ("rad", math.radians(30 / 3600), "30\"|30″|30''|30 arcsec|0.5'|30 arcseconds|0'30\""),
+    ("um", 5e-6, "5 µm|5 μm|5um|5 micron"),
+    ("mm", -3e-3, "-3 mm|−3 mm|–3 mm"),
+    ("N*m", 80.0, "80 Newtonmeter|80 newtonmeters"),
+    ("rpm", 1450 / 60 * TURN, "1450 r.p.m.|1450 r. p. m"),
     ("1", 0.05, "5 %|5%|0.05|5 percent"),
 ]  # fmt: skip
 
@@ -70,6 +79,23 @@ def test_a_quantity_as_people_write_it(text, unit, si):
 def test_a_number_that_can_be_misread_is_explained(text, unit, instead):
     with pytest.raises(ValueError, match=re.escape(instead)):
         to_si(text, unit)
+
+
+@pytest.mark.parametrize("text", ["20°75'", "20.5°30'", "20°30.5'15\"", "1'60\""])
+def test_an_angle_whose_parts_do_not_fit_is_refused(text):
+    with pytest.raises(ValueError, match="minutes and seconds are below 60"):
+        to_si(text, "deg")
+
+
+def test_marks_of_minutes_belong_to_angles():
+    for text in ("5'", '30"'):
+        with pytest.raises(ValueError, match="has the character"):
+            to_si(text, "mm")
+
+
+def test_a_kinematic_viscosity_says_what_to_write():
+    with pytest.raises(ValueError, match=r"iso_vg = '46 cSt'.*'40.02 mPa\*s' for 870 kg/m\^3"):
+        to_si("46 cSt", "mPa*s")
 
 
 def test_a_string_with_the_stated_unit_is_the_bare_number():

@@ -39,7 +39,8 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
     for key, value in expected.items():
         assert found[key] == value
         assert key == "name" or sources[key] == GIVEN
-    assert {*sources, *pair.assumed} == set(found) - {"name", "description"}
+    sizes = {f"{gear}.{size}" for gear in ("pinion", "gear") for size in ("profile_shift", "tip_alteration")}
+    assert {*sources, *pair.assumed} == set(found) - {"name", "description"} | sizes
     assert not {*sources} & {*pair.assumed}
     assert {*sources.values()} == {GIVEN}
     assert {*reasons(pair)} == {*pair.assumed}
@@ -58,7 +59,7 @@ def test_what_options_do_not_name_is_set_and_counts_as_given():
     more += ["bearings.pinion.loa_stiffness='200 N/um'", "mesh.backlash=0.05"]
     result = init(*[part for one in more for part in ("--set", one)], "--teeth", "13/41", "-o", "-")
     pair = load_gear_pair(tomllib.loads(result.output))
-    assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (0.4, 0.0)
+    assert pair.profile_shifts == (0.4, 0.0)
     assert (pair.pinion.face_width, pair.gear.face_width) == (0.02, 0.018)
     # The second spring of the pinion follows from the first, as of 8 balls; the gear's bearings are assumed.
     assert (pair.bearings.pinion.loa_stiffness, pair.bearings.pinion.oloa_stiffness) == (2e8, 0.46 * 2e8)
@@ -82,18 +83,22 @@ def test_entries_of_lists_have_their_units_and_remarks():
     assert places == ["mm", "mm", "mm", "mm, assumed"]
 
 
-@pytest.mark.parametrize(
-    ("teeth", "shift"),
-    # 1 - z sin^2(20 deg)/2 = 0.2397 at 13 teeth and 0.0642 at 16; 20 teeth need none.
-    [("13/55", 0.24), ("16/72", 0.07), ("20/90", 0.0)],
-)
-def test_few_teeth_get_the_profile_shift_that_they_need(teeth, shift):
-    given = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
+def test_what_follows_from_the_centre_distance_is_a_comment_and_moves_with_it():
+    """47/50 of module 2.5 on 122 mm: x1 + x2 = 0.3069 (ISO 21771), shared by the numbers of teeth."""
+    given = {"teeth": "47/50", "basic_rack.module": 2.5, "gears.face_width": 20.0, "centre_distance": 122}
     given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
-    pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
-    assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (shift, 0.0)
-    assert pair.assumed["pinion.profile_shift"] == shift
-    assert "keeps the involute whole" in reasons(pair)["pinion.profile_shift"]
+    text = new_pair_text("x", given)
+    pair = load_gear_pair(tomllib.loads(text))
+    assert sum(pair.profile_shifts) == pytest.approx(0.3069, abs=0.5e-4)
+    assert pair.profile_shifts[0] / pair.profile_shifts[1] == pytest.approx(50 / 47, rel=1e-12)
+    lines = [line for line in text.splitlines() if line.startswith("# profile_shift = ")]
+    assert [line.split()[3] for line in lines] == [f"{shift:.6g}" for shift in pair.profile_shifts]
+    assert all("assumed: what the centre distance asks for" in line for line in lines)
+    assert text.count("\n# tip_alteration = ") == 2
+    moved = load_gear_pair(tomllib.loads(text.replace("centre_distance = 122.0", "centre_distance = 121.25")))
+    assert moved.profile_shifts == (0.0, 0.0)
+    typed = text.replace("# profile_shift", "profile_shift")
+    assert load_gear_pair(tomllib.loads(typed)).state("pinion.profile_shift") is State.KNOWN
 
 
 def test_a_value_edited_in_the_text_is_known_and_the_rest_assumed():

@@ -165,8 +165,9 @@ def test_a_record_that_confirms_within_a_wide_range_is_said_beside_it(right):
         f"{name}_percentile": ("percentile", [0.5 * v, v, 2.0 * v]) for name, v in right.like.numbers.items()
     }
     values = {name: ("sample", [v]) for name, v in right.like.numbers.items()}
-    attrs = {**{f"given_{name}": value for name, value in right.like.numbers.items()}, "taken": 64, "asked": 64, "refused": 0, "linear": 0, "alone": 1, "seconds": 30.0,
-             "contact_lost": 0, "unstable": 0, "lost_or_unstable": 0}  # fmt: skip
+    attrs = {f"given_{name}": value for name, value in right.like.numbers.items()}
+    attrs |= {"taken": 64, "asked": 64, "refused": 0, "linear": 0, "alone": 1, "seconds": 30.0}
+    attrs |= {"contact_lost": 0, "unstable": 0, "lost_or_unstable": 0}
     vars(results)["uncertainty"] = xr.Dataset(wide | values, attrs=attrs).assign_coords(
         input=["mesh.damping_ratio"]
     )

@@ -10,9 +10,10 @@ from lumped.path_of_contact import pair_stiffness
 from lumped.schema.assumed import WORDS, State
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair, leaf_paths, stated_unit
+from validation.exchange.drawing_table import HEADINGS, drawing_rows
 from validation.exchange.new_pair_file import reasons
 from validation.prediction.inputs import read_values, source_of, uncertain_inputs
-from validation.reporting.blocks import Badge, Cell, Content, quantities, table_of
+from validation.reporting.blocks import Badge, Cell, Content, Table, quantities, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -49,10 +50,19 @@ def write(results: Results) -> Content:
         ("path of contact, A to D", g.L_XD - g.L_XA, "m"),
         ("mesh frequency", g.mesh_frequency, "Hz"),
         ("pitch line velocity", g.pitch_line_velocity, "m/s"),
-        ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", "all pairs in contact"),
+        ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", pair.stiffness_words),
         ("effective mass", b.effective_mass, "kg", "of both gears on the line of action"),
     )
-    return Content(f"{assumed} of {given + assumed} values are assumed.", (derived, table))
+    gears = Table(
+        "gears",
+        "Both gears as their drawings state them: hold the table against the drawings.",
+        {heading: heading for heading in HEADINGS},
+        tuple(drawing_rows(pair)),
+        "Thickness, span and dimension over balls are those of teeth as made: each gear has half of the "
+        "thinning mesh.backlash.",
+    )
+    words = f"{assumed} of {given + assumed} values are assumed. {pair.stiffness_note}"
+    return Content(words.rstrip(), (gears, derived, table))
 
 
 def _state(pair: GearPair, path: str) -> Cell:

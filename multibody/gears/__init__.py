@@ -1,0 +1,1 @@
+"""Both gears as they are cut."""

@@ -1,5 +1,0 @@
-"""Do guards of lumped/quasi_static act just outside their limits, not just inside? Table: tests/guards."""
-
-from tests.guards import guards_of
-
-test_guard = guards_of("lumped/quasi_static")
