@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 
 from lumped import GearPair, load_gear_pair
+from lumped.fields.units import to_file
 from lumped.schema.assumed import WORDS
 from lumped.schema.pair import leaf_paths
 
@@ -40,3 +41,9 @@ def but_known(pair: GearPair, *fields: str) -> GearPair:
 def all_assumed(pair: GearPair) -> GearPair:
     """Return a pair of which nothing is known."""
     return pair.with_(assumed={path: v for path, v in leaf_paths(pair).items() if path not in WORDS})
+
+
+def known_tips(pair: GearPair) -> GearPair:
+    """Return the pair with the tips that it has, which are known then."""
+    alteration = to_file(pair.tip_alteration, "mm")
+    return pair.with_({f"{gear}.tip_alteration": alteration for gear in ("pinion", "gear")})

@@ -44,8 +44,9 @@ def compare(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
-    samples: int = 128,
+    samples: opt.Samples = None,
     seed: int = 1,
+    seconds: opt.Seconds = None,
     supports: opt.Supports = None,
     as_json: opt.Json = False,
 ) -> None:
@@ -62,14 +63,14 @@ def compare(
 
     Parameters
     ----------
-    samples : Number of possible machines.
     seed : Of the sampled points.
     """
     from validation.prediction.compare import compare as run
 
     names, given = _variants(pairs, variant, speed=speed, torque=torque, law=law, settings=settings)
+    limits = opt.limits_of_samples(samples, seconds)
     with progress_bar("possible machines") as tell:
-        found = run(*given, names=names, samples=samples, seed=seed, supports=supports, progress=tell)
+        found = run(*given, names=names, seed=seed, supports=supports, progress=tell, **limits)
     if as_json:
         print_json(_as_json(found))
     else:
@@ -141,7 +142,10 @@ def _show(found: xr.Dataset) -> None:
     values = "".join(f" | >{letter}" for letter in letters)
     show("", f"result{values} | >{'B less A' if two else 'best'} | as given | >holds in, of 100", rows)
     refused = f", {found.attrs['refused']} left out without a prediction" if found.attrs["refused"] else ""
-    console.print(f"{found.sizes['sample']} possible machines, seed {found.attrs['seed']}{refused}")
+    taken, asked = found.attrs["taken"], found.attrs["asked"]
+    begun = f"{taken} of {asked}" if taken < asked else f"{taken}"
+    end = f"; {opt.time_words(found)}" if taken < asked else ""
+    console.print(f"{begun} possible machines, seed {found.attrs['seed']}{refused}{end}")
     if two:
         console.print("B less A: 5 to 95 % of the difference in the same machine")
     else:
@@ -182,5 +186,5 @@ def _as_json(found: xr.Dataset) -> dict[str, Any]:
         }
     flags = {name: by_letter(found[name]) for name in FLAGS}
     names = dict(zip(letters, map(str, found["name"].to_numpy()), strict=True))
-    kept = {key: found.attrs[key] for key in ("supports", "seed", "refused", "remarks")}
+    kept = {key: found.attrs[key] for key in ("supports", "seed", "taken", "asked", "refused", "remarks")}
     return {"variants": names, "samples": found.sizes["sample"]} | kept | {"results": results} | flags

@@ -161,8 +161,9 @@ def _show_run_up(name: str, supports: opt.SupportsName, result: xr.Dataset, *, a
 def uncertainty(
     pair: opt.Pair,
     files: opt.DataFiles,
-    samples: int = 128,
+    samples: opt.Samples = None,
     seed: int = 1,
+    seconds: opt.Seconds = None,
     supports: opt.Supports = None,
 ) -> None:
     r"""Predict a gear pair many times while its uncertain inputs vary.
@@ -176,7 +177,6 @@ def uncertainty(
 
     Parameters
     ----------
-    samples : Number of predictions.
     seed : Of the sampled points.
     """
     import numpy as np
@@ -185,8 +185,9 @@ def uncertainty(
     from validation.prediction.uncertainty import TEETH, transmission_error
     from validation.prediction.uncertainty import uncertainty as run
 
+    limits = opt.limits_of_samples(samples, seconds)
     with progress_bar("uncertain inputs") as tell:
-        found = run(pair, samples, seed, supports=supports, progress=tell)
+        found = run(pair, seed=seed, supports=supports, progress=tell, **limits)
     rows = (
         (words, *((float(v), unit) for v in (found.attrs[f"given_{name}"], *found[f"{name}_percentile"])))
         for name, (unit, words) in (QUANTITIES | TEETH).items()
@@ -206,9 +207,15 @@ def uncertainty(
     ]  # fmt: skip
     title = f"what moves the {(QUANTITIES | TEETH)[name][1]}"
     show(title, "input | range | >from | >to | >rank corr.", moves)
-    counts = {"refused": "refused", "contact_lost": "contact lost", "unstable": "unstable"}
+    counts = {
+        "refused": "refused", "contact_lost": "contact lost", "unstable": "unstable",
+        "linear": "with the linear motion, as no other was found",
+    }  # fmt: skip
     shares = ", ".join(f"{found.attrs[name]} {words}" for name, words in counts.items())
-    stdout().print(f"{samples} samples, seed {seed}: {shares}")
+    taken, asked = found.attrs["taken"], found.attrs["asked"]
+    stdout().print(f"{taken} of {asked} samples, seed {seed}: {shares}")
+    if taken < asked:
+        note(f"{opt.time_words(found)}.")
     files.write(found)
 
 

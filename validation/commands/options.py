@@ -75,11 +75,38 @@ Settings = Annotated[
         help="Change any parameter, as often as needed: --set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
+SAMPLES, SAMPLE_SECONDS = 128, 30.0
+Samples = Annotated[
+    int | None,
+    typer.Option(
+        help="Number of possible machines; all of them are computed.",
+        show_default=f"{SAMPLES}, as far as --seconds go",
+    ),
+]
+Seconds = Annotated[
+    float | None,
+    typer.Option(
+        help="Processor time after which no further machine begins.",
+        show_default=f"{SAMPLE_SECONDS:.0f} without --samples",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON (SI units) and nothing else.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
 ForceFolder = Annotated[
     bool, typer.Option("--force", help="Replace what this command wrote into that folder earlier.")
 ]
+
+
+def limits_of_samples(samples: int | None, seconds: float | None) -> dict[str, Any]:
+    """How many samples, and for how long: a number that is asked for is computed however long it takes."""
+    if samples is None:
+        return {"samples": SAMPLES, "seconds": SAMPLE_SECONDS if seconds is None else seconds}
+    return {"samples": samples, "seconds": seconds}
+
+
+def time_words(found: xr.Dataset) -> str:
+    """What ended the samples, and how they go on."""
+    return f"the time of {found.attrs['seconds']:g} s was used up; --samples {found.attrs['asked']} takes all"
 
 
 def gear_pair(

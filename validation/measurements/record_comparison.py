@@ -228,10 +228,15 @@ class ChannelComparison:
         return found
 
     @property
+    def label(self) -> str:
+        """The channel with its plain name; of the transmission error that alone."""
+        return "transmission error" if self.quantity == "dte" else f"{self.name} ({self.words})"
+
+    @property
     def size_words(self) -> str:
         """Measured and predicted peak to peak, and how far they are apart."""
         p = self.peak_to_peak
-        start = "" if self.quantity == "dte" else f"{self.name}: "
+        start = "" if self.quantity == "dte" else f"{self.label}: "
         sizes = (
             f"measured {printed(p.measured, self.unit, 3)}, predicted {printed(p.predicted, self.unit, 3)}"
         )
@@ -253,7 +258,7 @@ class ChannelComparison:
             return ""
         j = int(rest.argmax())
         order = f"Order {self.measured.orders[j]:g}"
-        owner = "" if self.quantity == "dte" else f" of {self.name}"
+        owner = "" if self.quantity == "dte" else f" of {self.label}"
         sizes = [printed(float(abs(one[j])), self.unit, 2) for one in (m, s)]
         if abs(abs(m[j]) - abs(s[j])) > 0.5 * abs(m[j] - s[j]):
             return f"{order}{owner} is {sizes[0]}, predicted {sizes[1]}."
@@ -343,14 +348,18 @@ class RecordComparison:
 
     @property
     def words(self) -> str:
-        """What was measured and predicted, what contradicts, and what the comparison cannot say."""
+        """What was measured and predicted, what contradicts, and what the comparison cannot say.
+
+        The channels that contradict come first where the leading one does not.
+        """
         wrong = [one for one in self.channels if one.verdict is Record.CONTRADICTS]
-        parts = [self.leading.size_words]
-        parts += [one.size_words for one in wrong if one is not self.leading and one.contradicts_size]
+        leading = [self.leading.size_words]
+        parts = [one.size_words for one in wrong if one is not self.leading and one.contradicts_size]
         parts += [one.shape_words for one in wrong]
+        parts = [*parts, *leading] if wrong and self.leading not in wrong else [*leading, *parts]
         if self.verdict is Record.TOO_UNCERTAIN and self.leading.noisy:
             parts.append("Its mesh orders hardly stand out of the noise: check its speed, or record longer.")
-        vague = [one.name for one in self.channels if one.verdict is Record.TOO_UNCERTAIN]
+        vague = [one.label for one in self.channels if one.verdict is Record.TOO_UNCERTAIN]
         if 0 < len(vague) < len(self.channels):
             parts.append(f"Too uncertain to judge: {', '.join(vague)}.")
         apart = any(one.verdict is not Record.CONFIRMS for one in self.channels)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import fnmatch
 import itertools
+import math
 import warnings
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -23,7 +24,8 @@ import xarray as xr
 from scipy.stats import binomtest
 
 import lumped
-from lumped.arguments import whole_number
+from floquet.orbits.deadline import Deadline
+from lumped.arguments import real_number, whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
@@ -34,6 +36,8 @@ from validation.files.formatting import side_by_side
 from validation.prediction.inputs import Input, uncertain_inputs
 from validation.prediction.motion import QUANTITIES, Motion, predicted
 from validation.prediction.uncertainty import (
+    ALONE,
+    LEAST_SAMPLES,
     PERCENTILES,
     TEETH,
     TEETH_SAMPLES,
@@ -91,6 +95,7 @@ def compare(
     samples: int = 128,
     seed: int = 1,
     supports: Supports | None = None,
+    seconds: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return in which share of all possible machines one variant of a gear pair is better than another.
@@ -106,6 +111,8 @@ def compare(
     samples : number of machines, 16 to 65536; powers of two fill the space most evenly
     seed : of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a variant that has them
+    seconds : processor time after which no further machine begins [s], a third of it for the inputs alone;
+        ``LEAST_SAMPLES`` machines are taken whatever they cost. None: all are taken
     progress : called with the finished fraction
 
     Returns
@@ -117,7 +124,8 @@ def compare(
     as given, and ``sentence`` (result) says it in words. Each result q in SI: ``q`` (variant, sample),
     ``q_given`` (variant), ``q_difference`` (variant, other, percentile) of the paired differences. Smaller is
     better, of the efficiency larger. Also shares of contact loss, instability and stand-ins by variant, and
-    ``share`` (input, sample), the drawn numbers. Attributes: ``refused`` (samples without a prediction in
+    ``share`` (input, sample), the drawn numbers. Attributes: ``taken`` of the machines ``asked`` for,
+    ``seconds``, the limit; ``refused`` (samples without a prediction in
     some variant, which count in none), ``remarks`` (inputs that vary in some variants only, or whose range
     hides a difference), ``parameters`` of A and ``parameters_B``, ...
 
@@ -134,8 +142,11 @@ def compare(
         action = "State ranges in [uncertainty], or sources that say what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
     own_teeth = any(one.healthy is not one for one in pairs)
-    alone = [(draw, share) for draw in draws for share in end_shares(next(iter(draw.inputs.values())))]
-    total = len(pairs) * (1 + samples) + len(alone)
+    deadline = Deadline(
+        None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
+    )
+    alone = [end_shares(next(iter(draw.inputs.values()))) for draw in draws]
+    total = len(pairs) * (1 + samples) + sum(map(len, alone))
     done = 0
 
     def row(k: int, shares: Mapping[int, float]) -> FloatArray | None:
@@ -154,25 +165,35 @@ def compare(
             raise NumericalError(f"{name} has no prediction with its values as given.")
     as_given = np.stack([one for one in given if one is not None])
     swings = np.full((len(draws), 2, as_given.shape[1]), np.nan)
+    first = deadline.share(ALONE)
     for n, draw in enumerate(draws):
-        ends = [row(min(draw.inputs), {n: share}) for one, share in alone if one is draw]
+        if first.passed:
+            break
+        ends = [row(min(draw.inputs), {n: share}) for share in alone[n]]
         if known := [one for one in ends if one is not None]:
             swings[n] = np.min(known, axis=0), np.max(known, axis=0)
     points = sobol_points(importance_of(swings), samples, seed)
-    machines = [[row(k, dict(enumerate(point.tolist()))) for k in range(len(pairs))] for point in points]
+    machines: list[list[FloatArray | None]] = []
+    for point in points:
+        if len(machines) >= LEAST_SAMPLES and deadline.passed:
+            break
+        machines.append([row(k, dict(enumerate(point.tolist()))) for k in range(len(pairs))])
     kept = np.array([all(one is not None for one in machine) for machine in machines])
-    if kept.sum() < _LEAST * samples:
-        text = f"Only {kept.sum()} of {samples} samples have a prediction in every variant"
+    if kept.sum() < _LEAST * len(machines):
+        text = f"Only {kept.sum()} of {len(machines)} samples have a prediction in every variant"
         raise NumericalError(f"{text}: narrow the ranges in [uncertainty].")
     table = np.array([machine for machine, whole in zip(machines, kept, strict=True) if whole])
     results = (*RESULTS, *(OF_TEETH if own_teeth else ()))
-    found = _dataset(results, as_given, np.moveaxis(table, 1, 0), points[kept], draws)
+    found = _dataset(results, as_given, np.moveaxis(table, 1, 0), points[: len(machines)][kept], draws)
     letters = list(map(str, found["variant"].to_numpy()))
     found["name"] = ("variant", texts, {"units": "1", "long_name": "what the variant is"})
     held = {
         "supports": supports_of(pairs[0], None),
         "teeth": "as given" if own_teeth else "alike",
-        "refused": samples - len(table),
+        "taken": len(machines),
+        "asked": samples,
+        "seconds": math.inf if seconds is None else float(seconds),
+        "refused": len(machines) - len(table),
         "seed": seed,
         "remarks": _remarks(draws, pairs, letters),
     }

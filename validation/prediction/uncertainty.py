@@ -1,23 +1,28 @@
 """How far the prediction moves with its uncertain inputs: samples, percentiles, swing of each input.
 
+A sample is a possible machine. Processor time may end the samples: the points of a Sobol sequence that come
+first fill the space already, so those taken are a valid, smaller set. A sample that has begun is finished and
+counts, since slow samples are those that lose contact, and without them the range would be too narrow.
+
 Sources: scrambled Sobol points, A. B. Owen, J. Complexity 14 (1998) 466; intervals of percentiles from the
 binomial distribution of order statistics, David and Nagaraja, Order Statistics, 2003, section 7.1.
 """
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 from scipy.stats import binom, qmc, rankdata
 
 import lumped
-from lumped.arguments import whole_number
+from floquet.orbits.deadline import Deadline
+from lumped.arguments import real_number, whole_number
 from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
 from lumped.labelling import Variable, labelled_dataset, provenance
 from lumped.model.periodic_system import Supports, supports_of, with_supports
@@ -28,7 +33,7 @@ from lumped.schema.meeting_teeth import period_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 from validation.prediction.inputs import Input, forms_beside, uncertain_inputs
-from validation.prediction.motion import ORDERS, QUANTITIES, Prediction, predicted
+from validation.prediction.motion import ORDERS, QUANTITIES, Motion, Prediction, predicted
 from validation.signals.averages import GEARS, sidebands
 
 #: Percentiles that are told; the swing of an input runs between the first and the last.
@@ -37,6 +42,13 @@ PERCENTILES = (5.0, 50.0, 95.0)
 _SURE = 0.9
 #: Samples of which most must be left after refusals.
 _LEAST = 0.5
+#: Samples that a range needs at least where time ended them: the interval of a percentile of 32 is a quarter
+#: of the samples wide. Where fewer than twice as many are asked for, half of them.
+LEAST_SAMPLES = 32
+#: The same of the ranges that 32 samples give: over speed, of teeth that differ, beside a record.
+LEAST_BAND = 8
+#: Part of the time in which the inputs move alone; the rest is for the samples.
+ALONE = 1.0 / 3.0
 #: Times in a mesh cycle, and largest angle of a step [rad], of motions over speed. Twice the step of other
 #: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range. With
 #: ``LONG_STEP`` it errs by 4e-4 where a cycle has hundreds of vibrations: 21/23 and 16/32 from 12 to 240 rpm.
@@ -48,17 +60,33 @@ TEETH = {
 }
 TEETH_SAMPLES = 32
 #: Samples of them beside those of like teeth, and mesh cycles of all together.
-_LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = 8, 32, 30_000
+_LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = LEAST_BAND, 32, 30_000
+#: What may be of a sample, in the last columns of the table.
+FLAGS = ("contact_lost", "unstable", "linear")
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
+class Sampled(Generic[T]):
+    """Results at samples of the inputs, without those that are refused; ``taken`` of those ``asked`` for."""
+
+    results: tuple[T, ...]
+    taken: int
+    asked: int
+
+
+@dataclass(frozen=True, eq=False)
 class Varied:
-    """Predictions with like teeth: ``given`` with the inputs as given, ``samples`` with varied ones."""
+    """Predictions with like teeth: ``given`` with the inputs as given, ``samples`` with varied ones.
+
+    ``taken`` of the samples ``asked`` for were begun before the time was used up; 0 of 0 without a limit.
+    """
 
     given: Prediction
     samples: tuple[Prediction, ...]
+    taken: int = 0
+    asked: int = 0
 
 
 def uncertainty(
@@ -67,6 +95,7 @@ def uncertainty(
     seed: int = 1,
     *,
     supports: Supports | None = None,
+    seconds: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Return how the prediction varies when every uncertain input takes any value of its range.
@@ -78,6 +107,8 @@ def uncertainty(
     samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
     seed : of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
+    seconds : processor time after which no further sample begins [s], a third of it for the inputs alone;
+        None: all samples are taken
     progress : called with the finished fraction
 
     Returns
@@ -89,13 +120,17 @@ def uncertainty(
     the result with the inputs as given in a form of the model that the range does not hold. ``value``
     (input, sample) holds the inputs, a choice by its number; of fields that move together, the first. Of
     teeth that differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every
-    sample. Attributes: ``refused``, ``contact_lost``, ``unstable``, ``lost_or_unstable`` (counts of samples),
-    ``seed``, and the result with the inputs as given, ``given_q``
+    sample. Attributes: ``taken`` of the samples ``asked`` for; of these ``refused``, which have no prediction
+    and are left out; ``contact_lost``, ``unstable``, ``lost_or_unstable``, and ``linear``, in which the
+    linear motion stands in (counts of samples); ``alone``, how many inputs were moved alone; ``seconds``, the
+    limit; ``seed``; and the result with the inputs as given, ``given_q``. Where the time is used up, inputs
+    that were not moved alone and forms have NaN, and with less than ``LEAST_SAMPLES`` samples, or half of
+    those asked for where that is fewer, percentiles, intervals and rank correlations are NaN: no range
 
     Raises
     ------
     ParameterError : a spread that cannot be read, or no uncertain input
-    NumericalError : fewer than half of the samples have a prediction
+    NumericalError : the pair as given has no prediction, or fewer than half of the samples have one
     """
     pair = with_supports(load_gear_pair(pair), supports)
     samples = whole_number("samples", samples, 16, 65536)
@@ -103,9 +138,11 @@ def uncertainty(
     if not inputs:
         action = "State ranges in [uncertainty], or in [assumed] what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
-    alone = [(j, share) for j, one in enumerate(inputs) for share in end_shares(one)]
+    deadline = Deadline(
+        None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
+    )
     forms = forms_beside(pair)
-    total = samples + len(alone) + len(forms) + 1
+    total = samples + sum(len(end_shares(one)) for one in inputs) + len(forms) + 1
     done = 0
 
     def row(changes: Sequence[tuple[Input, float]], base: GearPair = pair) -> FloatArray | None:
@@ -118,30 +155,52 @@ def uncertainty(
     given = row(())
     if given is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
-    ends = _ends(inputs, [j for j, _ in alone], [row([(inputs[j], share)]) for j, share in alone], given.size)
-    points = sobol_points(importance_of(ends), samples, seed)
-    rows = [row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]) for point in points]
-    kept = np.array([found is not None for found in rows])
-    if kept.sum() < _LEAST * samples:
+    first, alone = deadline.share(ALONE), 0
+    of: list[int] = []
+    found_alone: list[FloatArray | None] = []
+    for j, one in enumerate(inputs):
+        if first.passed:
+            break
+        for share in end_shares(one):
+            of.append(j)
+            found_alone.append(row([(one, share)]))
+        alone += 1
+    ends = _ends(inputs, of, found_alone, given.size)
+    points, rows = sobol_points(importance_of(ends), samples, seed), list[FloatArray | None]()
+    for point in points:
+        if deadline.passed:
+            break
+        rows.append(row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]))
+    kept = np.array([found is not None for found in rows], dtype=bool)
+    enough = kept.sum() >= least_samples(samples)
+    if kept.sum() < _LEAST * len(rows) and (enough or len(rows) == samples):
         raise NumericalError(
-            f"Only {kept.sum()} of {samples} samples have a prediction: narrow the ranges in [uncertainty]."
+            f"Only {kept.sum()} of {len(rows)} samples have a prediction: narrow the ranges in [uncertainty]."
         )
-    table = np.stack([found for found in rows if found is not None])
-    found = _dataset(pair, inputs, points[kept], table, ends)
-    beside = np.array([_of_form(row((), pair.with_(form)), given.size) for form in forms.values()])
-    beside = beside.reshape(len(forms), given.size)  # of no form too
+    table = np.array([found for found in rows if found is not None]).reshape(-1, given.size)
+    found = _dataset(pair, inputs, points[: len(rows)][kept], table, ends, enough=bool(enough))
+    beside = np.full((len(forms), given.size), np.nan)
+    for number, form in enumerate(forms.values()):
+        if not deadline.passed and (own := row((), pair.with_(form))) is not None:
+            beside[number] = own
     for column, name in enumerate(QUANTITIES):
         attrs = found[name].attrs | {"long_name": f"{found[name].attrs['long_name']}, inputs as given"}
         found[f"{name}_form"] = ("form", beside[:, column], attrs)
     found = found.assign_coords(form=("form", list(forms), {"units": "1", "long_name": "form of the model"}))
     names = (name for name in found.data_vars if found[name].dims == ("sample",))
     found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
-    found.attrs |= {"refused": samples - len(table), "seed": seed}
+    found.attrs |= {"taken": len(rows), "asked": samples, "refused": len(rows) - len(table), "seed": seed}
+    found.attrs |= {"alone": alone, "seconds": math.inf if seconds is None else float(seconds)}
     held = {
         "supports": supports_of(pair, None),
         "teeth": "alike" if pair.healthy is pair else "as given",
     }
     return found.assign_attrs(provenance(pair, samples=samples, seed=seed) | held)
+
+
+def least_samples(asked: int, least: int = LEAST_SAMPLES) -> int:
+    """How many samples make a range where so many are asked for: ``least``, or half of them where fewer."""
+    return min(least, asked // 2)
 
 
 def transmission_error(found: xr.Dataset) -> str:
@@ -150,15 +209,24 @@ def transmission_error(found: xr.Dataset) -> str:
 
 
 def speed_band(
-    pair: GearPair, speeds_rpm: FloatArray, known: xr.Dataset, samples: int = 32, step_angle: float = STEP
+    pair: GearPair,
+    speeds_rpm: FloatArray,
+    known: xr.Dataset,
+    samples: int = 32,
+    step_angle: float = STEP,
+    seconds: float | None = None,
 ) -> xr.Dataset:
     """Return 5 and 95 % of the linear peak to peak on springs, ``low`` and ``high`` [m], over ``speed_rpm``.
 
     ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
-    ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
+    ``step_angle`` is the largest angle of the fastest vibration in a step [rad]. ``seconds``: processor time
+    after which no further sample begins [s]; attributes ``taken`` and ``asked`` say how many did. NaN:
+    too few have a motion to make a range, ``least_samples`` of ``LEAST_BAND``.
     """
-    table = _each_sample(pair, known, samples, lambda one: _peaks(one, speeds_rpm, step_angle))
-    low, high = np.nanpercentile(table, PERCENTILES[::2], axis=0)
+    found = _each_sample(pair, known, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds)
+    low = high = np.full(np.shape(speeds_rpm), np.nan)
+    if len(found.results) >= least_samples(found.asked, LEAST_BAND):
+        low, high = np.nanpercentile(np.array(found.results), PERCENTILES[::2], axis=0)
     text = "transmission error, peak to peak"
     return labelled_dataset(
         {
@@ -166,48 +234,64 @@ def speed_band(
             "high": ("speed_rpm", high, "m", f"{text}, 95 % of the samples"),
         },
         {"speed_rpm": (np.asarray(speeds_rpm), "rpm", "pinion speed")},
-        {"samples": len(table)},
+        _counts(found),
     )
 
 
-def teeth_band(pair: GearPair, known: xr.Dataset) -> FloatArray:
-    """5 and 95 % (2, 2) of the quantities ``TEETH`` of teeth that differ; those of a class are drawn anew.
+def teeth_band(pair: GearPair, known: xr.Dataset, seconds: float | None = None) -> xr.Dataset:
+    """5 and 95 % of the quantities ``TEETH`` of teeth that differ, over ``end``.
 
-    ``known`` as in `speed_band`, of the twin with like teeth. The more mesh cycles, the fewer samples.
+    Teeth of a class are drawn anew. ``known``, ``seconds``, attributes and NaN as in `speed_band`, of the
+    twin with like teeth. The more mesh cycles, the fewer samples.
     """
     samples = max(_LEAST_DRAWN, min(_MOST_DRAWN, _ALL_CYCLES // period_of(pair)))
-    table = _each_sample(pair, known, samples, of_teeth)
-    return np.asarray(np.percentile(table, PERCENTILES[::2], axis=0))
+    found = _each_sample(pair, known, samples, of_teeth, seconds)
+    ends = np.full((2, len(TEETH)), np.nan)
+    if len(found.results) >= least_samples(found.asked, LEAST_BAND):
+        ends = np.percentile(np.array(found.results), PERCENTILES[::2], axis=0)
+    variables: dict[str, Variable] = {
+        name: ("end", ends[:, column], unit, text)
+        for column, (name, (unit, text)) in enumerate(TEETH.items())
+    }
+    return labelled_dataset(variables, {"end": (list(PERCENTILES[::2]), "%", "share of the samples below")},
+                            _counts(found))  # fmt: skip
 
 
-def sampled_predictions(pair: GearPair, known: xr.Dataset, samples: int = 32) -> Varied:
-    """Whole motions at samples of the inputs; ``known`` as in `speed_band`.
+def sampled_predictions(
+    pair: GearPair, known: xr.Dataset, samples: int = 32, seconds: float | None = None
+) -> Varied:
+    """Whole motions at samples of the inputs; ``known`` and ``seconds`` as in `speed_band`.
 
     Fewer samples than those of ``uncertainty``, whose numbers they do not keep: 32 give a deviation to 13 %.
     """
-    found = _results_of(pair, known, samples, lambda varied: predicted(varied.healthy))
-    return Varied(predicted(pair.healthy), tuple(found))
+    found = _each_sample(pair, known, samples, lambda varied: predicted(varied.healthy), seconds)
+    return Varied(predicted(pair.healthy), found.results, found.taken, found.asked)
+
+
+def _counts(found: Sampled[T]) -> dict[str, int]:
+    """Attributes of a range: samples in it, begun and asked for."""
+    return {"samples": len(found.results), "taken": found.taken, "asked": found.asked}
 
 
 def _each_sample(
-    pair: GearPair, known: xr.Dataset, samples: int, run: Callable[[GearPair], ArrayLike]
-) -> FloatArray:
-    """(samples, ...) results of the pair at samples of its inputs, without those that are refused."""
-    return np.array(_results_of(pair, known, samples, run))
-
-
-def _results_of(pair: GearPair, known: xr.Dataset, samples: int, run: Callable[[GearPair], T]) -> list[T]:
+    pair: GearPair, known: xr.Dataset, samples: int, run: Callable[[GearPair], T], seconds: float | None
+) -> Sampled[T]:
+    """Results of the pair at samples of its inputs, until a processor time is used up [s]."""
+    deadline = Deadline(seconds)
     inputs = uncertain_inputs(pair)
     moved = np.ptp(np.nan_to_num(known["dte_peak_to_peak_swing"].to_numpy()), axis=1)
     by_name = dict(zip(known["input"].to_numpy().tolist(), moved, strict=True))
     importance = np.array([by_name.get(one.field, moved.max()) for one in inputs])
-    found = []
+    found, taken = list[T](), 0
     for point in sobol_points(importance, samples, int(known.attrs["seed"])):
+        if deadline.passed:
+            break
+        taken += 1
         try:
             found.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
         except SpurcheckError:
             continue
-    return found
+    return Sampled(tuple(found), taken, samples)
 
 
 def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:
@@ -288,7 +372,7 @@ def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
 
 
 def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
-    """Quantities, orders of the bearing force, contact loss, instability; None where there is no motion."""
+    """Quantities, orders of the bearing force and the flags ``FLAGS``; None where there is no motion."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
@@ -298,7 +382,7 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
         return None
     orders = np.zeros(ORDERS)
     orders[: found.bearing_orders.size] = found.bearing_orders
-    flags = [float(found.contact_lost), float(not found.stable)]
+    flags = [float(found.contact_lost), float(not found.stable), float(found.motion is Motion.LINEAR)]
     return np.array([*found.numbers.values(), *orders, *own, *flags])
 
 
@@ -312,22 +396,32 @@ def of_teeth(pair: GearPair) -> list[float]:
 
 
 def _dataset(
-    pair: GearPair, inputs: Sequence[Input], points: FloatArray, table: FloatArray, ends: FloatArray
+    pair: GearPair,
+    inputs: Sequence[Input],
+    points: FloatArray,
+    table: FloatArray,
+    ends: FloatArray,
+    *,
+    enough: bool,
 ) -> xr.Dataset:
-    """The samples ``table`` at ``points`` with their percentiles, and what each input alone does."""
+    """The samples ``table`` at ``points`` with their percentiles, and what each input alone does.
+
+    NaN in the place of percentiles where the samples are not ``enough`` for a range.
+    """
     bearing = "force on the pinion bearings, mesh order"
     results = QUANTITIES | {name: ("N", f"{bearing} {m}") for m, name in enumerate(_ORDER_NAMES, 1)}
     results |= {} if pair.healthy is pair else TEETH
-    places = [percentile_interval(len(table), p) for p in PERCENTILES]
-    ordered, ranks = np.sort(table, axis=0), rankdata(points, axis=0)
+    shares, intervals = _percentiles(table, enough=enough)
+    ranks = rankdata(points, axis=0)
     variables: dict[str, Variable] = {}
     for column, (name, (unit, text)) in enumerate(results.items()):
-        values, own = table[:, column], ordered[:, column]
-        between, rank = f"{text}, interval of the percentile", _rank_correlation(ranks, values)
+        values = table[:, column]
+        between = f"{text}, interval of the percentile"
+        rank = _rank_correlation(ranks, values) if enough else np.full(len(inputs), np.nan)
         variables |= {
             name: ("sample", values, unit, text),
-            f"{name}_percentile": ("percentile", np.percentile(values, PERCENTILES), unit, text),
-            f"{name}_interval": (("percentile", "end"), own[np.array(places)], unit, between),
+            f"{name}_percentile": ("percentile", shares[:, column], unit, text),
+            f"{name}_interval": (("percentile", "end"), intervals[..., column], unit, between),
             f"{name}_swing": (
                 ("input", "end"),
                 ends[..., column],
@@ -337,6 +431,7 @@ def _dataset(
             f"{name}_rank_correlation": ("input", rank, "1", f"{text}, rank correlation with the input"),
         }
     values = np.array([[_number(one, float(u)) for u in points[:, j]] for j, one in enumerate(inputs)])
+    counts = {name: int(table[:, place - len(FLAGS)].sum()) for place, name in enumerate(FLAGS)}
     variables["value"] = (("input", "sample"), values, "1", "value of the input, in its own unit")
     return labelled_dataset(
         variables,
@@ -344,18 +439,22 @@ def _dataset(
             "percentile": (list(PERCENTILES), "%", "share of the samples below"),
             "input": ([one.field for one in inputs], "1", "uncertain input"),
         },
-        {
-            "contact_lost": int(table[:, -2].sum()),
-            "unstable": int(table[:, -1].sum()),
-            "lost_or_unstable": int(np.any(table[:, -2:] > 0.0, axis=1).sum()),
+        counts
+        | {
+            "lost_or_unstable": int(np.any(table[:, -len(FLAGS) :][:, :2] > 0.0, axis=1).sum()),
             "written": [one.written for one in inputs],
             "reason": [one.reason for one in inputs],
         },
     )
 
 
-def _of_form(row: FloatArray | None, columns: int) -> FloatArray:
-    return np.full(columns, np.nan) if row is None else row
+def _percentiles(table: FloatArray, *, enough: bool) -> tuple[FloatArray, FloatArray]:
+    """(percentile, column) of the samples, and the intervals (percentile, end, column) that hold them."""
+    count, columns = table.shape
+    if not enough:
+        return np.full((len(PERCENTILES), columns), np.nan), np.full((len(PERCENTILES), 2, columns), np.nan)
+    places = np.array([percentile_interval(count, p) for p in PERCENTILES])
+    return np.asarray(np.percentile(table, PERCENTILES, axis=0)), np.sort(table, axis=0)[places]
 
 
 def _number(one: Input, share: float) -> float:

@@ -7,14 +7,20 @@ fact then says so, over the same scope.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import xarray as xr
 
 from lumped.outcomes import Absent
 from validation.files.formatting import number, quantity
 from validation.prediction.resonance import Resonance
+from validation.prediction.uncertainty import LEAST_BAND, least_samples
 from validation.reporting.results import SHORT, Results
+
+#: Keys of what the time left open of ranges that few samples give; page 1 says each that is there.
+RANGES = ("range_over_speed", "range_of_teeth", "range_beside_record")
 
 
 @dataclass(frozen=True)
@@ -93,6 +99,10 @@ def facts(results: Results) -> dict[str, Fact]:
         _jumps(results),
         _left_open(results),
         _resonance(results),
+        _samples(results),
+        _range_over_speed(results),
+        _range_of_teeth(results),
+        _range_beside_a_record(results),
         _trouble(results),
         _levels(results),
         _second_program(results),
@@ -201,10 +211,94 @@ def amplified_words(found: Resonance) -> str:
     return f"{found.place} there {quantity(found.force, 'N', 2)} at this order"
 
 
+def samples_words(found: xr.Dataset) -> str:
+    """From how many possible machines a range is, and what the time left open: a clause."""
+    taken, asked, used = (found.attrs[name] for name in ("taken", "asked", "seconds"))
+    kept, refused, linear = int(found.sizes["sample"]), found.attrs["refused"], found.attrs["linear"]
+    of = f"{taken} of {asked}" if taken < asked else f"{taken}"
+    parts = [f"the range is from {of} possible machines"]
+    if kept < least_samples(asked):
+        parts = [
+            f"there is no range: it needs {least_samples(asked)} possible machines, and {of} were computed"
+        ]
+    parts[0] += f", of which {refused} have no motion and are left out" if refused else ""
+    parts += [f"in {linear} of {kept} the linear motion stands in"] if linear else []
+    if taken < asked:
+        parts += [f"the time of {number(used, 3)} s was used up"]
+        inputs, alone = int(found.sizes["input"]), found.attrs["alone"]
+        parts += [f"{alone} of {inputs} inputs were moved alone"] if alone < inputs else []
+    return "; ".join(parts)
+
+
+def sampled_words(what: str, counts: Mapping[str, Any], seconds: float) -> str:
+    """What the time left open of a range that few samples give: a clause."""
+    of = f"{counts['taken']} of {counts['asked']}"
+    end = f"the time of {number(seconds, 3)} s was used up"
+    least = least_samples(counts["asked"], LEAST_BAND)
+    if counts["samples"] < least:
+        return f"there is no {what}: it needs {least} possible machines, and {of} were computed; {end}"
+    return f"the {what} is from {of} possible machines; {end}"
+
+
+def _samples(results: Results) -> Fact | None:
+    """From how many samples the ranges of page 1 are."""
+    found = results.uncertainty
+    if not isinstance(found, xr.Dataset):
+        return None
+    count = int(found.sizes["sample"])
+    scope = _scope(results, teeth="alike", inputs=f"{count} samples")
+    return Fact("samples", samples_words(found), float(count), "1", scope, "uncertainty")
+
+
+def samples_matter(results: Results) -> bool:
+    """Whether page 1 has to say from how many samples a range is: not from all that were asked for."""
+    found = results.uncertainty
+    if not isinstance(found, xr.Dataset):
+        return False
+    own = found.attrs
+    return bool(own["taken"] < own["asked"] or own["refused"] or own["linear"])
+
+
+def _cut(
+    key: str, what: str, counts: Mapping[str, Any], scope: Scope, results: Results, by: str
+) -> Fact | None:
+    """What the time left open of a range that few samples give; None where nothing is."""
+    if counts["taken"] == counts["asked"]:
+        return None
+    scope = replace(scope, inputs=f"{counts['samples']} samples")
+    words = sampled_words(what, counts, results.effort.band_seconds)
+    return Fact(key, words, float(counts["samples"]), "1", scope, by)
+
+
+def _range_over_speed(results: Results) -> Fact | None:
+    band = results.band
+    if isinstance(band, Absent):
+        return None
+    scope = _over(results, results.speeds, "linear motion")
+    return _cut("range_over_speed", "range over speed", band.attrs, scope, results, "speed_band")
+
+
+def _range_of_teeth(results: Results) -> Fact | None:
+    band = results.teeth_band
+    if band is None:
+        return None
+    scope = _scope(results, motion="linear motion")
+    return _cut("range_of_teeth", "range of teeth that differ", band.attrs, scope, results, "teeth_band")
+
+
+def _range_beside_a_record(results: Results) -> Fact | None:
+    varied = results.record_samples
+    if varied is None:
+        return None
+    counts = {"samples": len(varied.samples), "taken": varied.taken, "asked": varied.asked}
+    scope, what = _scope(results, teeth="alike"), "range beside the record"
+    return _cut("range_beside_record", what, counts, scope, results, "sampled_predictions")
+
+
 def _trouble(results: Results) -> Fact | None:
     """The share of the samples that lose contact or are unstable."""
     found = results.uncertainty
-    if not isinstance(found, xr.Dataset):
+    if not isinstance(found, xr.Dataset) or not found.sizes["sample"]:
         return None
     count, lost = int(found.sizes["sample"]), int(found.attrs["contact_lost"])
     unstable, either = (int(found.attrs[name]) for name in ("unstable", "lost_or_unstable"))
@@ -222,6 +316,8 @@ def _levels(results: Results) -> Fact | None:
         return None
     text = f"{SHORT['dte_peak_to_peak']} {spread_words(spread)}"
     count = results.uncertainty.sizes["sample"] if isinstance(results.uncertainty, xr.Dataset) else 0
+    if results.teeth_band is not None:
+        count = results.teeth_band.attrs["samples"]
     scope = _scope(results, inputs=f"{count} samples")
     return Fact("levels", text, max(-spread[0], spread[1]), "1", scope, "uncertainty")
 
@@ -245,9 +341,8 @@ def _record(results: Results) -> Fact | None:
     measured = results.measured_error
     if measured is None:
         return None
-    return Fact(
-        "record", measured.words.removesuffix("."), measured.dte_error, "m", _scope(results), "compare_record"
-    )
+    claim = f"{measured.verdict.text} {measured.words}".removesuffix(".")
+    return Fact("record", claim, measured.dte_error, "m", _scope(results), "compare_record")
 
 
 def _inputs(results: Results) -> Fact:

@@ -58,8 +58,9 @@ def bearing_orders(results: Results) -> xr.Dataset:
     found = results.uncertainty
     if results.teeth is None and not isinstance(found, Absent):  # samples are of like teeth
         ends = np.array([found[f"bearing_order_{m}_percentile"].to_numpy()[[0, -1]] for m in order])
-        variables["low"] = ("order", ends[:, 0], "N", f"{text}, 5 % of the samples")
-        variables["high"] = ("order", ends[:, 1], "N", f"{text}, 95 % of the samples")
+        if np.isfinite(ends).all():  # else too few for a range
+            variables["low"] = ("order", ends[:, 0], "N", f"{text}, 5 % of the samples")
+            variables["high"] = ("order", ends[:, 1], "N", f"{text}, 95 % of the samples")
     return labelled_dataset(
         variables,
         {"order": (order, "1", "mesh order")},
@@ -71,6 +72,7 @@ def swings(found: xr.Dataset) -> xr.Dataset:
     """The inputs that move the transmission error most, the largest first."""
     swing = found["dte_peak_to_peak_swing"].to_numpy()
     order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")[:_MOST]
+    order = order[np.isfinite(swing[order]).all(axis=1)]
     names = [str(found["input"].to_numpy()[j]) for j in order]
     text = "transmission error, p-p"
     return labelled_dataset(
@@ -109,6 +111,8 @@ _WHOLE = {
     "lubricant.viscosity_law.temperature": "oil temperature",
     "operating.pinion_torque": "torque",
     "gears.roughness": "roughness of all flanks",
+    "pinion.tip_alteration": "pinion, tip diameter",
+    "gear.tip_alteration": "gear, tip diameter",
     "pinion.inertia": "pinion, mass and inertia",
     "gear.inertia": "gear, mass and inertia",
 }

@@ -12,7 +12,15 @@ from lumped.outcomes import Absent
 from validation.files.formatting import quantity, read_table, span
 from validation.prediction.inputs import kind_of
 from validation.prediction.motion import QUANTITIES, Prediction
-from validation.reporting.facts import Fact, amplified_words, facts, rpm, spread_words
+from validation.reporting.facts import (
+    RANGES,
+    Fact,
+    amplified_words,
+    facts,
+    rpm,
+    samples_matter,
+    spread_words,
+)
 from validation.reporting.results import Results
 from validation.reporting.verdict import Verdict, verdict_of, way_out
 
@@ -71,7 +79,7 @@ class Number:
             return ""
         if self.unit == "%":  # a share of one, which has per cents of its own
             low, high = (_printed(end, "%", self.digits) for end in (self.low, self.high))
-            return f"{low.removesuffix(' %')} to {high}"
+            return f"{low.removesuffix(' %')} to {high}".replace(" %", "\u00a0%")
         ends = span(self.low, self.high, self.unit, self.digits)
         return f"{ends} ({spread_words((self.low / self.value - 1.0, self.high / self.value - 1.0))})"
 
@@ -254,7 +262,7 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
         found = [Action(flag.action.removesuffix("."), "", "") for flag in results.outside]
     if verdict is Verdict.CONTRADICTED:
         what = "See which channel and which order the record contradicts"
-        found = [Action(what, "chapter “How sure”", "")]
+        found = [Action(what, "chapter “The record”", "")]
     if verdict is Verdict.DO_NOT_RUN:
         hazard = results.nearest_hazard
         if hazard is not None and hazard.kind == "jump":
@@ -268,7 +276,7 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
     runs = verdict in (Verdict.ABSOLUTE, Verdict.UNCERTAIN)
     if runs and resonance is not None and resonance.near and (words := way_out(resonance)):
         found.append(Action(f"Move the speed off the resonance, {words}", "", ""))
-    found += _left_open(results)
+    found += _left_open(results) + _further_samples(results)
     return (*found, *advice_on_inputs(results))[:_MOST_ACTIONS]
 
 
@@ -286,6 +294,15 @@ def _left_open(results: Results) -> list[Action]:
     ]
 
 
+def _further_samples(results: Results) -> list[Action]:
+    """The samples that go on where the time of the report ended them."""
+    found = results.uncertainty
+    if not isinstance(found, xr.Dataset) or found.attrs["taken"] == found.attrs["asked"]:
+        return []
+    command = f"spurcheck uncertainty {results.name} --samples {found.attrs['asked']}"
+    return [Action("Take all possible machines into the range", command, "")]
+
+
 def advice_on_inputs(results: Results) -> list[Action]:
     """What to do about the inputs that move the result most, one action a kind of input."""
     found = results.uncertainty
@@ -297,7 +314,7 @@ def advice_on_inputs(results: Results) -> list[Action]:
     actions: dict[str, Action] = {}
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1))):
         low, high = swing[j].min(), swing[j].max()
-        if high - low <= _COUNTS * given:
+        if not high - low > _COUNTS * given:  # NaN: it was not moved alone
             break
         field = str(found["input"].to_numpy()[j])
         kind = kind_of(field)
@@ -310,9 +327,12 @@ def advice_on_inputs(results: Results) -> list[Action]:
 
 def _sure(results: Results, known: dict[str, Fact]) -> tuple[str, ...]:
     record, inputs = known.get("record"), known["inputs"].claim
+    claims = [known["samples"].claim] if samples_matter(results) else []
+    claims += [known[key].claim for key in RANGES if key in known]
+    ranges = "".join(f" {claim[0].upper()}{claim[1:]}." for claim in claims)
     return (
         f"Solved right? {known['second_program'].claim}.",
-        f"Inputs: {inputs}.",
+        f"Inputs: {inputs}.{ranges}",
         f"Compared with a measurement? {'No' if record is None else record.claim}.",
     )
 

@@ -26,7 +26,7 @@ from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, IntArray, Progress
+from lumped.typing import IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
 from validation.cross_check.words import loss_difference, share
@@ -47,8 +47,11 @@ from validation.prediction.motion import (
 )
 from validation.prediction.resonance import Resonance, nearest_resonance
 from validation.prediction.uncertainty import (
+    LEAST_BAND,
     LONG_STEP,
     STEP,
+    Varied,
+    least_samples,
     sampled_predictions,
     speed_band,
     teeth_band,
@@ -89,7 +92,8 @@ class Effort:
     """How finely the report samples: inputs (0: not varied), speeds of each curve, nodes of the chart.
 
     ``jump_seconds``: processor time of the search for jumps; ``jump_seeds``: speeds an octave at which runs
-    settle, to find isolated motions, beats and chaos; ``name``: what a reader calls it.
+    settle, to find isolated motions, beats and chaos; ``sample_seconds`` and ``band_seconds``: processor time
+    of the samples, and of each of the ranges that ``band_samples`` give; ``name``: what a reader calls it.
     """
 
     samples: int
@@ -102,6 +106,8 @@ class Effort:
     jump_seconds: float
     jump_seeds: int
     name: str
+    sample_seconds: float = 30.0
+    band_seconds: float = 10.0
 
 
 FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report")
@@ -218,7 +224,7 @@ class Results:
         if not self.effort.samples or not uncertain_inputs(self.pair):
             return Absent(Outcome.NOT_ASKED)
         stage = self.stage("uncertain inputs")
-        return uncertainty(self.pair, self.samples, progress=stage)
+        return uncertainty(self.pair, self.samples, seconds=self.effort.sample_seconds, progress=stage)
 
     @property
     def samples(self) -> int:
@@ -258,15 +264,26 @@ class Results:
         slow, count = self.vibrations > _MANY, self.effort.band_speeds
         speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
         step = LONG_STEP if slow else STEP
-        return speed_band(self.pair_on_springs, speeds, self.uncertainty, self.effort.band_samples, step)
+        samples, seconds = self.effort.band_samples, self.effort.band_seconds
+        return speed_band(self.pair_on_springs, speeds, self.uncertainty, samples, step, seconds)
 
     @cached_property
-    def teeth_band(self) -> FloatArray | None:
+    def teeth_band(self) -> xr.Dataset | None:
         """See ``teeth_band``; None of like teeth, or without samples."""
         if self.teeth is None or isinstance(self.uncertainty, Absent):
             return None
         self.stage("range of teeth that differ")
-        return teeth_band(self.given, self.uncertainty)
+        return teeth_band(self.given, self.uncertainty, self.effort.band_seconds)
+
+    @cached_property
+    def record_samples(self) -> Varied | None:
+        """Motions at samples of the inputs beside a record; None without one, or without samples."""
+        known = self.uncertainty
+        if self.record is None or isinstance(known, Absent):
+            return None
+        self.stage("the record, with uncertain inputs")
+        effort = self.effort
+        return sampled_predictions(self.pair, known, effort.band_samples, effort.band_seconds)
 
     @property
     def contact_lost(self) -> bool:
@@ -398,12 +415,11 @@ class Results:
         """The prediction beside a measured record; None without one."""
         if self.record is None:
             return None
-        known, varied = self.uncertainty, None
         errors = [float(one.attrs.get("error_estimate", math.nan)) for one in self._motions]
         share = next((one for one in errors if math.isfinite(one)), 0.0)
-        if not isinstance(known, Absent):
-            self.stage("the record, with uncertain inputs")
-            varied = sampled_predictions(self.pair, known, self.effort.band_samples)
+        varied = self.record_samples
+        if varied is not None and len(varied.samples) < least_samples(varied.asked, LEAST_BAND):
+            varied = None
         return compare_record(self.record, self.prediction, numerical=share, varied=varied)
 
     @property
@@ -467,23 +483,23 @@ class Results:
         return f"{SHORT[name]} differs most: {shown}, by {share(sizes[name])}"
 
     def spread(self, name: str) -> tuple[float, float] | None:
-        """5 and 95 % of a number of page 1, relative to its result; None where no samples tell it."""
+        """5 and 95 % of a number of page 1, relative to its result; None without enough samples."""
         found = self.uncertainty
         if self.teeth is not None:
             if name != "dte_peak_to_peak" or self.teeth_band is None:
                 return None
-            low, high = self.teeth_band[:, 0].tolist()
+            low, high = self.teeth_band["revolution_dte_peak_to_peak"].to_numpy().tolist()
         elif isinstance(found, Absent):
             return None
         else:
             low, _, high = found[f"{name}_percentile"].to_numpy().tolist()
         result = self.prediction.numbers[name]
-        return (low / result - 1.0, high / result - 1.0) if result else None
+        return (low / result - 1.0, high / result - 1.0) if result and math.isfinite(low) else None
 
     def rank(self, name: str) -> float:
         """Share of the samples below the result as given [-]; NaN where no samples tell it."""
         found = self.uncertainty
-        if self.teeth is not None or isinstance(found, Absent):
+        if self.teeth is not None or isinstance(found, Absent) or self.spread(name) is None:
             return math.nan
         values, result = found[name].to_numpy(), self.prediction.numbers[name]
         slack = _SLACK * abs(result)
@@ -599,5 +615,5 @@ def _broken(results: Results) -> Iterator[str]:
             if abs(found.attrs[f"given_{name}"] - value) > _SLACK * max(abs(value), 1e-300):
                 yield f"the samples were taken about another {name}"
             low, middle, high = found[f"{name}_percentile"].to_numpy()
-            if not low <= middle <= high:
+            if math.isfinite(middle) and not low <= middle <= high:
                 yield f"the percentiles of {name} are not in order"

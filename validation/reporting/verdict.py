@@ -56,9 +56,11 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> tuple[Verdict, st
         return Verdict.UNCERTAIN, headline, f"{text} The numbers are those of the linear motion."
     calm = smooth(results, facts)
     doubt = _doubt(results, facts)
-    if doubt is not None:
-        return Verdict.UNCERTAIN, f"{Verdict.UNCERTAIN.value}: {doubt}.", calm
     confirmed = record is not None and record.verdict is Record.CONFIRMS
+    if doubt is not None:
+        more = " A record confirms the prediction; the range is that of every possible machine."
+        text = f"{calm}{more if confirmed else ''}"
+        return Verdict.UNCERTAIN, f"{Verdict.UNCERTAIN.value}: {doubt}.", text
     why = "A record confirms them." if confirmed else "Every input is known."
     return Verdict.ABSOLUTE, f"{Verdict.ABSOLUTE.value}.", f"{calm} {why}"
 
@@ -68,6 +70,8 @@ def _doubt(results: Results, facts: Mapping[str, Fact]) -> str | None:
     spreads = {name: results.spread(name) for name in RANGED}
     known = {name: spread for name, spread in spreads.items() if spread is not None}
     record, assumed = results.measured_error, results.inputs[1]
+    if not known and "samples" in facts:
+        return facts["samples"].claim
     if not known and results.varies:
         return f"{facts['inputs'].claim}, and they were not varied"
     widest = max(known, key=lambda name: max(-known[name][0], known[name][1]), default="")

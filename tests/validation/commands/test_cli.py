@@ -11,6 +11,7 @@ from typer.main import get_command
 
 import lumped
 from lumped import NumericalError
+from tests.validation.prediction.test_uncertainty import LINEAR
 from validation.cli import app
 from validation.cross_check import comparison
 from validation.cross_check.verdict import Verdict
@@ -252,3 +253,20 @@ def test_quiet_is_silent(command):
     assert refused.exit_code == 2
     assert refused.stderr.startswith("error:")
     assert run(*command).stdout, "silence ends with the command"
+
+
+def test_samples_end_with_the_time_and_a_number_that_is_asked_for_does_not(tmp_path):
+    """Without time the uncertainty has no samples and a comparison 32; with --samples all are taken."""
+    path = tmp_path / "mine.toml"
+    path.write_text(LINEAR.to_toml(), encoding="utf-8")
+    result = run("uncertainty", path, "--seconds", "1e-9")
+    assert "0 of 128 samples, seed 1" in result.stdout
+    assert "the time of 1e-09 s was used up; --samples 128 takes all" in result.stderr
+    result = run("uncertainty", path, "--samples", "16")
+    assert "16 of 16 samples, seed 1: 0 refused" in result.stdout
+    assert "used up" not in result.stderr
+    arguments = "compare", path, "--variant", "torque=90"
+    result = run(*arguments, "--seconds", "1e-9")
+    assert "32 of 128 possible machines, seed 1; the time of 1e-09 s was used up" in result.stdout
+    found = json.loads(run(*arguments, "--seconds", "1e-9", "--json").stdout)
+    assert (found["taken"], found["asked"], found["samples"]) == (32, 128, 32)

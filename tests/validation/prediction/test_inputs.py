@@ -11,8 +11,9 @@ from lumped.errors import ParameterError
 from lumped.schema.bodies import bodies
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
+from lumped.stiffness import finite_elements
 from lumped.stiffness.registry import MODELS
-from tests.unlike_pairs import all_assumed, but_known, unlike_pair
+from tests.unlike_pairs import all_assumed, but_known, known_tips, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import (
     forms_beside,
@@ -21,7 +22,7 @@ from validation.prediction.inputs import (
     source_of,
     uncertain_inputs,
 )
-from validation.prediction.uncertainty import varied
+from validation.prediction.uncertainty import sobol_points, varied
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 
@@ -100,10 +101,12 @@ def test_an_assumed_value_is_the_middle_of_its_range(name):
     for one in numbers:
         for part in one.parts:
             own = values.get(part.field, 1.0)
+            if part.field.endswith(".tip_alteration"):
+                own = 1e3 * pair.tip_alteration
             if part.field.endswith((".inertia", ".mass")):
                 gear, _, key = part.field.partition(".")
                 own = getattr(bodies(pair), f"{key}_{gear}")
-            assert part.at(0.5) == pytest.approx(own, rel=1e-9), part.field
+            assert part.at(0.5) == pytest.approx(own, rel=1e-9, abs=1e-15), part.field
 
 
 @pytest.mark.parametrize("name", NEW)
@@ -234,8 +237,8 @@ def test_words_of_sources_change_neither_counts_nor_ranges(words):
     assert given_and_assumed(said) == (given, assumed)
     assert repr(uncertain_inputs(said)) == repr(uncertain_inputs(pair))  # a choice has NaN as its ends
     assert source_of(said, "mesh.damping_ratio") == words
-    known = said.with_({"assumed": {}})
-    assert given_and_assumed(known) == (len(fields_read(pair)), 0)
+    known = known_tips(said.with_({"assumed": {}}))
+    assert given_and_assumed(known) == (len(fields_read(known)), 0)
     assert uncertain_inputs(known) == ()
 
 
@@ -285,3 +288,86 @@ def test_the_factor_scales_the_stiffness_and_what_follows_from_it():
     for one, other in zip(cross_compliances(twice), cross_compliances(pair), strict=True):
         inside = np.linspace(*one.interval, 5)[1:-1]
         np.testing.assert_allclose(one(inside), 0.5 * other(inside), rtol=1e-14)
+
+
+@pytest.mark.parametrize(("made", "more"), [
+    (("19/41", 2.5, 20, 1450, 80), {}),
+    (("12/24", 3.0, 25, 800, 60), {"pinion.profile_shift": 0.6, "gear.profile_shift": 0.36}),
+    (("60/24", 1.0, 10, 3000, 5), {"pinion.tip_alteration": -0.1}),
+])  # fmt: skip
+def test_an_assumed_tip_ranges_about_the_one_that_keeps_the_clearance(made, more):
+    """0.02 modules up and down on the radius, each gear for itself; a tip that is given does not move."""
+    pair = new_pair(*made, more)
+    found = {one.field: one for one in uncertain_inputs(pair) if "tip" in one.field}
+    given = {field.removesuffix(".tip_alteration") for field in more if "tip" in field}
+    assert set(found) == {f"{gear}.tip_alteration" for gear in ("pinion", "gear") if gear not in given}
+    module = 1e3 * pair.basic_rack.module
+    for field, one in found.items():
+        gear = field.partition(".")[0]
+        which, other = (0, 1) if gear == "pinion" else (1, 0)
+        assert (one.low + one.high) / 2.0 == pytest.approx(1e3 * pair.tip_alteration, abs=1e-12)
+        assert one.high - one.low == pytest.approx(0.04 * module, rel=1e-9)
+        for share, off in ((0.01, -0.02 * 8 / 9), (0.5, 0.0), (0.99, 0.02 * 8 / 9)):
+            moved = pair.with_(one.changes(share))
+            radius = moved.wheels[which].tip_radius - pair.wheels[which].tip_radius
+            assert 1e3 * radius == pytest.approx(off * module, abs=1e-9)
+            assert moved.wheels[other].tip_radius == pair.wheels[other].tip_radius
+
+
+def test_the_range_of_a_tip_is_half_of_the_tolerance_h11():
+    """ISO 286-1: i = 0.45 D^(1/3) + 0.001 D um of D in mm, IT 11 = 100 i; tips of 18 to 60 teeth."""
+    halves = []
+    for module in (2.5, 3.0, 4.0, 5.0):
+        for teeth in (18, 60):
+            diameter = module * (teeth + 2)
+            unit = 0.45 * diameter ** (1.0 / 3.0) + 0.001 * diameter
+            halves.append(0.5 * 0.1 * unit / module)
+    assert 0.02 < min(halves) < 0.04 < max(halves) < 0.053
+    reason = next(one for one in uncertain_inputs(new_pair("19/41", 2.5, 20, 1450, 80)) if "tip" in one.field)
+    assert "h11 (ISO 286-2)" in reason.reason
+    assert reason.reason.startswith("estimate")
+
+
+def test_a_stated_tip_replaces_the_default_and_takes_few_values_too():
+    pair = new_pair("21/34", 3.0, 25, 2000, 150)
+    pair = pair.with_({"pinion.tip_diameter": 69.0, "uncertainty": {"pinion.tip_diameter": "+- 0.2 mm"}})
+    found = {one.field: one for one in uncertain_inputs(pair)}
+    assert "pinion.tip_alteration" not in found
+    one = found["pinion.tip_diameter"]
+    values = {one.at(share) for share in np.linspace(0.0, 1.0, 400)}
+    assert len(values) == 9
+    assert (min(values), max(values)) == pytest.approx((69.0 - 0.2 * 8 / 9, 69.0 + 0.2 * 8 / 9))
+    assert len({found["mesh.damping_ratio"].at(share) for share in np.linspace(0.0, 1.0, 400)}) == 400
+
+
+def test_the_finite_elements_of_a_tip_are_solved_once_for_each_value(monkeypatch):
+    """Samples of 32 machines need no more solutions than the values of both tips."""
+    solved = []
+    own = finite_elements.flank_compliance
+    monkeypatch.setattr(
+        finite_elements,
+        "flank_compliance",
+        lambda body: solved.append((body.profile.teeth, body.tip)) or own(body),
+    )
+    pair = new_pair("23/29", 2.0, 15, 1200, 40)
+    inputs = [one for one in uncertain_inputs(pair) if "tip" in one.field]
+    for point in sobol_points(np.zeros(2), 64, 1):
+        moved = varied(pair, list(zip(inputs, map(float, point), strict=True)))
+        for tooth in finite_elements.elastic_teeth(moved):
+            assert tooth.flank is not None
+    assert {teeth: len({round(tip, 9) for z, tip in solved if z == teeth}) for teeth in (23, 29)} == {
+        23: 9,
+        29: 9,
+    }
+    assert len(set(solved)) == 18  # to the last digit
+
+
+def test_a_tip_that_an_old_file_leaves_out_ranges_too():
+    """In format 1 it meant an alteration of zero, which is assumed; with the file's own entry alike."""
+    text = new_pair("19/41", 2.5, 20, 1450, 80).to_mapping()
+    for gear in ("pinion", "gear"):
+        text[gear].pop("tip_alteration", None)
+    old = lumped.load_gear_pair(text | {"format": 1})
+    assert old.gear.tip_alteration == 0.0
+    one = input_of(old, "gear.tip_alteration")
+    assert (one.low, one.high) == pytest.approx((-0.05, 0.05))

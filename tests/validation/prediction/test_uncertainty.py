@@ -9,7 +9,7 @@ from scipy.stats import binom, qmc
 import floquet
 import lumped
 from lumped.errors import ParameterError
-from tests.unlike_pairs import all_assumed, unlike_pair
+from tests.unlike_pairs import all_assumed, known_tips, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import forms_beside, uncertain_inputs
 from validation.prediction.motion import predicted
@@ -26,7 +26,7 @@ from validation.prediction.uncertainty import (
 
 #: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
 #: Everything is known but the torque.
-LINEAR = unlike_pair("rack_25_degrees_always_pushing").with_(
+LINEAR = known_tips(unlike_pair("rack_25_degrees_always_pushing")).with_(
     {
         "mesh.contact": "prescribed",
         "friction.law": "none", "operating.pinion_speed": 800.0, "assumed": {},
@@ -156,7 +156,7 @@ def test_teeth_of_a_class_are_drawn_anew_in_every_sample(torque):
     assert swings.max() < allowed + 1.15 * torque.dte_peak_to_peak.values.max()
     assert ("sideband_ratio" in found, transmission_error(found)) == (True, "revolution_dte_peak_to_peak")
     assert "sideband_ratio" not in torque
-    low, high = teeth_band(pair, torque)[:, 0]
+    low, high = teeth_band(pair, torque)["revolution_dte_peak_to_peak"].to_numpy()
     assert 0.8 * swings.min() < low < np.median(swings) < high < 1.2 * swings.max()
     assert high > 1.12 * low
     with pytest.warns(lumped.LikeTeethWarning):

@@ -1,10 +1,12 @@
 """Does the report say what the comparison with a record found, in one unit a column, and close its gate?"""
 
+import copy
 import json
 
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 from tests.validation.measurements.dynamic_records import dynamic_record
 from validation.exchange.new_pair_file import new_pair
@@ -14,8 +16,11 @@ from validation.prediction.uncertainty import sampled_predictions, uncertainty
 from validation.reporting.blocks import Picture, Quantity, Table, Text, chapter_data
 from validation.reporting.build import findings
 from validation.reporting.chapters import record as chapter
+from validation.reporting.facts import facts
+from validation.reporting.page_one import page_one
 from validation.reporting.results import QUICK, Results
 from validation.reporting.tables import write_tables
+from validation.reporting.verdict import Verdict, verdict_of
 
 CHANNELS = ("dte", "x_p", "bearing_force_x_g")
 
@@ -127,3 +132,45 @@ def test_varied_inputs_reach_the_comparison(pair):
     samples = sampled_predictions(pair, results.uncertainty, 16)
     moves = [one.peak_to_peak - samples.given.peak_to_peak for one in samples.samples]
     assert found.peak_to_peak.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=2e-2)
+
+
+def test_page_1_says_the_verdict_of_the_record_and_where_it_is_shown(right, wrong, pair):
+    first = page_one(wrong)
+    assert (first.verdict, first.actions[0].command) == (Verdict.CONTRADICTED, "chapter “The record”")
+    assert chapter.CHAPTER.title == "The record"
+    assert first.sure[-1].startswith(
+        "Compared with a measurement? The record contradicts the prediction. Meas"
+    )
+    assert " x_p (pinion " in first.reason  # not the name of a variable alone
+    said = page_one(right).sure[-1]
+    assert said.startswith("Compared with a measurement? The record confirms the prediction. Measured ")
+
+    def mirrored(quantity, values, u):
+        return -values if quantity == "x_p" else values
+
+    # The channel that contradicts leads, though the transmission error is the leading one.
+    words = Results(
+        pair, QUICK, record=dynamic_record(predicted(pair), CHANNELS, change=mirrored)
+    ).measured_error.words
+    assert words.startswith(
+        "Order 1 of x_p (pinion displacement along the line of action) has the opposite sign"
+    )
+    assert "Measured" in words
+
+
+def test_a_record_that_confirms_within_a_wide_range_is_said_beside_it(right):
+    """The range is that of machines that were not measured."""
+    results = copy.copy(right)
+    wide = {
+        f"{name}_percentile": ("percentile", [0.5 * v, v, 2.0 * v]) for name, v in right.like.numbers.items()
+    }
+    values = {name: ("sample", [v]) for name, v in right.like.numbers.items()}
+    attrs = {f"given_{name}": value for name, value in right.like.numbers.items()}
+    attrs |= {"taken": 64, "asked": 64, "refused": 0, "linear": 0, "alone": 1, "seconds": 30.0}
+    attrs |= {"contact_lost": 0, "unstable": 0, "lost_or_unstable": 0}
+    vars(results)["uncertainty"] = xr.Dataset(wide | values, attrs=attrs).assign_coords(
+        input=["mesh.damping_ratio"]
+    )
+    found = verdict_of(results, facts(results))
+    assert found[0] is Verdict.UNCERTAIN
+    assert "A record confirms the prediction; the range is that of every possible machine." in found[2]

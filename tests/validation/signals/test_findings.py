@@ -189,10 +189,18 @@ def results_table(results):
 
 def test_what_a_class_leaves_open_is_told() -> None:
     results = copy.copy(results_of(PAIR))
-    vars(results)["teeth_band"] = np.array([[1e-6, 0.02], [9e-6, 0.03]])
+    vars(results)["teeth_band"] = xr.Dataset(
+        {"revolution_dte_peak_to_peak": ("end", [1e-6, 9e-6]), "sideband_ratio": ("end", [0.02, 0.03])},
+        attrs={"samples": 20, "taken": 20, "asked": 32},
+    )
     spread = chapter.write(results).blocks[4].text
     assert "is 1 to 9 µm and the largest sideband 2 to 3 %" in spread
-    first = page_one(results).numbers
+    page = page_one(results)
+    assert (
+        "The range of teeth that differ is from 20 of 32 possible machines; the time of 10 s was"
+        in page.sure[1]
+    )
+    first = page.numbers
     assert first[0].range.startswith("1.0 to 9.0\u00a0µm (")
     assert not any(one.range for one in first[1:])  # samples of the other numbers are of like teeth
 

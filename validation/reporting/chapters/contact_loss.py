@@ -190,7 +190,7 @@ def linear_over_speed(results: Results) -> xr.Dataset:
             f"{text}, a tooth pair pulls",
         ),
     }
-    if isinstance(band, xr.Dataset):
+    if isinstance(band, xr.Dataset) and band["low"].notnull().any():
         for name in ("low", "high"):
             ends = np.interp(speeds, band["speed_rpm"], band[name])
             variables[name] = ("speed_rpm", ends, "m", str(band[name].attrs["long_name"]))

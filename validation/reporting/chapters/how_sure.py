@@ -13,6 +13,7 @@ from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
 from validation.reporting.blocks import Block, Cell, Content, Picture, Quantity, Table, Text
 from validation.reporting.chapter import Chapter
+from validation.reporting.facts import samples_words
 from validation.reporting.results import Results
 
 
@@ -33,18 +34,19 @@ def write(results: Results) -> Content:
         blocks.append(Text("The inputs were not varied in this report."))
         return Content(result, tuple(blocks))
     blocks += [_ranges(found), inputs_table(found)]
-    samples = int(found.sizes["sample"])
     half = results.samples < results.effort.samples
     why = f" Half as many as else: a mesh cycle has {results.vibrations:.0f} vibrations." if half else ""
     lost, unstable = int(found.attrs["contact_lost"]), int(found.attrs["unstable"])
     blocks.append(
         Text(
-            f"{samples} samples (scrambled Sobol points, seed {found.attrs['seed']}); "
-            f"{found.attrs['refused']} were refused. Contact is lost in {lost} of them, {unstable} are "
-            f"unstable.{why}"
+            f"Possible machines are scrambled Sobol points, seed {found.attrs['seed']}; "
+            f"{samples_words(found)}. Contact is lost in {lost} of them, {unstable} are unstable.{why}"
         )
     )
     low, high = found["dte_peak_to_peak_percentile"].to_numpy()[[0, -1]]
+    if not math.isfinite(low):
+        words = samples_words(found)
+        return Content(f"{words[0].upper()}{words[1:]}. {result}", tuple(blocks))
     result = (
         f"With its uncertain inputs the transmission error lies from {span(low, high, 'm')} (5 to 95 %). "
         f"{result}"

@@ -8,6 +8,7 @@ from lumped.labelling import labelled_dataset
 from validation.plots.teeth import loads_figure, sidebands_figure, turn_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Table, Text, quantities
 from validation.reporting.chapter import Chapter
+from validation.reporting.facts import sampled_words
 from validation.reporting.results import Results
 from validation.signals.findings import GEARS, NOISE, TeethFindings, deviations_table, rpm_and_period
 
@@ -27,7 +28,14 @@ def _spread(results: Results) -> list[Block]:
     """What a class, and every other uncertain input, leaves open."""
     if (band := results.teeth_band) is None:
         return []
-    swings, shares = (f"{low:.2g} to {high:.2g}" for low, high in (band * [1e6, 100.0]).T)
+    if band["sideband_ratio"].isnull().any():
+        return [
+            Text(f"{sampled_words('range of teeth that differ', band.attrs, results.effort.band_seconds)}.")
+        ]
+    swings, shares = (
+        "{:.2g} to {:.2g}".format(*(factor * band[name].to_numpy()))
+        for name, factor in (("revolution_dte_peak_to_peak", 1e6), ("sideband_ratio", 100.0))
+    )
     text = "With the uncertain inputs, teeth of a class drawn anew, the transmission error of the linear form"
     return [Text(f"{text} is {swings} µm and the largest sideband {shares} % of the mesh tone (5 to 95 %).")]
 
