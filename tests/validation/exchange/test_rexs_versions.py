@@ -192,6 +192,21 @@ def test_without_a_centre_distance_a_missing_shift_is_refused_with_all_its_place
     assert dict(given.sources)["gear.profile_shift"] == "given by the user"
 
 
+def test_everything_that_is_missing_is_asked_for_at_once(save):
+    names = (
+        "number_of_teeth",
+        "normal_pressure_angle",
+        "addendum_modification_coefficient",
+        "center_distance",
+    )
+    with pytest.raises(ParameterError) as error:
+        gear_pair_from_rexs(save(rexs_text(STAGES["14/87"], "1.0", left_out=names)))
+    assert {problem.field for problem in error.value.problems} == {
+        "pinion.teeth", "gear.teeth", "basic_rack.pressure_angle",
+        "pinion.profile_shift", "gear.profile_shift",
+    }  # fmt: skip
+
+
 def test_a_shift_that_follows_from_the_centre_distance_is_known_and_a_remark_says_it(save):
     stage = STAGES["13/76"]
     mapping, notes = gear_pair_from_rexs(save(rexs_text(stage, "1.0", "first")))
