@@ -340,7 +340,8 @@ class _Law:
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
         """Mu at the positions, and the positions of its switches, at a speed."""
         there, settings = self._where_friction_acts(rpm)
-        return self.law.signed(self.positions, there, settings), np.sort(self.law.switches(there, settings))
+        mu = self.law.signed(there.held(self.positions), there, settings)
+        return mu, np.sort(self.law.switches(there, settings))
 
     def _where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
         """The contact at a speed from the first to the last position of loaded teeth, and settings there."""

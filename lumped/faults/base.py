@@ -24,7 +24,7 @@ class Flank:
     Attributes
     ----------
     wheel : the gear as it is cut
-    tip, start : lengths at which its own tip and the mate's tip touch it [m]
+    tip, start : lengths of its tip, and of where the mate's tip touches it first or an undercut ends it [m]
     face_width : common to both gears [m]
     youngs_modulus : of the gear [Pa]
     hertz : linear compliance of the Hertzian contact over the whole face width [m/N]

@@ -163,7 +163,7 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         point = isinstance(item.get("input"), float)
         action = "Write it without a point." if point else "Write a whole number in that range."
         if parts[-1] == "teeth":
-            action = about_teeth(str(item.get("input"))) or action
+            action = about_teeth(quoted(item.get("input"))) or action
         return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
     allowed = item["msg"]
     if kind == "tuple_type":

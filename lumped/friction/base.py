@@ -53,6 +53,8 @@ class ContactPath:
     roughness : S, mean of the two average roughnesses [m]
     composite_roughness : R_comp [m]
     film_length : L_x [m]
+    edge_pinion, edge_gear : lengths on the base tangents at which an undercut ends the flank [m]; 0 without
+        one. An edge that touches further outside keeps the friction of the involute that ends there.
     """
 
     L_XA: float
@@ -70,6 +72,8 @@ class ContactPath:
     roughness: float
     composite_roughness: float
     film_length: float
+    edge_pinion: float = 0.0
+    edge_gear: float = 0.0
 
     def at_speed(self, omega_pinion: float) -> ContactPath:
         """The same contact at another speed of the pinion [rad/s].
@@ -92,6 +96,17 @@ class ContactPath:
     def radius(self, xi: FloatArray) -> FloatArray:
         """Reduced radius of curvature rho_r = rho_p rho_g/(rho_p + rho_g) [m], equations (11) and (15)."""
         return xi * (self.L_XY - xi) / self.L_XY
+
+    def held(self, xi: FloatArray) -> FloatArray:
+        """Positions at which laws are evaluated: those beyond an edge are at the edge [m]."""
+        low = self.edge_pinion or -math.inf
+        return np.asarray(np.clip(xi, low, self.L_XY - (self.edge_gear or -math.inf)), dtype=np.float64)
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """Positions of the edges that undercuts leave [m]."""
+        found = (self.edge_pinion, self.L_XY - self.edge_gear)
+        return tuple(xi for xi, edge in zip(found, (self.edge_pinion, self.edge_gear), strict=True) if edge)
 
     def sliding_velocity(self, xi: FloatArray) -> FloatArray:
         """v_s = |v_rp - v_rg| [m/s], equation (13); written in xi - L_XP so that it is 0 exactly at P."""
@@ -290,10 +305,10 @@ def _fit(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> Pat
     # The pitch point is a break of every law: also where mu is smooth there, it varies fastest around it.
     breaks = sorted({path.L_XA, path.L_XP, path.L_XD, *switches})
     near = _SAME * (path.L_XD - path.L_XA)
-    joints = [xi for xi in law.joints(path) if path.L_XA < xi < path.L_XD]
+    joints = [xi for xi in (*law.joints(path), *path.edges) if path.L_XA < xi < path.L_XD]
     breaks = sorted([*breaks, *(xi for xi in joints if min(abs(xi - b) for b in breaks) > near)])
     return PathFunction.fit(
-        lambda xi: law.signed(xi, path, settings),
+        lambda xi: law.signed(path.held(xi), path, settings),
         breaks,
         switches,
         tolerance=FIT_TOLERANCE,

@@ -116,7 +116,7 @@ def fit_misfit(
     ratio, most = law.analytic(low, high, path, settings)
     half, width = 0.5 * (high - low), high - low
     xi = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
-    mu = law.signed(xi.ravel(), path, settings).reshape(xi.shape)
+    mu = law.signed(path.held(xi.ravel()), path, settings).reshape(xi.shape)
     left = np.abs((mu - function(xi)) @ _TO_SERIES).sum(axis=1)
     powers = np.arange(len(function.coefficients))[::-1, None]
     terms = (np.abs(function.coefficients) * width**powers).sum(axis=0)

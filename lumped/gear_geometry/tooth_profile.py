@@ -112,14 +112,29 @@ class ToothProfile:
         Where the rack undercuts the flank, it is the crossing of the involute and the fillet's trochoid,
         found numerically.
         """
+        return self.undercut_length if self._undercut else max(self._joint_length, 0.0)
+
+    @property
+    def _joint_length(self) -> float:
+        """Length at which the rack's straight flank ends [m]; beyond the tangent point it is negative."""
         sine = math.sin(self.pressure_angle)
         flank_depth = self.dedendum - self.fillet * (1.0 - sine)
-        length = self.reference_radius * sine - (flank_depth - self.profile_shift) * self.module / sine
-        if length >= -1e-4 * self.module:  # no longer than that: it moves the form radius by 1e-9 modules
-            return max(length, 0.0)
-        return self._undercut_length()
+        return self.reference_radius * sine - (flank_depth - self.profile_shift) * self.module / sine
 
-    def _undercut_length(self) -> float:
+    @property
+    def _undercut(self) -> bool:
+        # No longer than that: it moves the form radius by 1e-9 modules.
+        return self._joint_length < -1e-4 * self.module
+
+    @cached_property
+    def undercut_length(self) -> float:
+        """Length along the base tangent at which an undercut ends the involute in an edge [m].
+
+        It is 0 where the fillet joins the flank smoothly.
+        """
+        return self._crossing_length() if self._undercut else 0.0
+
+    def _crossing_length(self) -> float:
         """Length at which the fillet's trochoid crosses the involute, where the rack undercuts.
 
         The trochoid climbs from the root circle to its joint with the rack's straight flank, beyond the

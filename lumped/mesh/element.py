@@ -44,10 +44,14 @@ PAIR = record(
     friction="mu, signed as the sliding",
     gap="between the flanks, without tip corners",
     gap_slope="of that gap over xi",
-    before_start="way of the contact outside the flanks, before their start; negative inside",
-    behind_end="the same behind their end",
+    before_start="way of the contact beyond the gear's tip corner, before the start; negative inside",
+    behind_end="the same beyond the pinion's tip corner, behind the end",
+    before_edge="way of the contact beyond the edge of an undercut pinion, before the start",
+    behind_edge="the same beyond the edge of an undercut gear, behind the end",
     tip_pinion="length of the pinion's tip corner on its base tangent",
     tip_gear="the same of the gear",
+    edge_pinion="the same of the edge that an undercut of the pinion leaves; 0 without one",
+    edge_gear="the same of the gear",
     corner_before="least gap of the corner over the square of that way [1/m]",
     corner_behind="the same behind the end",
 )
@@ -65,9 +69,11 @@ CONTACT = record(
 )
 #: Where the flanks of a pair end, positions xi on the line of action without load [m].
 FLANKS = record(
-    start="L_XA, set by the gear's tip",
-    end="L_XD, set by the pinion's tip",
+    start="of the gear's tip: L_XA, unless an undercut of the pinion ends contact before",
+    end="of the pinion's tip: L_XD, unless an undercut of the gear ends contact before",
     length="L_XY",
+    edge_pinion="as of PAIR",
+    edge_gear="as of PAIR",
     corner_before="as of PAIR [1/m]; 0 is a bound too",
     corner_behind="the same behind the end",
 )
@@ -134,6 +140,19 @@ class CornerGap(NamedTuple):
     tilt: float
 
 
+class FlankEnd(NamedTuple):
+    """Gap where the flanks end in a tip corner and, of undercut mates, in an edge [m], and the tilt there.
+
+    Its slopes are those over the own flank distance of the gear with the tip, and of that with the edge; one
+    of them is 0.
+    """
+
+    gap: float
+    tip_slope: float
+    edge_slope: float
+    tilt: float
+
+
 class MeshForce(NamedTuple):
     """What all pairs together do to the gears: fields of FORCE, and what the dampers take [W]."""
 
@@ -150,8 +169,12 @@ def place_pair(pair: Record, position: float, flanks: Record, line: Record, law:
     pair.position = position
     pair.before_start = flanks.start - position + law.radius_gear * line.turn
     pair.behind_end = position - flanks.end + law.radius_pinion * line.turn
+    pair.before_edge = flanks.edge_pinion - position - law.radius_pinion * line.turn
+    pair.behind_edge = flanks.edge_gear - (flanks.length - position) - law.radius_gear * line.turn
     pair.tip_pinion = flanks.end
     pair.tip_gear = flanks.length - flanks.start
+    pair.edge_pinion = flanks.edge_pinion
+    pair.edge_gear = flanks.edge_gear
     pair.corner_before = flanks.corner_before
     pair.corner_behind = flanks.corner_behind
 
@@ -175,14 +198,109 @@ def corner_gap(beyond: float, tip: float, length: float, flank_radius: float, ti
     return CornerGap(tangent + flank_radius * angle - (length - tip - beyond), slope, -math.sin(angle))
 
 
+@called
+def tip_touches(
+    beyond: float, tip: float, back: float, edge: float, length: float, flank_radius: float, tip_radius: float
+) -> bool:
+    """Whether a tip corner can decide the gap of ``flank_end``.
+
+    It can beyond its first contact. A corner that passes the tangent point has none: it can as soon as it is
+    outside the edge, and before that its gap is smaller than the edge's, from half the edge's length on.
+    """
+    if beyond > 0.0:
+        return True
+    if tip <= length or back <= 0.0 or edge <= 0.0:
+        return False
+    turn = beyond / tip_radius
+    t = length - tip_radius * math.sin(turn) - tip * math.cos(turn)
+    n = 2.0 * tip_radius * math.sin(0.5 * turn) ** 2 + tip * math.sin(turn)
+    return t * t + n * (n + 2.0 * flank_radius) > 0.25 * edge * edge
+
+
+@called
+def flank_end(
+    beyond: float, tip: float, back: float, edge: float, length: float, flank_radius: float, tip_radius: float
+) -> FlankEnd:
+    """Gap of a contact ``beyond`` the tip corner of one gear and ``back`` from the edge of the other [m].
+
+    The mate of the tip corner is the gear with the edge, whose undercut ends its flank there: of both gaps
+    the larger is left. Lengths as of ``corner_gap``; an ``edge`` of 0 is none.
+    """
+    gap = slope = tilt = 0.0
+    if tip_touches(beyond, tip, back, edge, length, flank_radius, tip_radius):
+        gap, slope, tilt = corner_gap(beyond, tip, length, flank_radius, tip_radius)
+    if edge > 0.0 and back > 0.0:
+        other = corner_gap(-back, edge, length, tip_radius, flank_radius)
+        if other.gap > gap:
+            return FlankEnd(other.gap, 0.0, other.slope, other.tilt)
+    return FlankEnd(gap, slope, 0.0, tilt)
+
+
+@called
+def tip_decides(
+    beyond: float, tip: float, back: float, edge: float, length: float, flank_radius: float, tip_radius: float
+) -> float:
+    """Positive where the tip corner decides the gap of ``flank_end``, and passes 0 where it begins to [m]."""
+    if edge <= 0.0:
+        return beyond
+    of_tip, of_edge = min(beyond, 0.0), 0.0
+    if tip_touches(beyond, tip, back, edge, length, flank_radius, tip_radius):
+        gap = corner_gap(beyond, tip, length, flank_radius, tip_radius).gap
+        of_tip = math.sqrt(max(gap, 0.0) * tip_radius)
+    if back > 0.0:
+        gap = corner_gap(-back, edge, length, tip_radius, flank_radius).gap
+        of_edge = math.sqrt(max(gap, 0.0) * tip_radius)
+    return of_tip - of_edge
+
+
 @inlined
 def ways_beyond(pair: Record, approach: float, line: Record) -> tuple[float, float]:
-    """Ways of the contact before the start and behind the end of the flanks [m]; inside both are negative.
+    """Ways of the contact beyond the tip corners of gear and pinion [m]; inside both are negative.
 
     Deflected teeth touch further outside by half of what the approach and the bearings add.
     """
     half = 0.5 * (approach + line.lengthening)
     return pair.before_start + half, pair.behind_end + half
+
+
+@inlined
+def ways_back(pair: Record, approach: float, line: Record) -> tuple[float, float]:
+    """Ways of the contact back from the edges of undercut pinion and gear [m]; inside both are negative.
+
+    Deflected teeth touch further up the flanks by half of what the approach and the bearings add.
+    """
+    half = 0.5 * (approach + line.lengthening)
+    return pair.before_edge - half, pair.behind_edge - half
+
+
+@inlined
+def deciding_tips(pair: Record, approach: float, line: Record, law: ContactLaw) -> tuple[float, float]:
+    """``tip_decides`` of a pair at the start and at the end of its flanks."""
+    before, behind = ways_beyond(pair, approach, line)
+    first, last = ways_back(pair, approach, line)
+    return (
+        tip_decides(
+            before, pair.tip_gear, first, pair.edge_pinion, line.length, law.radius_pinion, law.radius_gear
+        ),
+        tip_decides(
+            behind, pair.tip_pinion, last, pair.edge_gear, line.length, law.radius_gear, law.radius_pinion
+        ),
+    )
+
+
+@inlined
+def ends_of_pair(pair: Record, approach: float, line: Record, law: ContactLaw) -> tuple[FlankEnd, FlankEnd]:
+    """Gaps of a pair at the start and at the end of its flanks."""
+    before, behind = ways_beyond(pair, approach, line)
+    first, last = ways_back(pair, approach, line)
+    return (
+        flank_end(
+            before, pair.tip_gear, first, pair.edge_pinion, line.length, law.radius_pinion, law.radius_gear
+        ),
+        flank_end(
+            behind, pair.tip_pinion, last, pair.edge_gear, line.length, law.radius_gear, law.radius_pinion
+        ),
+    )
 
 
 @inlined
@@ -192,19 +310,11 @@ def open_gap(pair: Record, approach: float, line: Record, law: ContactLaw, conta
     contact.gap_by_position = pair.gap_slope
     contact.gap_by_approach = 0.0
     contact.tilt = 0.0
-    before, behind = ways_beyond(pair, approach, line)
-    if before > 0.0:
-        corner = corner_gap(before, pair.tip_gear, line.length, law.radius_pinion, law.radius_gear)
-        contact.gap += corner.gap
-        contact.gap_by_position -= corner.slope
-        contact.gap_by_approach += 0.5 * corner.slope
-        contact.tilt += corner.tilt
-    if behind > 0.0:
-        corner = corner_gap(behind, pair.tip_pinion, line.length, law.radius_gear, law.radius_pinion)
-        contact.gap += corner.gap
-        contact.gap_by_position += corner.slope
-        contact.gap_by_approach += 0.5 * corner.slope
-        contact.tilt += corner.tilt
+    start, end = ends_of_pair(pair, approach, line, law)
+    contact.gap += start.gap + end.gap
+    contact.gap_by_position += (start.edge_slope - start.tip_slope) + (end.tip_slope - end.edge_slope)
+    contact.gap_by_approach += 0.5 * (start.tip_slope + start.edge_slope + end.tip_slope + end.edge_slope)
+    contact.tilt += start.tilt + end.tilt
     contact.compression = approach - contact.gap
 
 

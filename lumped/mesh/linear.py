@@ -32,13 +32,14 @@ from lumped.mesh.element import (
     called,
     clear_force,
     damper_share,
+    deciding_tips,
     inlined,
     place_pair,
     record,
     rolling_rate,
     share_load,
     static_approach,
-    ways_beyond,
+    ways_back,
 )
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.typing import FloatArray, IntArray
@@ -61,8 +62,8 @@ PAIR_LOAD = record(
 )
 #: Numbers of a pair that change their sign at a kink: compression by its own load, load less that of the full
 #: damper, ways of the contact beyond the start and the end of the flanks. The last two are kinks of a slope.
-COMPRESSION, FULL_DAMPER, BEFORE_START, BEHIND_END = range(4)
-SIGNS = 4
+COMPRESSION, FULL_DAMPER, BEFORE_START, BEHIND_END, BEFORE_EDGE, BEHIND_EDGE = range(6)
+SIGNS = 6
 #: A kink so near to an end of a step, over the step, does not lie inside it.
 _AT_END = 1e-7
 #: Relative error of the static approach.
@@ -123,7 +124,7 @@ class Instant(NamedTuple):
     share : (nodes,) of each node in what is between them
     contacts, matrix : of ``share_load``
     loads : (pairs,) PAIR_LOAD
-    signs : (4, pairs) of ``SIGNS``
+    signs : (6, pairs) of ``SIGNS``
     static : (1,) the last static approach, from which the next one is sought [m]
     """
 
@@ -255,7 +256,10 @@ def write_signs(
         for n in range(pairs.size):
             at.signs[COMPRESSION, i] -= coupling[i, n] * at.contacts[n].load
         at.signs[FULL_DAMPER, i] = contact.load - law.full_damper
-        at.signs[BEFORE_START, i], at.signs[BEHIND_END, i] = ways_beyond(pair, static, line)
+        at.signs[BEFORE_START, i], at.signs[BEHIND_END, i] = deciding_tips(pair, static, line, law)
+        first, last = ways_back(pair, static, line)
+        at.signs[BEFORE_EDGE, i] = first if pair.edge_pinion > 0.0 else 0.0
+        at.signs[BEHIND_EDGE, i] = last if pair.edge_gear > 0.0 else 0.0
 
 
 @called

@@ -19,13 +19,14 @@ from lumped.mesh.element import (
     ContactLaw,
     Record,
     Records,
-    corner_gap,
     damper_share,
+    flank_end,
     inlined,
     open_gap,
     place_pair,
     share_load,
     static_approach,
+    tip_decides,
 )
 from lumped.typing import FloatArray
 
@@ -153,12 +154,34 @@ def middle_contacts(
 
 
 @compiled
-def corner_gaps(
-    beyond: FloatArray, tip: float, length: float, flank_radius: float, tip_radius: float
+def end_gaps(
+    beyond: FloatArray,
+    tip: float,
+    back: FloatArray,
+    edge: float,
+    length: float,
+    flank_radius: float,
+    tip_radius: float,
 ) -> FloatArray:
-    """Gaps of a tip corner (n,), see ``corner_gap``; 0 where it is not ``beyond`` (n,) its first contact."""
-    found = np.zeros(beyond.size)
+    """Gaps (n,) where flanks end in a tip corner and an edge, see ``flank_end``; ways (n,) [m]."""
+    found = np.empty(beyond.size)
     for i in range(beyond.size):
-        if beyond[i] > 0.0:
-            found[i] = corner_gap(beyond[i], tip, length, flank_radius, tip_radius).gap
+        found[i] = flank_end(beyond[i], tip, back[i], edge, length, flank_radius, tip_radius).gap
+    return found
+
+
+@compiled
+def deciding_ways(
+    beyond: FloatArray,
+    tip: float,
+    back: FloatArray,
+    edge: float,
+    length: float,
+    flank_radius: float,
+    tip_radius: float,
+) -> FloatArray:
+    """Where the tip corner decides the gap of ``end_gaps``, (n,) positive [m], see ``tip_decides``."""
+    found = np.empty(beyond.size)
+    for i in range(beyond.size):
+        found[i] = tip_decides(beyond[i], tip, back[i], edge, length, flank_radius, tip_radius)
     return found

@@ -17,7 +17,7 @@ import numpy as np
 from lumped.faults.base import ToothFault
 from lumped.mesh.element import FLANKS, QUICK, ContactLaw, Records
 from lumped.mesh.motion import RIPPLE
-from lumped.mesh.statics import corner_gaps
+from lumped.mesh.statics import end_gaps
 from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
@@ -168,9 +168,11 @@ class ToothLaws:
             np.linspace(0.0, self.high - self.low, 65)[1:],
             (g.base_radius_pinion, g.base_radius_gear),
         )
-        before = corner_gaps(beyond, tips[1], g.L_XY, *radii) / beyond**2
-        behind = corner_gaps(beyond, tips[0], g.L_XY, *radii[::-1]) / beyond**2
-        return g.L_XY - tips[1], tips[0], g.L_XY, _LEAST_GAP * before.min(), _LEAST_GAP * behind.min()
+        no_edge = -beyond, 0.0, g.L_XY  # an edge only adds to the gap
+        before = end_gaps(beyond, tips[1], *no_edge, *radii) / beyond**2
+        behind = end_gaps(beyond, tips[0], *no_edge, *radii[::-1]) / beyond**2
+        least = _LEAST_GAP * before.min(), _LEAST_GAP * behind.min()
+        return g.L_XY - tips[1], tips[0], g.L_XY, g.undercut_pinion, g.undercut_gear, *least
 
     def contact_law(self) -> ContactLaw:
         """Law of the contact for motions."""

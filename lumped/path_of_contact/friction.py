@@ -158,7 +158,7 @@ def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: Fricti
 
 
 def _positions(path: ContactPath) -> FloatArray:
-    return np.asarray(np.linspace(path.L_XA, path.L_XD, _CHECKED_POSITIONS + 2)[1:-1], dtype=np.float64)
+    return path.held(np.linspace(path.L_XA, path.L_XD, _CHECKED_POSITIONS + 2)[1:-1])
 
 
 @lru_cache(maxsize=256)

@@ -22,7 +22,7 @@ from lumped.path_function import PathFunction
 from lumped.typing import BoolArray, FloatArray
 
 #: Flanks without ends, and linear springs that any neighbour may move.
-_ENDLESS = np.array([(-np.inf, np.inf, np.inf, 0.0, 0.0)], FLANKS)
+_ENDLESS = np.array([(-np.inf, np.inf, np.inf, 0.0, 0.0, 0.0, 0.0)], FLANKS)
 _SPRINGS = ContactLaw(
     force=1.0,
     softening=0.0,

@@ -13,7 +13,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.mesh.element import CONTACT, EXACT, FLANKS, ContactLaw, Records
-from lumped.mesh.statics import Phases, middle_contacts, static_approaches, workspace
+from lumped.mesh.statics import Phases, deciding_ways, middle_contacts, static_approaches, workspace
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
@@ -232,7 +232,8 @@ class StaticMesh:
         # Pairs further from one that is followed are not.
         reach = int(g.contact_ratio + 2.0 * _REACH)
         self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
-        self.flanks = np.array([(g.L_XA, g.L_XD, g.L_XY, 0.0, 0.0)], FLANKS)
+        tips, edges = (g.L_XY - g.tip_length_gear, g.tip_length_pinion), (g.undercut_pinion, g.undercut_gear)
+        self.flanks = np.array([(*tips, g.L_XY, *edges, 0.0, 0.0)], FLANKS)
         self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
         self._fitted: PathFunction | None = None
 
@@ -303,6 +304,17 @@ class StaticMesh:
         """How far the contact point of deflected teeth is beyond where the tips leave the line, (n,) [m]."""
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
 
+    def ends(self, xi: FloatArray) -> tuple[FloatArray, ...]:
+        """Numbers (n,) that are 0 where a tip corner, or an edge of undercut teeth, begins to touch."""
+        g, half, length = self.geometry, self.half(xi), self.geometry.L_XY + self.lengthening
+        radii = g.base_radius_pinion, g.base_radius_gear
+        tips, edges = (g.tip_length_pinion, g.tip_length_gear), (g.undercut_pinion, g.undercut_gear)
+        beyond = g.L_XY - xi + half - tips[1], xi + half - tips[0]
+        back = edges[0] - xi - half, edges[1] - (g.L_XY - xi) - half
+        before = deciding_ways(beyond[0], tips[1], back[0], edges[0], length, *radii)
+        behind = deciding_ways(beyond[1], tips[0], back[1], edges[1], length, *radii[::-1])
+        return before, behind, *(way for way, edge in zip(back, edges, strict=True) if edge > 0.0)
+
 
 @lru_cache(maxsize=_KEPT)
 def _damping(pair: GearPair, ratio: float) -> PathFunction:
@@ -341,10 +353,11 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
             "pitches beyond its tips: lower the torque, check the stiffness."
         )
     low, high = float(contact[0, 0]), float(contact[-1, 1])
-    # A tip leaves the line of action where the pair is half the approach inside the path of contact.
     corners = [
-        *_roots(lambda x: x - g.L_XA - mesh.half(x), g.L_XA, g.L_XP),
-        *_roots(lambda x: g.L_XD - x - mesh.half(x), g.L_XP, g.L_XD),
+        place
+        for number in range(len(mesh.ends(np.array([g.L_XP]))))
+        for ends in ((low, g.L_XP), (g.L_XP, high))
+        for place in _roots(partial(_one_of, mesh.ends, number), *ends)
     ]
     marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
     inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
@@ -410,6 +423,12 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
         secant=PathFunction.fit(stiffness_of.extended, pieces, inside, tolerance=_TOLERANCE * largest),
         contact=contact,
     )
+
+
+def _one_of(
+    functions: Callable[[FloatArray], tuple[FloatArray, ...]], number: int, xi: FloatArray
+) -> FloatArray:
+    return functions(xi)[number]
 
 
 def _roots(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[float]:

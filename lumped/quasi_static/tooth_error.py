@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.mesh.statics import corner_gaps
+from lumped.mesh.statics import end_gaps
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
@@ -28,7 +28,7 @@ def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatAr
     """Material removed at roll angles of any shape: C s (linear) or C s^2 (parabolic) [m].
 
     s = (roll - start)/(end - start) where positive; ``end`` [rad] is that of the tip circle for tip
-    relief, of the start of the active flank (the mate's tip) for root relief.
+    relief, of the start of the active flank (the mate's tip, or the edge of an undercut) for root relief.
     """
     s = np.maximum((roll - relief.start_roll_angle) / (end - relief.start_roll_angle), 0.0)
     return np.asarray(relief.amount * (s if relief.shape == "linear" else s**2), dtype=np.float64)
@@ -63,14 +63,19 @@ def relief_starts(pair: GearPair) -> FloatArray:
 def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     """Gap between perfect flanks outside the path of contact, 0 within it [m].
 
-    Before A the corner of the gear's tip faces the pinion's flank, behind D the corner of the pinion's tip
-    faces the gear's. The gap is measured on the tangent from the corner to the flank's base circle: involutes
-    of one base circle are parallel curves. xi of any shape outside is where longer teeth would touch [m].
+    Before A the corner of the gear's tip faces the pinion's flank, or the edge of an undercut pinion the
+    gear's flank; behind D the corner of the pinion's tip faces the gear's flank, or the edge of an undercut
+    gear the pinion's. The gap is measured on the tangent from the corner to the flank's base circle:
+    involutes of one base circle are parallel curves. Of tip and edge the larger gap counts: the flanks end at
+    both. xi of any shape outside is where longer teeth would touch [m].
     """
     g, place = geometry, np.asarray(xi, dtype=float)
-    radii, at = (g.base_radius_pinion, g.base_radius_gear), place.ravel()
-    before = corner_gaps(g.L_XA - at, g.L_XY - g.L_XA, g.L_XY, *radii)
-    behind = corner_gaps(at - g.L_XD, g.L_XD, g.L_XY, *radii[::-1])
+    at, radii = place.ravel(), (g.base_radius_pinion, g.base_radius_gear)
+    tips, edges = (g.tip_length_pinion, g.tip_length_gear), (g.undercut_pinion, g.undercut_gear)
+    way = g.L_XY - at - tips[1], at - tips[0]
+    back = edges[0] - at, edges[1] - (g.L_XY - at)
+    before = end_gaps(way[0], tips[1], back[0], edges[0], g.L_XY, *radii)
+    behind = end_gaps(way[1], tips[0], back[1], edges[1], g.L_XY, *radii[::-1])
     return np.asarray((before + behind).reshape(place.shape), dtype=np.float64)
 
 
@@ -96,8 +101,8 @@ class _Relief:
 def _reliefs(pair: GearPair) -> list[_Relief]:
     g = pair.geometry
     sides = (
-        ("pinion", pair.pinion, g.base_radius_pinion, g.L_XD, g.L_XA, 0.0, 1.0),
-        ("gear", pair.gear, g.base_radius_gear, g.L_XY - g.L_XA, g.L_XY - g.L_XD, g.L_XY, -1.0),
+        ("pinion", pair.pinion, g.base_radius_pinion, g.tip_length_pinion, g.L_XA, 0.0, 1.0),
+        ("gear", pair.gear, g.base_radius_gear, g.tip_length_gear, g.L_XY - g.L_XD, g.L_XY, -1.0),
     )
     found = []
     for which, gear, radius, tip, root, origin, sense in sides:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from lumped.errors import ParameterError, refuse
+from lumped.errors import ParameterError, quoted, refuse
 from lumped.fields.refusals import field_of, unknown_key
 from lumped.fields.scope import about_teeth
 from lumped.fields.section import Section
@@ -74,8 +74,9 @@ def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for name, value in request.items():
         if name == "teeth":
-            if (teeth := _TEETH.fullmatch(str(value))) is None:
-                action = about_teeth(str(value)) or "For example 19/41."
+            text = value if isinstance(value, str) else quoted(value)
+            if (teeth := _TEETH.fullmatch(text)) is None:
+                action = about_teeth(text) or "For example 19/41."
                 raise refuse("teeth", value, "PINION/GEAR", action)
             values |= dict(zip(fields_of(name), map(int, teeth.groups()), strict=True))
         elif name == "oil":

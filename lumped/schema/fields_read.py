@@ -13,7 +13,7 @@ from lumped.friction.table import TABLE
 from lumped.schema.assumed import WORDS, within
 from lumped.schema.changes import fields_of
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.pair import GearPair, leaf_paths
+from lumped.schema.pair import GearPair, field_values
 from lumped.stiffness.base import TOOTH_FORM
 
 #: What a friction law reads, by the names of ``ContactPath`` and ``FrictionSettings`` -> fields that it comes
@@ -60,7 +60,7 @@ def fields_read(pair: AnyPair, *, contact_lost: bool = False) -> frozenset[str]:
 
     Returns
     -------
-    dotted paths of fields that have a value, without the name and the description
+    dotted paths of fields that have a value or one that follows from others, without name and description
 
     Examples
     --------
@@ -78,7 +78,7 @@ def fields_read(pair: AnyPair, *, contact_lost: bool = False) -> frozenset[str]:
     read = [*_both(used)]
     return frozenset(
         path
-        for path in leaf_paths(pair)
+        for path in field_values(pair)
         if path not in WORDS
         and (any(within(path, one) for one in read) or not any(within(path, one) for one in unread))
     )

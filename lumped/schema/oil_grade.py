@@ -10,7 +10,7 @@ import re
 
 import numpy as np
 
-from lumped.errors import refuse, shown
+from lumped.errors import quoted, refuse, shown
 from lumped.fields.units import to_si
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT
 
@@ -37,7 +37,8 @@ def grade_of(value: object, field: str = "") -> int:
     >>> grade_of("ISO VG 68"), grade_of("68 cSt"), grade_of("4.6 mm2/s at 40 °C")
     (68, 68, 5)
     """
-    if found := _GRADE.fullmatch(str(value)) if isinstance(value, (int, str, np.integer)) else None:
+    text = value if isinstance(value, str) else quoted(value)
+    if found := _GRADE.fullmatch(text) if isinstance(value, (int, str, np.integer)) else None:
         return int(found[1])
     allowed = "an ISO viscosity grade, such as 'ISO VG 220', or its viscosity at 40 degC"
     try:
@@ -47,10 +48,10 @@ def grade_of(value: object, field: str = "") -> int:
     if math.isnan(nu):
         action = (
             "SAE numbers are classes of the viscosity at 100 degC: write the ISO VG grade of the data sheet."
-            if "sae" in str(value).lower()
+            if "sae" in text.lower()
             else "For example vg220."
         )
-        raise refuse(field, shown(str(value)), allowed, action)
+        raise refuse(field, shown(text), allowed, action)
     for grade, middle in ISO_VG_MIDPOINT.items():
         if math.isclose(nu, middle, rel_tol=1e-9):
             return grade
@@ -59,4 +60,4 @@ def grade_of(value: object, field: str = "") -> int:
         f"No grade of ISO 3448 has that mid-point; the nearest is VG {near}. For an oil between grades write "
         "kinematic_viscosity_40 and kinematic_viscosity_100 in lubricant.viscosity_law."
     )
-    raise refuse(field, shown(str(value)), allowed, action)
+    raise refuse(field, shown(text), allowed, action)

@@ -65,6 +65,8 @@ def nominal_contact(
         roughness=0.5 * (pinion.roughness + gear.roughness),
         composite_roughness=composite,
         film_length=friction.film_length,
+        edge_pinion=g.undercut_pinion,
+        edge_gear=g.undercut_gear,
     )
 
 

@@ -43,6 +43,7 @@ from lumped.gear_geometry.profile_shift import (
 )
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
+from lumped.schema.advice import advised
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
@@ -170,7 +171,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
-        problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
+        problems = advised(self, existence_problems(*self.wheels, self.geometry, self.mesh.backlash))
         problems = self._of_contradicting_sizes(problems)
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if self.friction.law == TABLE and self.friction.table is not None and not problems:
@@ -391,7 +392,7 @@ class GearPair(Section, metaclass=_InOurWords):
         """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""
         g, gear = self.geometry, (self.pinion, self.gear)[which]
         moduli = [one.youngs_modulus / (1.0 - one.poisson_ratio**2) for one in (self.pinion, self.gear)]
-        tip, start = ((g.L_XD, g.L_XA), (g.L_XY - g.L_XA, g.L_XY - g.L_XD))[which]
+        tip, start = ((g.tip_length_pinion, g.L_XA), (g.tip_length_gear, g.L_XY - g.L_XD))[which]
         hertz = 2.0 * (1.0 / moduli[0] + 1.0 / moduli[1]) / (math.pi * g.face_width)
         return Flank(self.wheels[which], tip, start, g.face_width, gear.youngs_modulus, hertz)
 
@@ -540,6 +541,12 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 
     walk({k: v for k, v in pair.to_mapping().items() if k not in ABOUT}, "")
     return result
+
+
+def field_values(pair: GearPair) -> dict[str, Any]:
+    """Return `leaf_paths` and, where a file does not give them, the profile shifts and tips that follow."""
+    written = leaf_paths(pair)
+    return written | {path: value for path, value in pair.assumed.items() if path not in written}
 
 
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:

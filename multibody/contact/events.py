@@ -101,6 +101,13 @@ def _change(law: PathFunction, j: int, step: float) -> float:
 
 
 @compiled
+def edge_reach(gap: float, edge: float, length: float, radius: float) -> float:
+    """About how far back from an edge a gap is closed [m], to the leading order of ``corner_off``."""
+    bend = (edge / radius) ** 2 * (1.0 / edge + 1.0 / (length - edge))
+    return math.sqrt(2.0 * max(gap, 0.0) / bend)
+
+
+@compiled
 def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArray, flags: int) -> float:
     """How far beyond D the pinion's tip corner, the flanks pressed by ``gap``, lets go [m].
 
@@ -166,7 +173,7 @@ def distance(
     length = line.length
     shifted = flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT)
     first, last = kind == FIRST_TOUCH, kind in (LET_GO, LAST_TOUCH)
-    beyond = 0.0
+    beyond = gap = 0.0
     # The loads of other pairs depend little on where exactly the pair will be.
     for _ in range(_PLACES if first or last else 0):
         if first:
@@ -182,10 +189,19 @@ def distance(
                 beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
         if count == 0:
             break
+    # Where undercut ends the flank of the mate: its edge lets go as soon as the tip does, at most.
     if kind == EXIT or last:
-        return float(p[kn.TIP_P] if shifted else p[kn.L_XD]) + beyond - rho
+        end = p[kn.TIP_P] + beyond
+        if p[kn.EDGE_G] > 0.0:
+            way = edge_reach(gap, p[kn.EDGE_G], length, p[kn.RADIUS_G]) if last else 0.0
+            end = min(end, length + delta - p[kn.EDGE_G] + way)
+        return float(end if shifted else p[kn.L_XD]) - rho
     if kind == ENTRY or first:
-        return float(length + delta - p[kn.TIP_G] if shifted else p[kn.L_XA]) - beyond - rho
+        start = length + delta - p[kn.TIP_G] - beyond
+        if p[kn.EDGE_P] > 0.0:
+            way = edge_reach(gap, p[kn.EDGE_P], length, p[kn.RADIUS_P]) if first else 0.0
+            start = max(start, p[kn.EDGE_P] - way)
+        return float(start if shifted else p[kn.L_XA]) - rho
     if kind == SLIDING and flags & kn.SLIDING:
         omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
         arm = xi + 0.5 * (length - p[kn.L_XY])

@@ -190,9 +190,19 @@ def friction_size(
 
 
 @compiled
+def at_edge(p: FloatArray, xi: float) -> float:
+    """Position at which the law is evaluated: that of the edge of an undercut for a contact beyond it [m]."""
+    if p[kn.EDGE_P] > 0.0:
+        xi = max(xi, p[kn.EDGE_P])
+    if p[kn.EDGE_G] > 0.0:
+        xi = min(xi, p[kn.L_XY] - p[kn.EDGE_G])
+    return xi
+
+
+@compiled
 def nominal_friction(p: FloatArray, xi: float) -> float:
     """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
-    f = p[kn.FRICTION :]
+    f, xi = p[kn.FRICTION :], at_edge(p, xi)
     distance = xi - p[kn.L_XP]
     sliding = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * abs(distance)
     rho_g = p[kn.L_XY] - xi
@@ -222,7 +232,8 @@ def signed_friction(
     load = max(normal, 0.0) / f[FACE_WIDTH] if flags & kn.FRICTION_LOAD else f[NOMINAL_LOAD]
     speeds = p[kn.OMEGA_P] + p[kn.OMEGA_G]
     if not flags & kn.SLIDING:
-        slide, rho_p, rho_g = flank * speeds * (xi - p[kn.L_XP]), xi, p[kn.L_XY] - xi
+        rho_p = at_edge(p, xi)
+        slide, rho_g = flank * speeds * (rho_p - p[kn.L_XP]), p[kn.L_XY] - rho_p
         rolling = p[kn.OMEGA_P] * rho_p + p[kn.OMEGA_G] * rho_g
     if slide == 0.0:
         return 0.0

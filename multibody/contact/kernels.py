@@ -108,8 +108,9 @@ def contact_forces(
                 if xi < p[kn.L_XA] or xi > p[kn.L_XD]:
                     error_slope, held = 0.0, min(max(xi, p[kn.L_XA]), p[kn.L_XD])
                     error = relief_at(p, held, more_p, more_g)[0]
-                corners = corners_at(line, rho_p, rho_g, tip_p, tip_g)
-                beyond = rho_p > tip_p or rho_g > tip_g
+                edges = p[kn.EDGE_P], p[kn.EDGE_G]
+                corners = corners_at(line, rho_p, rho_g, (tip_p, tip_g), edges)
+                beyond = rho_p > tip_p or rho_g > tip_g or rho_p < edges[0] or rho_g < edges[1]
                 pressed = delta - error - late - corners.gap
                 if beyond and pressed < -abs(delta):
                     continue  # further apart than any neighbour could move it
@@ -132,7 +133,7 @@ def contact_forces(
             share = 1.0 / (1.0 + own_teeth.softer * k)
             known[kn.STIFFNESS, i] = share * k
             known[kn.SLOPE, i] = share * share * (slope - k * k * own_teeth.slope)
-            known[kn.BEYOND, i] = 1.0 if rho_p > tip_p or rho_g > tip_g else 0.0
+            known[kn.BEYOND, i] = 1.0 if beyond or rho_p > tip_p or rho_g > tip_g else 0.0
             if not coupled:
                 load = elastic_load(pressed, known[kn.STIFFNESS, i], softening, nominal)
                 known[kn.NORMAL, i] = load if bound >> i & 1 else max(load, 0.0)

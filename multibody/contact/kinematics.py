@@ -31,6 +31,7 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
     RADIUS_P, RADIUS_G, PITCH, TIP_P, TIP_G,  # base radii, base pitch, tangent lengths of the tip circles
+    EDGE_P, EDGE_G,  # tangent lengths at which undercuts end the flanks, 0 without undercut
     CHI_P, APART, CHI_P_BACK, APART_BACK,  # chi_p and overlap of mesh_phase: drive and coast side
     CENTRE_PX, CENTRE_PY, CENTRE_GX, CENTRE_GY,  # nominal centres
     L_XA, L_XP, L_XD, L_XY,  # nominal path of contact
@@ -43,7 +44,7 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
     OWN,  # where the block of ``machine.own_block`` starts, or 0
     RELIEFS,  # number of reliefs that act
     FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
-) = range(33)  # fmt: skip
+) = range(35)  # fmt: skip
 #: Columns of one relief, and the most reliefs: tip and root of both flanks.
 RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
 #: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
@@ -247,12 +248,23 @@ def corner_gap(
     """
     if beyond <= 0.0:
         return 0.0, 0.0, 0.0
+    return corner_off(beyond, tip, length, radius, mate)
+
+
+@compiled
+def corner_off(
+    beyond: float, tip: float, length: float, radius: float, mate: float
+) -> tuple[float, float, float]:
+    """The gap of ``corner_gap`` for a corner on either side of its contact on the line of action.
+
+    A negative ``beyond`` is the way back from the edge of an undercut flank.
+    """
     turn = beyond / radius
     sine, cosine = math.sin(turn), math.cos(turn)
     # Where the corner stands from the mate's tangent point: back along the line, and off it.
     back = length - radius * sine - tip * cosine
     off = 2.0 * radius * math.sin(0.5 * turn) ** 2 + tip * sine
-    tangent = math.sqrt(back * back + off * (off + 2.0 * mate))
+    tangent = math.sqrt(max(back * back + off * (off + 2.0 * mate), 0.0))
     angle = math.atan2(back, off + mate) - math.atan2(tangent, mate)
     gap = tangent + mate * angle - (length - tip - beyond)
     ratio = tip / radius
@@ -280,18 +292,25 @@ def corner_reach(gap: float, tip: float, length: float, radius: float, mate: flo
 
 @compiled
 def pairs_in_contact(
-    rho: float, delta: float, length: float, pitch: float, tip_p: float, tip_g: float, arms: FloatArray
+    rho: float,
+    delta: float,
+    length: float,
+    pitch: float,
+    ends_p: tuple[float, float],
+    ends_g: tuple[float, float],
+    arms: FloatArray,
 ) -> int:
-    """Find every pair of teeth whose flanks meet between base and tip circles; returns their number.
+    """Find every pair of teeth whose flanks meet between their ends; returns their number.
 
-    tip_p, tip_g : rho at the tip circles, tangent lengths sqrt(r_a^2 - r_b^2) [m]
+    ends_p, ends_g : rho between which flanks are looked at: from 0 or the edge of an undercut to the tip
+        circles, tangent lengths sqrt(r_a^2 - r_b^2) [m]
     arms : (MAX_PAIRS, 2) receives the flank distances (rho_p, rho_g), newest pair first [m]
     """
     count = 0
-    rho_p = rho
-    while rho_p <= tip_p and count < MAX_PAIRS:
+    rho_p = rho - pitch if ends_p[0] < 0.0 else rho
+    while rho_p <= ends_p[1] and count < MAX_PAIRS:
         rho_g = length + delta - rho_p
-        if 0.0 <= rho_g <= tip_g:
+        if rho_p >= ends_p[0] and ends_g[0] <= rho_g <= ends_g[1]:
             arms[count, 0] = rho_p
             arms[count, 1] = rho_g
             count += 1
@@ -300,9 +319,9 @@ def pairs_in_contact(
 
 
 class Corners(NamedTuple):
-    """Gap that tip corners beyond the path leave [m], its derivatives by both flank distances and the length.
+    """Gap that corners beyond the path leave [m], its derivatives by both flank distances and the length.
 
-    Only one of them is ever beyond its tip.
+    A corner is that of a tip, or the edge of an undercut. Only one of them ever decides the gap.
     """
 
     gap: float
@@ -312,12 +331,44 @@ class Corners(NamedTuple):
 
 
 @compiled
-def corners_at(line: Line, rho_p: float, rho_g: float, tip_p: float, tip_g: float) -> Corners:
-    """Gap at the tip corners of the tooth pair with flank distances rho_p and rho_g [m]."""
+def end_of_flank(
+    rho: float, tip: float, mate_rho: float, edge: float, length: float, radius: float, mate: float
+) -> tuple[float, float, float, float]:
+    """Gap where one gear ends at its tip, and its mate at the edge of an undercut [m].
+
+    Of both gaps the larger is left. A corner whose ``tip`` is longer than the line never touches the line,
+    and decides once it is outside the edge; nearer to the base circle its gap is the smaller one.
+
+    rho, tip, radius : flank distance, tangent length of the tip circle, base radius of the gear with the tip
+    mate_rho, edge, mate : flank distance, tangent length of the edge (0: none), base radius of its mate
+    Returns the gap, its derivatives by ``rho``, by ``mate_rho`` and by ``length``
+    """
+    gap, by_tip, by_length = corner_gap(rho - tip, tip, length, radius, mate)
+    if edge > 0.0 and mate_rho < edge:
+        if rho <= tip and tip > length:
+            turn = (rho - tip) / radius
+            back = length - radius * math.sin(turn) - tip * math.cos(turn)
+            off = 2.0 * radius * math.sin(0.5 * turn) ** 2 + tip * math.sin(turn)
+            if back * back + off * (off + 2.0 * mate) > 0.25 * edge * edge:
+                gap, by_tip, by_length = corner_off(rho - tip, tip, length, radius, mate)
+        at_edge, by_edge, longer = corner_off(mate_rho - edge, edge, length, mate, radius)
+        if at_edge > gap:
+            return at_edge, 0.0, by_edge, longer
+    return gap, by_tip, 0.0, by_length
+
+
+@compiled
+def corners_at(
+    line: Line, rho_p: float, rho_g: float, tips: tuple[float, float], edges: tuple[float, float]
+) -> Corners:
+    """Gap at the ends of the flanks of the tooth pair with flank distances rho_p and rho_g [m].
+
+    tips, edges : tangent lengths of tip circles and edges of pinion and gear [m], an edge of 0 is none
+    """
     length, radius_p, radius_g = line.length, line.radius_p, line.radius_g
-    gap_p, by_p, length_p = corner_gap(rho_p - tip_p, tip_p, length, radius_p, radius_g)
-    gap_g, by_g, length_g = corner_gap(rho_g - tip_g, tip_g, length, radius_g, radius_p)
-    return Corners(gap_p + gap_g, by_p, by_g, length_p + length_g)
+    end = end_of_flank(rho_p, tips[0], rho_g, edges[1], length, radius_p, radius_g)
+    start = end_of_flank(rho_g, tips[1], rho_p, edges[0], length, radius_g, radius_p)
+    return Corners(end[0] + start[0], end[1] + start[2], end[2] + start[1], end[3] + start[3])
 
 
 @compiled
@@ -349,12 +400,17 @@ def mesh_position(
 @compiled
 def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, arms: FloatArray) -> int:
     """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift."""
-    if flags & TIP_CONTACT:  # candidates; those beyond the tips touch where they press
+    edge_p, edge_g = p[EDGE_P], p[EDGE_G]
+    if flags & TIP_CONTACT:  # candidates; those beyond the ends touch where they press
         reach = _REACH * p[PITCH]
-        return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P] + reach, p[TIP_G] + reach, arms)
+        ends_p = (edge_p - reach if edge_p > 0.0 else 0.0, p[TIP_P] + reach)
+        ends_g = (edge_g - reach if edge_g > 0.0 else 0.0, p[TIP_G] + reach)
+        return pairs_in_contact(rho, delta, length, p[PITCH], ends_p, ends_g, arms)
     if flags & ENTRY_SHIFT:
-        return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P], p[TIP_G], arms)
-    return pairs_in_contact(rho, 0.0, p[L_XY], p[PITCH], p[L_XD], p[L_XY] - p[L_XA], arms)
+        ends_p, ends_g = (edge_p, p[TIP_P]), (edge_g, p[TIP_G])
+        return pairs_in_contact(rho, delta, length, p[PITCH], ends_p, ends_g, arms)
+    ends_p, ends_g = (0.0, p[L_XD]), (0.0, p[L_XY] - p[L_XA])
+    return pairs_in_contact(rho, 0.0, p[L_XY], p[PITCH], ends_p, ends_g, arms)
 
 
 @compiled

@@ -38,6 +38,7 @@ from multibody.contact import kinematics as kn
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import event_table
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
+from multibody.contact.undercut import undercut_edge
 from multibody.gears.cut_teeth import profile_shifts, root_radius
 from multibody.shafts.train import Train, train
 
@@ -160,20 +161,21 @@ def machine(
     softening, coupling = contact_softening(pair), cross_compliances(pair)[: kn.MAX_PAIRS - 1]
     r_p, r_g, pitch, l_xy = drawn.base_pinion, drawn.base_gear, drawn.pitch, drawn.tangent
     tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear
-    l_xa, l_xp = l_xy - tip_g, l_xy * r_p / (r_p + r_g)
+    l_xa, l_xd, l_xp = drawn.start, drawn.end, l_xy * r_p / (r_p + r_g)
     omega_p = pair.operating.pinion_speed
     p = np.zeros(kn.N_PARAMETERS)
     p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH] = r_p, r_g, pitch
     p[kn.TIP_P], p[kn.TIP_G] = tip_p, tip_g
+    p[kn.EDGE_P], p[kn.EDGE_G] = drawn.edge_pinion, drawn.edge_gear
     # At t = 0 the line of action is the x axis and one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA,
     # so chi_g = pi - rho_g/r_bg, and the flanks are neither apart nor pressed.
     p[kn.CHI_P] = -l_xa / r_p
     # The other flank of the same tooth starts one base tooth thickness further on (see kinematics).
     p[kn.CHI_P_BACK] = p[kn.CHI_P] + math.pi + tooth_p
-    chi_g = math.pi + tooth_g - tip_g / r_g
+    chi_g = math.pi + tooth_g - (l_xy - l_xa) / r_g
     p[kn.APART_BACK] = r_p * p[kn.CHI_P_BACK] + r_g * chi_g - l_xy
     p[kn.CENTRE_PY], p[kn.CENTRE_GX], p[kn.CENTRE_GY] = -r_p, l_xy, r_g
-    p[kn.L_XA], p[kn.L_XP], p[kn.L_XD], p[kn.L_XY] = l_xa, l_xp, tip_p, l_xy
+    p[kn.L_XA], p[kn.L_XP], p[kn.L_XD], p[kn.L_XY] = l_xa, l_xp, l_xd, l_xy
     p[kn.OMEGA_P], p[kn.OMEGA_G] = omega_p, omega_p * r_p / r_g
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
     p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(_mesh_mass(p, inertia))
@@ -201,7 +203,7 @@ def machine(
         starts += [l_xy - place if which else place for place in kinks]
     places = [place for _, place in friction]
     table = pack(stiffness)
-    switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch)
+    switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, l_xd, pitch)
     if loaded and flags & kn.LINEAR and cycle is not None:
         table, switches = _loaded_laws(cycle, p)
     found = Machine(
@@ -213,8 +215,8 @@ def machine(
         bearing_damping=bearing_damping,
         torque_pinion=pair.operating.pinion_torque,
         torque_gear=pair.operating.pinion_torque,
-        pairs=math.floor((tip_p - l_xa) / pitch) + 1,
-        ahead=math.floor((tip_p - l_xa) / pitch),
+        pairs=math.floor((l_xd - l_xa) / pitch) + 1,
+        ahead=math.floor((l_xd - l_xa) / pitch),
         period=pitch / (omega_p * r_p),
         switches=switches,
         events=event_table(stiffness, starts, friction, pitch, corners=bool(flags & kn.TIP_CONTACT)),
@@ -348,7 +350,11 @@ def switch_phases(places: Sequence[float], l_xa: float, l_xd: float, pitch: floa
 
 @dataclass(frozen=True)
 class Circles:
-    """Circles and path of contact of a pair: base radii, base pitch, tip radii, centre distance [m]."""
+    """Circles and path of contact of a pair: base radii, base pitch, tip radii, centre distance [m].
+
+    An undercut ends a flank at the length ``edge_pinion`` or ``edge_gear`` on its base tangent; 0 without
+    one.
+    """
 
     base_pinion: float
     base_gear: float
@@ -356,16 +362,28 @@ class Circles:
     tip_pinion: float
     tip_gear: float
     centre_distance: float
+    edge_pinion: float
+    edge_gear: float
 
     @property
     def reach_pinion(self) -> float:
-        """Length on the pinion's base tangent from X to its tip circle: L_XD."""
+        """Length on the pinion's base tangent from X to its tip circle."""
         return math.sqrt(self.tip_pinion**2 - self.base_pinion**2)
 
     @property
     def reach_gear(self) -> float:
-        """Length on the gear's base tangent from Y to its tip circle: L_XY - L_XA."""
+        """Length on the gear's base tangent from Y to its tip circle."""
         return math.sqrt(self.tip_gear**2 - self.base_gear**2)
+
+    @property
+    def start(self) -> float:
+        """L_XA: where the gear's tip or the pinion's edge begins contact."""
+        return max(self.tangent - self.reach_gear, self.edge_pinion)
+
+    @property
+    def end(self) -> float:
+        """L_XD: where the pinion's tip or the gear's edge ends contact."""
+        return min(self.reach_pinion, self.tangent - self.edge_gear)
 
     @property
     def tangent(self) -> float:
@@ -379,6 +397,7 @@ def circles(pair: GearPair) -> Circles:
     cosine = math.cos(rack.pressure_angle)
     r_p, r_g = (0.5 * rack.module * gear.teeth * cosine for gear in (pair.pinion, pair.gear))
     centre = _close_mesh(pair, r_p + r_g) if pair.centre_distance is None else pair.centre_distance
+    shifts = profile_shifts(pair)
     return Circles(
         base_pinion=r_p,
         base_gear=r_g,
@@ -386,6 +405,8 @@ def circles(pair: GearPair) -> Circles:
         tip_pinion=_tip_radius(pair, 0, centre),
         tip_gear=_tip_radius(pair, 1, centre),
         centre_distance=centre,
+        edge_pinion=undercut_edge(pair.basic_rack, pair.pinion.teeth, shifts[0]),
+        edge_gear=undercut_edge(pair.basic_rack, pair.gear.teeth, shifts[1]),
     )
 
 
@@ -415,18 +436,15 @@ def bearing_constants(pair: GearPair, mass: FloatArray) -> tuple[FloatArray, Flo
 def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, float, float]]:
     """Reliefs that act: gear (0 pinion, 1 gear), roll angles of start and end [rad], amount [m], power.
 
-    A tip relief ends at the tip, a root relief where the mate's tip touches last. Without
+    A tip relief ends at the tip, a root relief where contact starts or ends on its flank. Without
     ``mesh.relief = "static"`` none acts but what single teeth have beyond it, with the amount 0 here.
     """
     rows = []
-    for which, gear, base, tip, mate in (
-        (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.reach_gear),
-        (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.reach_pinion),
+    for which, gear, base, tip, root in (
+        (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.start),
+        (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.tangent - drawn.end),
     ):
-        for relief, end, sense in (
-            (gear.tip_relief, tip, -1.0),
-            (gear.root_relief, drawn.tangent - mate, 1.0),
-        ):
+        for relief, end, sense in ((gear.tip_relief, tip, -1.0), (gear.root_relief, root, 1.0)):
             own = gear.deviations is not None and gear.deviations.tip_relief is not None
             acts = pair.mesh.relief == "static"
             if relief is None or not (own or (acts and relief.amount != 0.0)):

@@ -68,7 +68,7 @@ def _standard(pair: GearPair) -> Check:
     width = min(pair.pinion.face_width, pair.gear.face_width)
     single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
     c = circles(pair)
-    contact_ratio = (c.reach_pinion - c.tangent + c.reach_gear) / c.pitch
+    contact_ratio = (c.end - c.start) / c.pitch
     twice = (
         (iso6336.single_of(pair), single),
         (iso6336.mean_of(pair), single * (0.75 * contact_ratio + 0.25)),

@@ -57,7 +57,7 @@ def _geometry(pair: GearPair) -> Check:
     g, c = pair.geometry, circles(pair)
     both = c.base_pinion + c.base_gear
     omega = pair.operating.pinion_speed
-    start, end = c.tangent - c.reach_gear, c.reach_pinion
+    start, end = c.start, c.end
     both_ways = [
         (g.base_radius_pinion, c.base_pinion), (g.base_radius_gear, c.base_gear),
         (g.tip_radius_pinion, c.tip_pinion), (g.tip_radius_gear, c.tip_gear), (g.base_pitch, c.pitch),
@@ -176,7 +176,7 @@ class _Mesh:
         found, tilt = np.empty(places.size), np.empty(places.size)
         for i, xi in enumerate(places):
             arms = xi + half, p[kn.L_XY] - xi + half
-            corners = corners_at(line, *arms, p[kn.TIP_P], p[kn.TIP_G])
+            corners = corners_at(line, *arms, (p[kn.TIP_P], p[kn.TIP_G]), (p[kn.EDGE_P], p[kn.EDGE_G]))
             relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]), 0.0, 0.0)
             found[i], wrench = delta - relief - corners.gap, np.zeros(6)
             add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)

@@ -12,6 +12,7 @@ import numpy as np
 from lumped import GearPair
 from lumped.faults.crack import root_section
 from lumped.lubrication.viscosity import viscosity_index
+from multibody.contact.undercut import undercut_edge
 from tests.guards.by_hand import ByHand, inv, root_of
 from tests.guards.guard import MATE, Changes, Choice, Guard, curve, friction, relief
 
@@ -82,7 +83,48 @@ def _widest(hand: ByHand) -> float:
     return hand.base_radii / math.cos(root_of(lambda angle: inv(angle) - involute, 0.0, 1.4))
 
 
+def _edge(hand: ByHand) -> float:
+    """Length at which the undercut ends the flank, as the other model draws it [mm]."""
+    return 1e3 * undercut_edge(hand.pair.basic_rack, hand.z, hand.x)
+
+
+def _deepest_tip(hand: ByHand) -> float:
+    """Tip radius of the mate with which its corner is 1e-4 modules in the tooth, at some angle [mm].
+
+    The corner's path in axes that turn with the gear, beside the cuts of the rack's tip: a point of the path
+    at the radius R is compared with the cut there, both as angles from the middle of the space.
+    """
+    mate, r, m = hand.mate, hand.r, hand.m
+    down = m * (hand.dedendum - hand.fillet - hand.x)
+    off = m * (0.25 * math.pi - (hand.dedendum - hand.fillet) * math.tan(hand.alpha))
+    off -= m * hand.fillet / math.cos(hand.alpha)
+    roll = np.linspace(off / r, off / r - down / (r * math.tan(hand.alpha)), 4001)
+    stretch = 1.0 + m * hand.fillet / np.hypot(off - r * roll, down)
+    cut = ((off - r * roll) * stretch + 1j * (r - down * stretch)) * np.exp(-1j * roll)
+    far, cut_at = np.abs(cut), np.arctan2(cut.real, cut.imag)
+    centre = hand.base_radii / math.cos(hand.operating_angle)
+    play = math.pi / hand.z - (hand.psi_b - inv(hand.operating_angle))
+    play -= (mate.psi_b - inv(hand.operating_angle)) * mate.z / hand.z  # to the driving flank from the middle
+
+    def depth(tip: float) -> float:
+        half = mate.psi_b - inv(math.acos(mate.r_b / tip))
+        turn = np.linspace(-0.2, 0.6, 40001)
+        seen = centre - tip * np.exp(1j * (turn + half))
+        at = np.abs(np.angle(seen) + turn * mate.z / hand.z) + play
+        met = (np.abs(seen) > far[0]) & (np.abs(seen) < math.hypot(hand.r_b, _edge(hand)))
+        room = np.interp(np.abs(seen[met]), far, cut_at) - at[met]
+        return float(-(np.abs(seen[met]) * room).min()) - 1e-4 * m
+
+    return root_of(depth, mate.r_a, mate.r_a + 0.5 * m)
+
+
 _GEOMETRY, _SHIFT = "lumped/gear_geometry/geometry.py", "lumped/gear_geometry/profile_shift.py"
+_FEW = {
+    "pinion.teeth": 11, "gear.teeth": 61, "pinion.profile_shift": 0.0, "gear.profile_shift": 0.0,
+    "centre_distance": None, "pinion.addendum": None, "gear.addendum": None, "pinion.tip_diameter": None,
+    "gear.tip_diameter": None, "basic_rack.dedendum_coefficient": 1.4,
+    "basic_rack.fillet_radius_coefficient": 0.25, "basic_rack.addendum_coefficient": 1.0,
+}  # fmt: skip
 _MANY = {
     "pinion.teeth": 150, "gear.teeth": 161, "shafts": None, "basic_rack.pressure_angle": 14.5,
     "basic_rack.addendum_coefficient": 1.2, "basic_rack.dedendum_coefficient": 2.0,
@@ -119,7 +161,14 @@ GEOMETRY = (
     Guard(_GEOMETRY, "{gear}.profile_shift", RACK_25,
           "contact ends above the rack's fillet; 1e-9 of a module is rounding",
           most=of(lambda h: h.mate.tip_diameter(h.line - h.form_length)), near=1e-8,
-          sets="{mate}.tip_diameter", says="undercut or fillet", beside=True),
+          sets="{mate}.tip_diameter", says="contact above the form circle", beside=True),
+    Guard(_GEOMETRY, "contact_ratio", SMALL, "undercut ends the flank before the tip does: epsilon >= 1",
+          least=of(lambda h: h.tip_diameter(h.base_pitch + _edge(h))), sets="pinion.tip_diameter",
+          says="Undercut shortens", after=_FEW),
+    Guard(_GEOMETRY, "pinion.profile_shift", SMALL,
+          "the mate's tip corner may overlap the undercut tooth by 1e-4 of a module as both turn",
+          most=of(lambda h: 2.0 * _deepest_tip(h)), sets="gear.tip_diameter", near=1e-4,
+          says="although the rack undercuts", after=_FEW),
     Guard(_GEOMETRY, "{gear}.tip_diameter", RELIEVED, "clearance to the mate's root, a - r_a - r_f >= 0",
           most=of(lambda h: 2.0 * (_centre_of(h.line, h.base_radii) - h.mate.r_f)),
           says="hit the mate's root", beside=True),

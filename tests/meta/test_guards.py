@@ -22,7 +22,7 @@ GUARDS = tuple(rows())
 FOLDERS = ("lumped/schema", "lumped/gear_geometry", "lumped/faults", "lumped/stiffness", "lumped/fields",
            "lumped/friction", "lumped/quasi_static", "lumped/path_of_contact")  # fmt: skip
 #: Function that refuses -> place of the field among its arguments.
-FIELD = {"refuse": 0, "FieldProblem": 0, "off_shaft": 1, "uncovered": 3}
+FIELD = {"refuse": 0, "FieldProblem": 0, "ToothProblem": 0, "off_shaft": 1, "uncovered": 3}
 #: What is refused without a limit, by file -> names and the test that has them.
 ELSEWHERE = {
     "lumped/fields/refusals.py": "words of pydantic's errors: tests/lumped/schema/test_refusals",

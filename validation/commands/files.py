@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 from typing import Annotated
 
@@ -81,8 +82,9 @@ def init(
     """
     from lumped.errors import ParameterError, refuse
     from lumped.schema.changes import fields_of
-    from lumped.schema.files import preset_names, preset_text
+    from lumped.schema.files import load_gear_pair, preset_names, preset_text
     from validation.exchange import gear_pair_from_rexs, parameter_text
+    from validation.exchange.drawing_table import drawing_rows
     from validation.exchange.new_pair_file import new_pair_text
     from validation.files.output import check_file, write_text
 
@@ -127,8 +129,12 @@ def init(
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return
+    for remark in load_gear_pair(tomllib.loads(text)).geometry.notes:
+        note(remark)
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text, new=not force)
+    rows = drawing_rows(load_gear_pair(tomllib.loads(text)))
+    show("Hold it against the drawing:", "quantity | symbol | unit | >pinion | >gear | assumed", rows)
     stderr().print(f"wrote {path}; next: spurcheck report {path} -o report")
 
 

@@ -161,6 +161,7 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
         f"{given} values are given, {assumed} assumed: replace what you know, first bearings.",
         "An assumed value stands in the table [assumed], too. It is known when you change it here, or, where "
         "it is right as it is, when you delete its line there.",
+        *(f"{note[0].upper()}{note[1:]}." for note in pair.geometry.notes),
     ]
     return parameter_text(pair.to_mapping(), notes)
 

@@ -24,7 +24,7 @@ from lumped.friction.registry import LAWS
 from lumped.schema.assumed import State
 from lumped.schema.bodies import bodies_of
 from lumped.schema.fields_read import fields_read
-from lumped.schema.pair import GearPair, field_at, leaf_paths, stated_unit
+from lumped.schema.pair import GearPair, field_at, field_values, leaf_paths, stated_unit
 from lumped.stiffness.registry import MODELS
 
 _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
@@ -207,7 +207,7 @@ def _read(pair: GearPair, inputs: Iterable[Input], *, contact_lost: bool = False
             with suppress(ParameterError):  # a law or model that the pair cannot have
                 chosen = pair.with_(one.changes((place + 0.5) / len(one.choices)))
                 read |= fields_read(chosen, contact_lost=contact_lost)
-    return read & leaf_paths(pair).keys()
+    return read & field_values(pair).keys()
 
 
 def given_and_assumed(pair: GearPair, *, contact_lost: bool = False) -> tuple[int, int]:

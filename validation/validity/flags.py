@@ -190,7 +190,8 @@ def contact_ratio(g: Geometry) -> Flag:
     """Contact ratio in the range of the formulas, with some margin above 1."""
     sigma = g.contact_ratio
     state: State = "ok" if 1.1 <= sigma <= 3.0 else "warning"
-    return flag("contact_ratio", state, sigma, f"{sigma:.4f}: up to {g.pairs} tooth pairs share the load")
+    detail = "; ".join([f"{sigma:.4f}: up to {g.pairs} tooth pairs share the load", *g.notes])
+    return flag("contact_ratio", state, sigma, detail)
 
 
 def law_ranges(pair: GearPair) -> Flag:

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from lumped import ParameterError, geometry, load_gear_pair
+from multibody.contact.undercut import undercut_edge
 
 ROUNDING = 1e-13  # relative, of lengths from a handful of operations in double precision
 
@@ -60,9 +61,13 @@ def by_construction(pair):
 
     length = float((y - x) @ along)
     assert np.linalg.norm(y - x) == pytest.approx(length, rel=1e-12)
+    # A rack that undercuts ends the flank of the mate before its tip; drawn once more by the other model.
+    rack, edges = pair.basic_rack, []
+    for one in (pair.pinion, pair.gear):
+        edges.append(undercut_edge(rack, one.teeth, one.profile_shift))
     return {
-        "L_XA": crossing(gear, g.tip_radius_gear, length, -1),
-        "L_XD": crossing(pinion, g.tip_radius_pinion, 0.0, +1),
+        "L_XA": max(crossing(gear, g.tip_radius_gear, length, -1), edges[0]),
+        "L_XD": min(crossing(pinion, g.tip_radius_pinion, 0.0, +1), length - edges[1]),
         # The line of action crosses the line of centres (x = 0) at P.
         "L_XP": brentq(lambda s: float((x + s * along)[0]), -reach, reach, xtol=1e-16),
         "L_XY": length,

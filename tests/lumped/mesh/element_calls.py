@@ -67,7 +67,7 @@ class Mesh:
         force=3000.0, softening=0.0, linear_below=3.0, converged=EXACT, full_damper=200.0, coupled=False,
         apart=0.0, windows=False, radius_pinion=0.040, radius_gear=0.075, rolling_speed=6.0,
     )  # fmt: skip
-    ENDS = (0.0080, 0.0235, 0.0420, 0.0, 0.0)  # FLANKS [m]
+    ENDS = (0.0080, 0.0235, 0.0420, 0.0, 0.0, 0.0, 0.0)  # FLANKS [m]
 
     def __init__(self, position, coupling=None, **numbers):
         position = np.atleast_1d(np.asarray(position, dtype=float))

@@ -135,7 +135,7 @@ def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(
     rho = np.full(2, length - tips[own] - beyond)
     rho[own] = tips[own] + beyond
     line, wrench = kn.Line(1.0, 0.0, length, kn.DRIVE, *radii), np.zeros(6)
-    found = kn.corners_at(line, *rho, *tips)
+    found = kn.corners_at(line, *rho, tuple(tips), (0.0, 0.0))
     kn.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
     kn.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
     turn = beyond / radii[own]  # of the corner, from where it leaves the line of action

@@ -50,7 +50,9 @@ def contact(teeth, pose, flank):
     """(line, arms of every pair, overlap) in one pose."""
     line, rho, delta = phase(teeth, pose, flank)
     arms = np.zeros((kin.MAX_PAIRS, 2))
-    count = kin.pairs_in_contact(rho, delta, line[2], teeth.pitch, teeth.tip_p, teeth.tip_g, arms)
+    count = kin.pairs_in_contact(
+        rho, delta, line[2], teeth.pitch, (0.0, teeth.tip_p), (0.0, teeth.tip_g), arms
+    )
     return line, arms[:count] - 0.5 * delta, delta
 
 

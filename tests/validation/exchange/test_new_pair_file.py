@@ -101,6 +101,20 @@ def test_what_follows_from_the_centre_distance_is_a_comment_and_moves_with_it():
     assert load_gear_pair(tomllib.loads(typed)).state("pinion.profile_shift") is State.KNOWN
 
 
+@pytest.mark.parametrize(("teeth", "centre", "undercut"), [("13/55", 102.0, True), ("20/90", 165.0, False)])
+def test_few_teeth_without_a_profile_shift_are_stock_gears(teeth, centre, undercut):
+    """The centre distance is m (z_1 + z_2)/2; that undercut shortens the contact is said in the file."""
+    given = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
+    given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
+    text = new_pair_text("x", given)
+    pair = load_gear_pair(tomllib.loads(text))
+    assert pair.profile_shifts == (0.0, 0.0)
+    assert 1e3 * pair.geometry.centre_distance == pytest.approx(centre, rel=1e-12)
+    assert pair.assumed["pinion.profile_shift"] == 0.0
+    assert "none without one" in reasons(pair)["pinion.profile_shift"]
+    assert ("# - Undercut shortens contact" in text) == undercut
+
+
 def test_a_value_edited_in_the_text_is_known_and_the_rest_assumed():
     """The user of c4723bf8 typed relief, temperature and shafts, and they counted as assumed."""
     text = new_pair_text("x", DRAWING)

@@ -9,10 +9,11 @@ from typing import Any
 from lumped.path_of_contact import pair_stiffness
 from lumped.schema.assumed import WORDS, State
 from lumped.schema.bodies import bodies_of
-from lumped.schema.pair import GearPair, leaf_paths, stated_unit
+from lumped.schema.pair import GearPair, field_values, stated_unit
+from validation.exchange.drawing_table import HEADINGS, drawing_rows
 from validation.exchange.new_pair_file import reasons
 from validation.prediction.inputs import read_values, source_of, uncertain_inputs
-from validation.reporting.blocks import Badge, Cell, Content, quantities, table_of
+from validation.reporting.blocks import Badge, Cell, Content, Table, quantities, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -20,7 +21,7 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.given, results.pair.geometry
-    values = {path: v for path, v in leaf_paths(pair).items() if path not in WORDS}
+    values = {path: v for path, v in field_values(pair).items() if path not in WORDS}
     spreads = {part.field: one.written for one in uncertain_inputs(pair) for part in one.parts}
     given, assumed = results.inputs
     read, why = read_values(pair, contact_lost=results.like.contact_lost), reasons(pair)
@@ -52,8 +53,16 @@ def write(results: Results) -> Content:
         ("mean mesh stiffness", pair_stiffness(pair).mean() * g.contact_ratio, "N/m", pair.stiffness_words),
         ("effective mass", b.effective_mass, "kg", "of both gears on the line of action"),
     )
+    gears = Table(
+        "gears",
+        "Both gears as their drawings state them: hold the table against the drawings.",
+        {heading: heading for heading in HEADINGS},
+        tuple(drawing_rows(pair)),
+        "Thickness, span and dimension over balls are those of teeth as made: each gear has half of the "
+        "thinning mesh.backlash.",
+    )
     words = f"{assumed} of {given + assumed} values are assumed. {pair.stiffness_note}"
-    return Content(words.rstrip(), (derived, table))
+    return Content(words.rstrip(), (gears, derived, table))
 
 
 def _state(pair: GearPair, path: str) -> Cell:

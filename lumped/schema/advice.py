@@ -1,0 +1,131 @@
+"""Which number of teeth, profile shift or tip would let gears mesh that do not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from lumped.errors import FieldProblem, ParameterError
+from lumped.gear_geometry.geometry import MATE, Name, ToothProblem, existence_problems
+
+if TYPE_CHECKING:
+    from lumped.schema.pair import GearPair
+
+#: Fields of a gear -> other values.
+Changes = dict[Name, dict[str, Any]]
+
+#: Profile shifts and tips are tried in hundredths of a module: so many of them, and so many at a time.
+_HUNDREDTHS, _STRIDE = 150, 5
+#: The same of teeth.
+_TEETH, _TEETH_STRIDE = 30, 4
+_LARGEST_SHIFT, _MOST_TEETH = 2.0, 1000
+
+
+def advised(pair: GearPair, problems: list[FieldProblem]) -> list[FieldProblem]:
+    """The problems of a pair, with what would solve those of the teeth."""
+    return [
+        replace(one, action=f"{one.action} {would}")
+        if isinstance(one, ToothProblem) and (would := what_would_mesh(pair, one.gear, one.sense))
+        else one
+        for one in problems
+    ]
+
+
+def what_would_mesh(pair: GearPair, name: Name, sense: int = 1) -> str:
+    """Values, each on its own, with which the pair meshes: "pinion.profile_shift = 0.24 would do."
+
+    They are the first that do in steps of 0.01 modules and of a tooth, by bisection; empty where none does.
+
+    Parameters
+    ----------
+    name : gear whose profile shift and teeth are tried first
+    sense : of the profile shift that is tried first, 1 to raise it
+    """
+    found = list(_alone(pair, name, sense)) or list(_beside_the_mate(pair, name, sense))
+    return f"{', or '.join(found)} would do." if found else ""
+
+
+def _alone(pair: GearPair, name: Name, sense: int) -> Iterator[str]:
+    shift, teeth = _shift(pair, name), getattr(pair, name).teeth
+
+    def toothed(step: int) -> Changes:
+        return {name: {"teeth": teeth + step}}
+
+    for way in (sense, -sense):
+
+        def shifted(step: int, way: int = way) -> Changes:
+            return {name: {"profile_shift": _hundredth(shift, way * step)}}
+
+        if step := _first(pair, shifted, _HUNDREDTHS, _STRIDE):
+            yield f"{name}.profile_shift = {_hundredth(shift, way * step):g}"
+            break
+    free = pair.centre_distance is None and getattr(pair, name).tip_diameter is None
+    if free and (step := _first(pair, toothed, _TEETH, _TEETH_STRIDE)):
+        yield f"{name}.teeth = {teeth + step}"
+
+
+def _beside_the_mate(pair: GearPair, name: Name, sense: int) -> Iterator[str]:
+    mate = MATE[name]
+    own, others = _shift(pair, name), _shift(pair, mate)
+    for opposite in (-1, 1):  # the first keeps the sum of the shifts, and so a given centre distance
+
+        def both(step: int, opposite: int = opposite) -> Changes:
+            shifts = _hundredth(own, sense * step), _hundredth(others, opposite * sense * step)
+            return {name: {"profile_shift": shifts[0]}, mate: {"profile_shift": shifts[1]}}
+
+        if step := _first(pair, both, _HUNDREDTHS, _STRIDE):
+            values = both(step)
+            yield " with ".join(f"{one}.profile_shift = {values[one]['profile_shift']:g}" for one in values)
+            return
+    module, tip = pair.basic_rack.module, pair.wheels[mate == "gear"].tip_radius
+    other_forms = [field for field in ("addendum", "tip_alteration") if field in type(pair.gear).model_fields]
+
+    def diameter(step: int) -> float:
+        return float(2.0 * (math.floor(100.0 * tip / module) - step) * 0.01 * module)
+
+    def lowered(step: int) -> Changes:
+        return {mate: {"tip_diameter": diameter(step)} | dict.fromkeys(other_forms)}
+
+    if step := _first(pair, lowered, _HUNDREDTHS, _STRIDE):
+        yield f"{mate}.tip_diameter = {1e3 * diameter(step):.6g} mm"
+
+
+def _shift(pair: GearPair, name: Name) -> float:
+    return pair.wheels[name == "gear"].tooth.profile_shift
+
+
+def _hundredth(value: float, steps: int) -> float:
+    """A value moved by steps of 0.01, on whole hundredths."""
+    start = math.floor(100.0 * value + 1e-9) if steps > 0 else math.ceil(100.0 * value - 1e-9)
+    return (start + steps) / 100.0
+
+
+def _first(pair: GearPair, changes: Callable[[int], Changes], most: int, stride: int) -> int:
+    """First number of steps >= 1 with which the pair meshes, 0 where none does.
+
+    Every ``stride`` steps are tried; between the first that mesh and those before, by bisection.
+    """
+    for high in range(stride, most + stride, stride):
+        if _meshes(pair, changes(high)):
+            low = high - stride
+            while high - low > 1:
+                middle = (low + high) // 2
+                low, high = (low, middle) if _meshes(pair, changes(middle)) else (middle, high)
+            return high
+    return 0
+
+
+def _meshes(pair: GearPair, changes: Changes) -> bool:
+    """Whether the pair has no problem of existence with other values of its gears' fields."""
+    for fields in changes.values():
+        if abs(fields.get("profile_shift", 0.0)) > _LARGEST_SHIFT or fields.get("teeth", 0) > _MOST_TEETH:
+            return False
+    own = {field: getattr(pair, field) for field in type(pair).model_fields}
+    own |= {name: getattr(pair, name).model_copy(update=fields) for name, fields in changes.items()}
+    trial = type(pair).model_construct(**own)
+    try:
+        return not existence_problems(*trial.wheels, trial.geometry, trial.mesh.backlash)
+    except ParameterError:
+        return False
