@@ -239,7 +239,7 @@ def test_tips_that_the_file_does_not_have_keep_the_clearance_and_stand_first_in_
     usual = replace(stage, addendum=1.0)
     (tips,) = [note for note in notes if "tip_diameter of cylindrical_gear (REXS 1.0 to 2.0.0)" in note]
     assert f"{usual.tips[0]:.3f} mm and {usual.tips[1]:.3f} mm" in tips
-    assert f"contact ratio {usual.contact_ratio(usual.tips):.3f}" in tips
+    assert f"contact ratio is then {usual.contact_ratio(usual.tips):.3f}" in tips
     (summary,) = [note for note in notes if "are assumed" in note and "values" in note]
     assert summary.partition("first: ")[2].startswith("tips, speed, torque, backlash, bearings")
     given, _ = gear_pair_from_rexs(

@@ -96,8 +96,8 @@ def _note_tips(draft: Draft, pair: GearPair, gears: dict[str, Component]) -> Non
         verb = "is" if len(open_tips) == 1 else "are"
         draft.note(
             f"{named} {verb} not in the file ({places('tip_diameter')}): {tips} {verb} assumed, by the "
-            f"addendum coefficient {rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm), which "
-            f"makes the contact ratio {pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: "
+            f"addendum coefficient {rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm). The "
+            f"contact ratio is then {pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: "
             f"--set {open_tips[0]}.tip_diameter=VALUE"
         )
     for which, gear in gears.items():
