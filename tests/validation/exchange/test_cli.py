@@ -49,7 +49,7 @@ def test_what_a_rexs_file_lacks_is_given_with_the_command(command, tmp_path):
     given = ("--set", f"basic_rack.pressure_angle={angle!r}", "--speed", "1450", "--oil", "vg220")
     code, answer = command("init", "--from-rexs", "old.rexs", *given, "-o", "pair.toml")
     assert code == 0
-    assert answer.index("tip_diameter not in the file") < answer.index("what weighs most stands first")
+    assert answer.index("tip_diameter are not in the file") < answer.index("what weighs most stands first")
     pair = lumped.load_gear_pair(tmp_path / "pair.toml")
     assert pair.basic_rack.pressure_angle == pytest.approx(np.radians(angle), rel=1e-15)
     assert pair.lubricant.viscosity_law.iso_vg == 220

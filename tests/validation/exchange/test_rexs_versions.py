@@ -192,6 +192,21 @@ def test_without_a_centre_distance_a_missing_shift_is_refused_with_all_its_place
     assert dict(given.sources)["gear.profile_shift"] == "given by the user"
 
 
+def test_everything_that_is_missing_is_asked_for_at_once(save):
+    names = (
+        "number_of_teeth",
+        "normal_pressure_angle",
+        "addendum_modification_coefficient",
+        "center_distance",
+    )
+    with pytest.raises(ParameterError) as error:
+        gear_pair_from_rexs(save(rexs_text(STAGES["14/87"], "1.0", left_out=names)))
+    assert {problem.field for problem in error.value.problems} == {
+        "pinion.teeth", "gear.teeth", "basic_rack.pressure_angle",
+        "pinion.profile_shift", "gear.profile_shift",
+    }  # fmt: skip
+
+
 def test_a_shift_that_follows_from_the_centre_distance_is_known_and_a_remark_says_it(save):
     stage = STAGES["13/76"]
     mapping, notes = gear_pair_from_rexs(save(rexs_text(stage, "1.0", "first")))
@@ -224,7 +239,7 @@ def test_tips_that_the_file_does_not_have_keep_the_clearance_and_stand_first_in_
     usual = replace(stage, addendum=1.0)
     (tips,) = [note for note in notes if "tip_diameter of cylindrical_gear (REXS 1.0 to 2.0.0)" in note]
     assert f"{usual.tips[0]:.3f} mm and {usual.tips[1]:.3f} mm" in tips
-    assert f"contact ratio {usual.contact_ratio(usual.tips):.3f}" in tips
+    assert f"contact ratio is then {usual.contact_ratio(usual.tips):.3f}" in tips
     (summary,) = [note for note in notes if "are assumed" in note and "values" in note]
     assert summary.partition("first: ")[2].startswith("tips, speed, torque, backlash, bearings")
     given, _ = gear_pair_from_rexs(

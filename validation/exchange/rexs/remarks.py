@@ -93,10 +93,11 @@ def _note_tips(draft: Draft, pair: GearPair, gears: dict[str, Component]) -> Non
         tips = " and ".join(f"{2e3 * getattr(pair.geometry, f'tip_radius_{w}'):.3f} mm" for w in open_tips)
         k, rack = to_stated(pair.tip_alteration, "mm"), pair.basic_rack.addendum_coefficient
         named = " and ".join(f"{which}.tip_diameter" for which in open_tips)
+        verb = "is" if len(open_tips) == 1 else "are"
         draft.note(
-            f"{named} not in the file ({places('tip_diameter')}): {tips} assumed, by the addendum "
-            f"coefficient {rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm), which makes "
-            f"the contact ratio {pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: "
+            f"{named} {verb} not in the file ({places('tip_diameter')}): {tips} {verb} assumed, by the "
+            f"addendum coefficient {rack:g} and the clearance of the rack (DIN 3960, k m = {k:.4f} mm). The "
+            f"contact ratio is then {pair.geometry.contact_ratio:.3f}. Compare with the drawing, or give it: "
             f"--set {open_tips[0]}.tip_diameter=VALUE"
         )
     for which, gear in gears.items():

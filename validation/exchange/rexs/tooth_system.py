@@ -185,7 +185,7 @@ def _read_shifts(draft: Draft, stage: Component, gears: dict[str, Component]) ->
     paths = [f"{which}.profile_shift" for which in gears]
     missing = [path for path in paths if path not in draft.values]
     total = _read(draft, "profile_shift_sum", stage)
-    if not missing or draft.problems:
+    if not missing or "basic_rack.module" not in draft.values:  # a length has no coefficient without it
         return
     if total is not None:
         _from_sum(draft, total, paths, missing)
