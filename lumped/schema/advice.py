@@ -10,7 +10,6 @@ from typing import Any
 from lumped.errors import FieldProblem, ParameterError
 from lumped.gear_geometry.geometry import MATE, Name, ToothProblem, existence_problems
 
-
 #: Fields of a gear -> other values.
 Changes = dict[Name, dict[str, Any]]
 
@@ -91,7 +90,7 @@ def _beside_the_mate(pair: Any, name: Name, sense: int) -> Iterator[str]:
 
 
 def _shift(pair: Any, name: Name) -> float:
-    return pair.wheels[name == "gear"].tooth.profile_shift
+    return float(pair.wheels[name == "gear"].tooth.profile_shift)
 
 
 def _hundredth(value: float, steps: int) -> float:
@@ -124,6 +123,7 @@ def _meshes(pair: Any, changes: Changes) -> bool:
     own |= {name: getattr(pair, name).model_copy(update=fields) for name, fields in changes.items()}
     trial = type(pair).model_construct(**own)
     try:
-        return not existence_problems(*trial.wheels, trial.geometry, trial.mesh.backlash)
+        pinion, gear = trial.wheels
+        return not existence_problems(pinion, gear, trial.geometry, trial.mesh.backlash)
     except ParameterError:
         return False

@@ -42,6 +42,8 @@ _IN_MODULES = ".tip_alteration"
 _TIP = ("tip_alteration", "tip_diameter", "addendum")
 #: Values that a tip takes, one in the middle of each part of its range: its finite elements take .05 s each.
 TIP_LEVELS = 9
+#: The same of profile shifts that nothing but the centre distance decides.
+_SHIFT_LEVELS = 3
 #: Seeds of random gears of a tolerance class run from 1 to here.
 _SEEDS = 2**31
 #: Field -> the names that a choice may have.
@@ -151,7 +153,7 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
                 assumed.append(value)
     read = _read(pair, [*found, *assumed])
     assumed = [one for one in assumed if one.choices or one.field in read]
-    return (*found, *_together(assumed), *_blanks(pair, stated), *_tips(pair, stated))
+    return (*found, *_together(assumed), *_blanks(pair, stated), *_shifts(pair, stated), *_tips(pair, stated))
 
 
 def _together(inputs: Iterable[Input]) -> Iterator[Input]:
@@ -190,6 +192,27 @@ def _blanks(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
             continue
         unit = str(stated_unit(parts[0].field))
         yield Input(parts[0].field, tuple(parts), (), unit, default["spread"], default["reason"])
+
+
+def _shifts(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
+    """Share of the pinion in the sum of the profile shifts, where the centre distance alone decides the sum.
+
+    From half to each gear to all to the gear with fewer teeth, of a negative sum to the one with more; the
+    shift of the gear is the rest.
+    """
+    fields = [f"{gear}.profile_shift" for gear in ("pinion", "gear")]
+    free = pair.pinion.profile_shift is None and pair.gear.profile_shift is None
+    total = sum(pair.profile_shifts)
+    if pair.centre_distance is None or not free or any(_covered(one, stated) for one in fields):
+        return
+    gets_all = (pair.pinion.teeth <= pair.gear.teeth) == (total > 0.0)
+    low, high = sorted((0.5 * total, total if gets_all else 0.0))
+    own = pair.profile_shifts[0]
+    low, high = (end if _allowed(pair, fields[0], end) else own for end in (low, high))
+    if low < high:
+        words = "half of the sum to each gear, or all to one"
+        reason = "convention: no drawing says how the shifts that its centre distance asks for are shared"
+        yield Input(fields[0], (Part(fields[0], low, high, levels=_SHIFT_LEVELS),), (), "1", words, reason)
 
 
 def _tips(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:

@@ -368,6 +368,9 @@ def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
         fields |= one.changes(share)
     if fields.get("mesh.stiffness") == {"model": pair.mesh.stiffness.model}:
         del fields["mesh.stiffness"]  # keeps the parameters that the file gives the model
+    if "centre_distance" in fields:  # the gears stay as they are cut: another distance is another backlash
+        for gear, shift in zip(("pinion", "gear"), pair.profile_shifts, strict=True):
+            fields.setdefault(f"{gear}.profile_shift", shift)
     return pair.with_(fields) if fields else pair
 
 

@@ -8,6 +8,7 @@ import pytest
 import lumped
 from floquet.gear.axes import GEAR_AXES
 from lumped.errors import ParameterError
+from lumped.gear_geometry.profile_shift import distance_without_backlash
 from lumped.schema.bodies import bodies
 from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
@@ -371,3 +372,36 @@ def test_a_tip_that_an_old_file_leaves_out_ranges_too():
     assert old.gear.tip_alteration == 0.0
     one = input_of(old, "gear.tip_alteration")
     assert (one.low, one.high) == pytest.approx((-0.05, 0.05))
+
+
+@pytest.mark.parametrize(
+    ("teeth", "total"), [("23/61", 0.9), ("61/23", 0.9), ("31/57", -0.3), ("57/31", -0.3)]
+)
+def test_the_shares_of_profile_shifts_that_a_centre_distance_asks_for_are_varied(teeth, total):
+    numbers = tuple(map(int, teeth.split("/")))
+    centre = 1e3 * distance_without_backlash(sum(numbers), 3e-3, np.radians(20.0), total)
+    pair = new_pair(teeth, 3.0, 25.0, 1200.0, 90.0, {"centre_distance": centre, "mesh.stiffness": "energy"})
+    one = {one.field: one for one in uncertain_inputs(pair)}["pinion.profile_shift"]
+    # Between half to each gear, and all to the gear with fewer teeth (of a negative sum: with more).
+    takes_all = numbers.index(min(numbers) if total > 0 else max(numbers)) == 0
+    assert sorted((one.low, one.high)) == pytest.approx(
+        sorted((total / 2, total if takes_all else 0.0)), abs=1e-9
+    )
+    assert one.low < pair.profile_shifts[0] < one.high
+    for share in (0.01, 0.99):
+        machine = varied(pair, [(one, share)])
+        assert sum(machine.profile_shifts) == pytest.approx(total, abs=1e-9)
+        assert machine.geometry.centre_distance == pair.geometry.centre_distance
+        assert machine.profile_shifts != pair.profile_shifts
+    known = pair.with_({"gear.profile_shift": pair.profile_shifts[1]})
+    assert "pinion.profile_shift" not in {one.field for one in uncertain_inputs(known)}
+
+
+def test_gears_stay_as_they_are_cut_where_the_centre_distance_has_a_tolerance():
+    pair = new_pair("23/61", 3.0, 25.0, 1200.0, 90.0, {"centre_distance": 127.0, "mesh.stiffness": "energy"})
+    pair = pair.with_(uncertainty={"centre_distance": "+- 0.05 mm"})
+    one = {one.field: one for one in uncertain_inputs(pair)}["centre_distance"]
+    wide = varied(pair, [(one, 0.999)])
+    assert wide.geometry.centre_distance > pair.geometry.centre_distance + 0.04e-3
+    assert wide.profile_shifts == pair.profile_shifts
+    assert wide.geometry.normal_backlash > pair.geometry.normal_backlash + 0.02e-3
