@@ -11,6 +11,7 @@ import pytest
 import lumped
 from lumped.losses import losses_of_laws
 from lumped.schema.pair import leaf_paths
+from tests.unlike_pairs import known_tips
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import motions_of, nearest_hazard, of_motion, pair_of
 from tests.validation.reporting.written import SMALL, known, pair, plain
@@ -208,7 +209,15 @@ def test_the_actions(written):
 def test_how_sure(written):
     solved, inputs, measured = map(plain, written.document["how_sure"])
     given, assumed = inputs_of(written)
-    assert inputs == f"Inputs: {assumed} of {int(given) + int(assumed)} inputs are assumed."
+    counted = f"Inputs: {assumed} of {int(given) + int(assumed)} inputs are assumed."
+    found = written.data("uncertainty").attrs
+    if linear := found["linear"]:  # the range is not of motions with unilateral contact alone
+        taken, kept = found["taken"], found["taken"] - found["refused"]
+        words = (
+            f"The range is from {taken} possible machines; in {linear} of {kept} the linear motion stands in."
+        )
+        counted = f"{counted} {words}"
+    assert inputs == counted
     assert measured == "Compared with a measurement? No."
     assert solved == f"Solved right? {plain(written.sentences['second_program'])}"
     exact = [one for one in written.table("agreement") if one["fidelity"].startswith("exact")]
@@ -442,13 +451,16 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
         max(own_errors, key=lambda one: one["share"])["error"],
         digits=2,
     )
-    text = next(one[0] for one in written.document["chapters"]["how_sure"]["text"] if "samples" in one[0])
+    text = next(one[0] for one in written.document["chapters"]["how_sure"]["text"] if "Sobol" in one[0])
     lost = int((samples["least_force"].to_numpy() <= 0.0).sum())
-    assert text.startswith(
-        f"{samples.sizes['sample']} samples (scrambled Sobol points, seed {samples.attrs['seed']})"
-    )
     unstable, refused = samples.attrs["unstable"], samples.attrs["refused"]
-    assert f"; {refused} were refused. Contact is lost in {lost} of them, {unstable} are unstable" in text
+    count = samples.sizes["sample"] + refused
+    assert text.startswith(
+        f"Possible machines are scrambled Sobol points, seed {samples.attrs['seed']}; "
+        f"the range is from {count} "
+    )
+    assert (f"of which {refused} have no motion" in text) == (refused > 0)
+    assert f". Contact is lost in {lost} of them, {unstable} are unstable" in text
     assert said["evidence"] == "Every check of the program passes."
 
 
@@ -538,7 +550,8 @@ def test_more_information_never_gives_a_worse_verdict(what):
         "slender shafts": shafts_of(20, 2e8),
     }
     less = _not_varied()
-    more = Results(given.pair.with_(changes[what]), less.effort)
+    base = known_tips(given.pair) if what == "known" else given.pair
+    more = Results(base.with_(changes[what]), less.effort)
     more.__dict__ |= {"check": given.check, "chart": given.chart}  # on springs in both
     poorer, first = page_one(less), page_one(more)
     assert list(Verdict).index(first.verdict) <= list(Verdict).index(poorer.verdict)
