@@ -45,8 +45,9 @@ def tip_clearance(
         return math.inf
     radius, outline = radius[reached], outline[reached]
     # Angles of the corner from the line of centres, about the mate's centre and about the gear's.
-    turned = np.arccos(np.clip((centre**2 + mate_tip**2 - radius**2) / (2.0 * centre * mate_tip), -1.0, 1.0))
-    seen = np.arccos(np.clip((centre**2 + radius**2 - mate_tip**2) / (2.0 * centre * radius), -1.0, 1.0))
+    corner, seen_at = mate_tip / centre, radius / centre
+    turned = np.arccos(np.clip((1.0 + corner**2 - seen_at**2) / (2.0 * corner), -1.0, 1.0))
+    seen = np.arccos(np.clip((1.0 + seen_at**2 - corner**2) / (2.0 * seen_at), -1.0, 1.0))
     # With the flanks touching at the pitch point, the corner is corner_half - mate_half off the line.
     path = half + ratio * (turned + mate_half - corner_half) - seen
     return float((radius * (path - outline)).min())
