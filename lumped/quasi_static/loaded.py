@@ -304,16 +304,21 @@ class StaticMesh:
         """How far the contact point of deflected teeth is beyond where the tips leave the line, (n,) [m]."""
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
 
-    def ends(self, xi: FloatArray) -> tuple[FloatArray, ...]:
-        """Numbers (n,) that are 0 where a tip corner, or an edge of undercut teeth, begins to touch."""
-        g, half, length = self.geometry, self.half(xi), self.geometry.L_XY + self.lengthening
-        radii = g.base_radius_pinion, g.base_radius_gear
-        tips, edges = (g.tip_length_pinion, g.tip_length_gear), (g.undercut_pinion, g.undercut_gear)
-        beyond = g.L_XY - xi + half - tips[1], xi + half - tips[0]
-        back = edges[0] - xi - half, edges[1] - (g.L_XY - xi) - half
-        before = deciding_ways(beyond[0], tips[1], back[0], edges[0], length, *radii)
-        behind = deciding_ways(beyond[1], tips[0], back[1], edges[1], length, *radii[::-1])
-        return before, behind, *(way for way, edge in zip(back, edges, strict=True) if edge > 0.0)
+    def exchange(self, at_start: bool, xi: FloatArray) -> FloatArray:
+        """Changes its sign where edge and tip corner exchange at start or end of undercut flanks, (n,)."""
+        g, half, back = self.geometry, self.half(xi), self.back(at_start, xi)
+        radii, length = (g.base_radius_pinion, g.base_radius_gear), g.L_XY + self.lengthening
+        if at_start:
+            beyond, tip, edge = g.L_XY - xi + half - g.tip_length_gear, g.tip_length_gear, g.undercut_pinion
+        else:
+            beyond, tip, edge = xi + half - g.tip_length_pinion, g.tip_length_pinion, g.undercut_gear
+            radii = radii[::-1]
+        return np.asarray(deciding_ways(beyond, tip, back, edge, length, *radii), dtype=np.float64)
+
+    def back(self, at_start: bool, xi: FloatArray) -> FloatArray:
+        """Way of the contact back from the edge at start or end of undercut flanks, (n,) [m]."""
+        g, half = self.geometry, self.half(xi)
+        return g.undercut_pinion - xi - half if at_start else g.undercut_gear - (g.L_XY - xi) - half
 
 
 @lru_cache(maxsize=_KEPT)
@@ -353,12 +358,7 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
             "pitches beyond its tips: lower the torque, check the stiffness."
         )
     low, high = float(contact[0, 0]), float(contact[-1, 1])
-    corners = [
-        place
-        for number in range(len(mesh.ends(np.array([g.L_XP]))))
-        for ends in ((low, g.L_XP), (g.L_XP, high))
-        for place in _roots(partial(_one_of, mesh.ends, number), *ends)
-    ]
+    corners = _corners(mesh, low, high)
     marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
     inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
     inside = inside[np.diff(inside, prepend=-np.inf) > near]
@@ -425,10 +425,21 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     )
 
 
-def _one_of(
-    functions: Callable[[FloatArray], tuple[FloatArray, ...]], number: int, xi: FloatArray
-) -> FloatArray:
-    return functions(xi)[number]
+def _corners(mesh: StaticMesh, low: float, high: float) -> list[float]:
+    """Places where a tip corner or an edge begins to touch, or they exchange [m]."""
+    g, found = mesh.geometry, []
+    # A tip leaves the line of action where the pair is half the approach inside the path of contact.
+    if g.undercut_pinion == 0.0:
+        found += _roots(lambda x: x - g.L_XA - mesh.half(x), g.L_XA, g.L_XP)
+    else:
+        found += _roots(partial(mesh.exchange, True), low, g.L_XP)
+        found += _roots(partial(mesh.back, True), low, g.L_XP)
+    if g.undercut_gear == 0.0:
+        found += _roots(lambda x: g.L_XD - x - mesh.half(x), g.L_XP, g.L_XD)
+    else:
+        found += _roots(partial(mesh.exchange, False), g.L_XP, high)
+        found += _roots(partial(mesh.back, False), g.L_XP, high)
+    return found
 
 
 def _roots(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[float]:

@@ -3,15 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Protocol
 
-from lumped.errors import FieldProblem, ParameterError
-from lumped.gear_geometry.geometry import MATE, Name, ToothProblem, existence_problems
+from lumped.errors import FieldProblem
+from lumped.gear_geometry.geometry import MATE, Name, ToothProblem, Wheel
+from lumped.schema.gear import BasicRack, Gear
 
-#: Fields of a gear -> other values.
-Changes = dict[Name, dict[str, Any]]
+#: Gear -> its fields -> other values, in SI.
+Changes = Mapping[Name, Mapping[str, Any]]
+
+
+class Tried(Protocol):
+    """A pair of gears that can be tried with other values."""
+
+    @property
+    def basic_rack(self) -> BasicRack: ...
+    @property
+    def pinion(self) -> Gear: ...
+    @property
+    def gear(self) -> Gear: ...
+    @property
+    def centre_distance(self) -> float | None: ...
+    @property
+    def wheels(self) -> tuple[Wheel, Wheel]: ...
+
+    def meshes_with(self, changes: Changes) -> bool:
+        """Whether the pair has no problem of existence with other values of its gears' fields."""
+
 
 #: Profile shifts and tips are tried in hundredths of a module: so many of them, and so many at a time.
 _HUNDREDTHS, _STRIDE = 150, 5
@@ -20,7 +40,7 @@ _TEETH, _TEETH_STRIDE = 30, 4
 _LARGEST_SHIFT, _MOST_TEETH = 2.0, 1000
 
 
-def advised(pair: Any, problems: list[FieldProblem]) -> list[FieldProblem]:
+def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
     """The problems of a pair, with what would solve those of the teeth."""
     return [
         replace(one, action=f"{one.action} {would}")
@@ -30,7 +50,7 @@ def advised(pair: Any, problems: list[FieldProblem]) -> list[FieldProblem]:
     ]
 
 
-def what_would_mesh(pair: Any, name: Name, sense: int = 1) -> str:
+def what_would_mesh(pair: Tried, name: Name, sense: int = 1) -> str:
     """Values, each on its own, with which the pair meshes: "pinion.profile_shift = 0.24 would do."
 
     They are the first that do in steps of 0.01 modules and of a tooth, by bisection; empty where none does.
@@ -44,7 +64,7 @@ def what_would_mesh(pair: Any, name: Name, sense: int = 1) -> str:
     return f"{', or '.join(found)} would do." if found else ""
 
 
-def _alone(pair: Any, name: Name, sense: int) -> Iterator[str]:
+def _alone(pair: Tried, name: Name, sense: int) -> Iterator[str]:
     shift, teeth = _shift(pair, name), getattr(pair, name).teeth
 
     def toothed(step: int) -> Changes:
@@ -63,7 +83,7 @@ def _alone(pair: Any, name: Name, sense: int) -> Iterator[str]:
         yield f"{name}.teeth = {teeth + step}"
 
 
-def _beside_the_mate(pair: Any, name: Name, sense: int) -> Iterator[str]:
+def _beside_the_mate(pair: Tried, name: Name, sense: int) -> Iterator[str]:
     mate = MATE[name]
     own, others = _shift(pair, name), _shift(pair, mate)
     for opposite in (-1, 1):  # the first keeps the sum of the shifts, and so a given centre distance
@@ -89,8 +109,8 @@ def _beside_the_mate(pair: Any, name: Name, sense: int) -> Iterator[str]:
         yield f"{mate}.tip_diameter = {1e3 * diameter(step):.6g} mm"
 
 
-def _shift(pair: Any, name: Name) -> float:
-    return float(pair.wheels[name == "gear"].tooth.profile_shift)
+def _shift(pair: Tried, name: Name) -> float:
+    return pair.wheels[name == "gear"].tooth.profile_shift
 
 
 def _hundredth(value: float, steps: int) -> float:
@@ -99,7 +119,7 @@ def _hundredth(value: float, steps: int) -> float:
     return (start + steps) / 100.0
 
 
-def _first(pair: Any, changes: Callable[[int], Changes], most: int, stride: int) -> int:
+def _first(pair: Tried, changes: Callable[[int], Changes], most: int, stride: int) -> int:
     """First number of steps >= 1 with which the pair meshes, 0 where none does.
 
     Every ``stride`` steps are tried; between the first that mesh and those before, by bisection.
@@ -114,16 +134,9 @@ def _first(pair: Any, changes: Callable[[int], Changes], most: int, stride: int)
     return 0
 
 
-def _meshes(pair: Any, changes: Changes) -> bool:
-    """Whether a GearPair has no problem of existence with other values of its gears' fields."""
+def _meshes(pair: Tried, changes: Changes) -> bool:
+    """Whether the pair meshes with changes, which a file may have."""
     for fields in changes.values():
         if abs(fields.get("profile_shift", 0.0)) > _LARGEST_SHIFT or fields.get("teeth", 0) > _MOST_TEETH:
             return False
-    own = {field: getattr(pair, field) for field in type(pair).model_fields}
-    own |= {name: getattr(pair, name).model_copy(update=fields) for name, fields in changes.items()}
-    trial = type(pair).model_construct(**own)
-    try:
-        pinion, gear = trial.wheels
-        return not existence_problems(pinion, gear, trial.geometry, trial.mesh.backlash)
-    except ParameterError:
-        return False
+    return pair.meshes_with(changes)

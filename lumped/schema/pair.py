@@ -43,7 +43,7 @@ from lumped.gear_geometry.profile_shift import (
 )
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema import own_laws
-from lumped.schema.advice import advised
+from lumped.schema.advice import Changes, advised
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
@@ -190,6 +190,16 @@ class GearPair(Section, metaclass=_InOurWords):
         force = self.operating.pinion_torque / self.geometry.base_radius_pinion
         self.__dict__["bearings"] = self.bearings.under(force)
         return self
+
+    def meshes_with(self, changes: Changes) -> bool:
+        """Whether the gears can exist with other values of their fields: {"pinion": {"teeth": 19}}, in SI."""
+        own = {field: getattr(self, field) for field in type(self).model_fields}
+        own |= {name: getattr(self, name).model_copy(update=dict(new)) for name, new in changes.items()}
+        tried = GearPair.model_construct(**own)
+        try:
+            return not existence_problems(*tried.wheels, tried.geometry, tried.mesh.backlash)
+        except ParameterError:
+            return False
 
     @model_validator(mode="after")
     def _records_what_it_assumes(self) -> GearPair:

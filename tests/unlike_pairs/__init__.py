@@ -43,7 +43,9 @@ def all_assumed(pair: GearPair) -> GearPair:
     return pair.with_(assumed={path: v for path, v in leaf_paths(pair).items() if path not in WORDS})
 
 
-def known_tips(pair: GearPair) -> GearPair:
-    """Return the pair with the tips that it has, which are known then."""
+def known_sizes(pair: GearPair) -> GearPair:
+    """Return the pair with the profile shifts and tips that it has, which are known then."""
     alteration = to_file(pair.tip_alteration, "mm")
-    return pair.with_({f"{gear}.tip_alteration": alteration for gear in ("pinion", "gear")})
+    shifts = zip(("pinion", "gear"), pair.profile_shifts, strict=True)
+    sizes = {f"{gear}.profile_shift": shift for gear, shift in shifts}
+    return pair.with_(sizes | {f"{gear}.tip_alteration": alteration for gear in ("pinion", "gear")})

@@ -10,7 +10,7 @@ from scipy.stats import beta
 import spurcheck
 from lumped.errors import NumericalError, ParameterError
 from tests.evidence.rankings import LIMIT, RESULTS, cases
-from tests.unlike_pairs import known_tips, unlike_pair
+from tests.unlike_pairs import known_sizes, unlike_pair
 from validation.prediction import compare as module
 from validation.prediction.compare import as_read, common_draws, compare, of_hundred, ranking
 
@@ -19,7 +19,7 @@ from .test_uncertainty import LINEAR
 #: Its transmission error is in proportion to the torque, its dynamic factor does not depend on it.
 TORQUE = LINEAR.with_({"uncertainty": {"operating.pinion_torque": "+- 4 %"}})
 GREATER = TORQUE.with_(torque=1.02 * TORQUE.operating.pinion_torque)
-RELIEVED = known_tips(unlike_pair("rack_25_degrees_always_pushing")).with_(
+RELIEVED = known_sizes(unlike_pair("rack_25_degrees_always_pushing")).with_(
     {
         "mesh.relief": "static",
         "assumed": {},

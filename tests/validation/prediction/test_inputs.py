@@ -14,7 +14,7 @@ from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness import finite_elements
 from lumped.stiffness.registry import MODELS
-from tests.unlike_pairs import all_assumed, but_known, known_tips, unlike_pair
+from tests.unlike_pairs import all_assumed, but_known, known_sizes, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import (
     forms_beside,
@@ -238,7 +238,7 @@ def test_words_of_sources_change_neither_counts_nor_ranges(words):
     assert given_and_assumed(said) == (given, assumed)
     assert repr(uncertain_inputs(said)) == repr(uncertain_inputs(pair))  # a choice has NaN as its ends
     assert source_of(said, "mesh.damping_ratio") == words
-    known = known_tips(said.with_({"assumed": {}}))
+    known = known_sizes(said.with_({"assumed": {}}))
     assert given_and_assumed(known) == (len(fields_read(known)), 0)
     assert uncertain_inputs(known) == ()
 

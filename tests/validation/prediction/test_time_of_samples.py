@@ -8,7 +8,7 @@ import pytest
 
 from floquet.orbits import deadline
 from lumped.errors import ParameterError
-from tests.unlike_pairs import known_tips, unlike_pair
+from tests.unlike_pairs import known_sizes, unlike_pair
 from validation.prediction import compare as compare_module
 from validation.prediction import uncertainty as module
 from validation.prediction.compare import compare
@@ -156,7 +156,7 @@ def test_machines_of_a_comparison_end_with_the_time_but_not_before_32(monkeypatc
 
 def test_a_pair_that_loses_contact_has_its_slow_samples_in_the_range(monkeypatch):
     """The sample in which the time ends is kept though it is the slow one."""
-    pair = known_tips(unlike_pair("larger_gear_drives_contact_lost")).with_(
+    pair = known_sizes(unlike_pair("larger_gear_drives_contact_lost")).with_(
         {"assumed": {}, "uncertainty": {"mesh.damping_ratio": "/ 2 .. * 2"}}
     )
     Clock(monkeypatch, module)

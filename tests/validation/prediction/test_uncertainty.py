@@ -9,7 +9,7 @@ from scipy.stats import binom, qmc
 import floquet
 import lumped
 from lumped.errors import ParameterError
-from tests.unlike_pairs import all_assumed, known_tips, unlike_pair
+from tests.unlike_pairs import all_assumed, known_sizes, unlike_pair
 from validation.exchange.new_pair_file import new_pair
 from validation.prediction.inputs import forms_beside, uncertain_inputs
 from validation.prediction.motion import predicted
@@ -26,7 +26,7 @@ from validation.prediction.uncertainty import (
 
 #: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
 #: Everything is known but the torque.
-LINEAR = known_tips(unlike_pair("rack_25_degrees_always_pushing")).with_(
+LINEAR = known_sizes(unlike_pair("rack_25_degrees_always_pushing")).with_(
     {
         "mesh.contact": "prescribed",
         "friction.law": "none", "operating.pinion_speed": 800.0, "assumed": {},

@@ -11,7 +11,7 @@ import pytest
 import lumped
 from lumped.losses import losses_of_laws
 from lumped.schema.pair import leaf_paths
-from tests.unlike_pairs import known_tips
+from tests.unlike_pairs import known_sizes
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import motions_of, nearest_hazard, of_motion, pair_of
 from tests.validation.reporting.written import SMALL, known, pair, plain
@@ -550,7 +550,7 @@ def test_more_information_never_gives_a_worse_verdict(what):
         "slender shafts": shafts_of(20, 2e8),
     }
     less = _not_varied()
-    base = known_tips(given.pair) if what == "known" else given.pair
+    base = known_sizes(given.pair) if what == "known" else given.pair
     more = Results(base.with_(changes[what]), less.effort)
     more.__dict__ |= {"check": given.check, "chart": given.chart}  # on springs in both
     poorer, first = page_one(less), page_one(more)
