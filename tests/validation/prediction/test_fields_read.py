@@ -217,6 +217,8 @@ def test_every_name_of_the_contact_and_the_settings_has_its_fields():
         "omega_gear",
         "pitch_line_velocity",
         "unit_load",
+        "edge_pinion",
+        "edge_gear",
     }
     names = {*ContactPath.__dataclass_fields__} - always | {*FrictionSettings.__annotations__} - {"law"}
     assert names == {*FRICTION}
