@@ -34,14 +34,16 @@ class Tried(Protocol):
 
 
 #: Profile shifts and tips are tried in hundredths of a module: so many of them, and so many at a time.
-_HUNDREDTHS, _STRIDE = 150, 5
+_HUNDREDTHS, _STRIDE = 80, 5
 #: The same of teeth.
 _TEETH, _TEETH_STRIDE = 30, 4
 _LARGEST_SHIFT, _MOST_TEETH = 2.0, 1000
 
 
 def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
-    """The problems of a pair, with what would solve those of the teeth."""
+    """The problems of a pair, with what would solve those of its teeth, unless they wedge as well."""
+    if any(one.field == "centre_distance" for one in problems):
+        return problems
     return [
         replace(one, action=f"{one.action} {would}")
         if isinstance(one, ToothProblem) and (would := what_would_mesh(pair, one.gear, one.sense))

@@ -42,7 +42,7 @@ def test_the_operating_point_is_a_node_where_it_is_within():
     np.testing.assert_allclose(with_point(nodes, 11.0), nodes)
 
 
-@pytest.mark.parametrize("ratio", [1.3, 1.9])
+@pytest.mark.parametrize("ratio", [1.3, 1.85])  # from 1.9 on the tips would cut into the fillets
 def test_relief_keeps_its_length_where_the_contact_ratio_changes(ratio):
     def reach(pair):
         """Lengths of the relieved ends of the path at A and D, over which the amount is reached."""

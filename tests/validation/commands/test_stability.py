@@ -30,7 +30,7 @@ def opened(path) -> xr.Dataset:
 
 @pytest.mark.parametrize("axis", [
     "damping_ratio=0:0.05:3", "friction_coefficient=0:0.1:3", "torque=20:80:3",
-    "stiffness_variation=0.5:1.5:3", "contact_ratio=1.3:1.9:3", "bearing_stiffness=5e7:2e8:3",
+    "stiffness_variation=0.5:1.5:3", "contact_ratio=1.3:1.8:3", "bearing_stiffness=5e7:2e8:3",
 ])  # fmt: skip
 def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
     data, picture = tmp_path / "chart.nc", tmp_path / "chart.png"
