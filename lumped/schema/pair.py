@@ -22,7 +22,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, made_of
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, QuantityRange, SIValue, to_file, to_si, to_stated
+from lumped.fields.units import Quantity, QuantityRange, SIValue, to_si, to_stated
 from lumped.friction.base import ContactPath
 from lumped.friction.registry import law_of
 from lumped.friction.table import TABLE
@@ -206,13 +206,13 @@ class GearPair(Section, metaclass=_InOurWords):
         self.__dict__["assumed"] = recorded(self, self.assumed, self._assumed_sizes())  # nobody has it yet
         return self
 
-    def _assumed_sizes(self) -> dict[str, float | str]:
+    def _assumed_sizes(self) -> dict[str, float]:
         """Profile shifts and tip alterations that no file gives and nothing decides: path -> file units.
 
         A shift that the other one and the centre distance leave no choice is known.
         """
         gears = {"pinion": self.pinion, "gear": self.gear}
-        assumed: dict[str, float | str] = {}
+        assumed: dict[str, float] = {}
         free = [name for name, gear in gears.items() if gear.profile_shift is None]
         if self.centre_distance is None or len(free) > 1:
             assumed |= {
@@ -222,7 +222,7 @@ class GearPair(Section, metaclass=_InOurWords):
             }
         for name, gear in gears.items():
             if gear.tip_diameter is None and gear.addendum is None and gear.tip_alteration is None:
-                assumed[f"{name}.tip_alteration"] = to_file(self.tip_alteration, "mm")
+                assumed[f"{name}.tip_alteration"] = to_stated(self.tip_alteration, "mm")
         return assumed
 
     def state(self, field: str) -> State:
@@ -279,7 +279,12 @@ class GearPair(Section, metaclass=_InOurWords):
             play = theoretical_backlash(*self.wheels, angle)
             if not problems and play <= _LARGEST_PLAY * self.basic_rack.module:
                 return problems
-            value += f", backlash {play * 1e3:.4f} mm{': the teeth wedge' if play < 0.0 else ''}"
+            thinned = play + self.mesh.backlash
+            value += (
+                f", backlash {thinned * 1e3:.4f} mm: the teeth wedge"
+                if thinned < 0.0
+                else f", backlash {play * 1e3:.4f} mm"
+            )
         if problems and not any(problem.field in _OF_THE_MESH for problem in problems):
             return problems
         rack, teeth = self.basic_rack, self.pinion.teeth + self.gear.teeth
@@ -556,7 +561,11 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 def field_values(pair: GearPair) -> dict[str, Any]:
     """Return `leaf_paths` and, where a file does not give them, the profile shifts and tips that follow."""
     written = leaf_paths(pair)
-    return written | {path: value for path, value in pair.assumed.items() if path not in written}
+    values = written | {path: value for path, value in pair.assumed.items() if path not in written}
+    sections = list(dict.fromkeys(path.rpartition(".")[0] for path in written))
+    return {
+        path: values[path] for path in sorted(values, key=lambda one: sections.index(one.rpartition(".")[0]))
+    }
 
 
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:

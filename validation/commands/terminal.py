@@ -144,6 +144,8 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
     #: Argument of a function that is called -> the option that it comes from.
     options = {
         "samples_per_cycle": "--samples",
+        "samples": "--samples",
+        "seconds": "--seconds",
         "output": "--output",
         "supports": "--supports",
         "axes": "--axis",

@@ -21,6 +21,10 @@ from validation.exchange.new_pair_file import new_pair
 WORKED = {"tips": (44.840, 79.400), "centre_distance": 56.4999, "contact_ratio": 1.202}
 
 
+#: Unlike pairs whose files leave the tips to the program.
+WITHOUT_TIPS = [name for name in UNLIKE if unlike_pair(name).pinion.tip_alteration is None]
+
+
 def drawn(teeth, module, **changes):
     return new_pair(teeth, module, 20.0, 1000.0, 30.0, changes)
 
@@ -74,7 +78,7 @@ def test_the_worked_example_has_its_printed_tips_and_contact_ratio():
     assert whole.geometry.contact_ratio == pytest.approx(1.348, abs=0.5e-3)
 
 
-@pytest.mark.parametrize("name", [name for name in UNLIKE if name != "contact_ratio_1_1_large_shifts"])
+@pytest.mark.parametrize("name", WITHOUT_TIPS)
 def test_the_clearance_is_that_of_the_rack(name):
     pair = unlike_pair(name)
     rack, g = pair.basic_rack, pair.geometry

@@ -87,8 +87,19 @@ def operating_angle(parameters):
     return brentq(lambda angle: math.tan(angle) - angle - wanted, 0.1, 1.0, xtol=1e-15)
 
 
+def tip_alteration(parameters):
+    """What keeps the clearance of the rack, k m [mm]: the centre distance less that of the full shifts."""
+    (r_p, r_g), rack = base_radii(parameters), parameters["basic_rack"]
+    shifts, teeth = (sum(parameters[g][key] for g in _GEARS) for key in ("profile_shift", "teeth"))
+    centre = 1e3 * (r_p + r_g) / math.cos(operating_angle(parameters))
+    return min(0.0, centre - rack["module"] * (0.5 * teeth + shifts))
+
+
 def path_of_contact(parameters):
-    """A, P, D and the whole line of action X to Y [m]; tips are addendum and shift beyond the reference."""
+    """A, P, D and the whole line of action X to Y [m].
+
+    Tips are addendum and shift beyond the reference, or where the mate's root leaves the rack's clearance.
+    """
     rack, (r_p, r_g) = parameters["basic_rack"], base_radii(parameters)
     working = math.tan(operating_angle(parameters))
     tips = [
@@ -96,6 +107,17 @@ def path_of_contact(parameters):
         for gear in (parameters[name] for name in _GEARS)
     ]
     length = (r_p + r_g) * working
+    depth = rack["dedendum_coefficient"]
+    roots = [
+        1e-3 * rack["module"] * (0.5 * gear["teeth"] - depth + gear["profile_shift"])
+        for gear in (parameters[name] for name in _GEARS)
+    ]
+    clearance = 1e-3 * rack["module"] * (depth - rack["addendum_coefficient"])
+    centre = (r_p + r_g) / math.cos(operating_angle(parameters))
+    tips = [
+        tip if "tip_alteration" in parameters[name] else min(tip, centre - root - clearance)
+        for name, tip, root in zip(_GEARS, tips, roots[::-1], strict=True)
+    ]
     end, start = math.sqrt(tips[0] ** 2 - r_p**2), length - math.sqrt(tips[1] ** 2 - r_g**2)
     return start, r_p * working, end, length
 

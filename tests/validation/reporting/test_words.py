@@ -10,7 +10,7 @@ import pytest
 
 import lumped
 from lumped.losses import losses_of_laws
-from lumped.schema.pair import leaf_paths
+from lumped.schema.pair import field_values
 from tests.unlike_pairs import known_sizes
 from tests.validation.reporting import recomputed as own
 from tests.validation.reporting.test_numbers import motions_of, nearest_hazard, of_motion, pair_of
@@ -528,13 +528,13 @@ def test_words_of_a_source_make_no_absolute_level(words):
     """They were a source like a measurement: 0 values assumed, and usable for absolute levels."""
     less = _not_varied()
     said = Results(
-        less.pair.with_({"sources": dict.fromkeys((*leaf_paths(less.pair), "mesh.stiffness"), words)}),
+        less.pair.with_({"sources": dict.fromkeys((*field_values(less.pair), "mesh.stiffness"), words)}),
         less.effort,
     )
     said.__dict__ |= {name: vars(less)[name] for name in ("check", "chart", "like") if name in vars(less)}
     assert said.inputs == less.inputs
     assert page_one(said).verdict is page_one(less).verdict is Verdict.UNCERTAIN
-    table = inputs.write(said).blocks[1]
+    table = next(one for one in inputs.write(said).blocks if one.key == "parameters")
     rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
     assert all(row["source"] == words for row in rows)
     assert sum(isinstance(row["state"], Badge) for row in rows) == less.inputs[1] > 20
