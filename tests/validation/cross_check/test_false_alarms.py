@@ -170,7 +170,11 @@ def test_backs_that_strike_are_named_as_the_reason_why_a_pulling_motion_is_compa
 
 @pytest.mark.parametrize(("pair", "quantity", "share"), [
     # Order 3 stands near the gear's natural frequency: .27 um of 36 um are 9 % of a swing of 2.9 um.
-    (own("19/41", 2.5, 20.0, 1450.0, 80.0, ENERGY, shifts(0.0, 0.0), {"centre_distance": 75.65}), "x_g", 0.09),
+    (
+        own("19/41", 2.5, 20.0, 1450.0, 80.0, ENERGY, shifts(0.0, 0.0) | {"centre_distance": 75.65}),
+        "x_g",
+        0.09,
+    ),
     # Above resonance: 0.1 N, 1 % of the mean force, are 28 % of the swing of the bearing's force.
     (own("31/57", 3.0, 25.0, 12000.0, 150.0, ENERGY), "y_g", 0.25),
     (own("31/57", 3.0, 25.0, 12000.0, 150.0, ENERGY, {"friction.law": "none"}), "y_g", 0.15),
