@@ -58,8 +58,9 @@ def verdict_of(results: Results, facts: Mapping[str, Fact]) -> tuple[Verdict, st
     doubt = _doubt(results, facts)
     confirmed = record is not None and record.verdict is Record.CONFIRMS
     if doubt is not None:
-        more = " A record confirms the prediction; the range is that of every possible machine."
-        text = f"{calm}{more if confirmed else ''}"
+        ranged = any(results.spread(name) is not None for name in RANGED)
+        more = "; the range is that of every possible machine." if ranged else "."
+        text = f"{calm} A record confirms the prediction{more}" if confirmed else calm
         return Verdict.UNCERTAIN, f"{Verdict.UNCERTAIN.value}: {doubt}.", text
     why = "A record confirms them." if confirmed else "Every input is known."
     return Verdict.ABSOLUTE, f"{Verdict.ABSOLUTE.value}.", f"{calm} {why}"

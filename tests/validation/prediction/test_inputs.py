@@ -405,3 +405,16 @@ def test_gears_stay_as_they_are_cut_where_the_centre_distance_has_a_tolerance():
     assert wide.geometry.centre_distance > pair.geometry.centre_distance + 0.04e-3
     assert wide.profile_shifts == pair.profile_shifts
     assert wide.geometry.normal_backlash > pair.geometry.normal_backlash + 0.02e-3
+
+
+def test_an_assumed_inertia_of_motor_or_load_is_varied_and_a_known_one_is_not():
+    pair = unlike_pair("contact_ratio_2_3_on_shafts")
+    fields = {"shafts.motor.inertia", "shafts.load.inertia"}
+    own = {path: value for path, value in leaf_paths(pair).items() if path in fields}
+    assert set(own) == fields
+    assumed = pair.with_({"assumed": pair.assumed.to_mapping() | own})
+    found = {one.field: one for one in uncertain_inputs(assumed) if one.field in fields}
+    assert {(one.low / own[field], one.high / own[field]) for field, one in found.items()} == {(0.5, 2.0)}
+    assert set(found) == fields
+    known = {path: value for path, value in pair.assumed.to_mapping().items() if path not in fields}
+    assert not fields & {one.field for one in uncertain_inputs(pair.with_({"assumed": known}))}
