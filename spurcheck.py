@@ -150,7 +150,9 @@ def _explained(name: str, function: Any) -> Any:
         takes = f"It takes {', '.join(signature.parameters)}"
         return f"{takes}; {meaning[1]}." if meaning else f"{takes}: see help(spurcheck.{name})."
 
-    call.__module__, call.__qualname__ = __name__, name  # where pickle finds it
+    # where pickle finds it
+    call.__module__ = __name__
+    call.__qualname__ = name
     return call
 
 

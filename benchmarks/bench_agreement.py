@@ -113,7 +113,8 @@ def scales() -> None:
     cases = {"19/41, 300 rpm, no friction": PAIRS["19/41"].with_(slow)}
     line("pair", "quantity", "swing, um or N", "difference", "of the means")
     for name, pair in (cases | {teeth: PAIRS[teeth] for teeth in ("19/41", "31/57")}).items():
-        own, exact = predicted(pair).cycle, exact_motion(pair)
+        own = predicted(pair).cycle
+        exact = exact_motion(pair)
         for one in ("dte", "x_g", "bearing_force_y_g", "friction_force"):
             mine, other = (
                 (run[one].sum("pair") if "pair" in run[one].dims else run[one]).to_numpy()

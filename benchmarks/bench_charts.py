@@ -82,19 +82,15 @@ def proofs() -> None:
     """Share of charts that is proven, 500 to 20000 rpm and the pair's own; random points against it."""
     print("| pair | rpm | damping | s | stable | unstable | not proven | contradicted |")
     print("|---|---|---|---|---|---|---|---|")
-    names, rng = (
-        ("nasa_28_28", "fzg_c", "kahraman_blankenship_50_50", "nasa_art_25_31"),
-        np.random.default_rng(7),
-    )
+    names = ("nasa_28_28", "fzg_c", "kahraman_blankenship_50_50", "nasa_art_25_31")
+    rng = np.random.default_rng(7)
     for pair in map(load_gear_pair, names):
         for ends in (speed_range(pair), (500.0, 20000.0)):
             for low in (0.01, 0.001):
                 axes = {"speed_rpm": np.linspace(*ends, 801), "damping_ratio": np.linspace(low, 0.1, 201)}
                 found, seconds = cpu(lambda axes=axes, pair=pair: stability_chart(pair, axes, prove=True))
-                cells, at = (
-                    found.cell_verdict.values,
-                    rng.integers(0, [[800], [200]], (2, 500)),
-                )
+                cells = found.cell_verdict.values
+                at = rng.integers(0, [[800], [200]], (2, 500))
                 turned = {
                     n: v[k] + rng.uniform(size=k.size) * np.diff(v)[k]
                     for (n, v), k in zip(axes.items(), at, strict=True)
@@ -116,7 +112,8 @@ def proofs() -> None:
 
 def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
     """A preset with changed damping, friction, torque and bearings, and two axes of it."""
-    name, law = rng.choice(preset_names()), str(rng.choice(LAWS))
+    name = rng.choice(preset_names())
+    law = str(rng.choice(LAWS))
     pair = load_gear_pair(str(name))
     changes: dict[str, Any] = {
         "friction.law": law,
@@ -143,7 +140,8 @@ def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
     other = str(rng.choice((*others, "torque"), p=(0.3, 0.2, 0.2, 0.1, 0.1, 0.1)))
     if law in ("benedict_kelley", "composite") and other not in others[:3]:
         other = "damping_ratio"  # a fit at every node of other axes, each of 0.03 s, would take hours
-    k, torque = pair.bearings.pinion.loa_stiffness, pair.operating.pinion_torque
+    k = pair.bearings.pinion.loa_stiffness
+    torque = pair.operating.pinion_torque
     values = {
         "damping_ratio": np.linspace(float(rng.choice([0.0, 0.001])), 0.1, 65),
         "geometric": np.geomspace(1e-4, 0.1, 65),
@@ -157,7 +155,8 @@ def random_chart(rng: np.random.Generator) -> tuple[Any, dict[str, Any]]:
 
 
 def at_random(count: int, seed: int, *, damping: bool) -> None:
-    rng, rows = np.random.default_rng(seed), []
+    rng = np.random.default_rng(seed)
+    rows = []
     while len(rows) < count:
         try:
             pair, axes = random_chart(rng)
@@ -202,10 +201,12 @@ def closed_forms(n: int) -> None:
         width = np.diff(edges, prepend=-np.inf, append=np.inf)[np.searchsorted(edges, a)]
         narrow = unstable & (width <= 2.0 * (a[1] - a[0]))
         off = ((got.verdict[:, j] < 0) != unstable) & (np.abs(a[:, None] - edges).min(axis=1) > 1e-6)
-        wrong, thin = wrong + int((off & ~narrow).sum()), thin + int((off & narrow).sum())
+        wrong = wrong + int((off & ~narrow).sum())
+        thin = thin + int((off & narrow).sum())
     share = f"{got.known.mean():.2%} evaluated, {seconds:.1f} s"
     print(f"Mathieu {n} x {n}: {share}, {wrong} wrong verdicts, {thin} in thin parts")
-    delta, epsilon = np.linspace(0.5, 9.0, n), np.linspace(0.0, 0.45, n)
+    delta = np.linspace(0.5, 9.0, n)
+    epsilon = np.linspace(0.0, 0.45, n)
 
     def trace(d: Any, e: Any) -> Any:
         w1, w2 = np.sqrt(d + e), np.sqrt(d - e)

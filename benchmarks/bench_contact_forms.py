@@ -36,9 +36,11 @@ def forms() -> None:
         "preset", "exact", "prescribed", "loaded, linear", "unilateral, static", "unilateral, momentary", "y"
     )
     for name in PRESETS:
-        pair, exact = PAIRS[name], exact_motion(PAIRS[name])
+        pair = PAIRS[name]
+        exact = exact_motion(PAIRS[name])
         fixed = lumped.steady_state(pair.with_(mesh__contact="prescribed"), samples_per_cycle=SAMPLES)
-        linear, best = lumped.steady_state(pair, samples_per_cycle=SAMPLES), predicted(pair).cycle
+        linear = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
+        best = predicted(pair).cycle
         orbit, _ = unilateral_orbit(pair)
         static = linear if orbit is None else orbit.sampled(SAMPLES)
         swing = 1e6 * float(np.ptp(exact["dte"].to_numpy()))

@@ -26,7 +26,9 @@ from lumped.stiffness import finite_elements
 from lumped.stiffness.finite_elements import elastic_teeth
 from validation.exchange import new_pair
 
-RUNS, UNKNOWNS, PHASES = 5, 1000, 200
+RUNS = 5
+UNKNOWNS = 1000
+PHASES = 200
 _LONG = {"basic_rack.fillet_radius_coefficient": 0.3}
 #: Teeth, module, face width, speed, torque, what else is known: shifts, bores, long teeth, a wide angle.
 DRAWN = [
@@ -81,7 +83,8 @@ def mesh_stiffness(pair: GearPair, size: float) -> np.ndarray:
 def baseline() -> float:
     """Processor time of the dense solve."""
     rng = np.random.default_rng(1)
-    matrix, right = rng.standard_normal((UNKNOWNS, UNKNOWNS)), rng.standard_normal(UNKNOWNS)
+    matrix = rng.standard_normal((UNKNOWNS, UNKNOWNS))
+    right = rng.standard_normal(UNKNOWNS)
     with one_thread():
         return seconds(lambda: np.linalg.solve(matrix, right))
 
@@ -91,7 +94,8 @@ def main(count: int) -> None:
     print("|---|---|---|---|---|---|")
     for teeth, *drawing, changes in DRAWN[:count]:
         pair = new_pair(teeth, *drawing, changes=changes)
-        dense, own = baseline(), seconds(lambda pair=pair: solve(pair))
+        dense = baseline()
+        own = seconds(lambda pair=pair: solve(pair))
         found, half, third = (mesh_stiffness(pair, FINE / n) for n in (1, 2, 3))
         error, rest = (float(np.abs(k / third - 1.0).max()) for k in (found, half))
         ratio = f"{pair.geometry.contact_ratio:.2f}"

@@ -120,7 +120,8 @@ def energy_chart(pair: GearPair, size: int) -> Callable[[], Any]:
 def by_turning(points: int) -> None:
     """Cost of the direct route over omega_max T_m."""
     block = gear_block(PAIR, rtol=1e-10)
-    omega, own = float(block.modal().omega.max()), PAIR.operating.pinion_speed * 30 / np.pi
+    omega = float(block.modal().omega.max())
+    own = PAIR.operating.pinion_speed * 30 / np.pi
     for rpm in (500, 1000, 2000, 5000, 10000, 20000):
         T = np.full(points, block.period * own / rpm)
         _, seconds = cpu(lambda T=T: fast_multipliers(block, T, tolerance=2e-11))
@@ -144,7 +145,8 @@ def by_solver(
     for i, (a, b) in enumerate(pairwise(block.phases * block.period)):
         A = np.zeros((degree, 2 * m, 2 * m))
         A[0, :m, m:] = np.eye(m)
-        A[0, m:, :m], A[0, m:, m:] = -block.stiffness, -C
+        A[0, m:, :m] = -block.stiffness
+        A[0, m:, m:] = -C
         for j in range(block.total.w.shape[2]):
             A[j, m:, :m] -= np.outer(block.total.w[i, :, j], block.v)
         for j in range(block.total.wd.shape[2]):

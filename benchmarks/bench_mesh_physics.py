@@ -40,7 +40,9 @@ def plain_compliance(pair, g, xi):
     for which, gear, length in (("pinion", pair.pinion, xi), ("gear", pair.gear, g.L_XY - xi)):
         profile = pair.wheels[0 if which == "pinion" else 1].tooth
         u_c, h_c, _, a = (float(v[0]) for v in profile.involute_points(np.array([length])))
-        modulus, cosine, sine = gear.youngs_modulus, np.cos(a), np.sin(a)
+        modulus = gear.youngs_modulus
+        cosine = np.cos(a)
+        sine = np.sin(a)
         shear_modulus = modulus / (2.0 * (1.0 + gear.poisson_ratio))
 
         def strain(u, h, slope, at=(u_c, h_c, cosine, sine), moduli=(modulus, shear_modulus)):
@@ -110,7 +112,8 @@ def one_by_one(pair, torques):
         curve = []
         for k, e in zip(mesh.stiffness, mesh.error, strict=True):
             near = np.isfinite(e)
-            k_near, e_near = k[near], e[near]
+            k_near = k[near]
+            e_near = e[near]
 
             def balance(delta, k=k_near, e=e_near, force=force):
                 return float(k @ np.maximum(delta - e, 0.0)) - force
@@ -158,7 +161,8 @@ def test_speed_sweep(capsys, name, stiffness):
     """Sweeps of both forms in turns, so that both meet the same machine; 5 % is asked for, 15 % is noise."""
     pair = lumped.load_gear_pair(name).with_(mesh__stiffness={"model": stiffness})
     forms = {form: pair.with_(mesh__contact=form) for form in ("prescribed", "loaded")}
-    speeds, taken = np.linspace(500.0, 12000.0, 60), {form: [] for form in forms}
+    speeds = np.linspace(500.0, 12000.0, 60)
+    taken = {form: [] for form in forms}
     for _ in range(11):
         for form, one in forms.items():
             start = time.process_time()

@@ -30,7 +30,8 @@ from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record
 
-RTOL, TIGHT = 1e-8, 1e-11
+RTOL = 1e-8
+TIGHT = 1e-11
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
     friction__law="coulomb", friction__coefficient=0.05, mesh__relief="ignored"
 )
@@ -44,7 +45,8 @@ PAIRS = {
 def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     """Integrate the lumped equations between switches; force evaluations, and q at the ends of the cycles."""
     m, p = setup.machine, setup.machine.parameters.copy()
-    gears, contacts = np.empty((3, 6)), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    gears = np.empty((3, 6))
+    contacts = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
     inertia, stiffness, damping, load = m.bodies
 
     def rates(t: float, state: np.ndarray) -> np.ndarray:
@@ -55,12 +57,16 @@ def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
 
     edges = (np.arange(cycles)[:, None] + m.switches).ravel()
     edges = np.append(edges, float(cycles)) * m.period
-    state, calls, margin = np.concatenate([setup.q, setup.v]), 0, 1e-12 * m.period
+    state = np.concatenate([setup.q, setup.v])
+    calls = 0
+    margin = 1e-12 * m.period
     ends = []
     for number, (start, stop) in enumerate(itertools.pairwise(edges)):
-        p[kn.T_LOW], p[kn.T_HIGH] = start + margin, stop - margin
+        p[kn.T_LOW] = start + margin
+        p[kn.T_HIGH] = stop - margin
         found = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=setup.rtol, atol=setup.atol)
-        state, calls = found.y[:, -1], calls + found.nfev
+        state = found.y[:, -1]
+        calls = calls + found.nfev
         if (number + 1) % m.switches.size == 0:
             ends.append(state[:6])
     return calls, np.array(ends)
@@ -68,7 +74,9 @@ def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
 
 def multibody_run(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     """Integrate without output; force evaluations and q (cycles, 6) at the cycles' ends."""
-    before, edges, ends = setup.model.budget.calls, setup.edges(cycles), []
+    before = setup.model.budget.calls
+    edges = setup.edges(cycles)
+    ends = []
     per_cycle = (edges.size - 1) // cycles
 
     def visit(number: int, segment: Segment) -> None:
@@ -114,7 +122,8 @@ def transmission_error(setup: Setup, q: np.ndarray) -> np.ndarray:
 
 def measure(pair: lumped.GearPair, cycles: int, repeats: int) -> dict[str, Row]:
     """Run all solvers on one pair, in turns."""
-    rows, setups = {name: Row() for name in SOLVERS}, {}
+    rows = {name: Row() for name in SOLVERS}
+    setups = {}
     for name, (form, fidelity, run) in SOLVERS.items():
         one = pair.with_(mesh__contact=form)
         setups[name] = prepare(one, fidelity=fidelity, rtol=RTOL)
@@ -137,11 +146,13 @@ def main() -> None:
     parser.add_argument("--cycles", type=int, default=20, help="mesh cycles of a run")
     parser.add_argument("--repeats", type=int, default=7, help="turns of every solver")
     arguments = parser.parse_args()
-    cycles, repeats = arguments.cycles, arguments.repeats
+    cycles = arguments.cycles
+    repeats = arguments.repeats
     print(f"{cycles} mesh cycles from rest, rtol {RTOL:g}, best of {repeats}")
     for name, pair in PAIRS.items():
         rows = measure(pair, cycles, repeats)
-        base, paper = min(next(iter(rows.values())).seconds), min(rows[PAPER].seconds)
+        base = min(next(iter(rows.values())).seconds)
+        paper = min(rows[PAPER].seconds)
         heads = f"{'ms/cycle':>10s}{'calls/cycle':>13s}{'of DOP853':>11s}{'of exact':>10s}{'error':>10s}"
         print(f"\n{name}\n{'':34s}{heads}")
         for label, row in rows.items():

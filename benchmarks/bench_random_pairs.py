@@ -33,12 +33,15 @@ FASTEST = 40.0  # at the reference circle, m/s
 
 def drawn(count: int, seed: int) -> Iterator[tuple[str, GearPair]]:
     """Kind and pair; pairs that cannot exist are drawn again."""
-    rng, found = np.random.default_rng(seed), 0
+    rng = np.random.default_rng(seed)
+    found = 0
     while found < count:
         kind = KINDS[found * len(KINDS) // count]
         z1 = int(rng.integers(15, 41))
-        z2, m = round(z1 * rng.uniform(1, 4)), float(rng.choice(MODULES))
-        width, d1 = round(m * rng.uniform(6, 14), 1), m * z1
+        z2 = round(z1 * rng.uniform(1, 4))
+        m = float(rng.choice(MODULES))
+        width = round(m * rng.uniform(6, 14), 1)
+        d1 = m * z1
         most = min(15_000.0, FASTEST / (math.pi * d1 * 1e-3) * 60.0)
         speed = round(math.exp(rng.uniform(math.log(100.0), math.log(most))))
         load = math.exp(rng.uniform(math.log(20.0), math.log(300.0)))  # N/mm
@@ -71,7 +74,8 @@ def shifts(pair: GearPair, rng: np.random.Generator) -> dict[str, Any]:
 
 def relief(pair: GearPair, rng: np.random.Generator) -> dict[str, Any]:
     """Of both tips, from within the double contact on."""
-    amount, g = float(round(rng.uniform(5, 40))), pair.geometry
+    amount = float(round(rng.uniform(5, 40)))
+    g = pair.geometry
     start = g.base_pitch + rng.uniform(0.0, 0.5) * (g.L_XD - g.L_XA - g.base_pitch)
     angles = (g.L_XA + start) / g.base_radius_pinion, (g.L_XY - g.L_XD + start) / g.base_radius_gear
     return {

@@ -36,14 +36,13 @@ from validation.reporting.results import Results
 
 def drawn(count: int, seed: int) -> Iterator[GearPair]:
     """Random pairs that exist; every third is lightly damped."""
-    rng, found = random.Random(seed), 0
+    rng = random.Random(seed)
+    found = 0
     while found < count:
         teeth = rng.randint(17, 60), rng.randint(17, 120)
         module = rng.choice([1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0])
-        width, velocity = (
-            module * rng.uniform(6.0, 14.0),
-            math.exp(rng.uniform(math.log(2.0), math.log(40.0))),
-        )
+        width = module * rng.uniform(6.0, 14.0)
+        velocity = math.exp(rng.uniform(math.log(2.0), math.log(40.0)))
         radius = 0.5e-3 * module * teeth[0]
         speed = velocity / radius * 30.0 / math.pi
         torque = rng.uniform(4e6, 3e7) * width * module * 1e-6 * radius
@@ -84,21 +83,24 @@ def timed(pair: GearPair, *, quick: bool) -> str:
         return kept[-1]
 
     seconds: dict[str, float] = defaultdict(float)
-    stage, since = "", time.process_time()
+    stage = ""
+    since = time.process_time()
 
     def tell(_: float, now: str = "", /) -> None:
         nonlocal stage, since
         if now != stage:
             used = time.process_time()
             seconds[stage] += used - since
-            stage, since = now, used
+            stage = now
+            since = used
 
     with tempfile.TemporaryDirectory() as folder, mock.patch.object(build, "Results", keep):
         started = time.process_time()
         written = build.report(pair, Path(folder) / "r", quick=quick, progress=tell)
         used = time.process_time() - started
     results = kept[0]
-    search, found = results.jump_search, results.uncertainty
+    search = results.jump_search
+    found = results.uncertainty
     left = f"{sum(b - a for a, b in search.open):.0f} rpm" if search.open else ""
     samples = ""
     if not isinstance(found, Absent):

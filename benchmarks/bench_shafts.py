@@ -58,12 +58,15 @@ def measure(name: str, pair: lumped.GearPair, cycles: int, repeats: int) -> None
     """Print the table of one set of shafts."""
     pairs = [pair.with_({"shafts.max_frequency": f}) for f in FREQUENCIES]
     setups = [prepare(one, "linear", "periodic", supports="shafts") for one in pairs]
-    runs, calls, seconds = [], [], [np.inf] * len(setups)
+    runs = []
+    calls = []
+    seconds = [np.inf] * len(setups)
     for setup in setups:
         runs.append(record(setup, cycles, 256)[0])
         calls.append(setup.model.budget.calls)
     exact = prepare(pair, "exact", "periodic", supports="shafts")
-    timed, best = [*setups, exact], [*seconds, np.inf]
+    timed = [*setups, exact]
+    best = [*seconds, np.inf]
     for _ in range(repeats):
         for i, setup in enumerate(timed):
             start = time.process_time()

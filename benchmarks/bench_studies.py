@@ -48,8 +48,10 @@ def overhead(count):
 
     def times(number):
         study = study_of(number)
-        evaluate, values = StudyEvaluator.of(study), CaseList(study).values(range(number))
-        plain, swept = [], []
+        evaluate = StudyEvaluator.of(study)
+        values = CaseList(study).values(range(number))
+        plain = []
+        swept = []
         for _ in range(RUNS):
             plain.append(processor_seconds(lambda: [evaluate(v) for v in values]))
             with tempfile.TemporaryDirectory() as folder:
@@ -58,7 +60,8 @@ def overhead(count):
         return min(plain), min(swept), size
 
     times(10)
-    few, many = count // 5, count
+    few = count // 5
+    many = count
     (plain_few, swept_few, _), (plain_many, swept_many, size) = times(few), times(many)
     plain = (plain_many - plain_few) / (many - few)
     swept = (swept_many - swept_few) / (many - few)
@@ -74,7 +77,8 @@ def scaling(count):
     study = study_of(
         count, "lumped", ("dte_peak_to_peak", "mesh_efficiency", "error_estimate"), 300.0, 1200.0
     )
-    seconds, results = {}, set()
+    seconds = {}
+    results = set()
     many = cores()
     for workers in range(1, many + 1):
         with tempfile.TemporaryDirectory() as folder:

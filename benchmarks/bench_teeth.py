@@ -39,7 +39,8 @@ def classed(number: int, first_seed: int = 1) -> dict[str, dict[str, int]]:
 
 STAIRCASE = [20.0 / math.cos(math.radians(20.0)) * math.cos(2.0 * math.pi * j / 19) for j in range(19)]
 # 2 mm of the path round the pitch point, and 1.5 mm before its end.
-_RADIUS, _G = UNLIKE.geometry.base_radius_pinion, UNLIKE.geometry
+_RADIUS = UNLIKE.geometry.base_radius_pinion
+_G = UNLIKE.geometry
 LOW, HIGH, END = np.degrees(np.array([_G.L_XP - 1e-3, _G.L_XP + 1e-3, _G.L_XD - 1.5e-3]) / _RADIUS)
 SPALL = {"kind": "spall", "tooth": 4, "start_roll_angle": LOW, "end_roll_angle": HIGH, "width": 3.175}
 CASES = {
@@ -104,7 +105,8 @@ def classes() -> None:
 def cracks() -> None:
     """Loss of stiffness by a crack of 28/28 at P and D, and E b times its compliance at D."""
     line("q, mm", "E b x compliance", "over plane elements", "loss of k at P, %", "at D, %")
-    g, gear = ALIKE.geometry, ALIKE.pinion
+    g = ALIKE.geometry
+    gear = ALIKE.pinion
     for depth, elements in ((0.5, 0.623), (1.0, 1.963), (2.0, 6.561), (3.0, 15.68)):
         faults = [{"kind": "crack", "tooth": 1, "depth": depth, "angle": 90}]
         laws = ToothLaws(ALIKE.with_({"pinion.faults": faults}))
@@ -147,7 +149,8 @@ def times() -> None:
 
 def seeds() -> None:
     """64 pairs of seeds of class 6 on 19/41, 1450 rpm, 80 N m: 5, 50 and 95 % of a linear hunting period."""
-    pair, found = new_pair("19/41", 2.5, 20.0, 1450.0, 80.0), []
+    pair = new_pair("19/41", 2.5, 20.0, 1450.0, 80.0)
+    found = []
     start = time.process_time()
     for seed in range(1, 129, 2):
         run = lumped.steady_state(pair.with_(classed(6, seed)), contact="linear", samples_per_cycle=32)

@@ -38,7 +38,8 @@ PAIRS = {
 PAIRS["shafts"] = PAIRS["28/28"][0].with_(shafts=SLENDER | {"motor": TRAIN, "load": TRAIN}), 4
 QUANTITIES = ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "bearing_rms", "efficiency")
 ENDS = (5.0, 95.0)
-SAMPLES, REFERENCE_SEED = 128, 1000
+SAMPLES = 128
+REFERENCE_SEED = 1000
 
 
 def line(*cells: object) -> None:
@@ -123,7 +124,8 @@ NAMED = (
     ("18/35", 0.5, 5.0, 3000.0, 0.02, {"gears.youngs_modulus": "3 GPa", "gears.density": 1400.0}),
     ("22/95", 14.0, 300.0, 400.0, 12_000.0, {}),
 )
-DRAWN, DRAWN_SEED = 20, 7
+DRAWN = 20
+DRAWN_SEED = 7
 
 
 def drawn_pairs() -> Iterator[GearPair]:
@@ -136,7 +138,8 @@ def drawn_pairs() -> Iterator[GearPair]:
         gear = int(pinion * rng.uniform(1.0, 4.5))
         module = float(f"{np.exp(rng.uniform(0.0, np.log(10.0))):.2g}")
         width = round(module * rng.uniform(6.0, 12.0), 1)
-        velocity, diameter = np.exp(rng.uniform(0.0, np.log(30.0))), 1e-3 * module * pinion
+        velocity = np.exp(rng.uniform(0.0, np.log(30.0)))
+        diameter = 1e-3 * module * pinion
         speed = round(60.0 * velocity / (np.pi * diameter))
         intensity = np.exp(rng.uniform(np.log(5e6), np.log(40e6)))
         torque = float(f"{0.5e-6 * intensity * width * module * diameter:.3g}")

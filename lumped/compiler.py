@@ -99,7 +99,8 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
             return str(kernel_folder())
 
     def _path(self, sig: Any, codegen: Any) -> Path:
-        function, stamp = self._py_func, stamp_of(self._dispatcher)
+        function = self._py_func
+        stamp = stamp_of(self._dispatcher)
         self._first_stamp = self._first_stamp or stamp
         key = repr((stamp, described(sig), codegen.magic_tuple()))
         digest = hashlib.sha256(key.encode()).hexdigest()

@@ -113,7 +113,8 @@ class LawRangeWarning(UserWarning):
 
     def __init__(self, text: str, subject: str = "", largest: float = 0.0) -> None:
         super().__init__(text)
-        self.subject, self.largest = subject, largest
+        self.subject = subject
+        self.largest = largest
 
 
 class LikeTeethWarning(UserWarning):

@@ -18,7 +18,8 @@ def gauss_tableau(stages: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     nodes, weights = legendre.leggauss(stages)
     c, b = 0.5 * (nodes + 1.0), 0.5 * weights
     # a_ij integrates the j-th Lagrange polynomial, written in Legendre polynomials: no rounding is amplified.
-    values, odd = legendre.legvander(nodes, stages), 2 * np.arange(stages) + 1
+    values = legendre.legvander(nodes, stages)
+    odd = 2 * np.arange(stages) + 1
     integrals = np.column_stack([nodes + 1.0, (values[:, 2:] - values[:, :-2]) / odd[1:]])
     a = 0.5 * (integrals * odd) @ (values[:, :-1].T * b)
     return a, b, c

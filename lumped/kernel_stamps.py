@@ -105,7 +105,8 @@ class _Dependencies:
             dispatcher.targetoptions, dispatcher.locals, function.__defaults__, function.__kwdefaults__,
             tuple(cell.cell_contents for cell in cells),
         )  # fmt: skip
-        name, module = function.__qualname__, function.__module__
+        name = function.__qualname__
+        module = function.__module__
         return module, name, self._of(bound, (), function), self._of_code(function.__code__, function)
 
     def _of_code(self, code: CodeType, function: FunctionType) -> tuple[Any, ...]:
@@ -184,7 +185,8 @@ def _root(module: str) -> str:
 
 def _in_library(value: Any) -> bool:
     """Whether a class or function is the one that a library holds by its name."""
-    module, name = getattr(value, "__module__", None), getattr(value, "__qualname__", None)
+    module = getattr(value, "__module__", None)
+    name = getattr(value, "__qualname__", None)
     if not isinstance(module, str) or not isinstance(name, str) or _root(module) not in _LIBRARIES:
         return False
     return getattr(sys.modules.get(module), name, None) is value

@@ -31,7 +31,8 @@ FIT_DEGREE = 8
 _MAX_CUTS = 44
 #: A function is smooth at a break if the polynomial before it holds beyond, for this share of the shorter
 #: piece and to so much of the largest value.
-_BEYOND, _SMOOTH = 0.25, 1e-6
+_BEYOND = 0.25
+_SMOOTH = 1e-6
 #: Pieces of this share of the interval and longer err by the tolerance at most, see ``PathFunction.fit``.
 _FULL_LENGTH = 0.125
 #: Cutting without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.

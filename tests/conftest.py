@@ -150,7 +150,8 @@ def labelled_figures():
     """Check every figure when it is saved: then it has been drawn, so that its ticks are known."""
     from matplotlib.figure import Figure
 
-    save, seen = Figure.savefig, weakref.WeakSet()
+    save = Figure.savefig
+    seen = weakref.WeakSet()
 
     def checked(figure, *args, **options):
         save(figure, *args, **options)

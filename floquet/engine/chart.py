@@ -82,9 +82,11 @@ class ChartPoints:
 
     def __init__(self, count: int, *, everything: bool = False) -> None:
         self.everything = everything
-        self.radius, self.error = np.empty(count), np.empty(count)
+        self.radius = np.empty(count)
+        self.error = np.empty(count)
         self.verdict = np.zeros(count, dtype=np.int8)
-        self.proven, self.known = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.proven = np.zeros(count, dtype=bool)
+        self.known = np.zeros(count, dtype=bool)
         self.gap: FloatArray | None = None
         self.cells: IntArray | None = None
         self.multipliers: ComplexArray | None = None
@@ -100,16 +102,19 @@ class ChartPoints:
     ) -> None:
         """Take multipliers (k, size) of points (k,), the ``coupled`` first, and bounds on their errors."""
         radius, error = radii_with_bounds(values, errors)
-        self.radius[points], self.error[points] = radius, error
+        self.radius[points] = radius
+        self.error[points] = error
         self.verdict[points] = verdicts(radius, error)
-        self.proven[points], self.known[points] = proven, True
+        self.proven[points] = proven
+        self.known[points] = True
         if self.gap is not None:
             self.gap[points] = gaps(values[:, :coupled])
         if not self.everything:
             return
         if self.multipliers is None or self.multiplier_errors is None:
             shape = self.radius.size, values.shape[1]
-            self.multipliers, self.multiplier_errors = np.empty(shape, dtype=complex), np.empty(shape)
+            self.multipliers = np.empty(shape, dtype=complex)
+            self.multiplier_errors = np.empty(shape)
         ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
         self.multipliers[points] = np.take_along_axis(values, ranking, 1)
         self.multiplier_errors[points] = np.take_along_axis(errors, ranking, 1)
@@ -279,7 +284,8 @@ def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dat
         name: (dims, values.reshape(shape), "1", text) for name, (values, text) in each.items()
     }
     if points.multipliers is not None and points.multiplier_errors is not None:
-        full, wide = (*dims, "multiplier"), (*shape, -1)
+        full = (*dims, "multiplier")
+        wide = (*shape, -1)
         text = "Floquet multipliers, largest modulus first"
         variables["multipliers"] = (full, points.multipliers.reshape(wide), "1", text)
         text = "bound on the error of each multiplier"

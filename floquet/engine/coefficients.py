@@ -48,7 +48,8 @@ class Coefficient(ABC):
         if self.breaks:
             return True
         times = period * np.array([0.0, 0.17, 0.31, 0.47, 0.61, 0.83])
-        now, later = self(times), self(times + period)
+        now = self(times)
+        later = self(times + period)
         return bool(np.abs(later - now).max() <= 1e-9 * np.abs(now).max())
 
     def __add__(self, other: Coefficient | float) -> Coefficient:
@@ -67,7 +68,8 @@ class Coefficient(ABC):
         """The difference."""
         return self + _known(other) * -1.0
 
-    __radd__, __rmul__ = __add__, __mul__
+    __radd__ = __add__
+    __rmul__ = __mul__
 
     def __rsub__(self, other: float) -> Coefficient:
         """The difference from a number."""
@@ -142,7 +144,8 @@ class FourierSeries(Coefficient):
         self._omega = 2.0 * math.pi / real_number("period", period, 0.0, above=True, unit="s")
         self._mean = real_number("mean", mean)
         self._a, self._b = (np.zeros(count) for _ in range(2))
-        self._a[: len(cosines)], self._b[: len(sines)] = cosines, sines
+        self._a[: len(cosines)] = cosines
+        self._b[: len(sines)] = sines
         self._order = np.arange(1, count + 1)
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
@@ -175,7 +178,8 @@ class FourierSeries(Coefficient):
 
 class _Sum(Coefficient):
     def __init__(self, first: Coefficient, second: Coefficient) -> None:
-        self._first, self._second = first, second
+        self._first = first
+        self._second = second
         self.breaks = first.breaks + second.breaks
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
@@ -188,7 +192,8 @@ class _Sum(Coefficient):
 
 class _Product(Coefficient):
     def __init__(self, first: Coefficient, second: Coefficient) -> None:
-        self._first, self._second = first, second
+        self._first = first
+        self._second = second
         self.breaks = first.breaks + second.breaks
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
@@ -199,7 +204,8 @@ class _Product(Coefficient):
         out = np.zeros((start.size, 2 * degree + 1))
         for j in range(degree + 1):
             out[:, j : j + degree + 1] += a[:, j, None] * b
-        size_a, size_b = np.abs(a).sum(axis=1), np.abs(b).sum(axis=1)
+        size_a = np.abs(a).sum(axis=1)
+        size_b = np.abs(b).sum(axis=1)
         errors = np.abs(out[:, degree + 1 :]).sum(axis=1) + da * size_b + db * size_a + da * db
         errors += (degree + 8.0) * 2.0 * _U * size_a * size_b
         return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)

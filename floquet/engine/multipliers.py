@@ -97,7 +97,8 @@ def _cluster_bound(
         return None
     change = error
     if m < n:
-        corner, rest = T[:m, m:], T[m:, m:]
+        corner = T[:m, m:]
+        rest = T[m:, m:]
         sep, W = least_separation(block, rest)
         if sep == 0.0:
             return None
@@ -105,7 +106,8 @@ def _cluster_bound(
         left = float(np.linalg.norm(block @ X - X @ rest + corner))
         left += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))
         p = math.hypot(1.0, float(np.linalg.norm(X))) * _SLACK
-        upper, room = p * p * error + left, sep - 2.0 * p * error
+        upper = p * p * error + left
+        room = sep - 2.0 * p * error
         if not (room > 0.5 * sep and 4.0 * error * upper < room * room):
             return None
         change = p * error + 2.0 * error * upper / room
@@ -141,7 +143,8 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
         clusters[bad] = clusters[bad] + clusters[nearest]
         bounds[bad] = _cluster_bound(M, T, Z, clusters[bad], delta)
         del clusters[nearest], bounds[nearest]
-    values, errors = np.empty(n, dtype=complex), np.empty(n)
+    values = np.empty(n, dtype=complex)
+    errors = np.empty(n)
     for members, bound in zip(clusters, bounds, strict=True):
         values[members], errors[members] = (eigenvalues[members], math.inf) if bound is None else bound
     # Largest modulus first; a conjugate pair (equal modulus up to rounding) with its positive phase first.

@@ -96,7 +96,8 @@ def propagate(
     d = system.balancing()
     start, end = _initial_grid(system, method, d)
     done: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
-    accepted, warned = 0, False
+    accepted = 0
+    warned = False
     rng = np.random.default_rng(_SEED)
     n = system.dimension
     while start.size:

@@ -32,8 +32,11 @@ def proven_propagation(
     d = system.balancing()
     ends = np.unique(np.clip([0.0, system.period, *known.breaks], 0.0, system.period))
     start, end = ends[:-1], ends[1:]
-    times, steps, errors = [], [], []
-    taken, chunk = 0, min(4096, 1 + _CHUNK // d.size**2)
+    times = []
+    steps = []
+    errors = []
+    taken = 0
+    chunk = min(4096, 1 + _CHUNK // d.size**2)
     while start.size:
         if taken + start.size > max_substeps:
             raise NumericalError(
@@ -55,7 +58,8 @@ def proven_propagation(
         start = np.concatenate([first[~good], middle[~good], start[chunk:]])
         end = np.concatenate([middle[~good], last[~good], end[chunk:]])
     order = np.argsort(np.concatenate(times))
-    flows, local = np.concatenate(steps)[order], np.concatenate(errors)[order]
+    flows = np.concatenate(steps)[order]
+    local = np.concatenate(errors)[order]
     product, bound = proven_product(flows, local)
     ends = np.append(np.concatenate(times)[order], system.period)
     return Propagation(ends, flows, local, rounding=np.zeros_like(local), scaling=d), product, bound
@@ -90,7 +94,8 @@ def _steps(
     good |= whole & (errors <= rtol)
     if not good.any():
         return np.empty((0, n, n)), errors, good
-    used, B = np.flatnonzero(a.any(axis=0)), B[good]
+    used = np.flatnonzero(a.any(axis=0))
+    B = B[good]
     X = np.zeros((_TERMS + 1, len(B), n, n))
     X[0] = np.eye(n)
     for k in range(_TERMS):
@@ -129,13 +134,17 @@ def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, f
     for j in range(m - 1, -1, -1):
         after = tails[-1][1] + tails[-1][2] if tails else 1.0
         total += after * (errors[j] + rounding * sizes[j]) * before[j]
-        rank, block, norm, error = 0, steps[j], float(sizes[j]), float(errors[j])
+        rank = 0
+        block = steps[j]
+        norm = float(sizes[j])
+        error = float(errors[j])
         while blocks and blocks[-1][0] == rank:
             _, other, size, off = blocks.pop()
             tails.pop()
             error = size * error + off * norm + off * error + rounding * size * norm
             block = other @ block
-            rank, norm = rank + 1, _size(block)
+            rank = rank + 1
+            norm = _size(block)
         blocks.append((rank, block, norm, error))
         if tails:
             other, size, off = tails[-1]

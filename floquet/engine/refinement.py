@@ -59,8 +59,10 @@ def gaps(multipliers: ComplexArray) -> FloatArray:
     Of two multipliers the angle between them, or the geometric mean of their decay -ln|.| where that is
     more: coupled by less than this they are stable however near they are (Hsu 1963).
     """
-    angle, decay = np.angle(multipliers), -np.log(np.maximum(np.abs(multipliers), _LEAST_RADIUS))
-    root, nearest = np.sqrt(np.maximum(decay, 0.0)), np.full(len(multipliers), np.inf)
+    angle = np.angle(multipliers)
+    decay = -np.log(np.maximum(np.abs(multipliers), _LEAST_RADIUS))
+    root = np.sqrt(np.maximum(decay, 0.0))
+    nearest = np.full(len(multipliers), np.inf)
     for j in range(1, multipliers.shape[1]):
         apart = np.abs((angle[:, :j] - angle[:, j, None] + np.pi) % (2.0 * np.pi) - np.pi)
         nearest = np.minimum(nearest, np.maximum(apart, root[:, :j] * root[:, j, None]).min(axis=1))
@@ -95,7 +97,8 @@ def refine(
         state.look(nodes[:, 0], nodes[:, 1])
         # What was asked for a neighbour may lie in a leaf too: it is judged again.
         again = [box for box, count in leaves.items() if state.count(box) != count]
-        boxes, new = [*new, *again], []
+        boxes = [*new, *again]
+        new = []
         for box in boxes:
             leaves.pop(box, None)
             cuts = state.cuts(box, tolerance)
@@ -118,7 +121,8 @@ def _nine(box: Box) -> IntArray:
 
 class _State:
     def __init__(self, shape: tuple[int, int], cycles: FloatArray, ask: Ask) -> None:
-        self.ask, self.cycles = ask, cycles
+        self.ask = ask
+        self.cycles = cycles
         self.radius, self.growth, self.gap = (np.full(shape, np.nan) for _ in range(3))
         self.verdict = np.zeros(shape, dtype=np.intp)
         self.known = np.zeros(shape, dtype=bool)
@@ -157,24 +161,28 @@ class _State:
     def cuts(self, box: Box, tolerance: float) -> list[Box]:
         """The parts of a box that is no leaf; empty for a leaf."""
         a, b, c, d = box
-        wide, tall = b - a > 1, d - c > 1
+        wide = b - a > 1
+        tall = d - c > 1
         if not (wide or tall):
             return []
         i, j, error = self.misfit(box)
         verdict = self.verdict[i, j]
-        mixed, meeting = bool((verdict != verdict[0]).any()), False
+        mixed = bool((verdict != verdict[0]).any())
+        meeting = False
         if not mixed:
             radius = self.radius[i, j]
             allowed = tolerance * np.maximum(radius, 1.0)
             if verdict[0] != 0:
                 allowed = np.minimum(allowed, 0.5 * np.abs(radius - 1.0))
             if (error <= allowed).all():
-                excess, gap = radius - 1.0, self.gap[i, j]
+                excess = radius - 1.0
+                gap = self.gap[i, j]
                 meeting = bool(verdict[0] >= 0 and np.ptp(gap) > _PER_DECAY * gap.min())
                 if not (meeting or (verdict[0] < 0 and excess.max() > _EXCESS * excess.min())):
                     return []
         along, up = self._ways(box, i, j, error, mixed=mixed, meeting=meeting)
-        along, up = (along and wide) or not tall, (up and tall) or not wide
+        along = (along and wide) or not tall
+        up = (up and tall) or not wide
         return parts_of(box, along=along and wide, up=up and tall)
 
     def _ways(
@@ -185,7 +193,8 @@ class _State:
         if mixed:
             edges = [self.verdict[i[on], j[on]] for on in (j == c, j == d, i == a, i == b)]
             lower, upper, left, right = (bool((edge != edge[0]).any()) for edge in edges)
-            along, up = lower or upper, left or right
+            along = lower or upper
+            up = left or right
             return (along, up) if along or up else (True, True)
         if meeting:
             gap = self.gap[np.ix_((a, (a + b) // 2, b), (c, (c + d) // 2, d))]
@@ -212,7 +221,8 @@ class _State:
                 i, j = np.nonzero(~self.known[inner])
                 i, j = i + p, j + r
                 self.radius[i, j] = np.exp(self._bilinear(part, i, j) / self.cycles[i, j])
-                self.verdict[i, j], misfit[i, j] = verdict, size
+                self.verdict[i, j] = verdict
+                misfit[i, j] = size
         return Refined(self.radius, self.verdict, self.known, misfit)
 
 

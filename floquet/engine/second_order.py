@@ -72,7 +72,8 @@ def from_second_order(
     if not np.linalg.cond(mass * scale[:, None] * scale) < _SINGULAR:
         advice = "Condense coordinates without mass, or give them some."
         raise refuse("M", "a singular matrix", "an invertible matrix", advice)
-    damping, stiffness = _checked("C", C, n, period), _checked("K", K, n, period)
+    damping = _checked("C", C, n, period)
+    stiffness = _checked("K", K, n, period)
     # Breaks of the formulas, and a first check of the callables.
     places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
     middle = 0.5 * (places[:-1] + places[1:])
@@ -149,7 +150,8 @@ def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -
 
     none = np.zeros((n, n))
     constant, off = pair(K.matrices[0], C.matrices[0])
-    terms, errors = [], [off]
+    terms = []
+    errors = [off]
     varying = [(f, B, none) for f, B in zip(K.functions, K.matrices[1:], strict=True)]
     varying += [(f, none, B) for f, B in zip(C.functions, C.matrices[1:], strict=True)]
     for function, stiffness, damping in varying:
@@ -169,10 +171,12 @@ class _Solution:
 
     def __init__(self, M: FloatArray, T: FloatArray) -> None:
         n = M.shape[0]
-        self.T, self.size = T.astype(_WIDE), np.abs(M) @ np.abs(T)
+        self.T = T.astype(_WIDE)
+        self.size = np.abs(M) @ np.abs(T)
         self.P = M.astype(_WIDE) @ self.T
         W = np.linalg.inv(self.P.astype(float))
-        self.W, self.sizes = W.astype(_WIDE), np.abs(W)
+        self.W = W.astype(_WIDE)
+        self.sizes = np.abs(W)
         self.gamma = float((2.0 * n + 8.0) * np.finfo(_WIDE).eps)
         G = np.abs(np.eye(n) - self.W @ self.P).astype(float)
         G += self.gamma * (self.sizes @ self.size + np.eye(n))

@@ -28,7 +28,8 @@ def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray
     m = K.shape[-1]
     out = np.zeros((*K.shape[:-2], 2 * m, 2 * m))
     out[..., :m, m:] = np.eye(m)
-    out[..., m:, :m], out[..., m:, m:] = -K, -C
+    out[..., m:, :m] = -K
+    out[..., m:, m:] = -C
     return out
 
 
@@ -114,7 +115,8 @@ class PeriodicSystem:
     def evaluate(self, times: npt.ArrayLike) -> FloatArray:
         """Return A at times [s] strictly inside smooth segments, (k,) -> (k, n, n); checked finite."""
         t = np.asarray(times, dtype=float)
-        values, shape = self._call(t), (self.dimension, self.dimension)
+        values = self._call(t)
+        shape = (self.dimension, self.dimension)
         if values.shape != (t.size, *shape):
             value = f"shape {values.shape[1:]} at t = {t[0] if t.size else 0.0:g} s"
             raise refuse("A", value, f"{shape} at every time", "Return the same shape for every time.")

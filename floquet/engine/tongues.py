@@ -148,13 +148,15 @@ def _highest(
 
     The top of a smooth peak is known to (width)^2: four rounds of a factor 16 leave 1e-9 of its height.
     """
-    best, top = low, -np.inf
+    best = low
+    top = -np.inf
     for _ in range(4):
         x = np.linspace(low, high, count)
         values = function(x)
         k = int(np.argmax(values))
         if values[k] > top:
-            best, top = float(x[k]), float(values[k])
+            best = float(x[k])
+            top = float(values[k])
         low, high = float(x[max(k - 1, 0)]), float(x[min(k + 1, count - 1)])
     return best, top
 
@@ -210,7 +212,8 @@ def unstable_intervals(
         peak = first + int(np.argmax(values[first : last + 1]))
         lower = nodes[0] if first == 0 else ends[np.searchsorted(change, first - 1)]
         upper = nodes[-1] if last == nodes.size - 1 else ends[np.searchsorted(change, last)]
-        top, open_ends = (float(nodes[peak]), float(values[peak])), (first == 0, last == nodes.size - 1)
+        top = (float(nodes[peak]), float(values[peak]))
+        open_ends = (first == 0, last == nodes.size - 1)
         result.append(UnstableInterval(float(lower), float(upper), *top, *map(bool, open_ends)))
     return result
 
@@ -235,7 +238,8 @@ def _refine_maxima(
             break
         merged = np.concatenate([nodes, new])
         order = np.argsort(merged)
-        nodes, values = merged[order], np.concatenate([values, radius(new)])[order]
+        nodes = merged[order]
+        values = np.concatenate([values, radius(new)])[order]
     return nodes, values
 
 

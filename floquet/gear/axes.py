@@ -72,10 +72,8 @@ class GearVariation:
             return 1.0
         mean = mean_coefficient(MeshCycle.of(self.pair).elements.friction)
         if mean == 0.0:
-            allowed, action = (
-                "a law that is not zero along the whole path",
-                'Choose friction.law = "coulomb".',
-            )
+            allowed = "a law that is not zero along the whole path"
+            action = 'Choose friction.law = "coulomb".'
             raise refuse("friction_coefficient", self.friction_mean, allowed, action)
         return self.friction_mean / mean
 
@@ -134,7 +132,8 @@ def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
     factor = value / g.contact_ratio
     recess = g.L_XP + factor * (g.L_XD - g.L_XP)
     approach = g.L_XY - g.L_XP + factor * (g.L_XP - g.L_XA)
-    later, earlier = recess - g.L_XD, approach - (g.L_XY - g.L_XA)
+    later = recess - g.L_XD
+    earlier = approach - (g.L_XY - g.L_XA)
     changes: dict[str, object] = {}
     for name, gear, radius, flank, tip, root in (
         ("pinion", pair.pinion, g.base_radius_pinion, recess, later, -earlier),
@@ -298,13 +297,15 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     whole as long as its bounds do not move, and law V is each of these where one regime has the whole path:
     such a law is also evaluated along the path at every speed, and its switches are compared.
     """
-    pair, rest = variation.pair, np.arange(speeds_rpm.size)
+    pair = variation.pair
+    rest = np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):
         for rpm in {speeds_rpm.min(), speeds_rpm.max()}:  # a table is for one speed
             path = contact_path(pair).at_speed(float(rpm) * np.pi / 30.0)
             warn_violations(violations_of(path, pair.friction, pair.friction.law))
         return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
-    law, families = _Law(variation), []
+    law = _Law(variation)
+    families = []
     while rest.size:
         reference = float(speeds_rpm[rest[rest.size // 2]])
         members, weights = law.weights(reference, speeds_rpm[rest])
@@ -320,8 +321,10 @@ class _Law:
     """The friction law of a pair at other speeds than its own."""
 
     def __init__(self, variation: GearVariation) -> None:
-        self.path, self.settings = contact_path(variation.pair), variation.pair.friction
-        self.law, self.to_mean = law_of(self.settings), variation.friction_mean is not None
+        self.path = contact_path(variation.pair)
+        self.settings = variation.pair.friction
+        self.law = law_of(self.settings)
+        self.to_mean = variation.friction_mean is not None
         self.ends = MeshCycle.of(variation.pair).elements.friction.interval
         self.positions = _positions(replace(self.path, L_XA=self.ends[0], L_XD=self.ends[1]))
         self.values = cache(self._values)
@@ -345,7 +348,8 @@ class _Law:
 
     def _where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
         """The contact at a speed from the first to the last position of loaded teeth, and settings there."""
-        there, settings = self.at(rpm), self.settings
+        there = self.at(rpm)
+        settings = self.settings
         longer = replace(there, L_XA=self.ends[0], L_XD=self.ends[1])
         if reads_average(self.law, longer, settings):  # mu_avg stays the mean from A to D
             settings = settings.model_copy(update={"coefficient": average_coefficient(there, settings)})
@@ -353,7 +357,9 @@ class _Law:
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
-        law, members, result = self.in_force(reference), [], []
+        law = self.in_force(reference)
+        members = []
+        result = []
         for i, rpm in enumerate(map(float, speeds_rpm)):
             weights = self._pair(law, reference, rpm)
             if weights is not None:
@@ -367,7 +373,8 @@ class _Law:
             return 1.0, 0.0
         if law is None or self.in_force(rpm) is not law:
             return None
-        before, now = self.at(reference), self.at(rpm)
+        before = self.at(reference)
+        now = self.at(rpm)
         if law.factor is not None:
             unit = law.factor(before, self.settings)
             weights = law.factor(now, self.settings) / unit if unit else 1.0, 0.0

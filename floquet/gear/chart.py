@@ -136,11 +136,13 @@ def stability_chart(
         dataset = dataset.merge(cells, combine_attrs="override").assign_attrs(cells.attrs)
     for name in grid:
         dataset[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
-    title, law = f"stability chart of {variation.pair.name}", variation.pair.friction.law
+    title = f"stability chart of {variation.pair.name}"
+    law = variation.pair.friction.law
     dataset = dataset.assign_attrs(
         **provenance(variation.pair), title=title, friction_law=law, supports=variation.supports, rtol=rtol
     )
-    rpm, teeth = operating_rpm(variation.pair), variation.pair.pinion.teeth
+    rpm = operating_rpm(variation.pair)
+    teeth = variation.pair.pinion.teeth
     dataset = dataset.assign_attrs(operating_speed_rpm=rpm, mesh_cycles_per_revolution=teeth)
     return with_regions(variation, dataset)
 
@@ -155,7 +157,8 @@ def _check_cells(grid: Mapping[str, FloatArray]) -> None:
 def _verdicts_of_cells(grid: Mapping[str, FloatArray], cells: IntArray) -> xr.Dataset:
     """The verdicts of cells (speed, damping) and the share of the area that is proven."""
     axes = [np.sort(grid[name]) for name in _CELLS]
-    area, names = np.outer(*map(np.diff, axes)), tuple(f"{name}_cell" for name in _CELLS)
+    area = np.outer(*map(np.diff, axes))
+    names = tuple(f"{name}_cell" for name in _CELLS)
     text = "verdict everywhere in the cell: 1 stable, -1 unstable, 0 not proven"
     middles = {}
     for name, v in zip(names, axes, strict=True):
@@ -213,7 +216,8 @@ def solved(
             evaluate(evaluate.unproven(points.cells))
         return points
     # Slow axes outermost, then speed: few fits of the gains for each call.
-    names, shape = list(grid), [values.size for values in grid.values()]
+    names = list(grid)
+    shape = [values.size for values in grid.values()]
     order = sorted(range(len(names)), key=lambda i: (names[i] in _INNER, names[i] != "speed_rpm"))
     index = np.arange(count).reshape(shape).transpose(order).reshape(-1, evaluate.each)
     for k, row in enumerate(index):
@@ -235,7 +239,10 @@ class _Points:
     def __init__(
         self, variation: GearVariation, grid: Mapping[str, FloatArray], rtol: float, points: ChartPoints
     ) -> None:
-        self.variation, self.grid, self.rtol, self.points = variation, grid, rtol, points
+        self.variation = variation
+        self.grid = grid
+        self.rtol = rtol
+        self.points = points
         self.shape = [values.size for values in grid.values()]
         # A friction axis that is zero throughout has no reference to scale.
         self.inner = [n for n in grid if n in _INNER and (n != "friction_coefficient" or grid[n].max() > 0.0)]
@@ -271,7 +278,8 @@ class _Points:
         if self.inner[0] != _CELLS[0]:
             places = places.T
         places = places[np.ix_(speed, damping)]
-        verdict, wrong = self.points.verdict[places], np.zeros(places.shape, dtype=bool)
+        verdict = self.points.verdict[places]
+        wrong = np.zeros(places.shape, dtype=bool)
         for here in ((a, b) for a in (slice(1, None), slice(-1)) for b in (slice(1, None), slice(-1))):
             wrong[here] |= (cells == 0) | (cells != verdict[here])
         return np.asarray(places[wrong & ~self.points.known[places]])
@@ -316,9 +324,11 @@ class ChartSlice:
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
         """Family of each speed, and its row there."""
-        family, row = np.empty(self.speeds.size, dtype=np.intp), np.empty(self.speeds.size, dtype=np.intp)
+        family = np.empty(self.speeds.size, dtype=np.intp)
+        row = np.empty(self.speeds.size, dtype=np.intp)
         for k, one in enumerate(self.families):
-            family[one.members], row[one.members] = k, np.arange(one.members.size)
+            family[one.members] = k
+            row[one.members] = np.arange(one.members.size)
         return family, row
 
     def _block(self, k: int, rtol: float) -> tuple[RankOneSystem, OffLineOfAction, int, float]:
@@ -337,7 +347,8 @@ class ChartSlice:
     def cells(self, rtol: float, progress: Progress | None) -> IntArray:
         """Verdicts (N-1, M-1) of the cells between neighbouring speeds and damping ratios, `proven_cells`."""
         order = np.argsort(self.speeds)
-        speeds, damping = self.speeds[order], np.sort(self.damping)
+        speeds = self.speeds[order]
+        damping = np.sort(self.damping)
         verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
         of = self._rows[0][order]
         ends = np.concatenate([[0], 1 + np.flatnonzero(np.diff(of)), [of.size]])
@@ -432,7 +443,8 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
     cells = np.abs(np.gradient(axis)) if axis.size > 1 else np.zeros(1)
     numbered, count = ndimage.label(chart["verdict"].to_numpy() == -1, structure=np.ones((3,) * values.ndim))
     nodes = np.bincount(numbered.ravel(), minlength=count + 1)[1:]
-    boxes, regions = ndimage.find_objects(numbered), []
+    boxes = ndimage.find_objects(numbered)
+    regions = []
     for index in np.argsort(-nodes, kind="stable")[:_NAMED]:
         box = boxes[index]
         inside = numbered[box] == index + 1
@@ -456,7 +468,8 @@ def with_regions(variation: GearVariation, chart: xr.Dataset) -> xr.Dataset:
     The attribute ``nearest_edge_<axis>`` is the value nearest to the pair's own at which its stability
     changes, all else as near as the nodes come; NaN: there is none.
     """
-    regions, names = label_regions(variation, chart), list(map(str, chart["spectral_radius"].dims))
+    regions = label_regions(variation, chart)
+    names = list(map(str, chart["spectral_radius"].dims))
     along = "speed_rpm" if "speed_rpm" in names else names[0]
     each: dict[str, Variable] = {
         "region_radius": ("region", np.array([r.radius for r in regions]), "1", "largest multiplier"),
@@ -483,6 +496,7 @@ def _edge(variation: GearVariation, chart: xr.Dataset, name: str) -> float:
         return float("nan")
     nearest = {n: int(np.abs(chart[n].to_numpy() - value).argmin()) for n, value in others.items()}
     line = chart["verdict"].isel(nearest).sortby(name)
-    at, unstable = line[name].to_numpy(), line.to_numpy() < 0
+    at = line[name].to_numpy()
+    unstable = line.to_numpy() < 0
     edges = 0.5 * (at[1:] + at[:-1])[unstable[1:] != unstable[:-1]]
     return float(edges[np.argmin(np.abs(edges - own[name]))]) if edges.size else float("nan")

@@ -41,9 +41,11 @@ _MERGED = 1e-12
 #: Degree of the polynomials in place of the factor on stiffness and of its root.
 _FACTOR_DEGREE = 8
 #: Nodes and largest length of the steps of tables: with 9 a step has all of a law's polynomial.
-_NODES, _LARGEST_STEP = 9, 1.0 / 16.0
+_NODES = 9
+_LARGEST_STEP = 1.0 / 16.0
 #: Places of a step between which a kink is looked for, and steps of the search.
-_LOOKS, _ROUNDS = np.linspace(0.0, 1.0, 3), 16
+_LOOKS = np.linspace(0.0, 1.0, 3)
+_ROUNDS = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,12 +133,17 @@ class MeshGains:
         factor: float,
         levels: Sequence[float],
     ) -> None:
-        cycle, g = system.cycle, system.cycle.geometry
-        self.normal, self.arm = system.per_load[0], system.per_load[1:]
+        cycle = system.cycle
+        g = system.cycle.geometry
+        self.normal = system.per_load[0]
+        self.arm = system.per_load[1:]
         self.metric = metric
-        self.levels, self.parts = levels, 1 + len(levels)
-        self.factor, self.mean = factor, cycle.mean_stiffness
-        self.pitch, self.offsets = g.base_pitch, cycle.offsets
+        self.levels = levels
+        self.parts = 1 + len(levels)
+        self.factor = factor
+        self.mean = cycle.mean_stiffness
+        self.pitch = g.base_pitch
+        self.offsets = cycle.offsets
         self.edges = cycle.breaks / cycle.period
         middle = cycle.offsets[:, None] + g.base_pitch * 0.5 * (self.edges[:-1] + self.edges[1:])
         self.touch = (middle >= cycle.start) & (middle <= cycle.end)
@@ -156,7 +163,8 @@ class MeshGains:
         self.count = 1 + degree + (_FACTOR_DEGREE if self.varied else 0)
         self.rounding = (2 * degree + self.offsets.size + _ROUNDINGS) * _U
         # The mean is a sum over the pieces of the law, each to the moduli of its terms.
-        rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
+        rows = np.abs(e.stiffness.coefficients)
+        width = np.diff(e.stiffness.breaks)
         moduli = (rows * width ** np.arange(rows.shape[0], 0, -1)[:, None]).sum() / g.base_pitch
         self.mean_error = (width.size + 60.0) * _U * float(moduli)
         rounding = 8.0 * _U * (1.0 + g.contact_ratio)
@@ -171,7 +179,8 @@ class MeshGains:
         phases = centre[:, None] + half[:, None] * nodes
         groups = np.zeros((2 * self.parts, *phases.shape, self.normal.size))
         errors = np.zeros((groups.shape[0], centre.size))
-        factors, fixed = [np.ones_like(phases)] * 2, self._fixed[0][:, segment]
+        factors = [np.ones_like(phases)] * 2
+        fixed = self._fixed[0][:, segment]
         if self.varied:
             factors, off, most = self._factors(centre, half, segment, nodes)
             fixed = fixed * most
@@ -183,7 +192,8 @@ class MeshGains:
             if not self.touch[i, segment].any():
                 continue
             xi = self.offsets[i] + self.pitch * phases
-            mu, arm = self.mu(xi, i, segment)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
+            mu = self.mu(xi, i, segment)[..., None]
+            arm = self.arm[0] + xi[..., None] * self.arm[1]
             sign = self.side[i, segment][:, None, None]
             rows = [np.broadcast_to(self.normal, (*xi.shape, self.normal.size))]
             if self.apart.any():
@@ -283,7 +293,8 @@ class MeshGains:
         q, s = f @ into.T, np.sqrt(f) @ into.T
         vander = np.polynomial.chebyshev.chebvander
         total, target = self._total(centre, half, segment, high)
-        q_high, s_high = q @ vander(high, _FACTOR_DEGREE).T, s @ vander(high, _FACTOR_DEGREE).T
+        q_high = q @ vander(high, _FACTOR_DEGREE).T
+        s_high = s @ vander(high, _FACTOR_DEGREE).T
         slack = series_rounding(high.size) + 4.0 * _FACTOR_DEGREE**2 * self.rounding
 
         def sup(values: FloatArray, scale: FloatArray) -> FloatArray:
@@ -337,7 +348,8 @@ class OwnGains:
     count = 12
 
     def __init__(self, tables: MeshTables, system: LTVSystem, first: int, cycles: int) -> None:
-        self.tables, self.first = tables, first
+        self.tables = tables
+        self.first = first
         self.forces = np.vstack([system.per_load[0], moments(system), system.per_load[1:], system.per_apart])
         starts = np.add.outer(np.arange(cycles), tables.edges[:-1])
         touches = kinks(tables, first, cycles, _LOOKS, _ROUNDS)
@@ -347,14 +359,16 @@ class OwnGains:
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """See `PolynomialGains`."""
-        cycle, ends = np.floor(centre)[:, None], self.tables.edges
+        cycle = np.floor(centre)[:, None]
+        ends = self.tables.edges
         step = np.searchsorted(ends[1:-1], centre[:, None] - cycle, side="right")
         place = (centre[:, None] + half[:, None] * nodes - cycle - ends[step]) / np.diff(ends)[step]
         form, _ = linear_form_at(self.tables, self.first, cycle, step, place)
         gains = []
         for part in (BY_APPROACH, BY_RATE):
             force = form.forces[..., part]
-            normal, state = force["normal"], form.states
+            normal = force["normal"]
+            state = form.states
             by = [normal, normal * state["moment_pinion"], normal * state["moment_gear"]]
             by += [force["friction"], force["friction_moment"], force["separating"]]
             gains.append(-np.stack(by, axis=-1) @ self.forces)

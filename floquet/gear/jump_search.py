@@ -128,7 +128,8 @@ def contact_loss_windows(sweep: xr.Dataset, speeds: Range) -> tuple[Range, ...]:
     lost = ~(good[:-1] & good[1:])
     slope = np.diff(y) / np.diff(x)
     for j in map(int, np.flatnonzero(~lost[1:-1]) + 1):
-        before, behind = slope[j - 1], slope[j + 1]
+        before = slope[j - 1]
+        behind = slope[j + 1]
         if before < 0.0 < behind:
             # Where both lines meet.
             place = (y[j + 1] - y[j] + before * x[j] - behind * x[j + 1]) / (before - behind)
@@ -201,7 +202,8 @@ def search_jumps(
         agenda=Agenda((low / cycle, high / cycle), inside, above / cycle, _REACH, here / cycle),
         deadline=deadline,
     )
-    used, range_rpm = deadline.used, (low, high)
+    used = deadline.used
+    range_rpm = (low, high)
     found = (
         ResponseBranches(pair, (a * cycle, b * cycle), False, _part(response, (a, b)), one)
         for a, b in response.windows

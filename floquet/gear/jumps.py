@@ -41,7 +41,8 @@ if TYPE_CHECKING:
 #: Points between two motions of a branch, by the monotone cubic through all.
 _BETWEEN = 6
 #: Cycles for which a run settles and is looked at where no stable motion is found.
-_SETTLE, _OBSERVE = 40, 60
+_SETTLE = 40
+_OBSERVE = 60
 #: Cycles for which a run settles behind a place where a motion loses its stability.
 _BEHIND = 300
 _LARGEST = 1_000_000
@@ -161,7 +162,8 @@ def jump_map(
     stack = find_stack(
         members, periods=wanted, seeds=seeds, progress=lambda done, text="", /: report(0.8 * done)
     )
-    rows, jumps = list[_Row](), list[tuple[float, ...]]()
+    rows = list[_Row]()
+    jumps = list[tuple[float, ...]]()
     for j, (one, response, value) in enumerate(zip(members, stack, values, strict=True)):
         rows.append(_Row(one, response, speeds, cycle))
         jumps += [(float(value), *jump) for jump in _jumps(one, response, cycle)]
@@ -187,7 +189,8 @@ def _checked(pair: GearPair, axes: Axes) -> tuple[str, dict[str, FloatArray]]:
         raise refuse(
             "axes", ", ".join(grid), f"speed_rpm and one of {', '.join(JUMP_AXES)}", "Give these two."
         )
-    name, speeds = others[0], grid["speed_rpm"]
+    name = others[0]
+    speeds = grid["speed_rpm"]
     checked_axis(pair, name)
     JUMP_AXES[name].check(name, grid[name])
     GEAR_AXES["speed_rpm"].check("speed_rpm", speeds)
@@ -211,7 +214,8 @@ class _Row:
     """What the map has over the speeds (k,), for one value of the second axis."""
 
     def __init__(self, one: Member, response: Response, speeds: FloatArray, cycle: float) -> None:
-        self.motions, self.contact = np.zeros(speeds.size, dtype=int), np.ones(speeds.size, dtype=bool)
+        self.motions = np.zeros(speeds.size, dtype=int)
+        self.contact = np.ones(speeds.size, dtype=bool)
         self.smallest, self.largest, self.load = np.full((3, speeds.size), [[np.inf], [-np.inf], [-np.inf]])
         for branch in response.branches:
             _add(self, branch, speeds, cycle)
@@ -229,7 +233,8 @@ def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
     apart = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
     table = np.array([(cycle / o.period, o.run.rms, o.run.largest_load) for o in orbits])[apart]
-    s, distinct = s[apart], [orbit for orbit, new in zip(orbits, apart, strict=True) if new]
+    s = s[apart]
+    distinct = [orbit for orbit, new in zip(orbits, apart, strict=True) if new]
     if s.size < 2:
         return
     fine = np.interp(np.arange(_BETWEEN * (s.size - 1) + 1) / _BETWEEN, np.arange(s.size), s)
@@ -243,7 +248,8 @@ def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
             continue
         points = np.arange(piece[0], piece[-1] + 2)
         if way[piece[0]] < 0.0:
-            points, piece = points[::-1], piece[::-1]
+            points = points[::-1]
+            piece = piece[::-1]
         low, high = np.searchsorted(speeds, speed[points[[0, -1]]])
         here = slice(low, high)
         if low == high:
@@ -277,7 +283,8 @@ def _run_through(
     calm = [o for b in response.branches for o in b.orbits if o.spectral_radius < MARGINAL]
     if calm:
         nearest = min(calm, key=lambda orbit: abs(orbit.period - first))
-        state, parameter = nearest.start, nearest.parameter
+        state = nearest.start
+        parameter = nearest.parameter
     else:
         state, parameter = one.start(first)
     settle = _BEHIND
@@ -288,8 +295,10 @@ def _run_through(
             row.contact[j] = False
             continue
         row.smallest[j] = row.largest[j] = run.rms
-        row.load[j], row.contact[j] = run.largest_load, not _without_load(run)
-        state, settle = run.end, _SETTLE
+        row.load[j] = run.largest_load
+        row.contact[j] = not _without_load(run)
+        state = run.end
+        settle = _SETTLE
 
 
 def _observed(one: Member, start: FloatArray, period: float, parameter: float, settle: int) -> Run | None:
@@ -320,7 +329,8 @@ def _jumps(one: Member, response: Response, cycle: float) -> list[tuple[float, .
 def _dataset(
     name: str, values: FloatArray, speeds: FloatArray, rows: list[_Row], jumps: list[tuple[float, ...]]
 ) -> xr.Dataset:
-    axis, both = JUMP_AXES[name], (name, "speed_rpm")
+    axis = JUMP_AXES[name]
+    both = (name, "speed_rpm")
     table: dict[str, Variable] = {
         label: (both, np.array([getattr(row, field) for row in rows]), unit, text)
         for label, field, unit, text in _OVER_SPEED
@@ -427,7 +437,10 @@ class _Removal:
     """The search along one axis."""
 
     def __init__(self, branches: ResponseBranches, axis: str, low: float, high: float) -> None:
-        self.branches, self.axis, self.low, self.high = branches, axis, low, high
+        self.branches = branches
+        self.axis = axis
+        self.low = low
+        self.high = high
         self.cycle = branches.pair.geometry.mesh_period * operating_rpm(branches.pair)
         self.periods = {branch.n for branch in branches.branches}
         self.limits = member(branches.pair, *branches.speeds_rpm).limits
@@ -440,15 +453,18 @@ class _Removal:
         return pair_at(self.branches.pair, self.axis, inside)
 
     def _at(self, value: float) -> tuple[Family, Limits]:
-        there, here = self.varied(value), self.limits
+        there = self.varied(value)
+        here = self.limits
         ratio = there.operating.pinion_torque / self.branches.pair.operating.pinion_torque
         sizes = replace(here, length=here.length * ratio, parameter=here.parameter * ratio)
         return unilateral_family(there, *self.branches.speeds_rpm), sizes
 
     def beyond(self, own: float, limit: float) -> tuple[float, float, float]:
         """Value, error and speed [rpm] on the way from the pair's own value to a limit."""
-        sign, margin = float(np.sign(limit - own)), _BEYOND * (self.high - self.low)
-        value, folds = own, _folds(self.branches.response)
+        sign = float(np.sign(limit - own))
+        margin = _BEYOND * (self.high - self.low)
+        value = own
+        folds = _folds(self.branches.response)
         for _ in range(_MOST_ROUNDS):
             last, speed = max((self._end(*fold, value, sign) for fold in folds), key=lambda x: x[0] * sign)
             value = last + sign * margin

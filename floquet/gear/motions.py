@@ -167,12 +167,14 @@ class GearOrbit:
 
         normal_load_back : normal load on the back sides of the teeth, of all pairs [N]
         """
-        o, cycle = self.whole, contact_cycle(self.pair)
+        o = self.whole
+        cycle = contact_cycle(self.pair)
         phases = np.arange(samples_per_cycle) / samples_per_cycle
         run = o.system.run(o.start, o.period, o.n, o.parameter, samples=phases)
         states = _absolute_states(self.pair, cycle, o, run)
         system = LTVSystem.of(self.pair, "full", cycle=cycle, supports="springs")
-        time, drive = run.phases * o.period, cycle.offsets.size
+        time = run.phases * o.period
+        drive = cycle.offsets.size
         values = response(system, time, states, run.loads[:, :drive].T)
         values["contact"] = (values["normal_load"] > 0.0).astype(float)
         back: Variable = ("time", run.loads[:, drive:].sum(axis=1), "N", "normal load on the back sides")
@@ -203,8 +205,10 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
     The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
     friction by the trapezoidal rule.
     """
-    g, support = pair.geometry, LTVSystem.of(pair, "elastic", cycle=cycle, supports="springs").supports
-    time, torques = run.phases * orbit.period, _torques(pair, orbit.parameter)
+    g = pair.geometry
+    support = LTVSystem.of(pair, "elastic", cycle=cycle, supports="springs").supports
+    time = run.phases * orbit.period
+    torques = _torques(pair, orbit.parameter)
     steps = np.diff(time, append=orbit.n * orbit.period)
 
     def integral(values: FloatArray) -> FloatArray:
@@ -331,7 +335,9 @@ def start_of(
     if isinstance(start, GearOrbit):
         # Displacements and phase rates of a neighbouring speed are nearer than its rates.
         return _of_form(_wide(start.orbit.start), form), start.orbit.parameter
-    g, operating, states = pair.geometry, pair.operating, np.zeros(12)
+    g = pair.geometry
+    operating = pair.operating
+    states = np.zeros(12)
     balanced = operating.brake_torque == "balanced"
     torque = operating.pinion_torque * (g.omega_pinion / g.omega_gear if balanced else 1.0)
     cycle = MeshCycle.of(pair) if elements is None else MeshCycle(g, elements)
@@ -344,7 +350,8 @@ def start_of(
     else:
         try:
             linear = periodic_solution(absolute, np.zeros(1), estimate_error=False)
-            states, torque = linear.states[0], linear.brake_torque if balanced else linear.pinion_torque
+            states = linear.states[0]
+            torque = linear.brake_torque if balanced else linear.pinion_torque
         except NumericalError:
             states[2] = static_deflection(pair)
     relative = absolute.supports.relative
@@ -510,7 +517,8 @@ def basins(response: Response, member: Member, rate: float, starts: int, seed: i
     places = np.random.default_rng(seed).uniform(size=(starts, 2))
     result = []
     for run, count in response.basins(member, rate, places):
-        cycles, sizes = run.orbit.n if run.orbit else 0, (run.rms, peak_to_peak(run), run.largest_load)
+        cycles = run.orbit.n if run.orbit else 0
+        sizes = (run.rms, peak_to_peak(run), run.largest_load)
         shares = count, count / starts, binomial_interval(count, starts)
         result.append(Basin(run.kind, cycles, *sizes, *shares))
     return tuple(result)

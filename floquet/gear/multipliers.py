@@ -40,7 +40,9 @@ MODES = 12
 _EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _LARGEST = 700.0  # growth beyond the largest number, as a logarithm
-_BLOCK, _SMALLEST = 32, -250.0  # mesh cycles that are worked on together, logarithm of their product
+# mesh cycles that are worked on together, logarithm of their product
+_BLOCK = 32
+_SMALLEST = -250.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,9 +130,12 @@ def importance(system: LTVSystem) -> FloatArray:
 
     By damping and gyroscopic moments, each at the speed where the mesh frequency is that mode's.
     """
-    v, squares, g = system.deflection, _squares(system), system.pair.geometry
+    v = system.deflection
+    squares = _squares(system)
+    g = system.pair.geometry
     share = v**2 / squares / (v**2 / squares).sum()
-    omega, m = np.sqrt(squares), squares.size
+    omega = np.sqrt(squares)
+    m = squares.size
     damping = system.constant[m:, m:] + g.omega_pinion * system.gyroscopic
     coupling = omega * (np.abs(damping) + omega / system.pair.pinion.teeth * np.abs(system.gyroscopic))
     apart = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
@@ -166,7 +171,9 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
     With levels, what is proportional to mu is ``varied``: a factor on mu costs nothing, and with two levels
     mu may also rise and fall as a whole.
     """
-    system, metric, m = feedback.system, feedback.metric, feedback.metric.size
+    system = feedback.system
+    metric = feedback.metric
+    m = feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
     mesh = MeshGains(system, metric, feedback.misfit, factor, levels)
     phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
@@ -255,15 +262,19 @@ class _Coefficients:
     factor: float
 
     def __call__(self, times: FloatArray) -> FloatArray:
-        system, edges = self.system, self.system.cycle.edges
+        system = self.system
+        edges = self.system.cycle.edges
         # The mesh cycle by itself takes a time just before a switch as the switch: name the segment.
         segment = np.clip(np.searchsorted(edges, times, side="right") - 1, 0, edges.size - 2)
         gain = system.gain(times, segment)
-        stiffness, damping = gain.stiffness, gain.damping
+        stiffness = gain.stiffness
+        damping = gain.damping
         if self.factor != 1.0:
-            total, mean = gain.pairs.stiffness.sum(axis=0), system.cycle.mean_stiffness
+            total = gain.pairs.stiffness.sum(axis=0)
+            mean = system.cycle.mean_stiffness
             f = ((mean + self.factor * (total - mean)) / total)[:, None]
-            stiffness, damping = f * stiffness, np.sqrt(f) * damping
+            stiffness = f * stiffness
+            damping = np.sqrt(f) * damping
         m = len(system.coordinates)
         A = np.repeat(system.constant[None], times.size, axis=0)
         A[:, m:, :m] += stiffness[:, :, None] * system.deflection
@@ -422,10 +433,12 @@ def revolution_multipliers(
     ParameterError : rtol out of range
     NumericalError : at some position no tooth pair can carry the load
     """
-    pair, rtol = load_gear_pair(pair), real_number("rtol", rtol, 1e-11, 0.1)
+    pair = load_gear_pair(pair)
+    rtol = real_number("rtol", rtol, 1e-11, 0.1)
     feedback = feedback_system(GearVariation.of(pair.healthy, supports))
     like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
-    cycles, laws = period_of(pair), ToothLaws(pair, every=True)
+    cycles = period_of(pair)
+    laws = ToothLaws(pair, every=True)
     # Errors of the teeth force prescribed contact and do not change it.
     alike = not laws.loaded and len(laws.faults) == 1 and not laws.turning()["amplitude"][:RIPPLES].any()
     healthy = float(_of_cycles(ToothLaws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
@@ -441,10 +454,12 @@ def revolution_multipliers(
     sizes = np.abs(separate)
     high = max(float(rates[0]) + error, float((sizes + bounds).max(initial=0.0)))
     low = max(float(rates[0]) - error, float((sizes - bounds).max(initial=0.0)))
-    whole, rates = np.append(whole, separate**cycles), np.append(rates, sizes)
+    whole = np.append(whole, separate**cycles)
+    rates = np.append(rates, sizes)
     order = np.argsort(-rates, kind="stable")
     rate = float(rates[order[0]])
-    error, healthy = max(high - rate, rate - low), max(healthy, float(sizes.max(initial=0.0)))
+    error = max(high - rate, rate - low)
+    healthy = max(healthy, float(sizes.max(initial=0.0)))
     return RevolutionMultipliers(whole[order], rates[order], rate, error, cycles, healthy)
 
 
@@ -452,13 +467,15 @@ def _of_cycles(
     laws: ToothLaws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
 ) -> tuple[ComplexArray, FloatArray, float]:
     """Multipliers over so many cycles, largest first, their rates, and a bound on the largest one's error."""
-    own, mean = own_tables(laws), like.mean_of(like.gains.w)
+    own = own_tables(laws)
+    mean = like.mean_of(like.gains.w)
 
     def map_of(first: int) -> FastMonodromy:
         count = min(block, cycles - first)
         gains = OwnGains(own, feedback.system, first, count)
         phases, (w, wd), misfit, _ = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
-        period, fits = count * like.period, Gains(w, wd, misfit)
+        period = count * like.period
+        fits = Gains(w, wd, misfit)
         turning = None if like.gyroscopic is None else count * like.gyroscopic
         some = replace(like, phases=phases / count, gains=fits, period=period, gyroscopic=turning, mean=mean)
         return fast_monodromies(some, tolerance=max(1e-4 * rtol, 1e-14))
@@ -466,7 +483,8 @@ def _of_cycles(
     found = in_threads(map_of, range(0, cycles, block))
     maps, errors = (np.concatenate([getattr(f, name) for f in found]) for name in ("matrices", "errors"))
     # Powers of two scale without rounding.
-    flow, halvings = np.eye(maps.shape[1]), np.zeros(errors.size, dtype=np.int64)
+    flow = np.eye(maps.shape[1])
+    halvings = np.zeros(errors.size, dtype=np.int64)
     for n, one in enumerate(maps):
         flow = one @ flow
         halvings[n] = np.frexp(np.abs(flow).max())[1]
@@ -475,7 +493,8 @@ def _of_cycles(
     values, bounds = multipliers_with_bounds(*proven_product(scaled, np.ldexp(errors, -halvings)))
     radius, error = map(float, radii_with_bounds(values, bounds))
     kept = values[(np.abs(values) > bounds) | (values == values[0])]
-    logarithm, interval = float(halvings.sum()) * np.log(2.0), [max(radius - error, 0.0), radius + error]
+    logarithm = float(halvings.sum()) * np.log(2.0)
+    interval = [max(radius - error, 0.0), radius + error]
     with np.errstate(under="ignore", divide="ignore"):
         rates, (low, high) = (np.exp((np.log(m) + logarithm) / cycles) for m in (np.abs(kept), interval))
         whole = kept * np.exp(min(logarithm, _LARGEST))

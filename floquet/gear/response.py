@@ -58,7 +58,8 @@ if TYPE_CHECKING:
     from floquet.orbits.orbit import Orbit
 
 #: Difference of speed and size within which two ends of motions are one; so many neighbours by speed.
-_SAME_END, _NEAR = 1e-7, 8
+_SAME_END = 1e-7
+_NEAR = 8
 #: Part of the range that counts as a gap between stable motions.
 _GAP = 5e-4
 
@@ -189,18 +190,21 @@ class ResponseBranches:
         result = []
         for branch in self.branches:
             for b, behind in lost_stability(branch):
-                last, before = b.orbit, b.orbit.run
+                last = b.orbit
+                before = b.orbit.run
                 run = self.response.behind.get(last)
                 if not self._inside(self._rpm(last)) or (run is None and self.response.limited):
                     continue
                 if run is None:
                     run = self.member.leads_to(last, behind)
                 size = np.array([before.rms, before.least, before.most])
-                rising, load = behind < last.period, before.largest_load
+                rising = behind < last.period
+                load = before.largest_load
                 result.append(_jump(self._rpm(last), rising, size, load, branch.n, run))
         for one in self.response.attractors:
             for side, rising in enumerate((False, True)):
-                end, last_run = one.ends[side], one.runs[-side]
+                end = one.ends[side]
+                last_run = one.runs[-side]
                 if end is not None and self._inside(self._cycle * end.rate):
                     n = last_run.orbit.n if last_run.orbit else 0
                     load = last_run.largest_load
@@ -262,7 +266,8 @@ class ResponseBranches:
             for two in pairwise(branch.orbits)
             if max(orbit.spectral_radius for orbit in two) < MARGINAL
         )
-        result, reached = list[tuple[float, float]](), low
+        result = list[tuple[float, float]]()
+        reached = low
         for start, end in [*calm, (high, high)]:
             if min(start, high) - reached > _GAP * (high - low):
                 result.append((reached, min(start, high)))

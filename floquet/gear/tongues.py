@@ -55,7 +55,9 @@ _THRESHOLD = 1e-9
 _LARGEST_DAMPING = 1.0  # what the schema allows for a mesh
 _SPEED_NODES = 400
 _PAST = 0.1  # how far past the highest line its tongue may reach
-_EDGE_ROWS, _EDGE_SPEEDS, _EDGE_ROUNDS = 25, 49, 14
+_EDGE_ROWS = 25
+_EDGE_SPEEDS = 49
+_EDGE_ROUNDS = 14
 _MOST = 20_000  # speeds of the grid of a search
 
 
@@ -183,8 +185,10 @@ def _boundaries_dataset(
     tongues = sorted(result)
     shape = (len(tongues), values.size)
     most = max((len(parts) for columns in result.values() for parts in columns.values()), default=0)
-    ends, numbers = np.full((2, *shape, most), np.nan), np.full((4, *shape), np.nan)
-    open_end, count = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=np.int64)
+    ends = np.full((2, *shape, most), np.nan)
+    numbers = np.full((4, *shape), np.nan)
+    open_end = np.zeros(shape, dtype=bool)
+    count = np.zeros(shape, dtype=np.int64)
     for row, tongue in enumerate(tongues):
         for column, parts in result[tongue].items():
             lower, upper = np.array([(part.lower, part.upper) for part in parts]).T
@@ -193,7 +197,9 @@ def _boundaries_dataset(
             numbers[:, row, column] = lower.min(), upper.max(), top.peak, top.peak_radius
             open_end[row, column] = any(part.open_below or part.open_above for part in parts)
             count[row, column] = len(parts)
-    dims, each, axis = ("tongue", name), ("tongue", name, "interval"), GEAR_AXES.get(name)
+    dims = ("tongue", name)
+    each = ("tongue", name, "interval")
+    axis = GEAR_AXES.get(name)
     return labelled_dataset(
         {
             "lower": (dims, numbers[0], "rpm", "lower boundary of the tongue"),
@@ -266,7 +272,8 @@ def campbell(
     modes = mean.omega
     # A mode that leaves the dynamic transmission error alone feeds nothing back: no tongue can involve it.
     meshing = np.abs(mean.v) > 1e-9 * np.abs(mean.v).max()
-    frequency, decay = np.empty((speeds.size, modes.size)), np.empty((speeds.size, modes.size))
+    frequency = np.empty((speeds.size, modes.size))
+    decay = np.empty((speeds.size, modes.size))
     radius = np.empty(speeds.size)
     for index, speed in enumerate(speeds):
         block = gear_block(vary(variation, {"speed_rpm": float(speed)}))
@@ -281,7 +288,8 @@ def campbell(
         frequency[index] = exponents.imag / (2.0 * np.pi)
         decay[index] = -exponents.real
         radius[index] = np.exp(exponents.real.max() * block.period)
-    teeth, mesh_order = pair.pinion.teeth, np.arange(1, mesh_orders + 1)
+    teeth = pair.pinion.teeth
+    mesh_order = np.arange(1, mesh_orders + 1)
     mesh = speeds[:, None] * teeth / 60.0 * mesh_order
     lines = {
         tongue: speed
@@ -289,7 +297,8 @@ def campbell(
         if speeds[0] <= speed <= speeds[-1] and meshing[tongue.mode_i - 1] and meshing[tongue.mode_j - 1]
     }
     line_speed = np.array(list(lines.values()))
-    each, orders_over = ("speed_rpm", "mode"), ("speed_rpm", "mesh_order")
+    each = ("speed_rpm", "mode")
+    orders_over = ("speed_rpm", "mesh_order")
     return labelled_dataset(
         {
             "frequency": (each, frequency, "Hz", "frequency of the Floquet solution"),
@@ -436,7 +445,8 @@ def stability_margins(
     """
     pair = on_springs(load_gear_pair(pair), supports, "stability_margins")
     low, high = checked_range("speed_rpm", speed_rpm)
-    rpm, here = operating_rpm(pair), pair.mesh.damping_ratio
+    rpm = operating_rpm(pair)
+    here = pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))
     constant = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
     radius = _radius(constant)
@@ -537,14 +547,16 @@ def _edges(
     speeds = np.sort(np.concatenate([speeds, middle[:, None]], axis=1), axis=1)
     unstable = radius(speeds, dampings[:, None]) > 1.0 + _THRESHOLD
     rows = np.flatnonzero(unstable.any(axis=1))
-    first, end = unstable[rows].argmax(axis=1), speeds.shape[1] - 1
+    first = unstable[rows].argmax(axis=1)
+    end = speeds.shape[1] - 1
     last = end - unstable[rows, ::-1].argmax(axis=1)
     inside = np.stack([speeds[rows, first], speeds[rows, last]])
     outside = np.stack([speeds[rows, np.maximum(first - 1, 0)], speeds[rows, np.minimum(last + 1, end)]])
     for _ in range(_EDGE_ROUNDS):
         half = 0.5 * (inside + outside)
         still = radius(half, dampings[rows]) > 1.0 + _THRESHOLD
-        inside, outside = np.where(still, half, inside), np.where(still, outside, half)
+        inside = np.where(still, half, inside)
+        outside = np.where(still, outside, half)
     return (
         np.concatenate([[0.0], dampings[rows], [tip.damping]]),
         np.concatenate([[interval.lower], inside[0], [tip.place]]),

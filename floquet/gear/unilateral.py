@@ -67,7 +67,9 @@ def unilateral_system(
         phases = phases[np.append(True, np.diff(phases) > _SAME)]
         flanks.append(coast)
     brake = pair.operating.brake_torque
-    balanced, torques, m = brake == "balanced", rows[:, :2] * [1.0, -1.0], len(base.coordinates)
+    balanced = brake == "balanced"
+    torques = rows[:, :2] * [1.0, -1.0]
+    m = len(base.coordinates)
     # No bearing acts on the rotation.
     bearings = np.pad(-base.constant[m:], ((0, 1), (0, 0)))
     return ContactSystem(
@@ -135,8 +137,10 @@ def _coast_flank(pair: GearPair, cycle: MeshCycle, rows: FloatArray) -> _Flank:
 
 def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank, offset: float) -> Contact:
     """One tooth pair, whose element laws are polynomials of the phase."""
-    elements, pitch = cycle.elements, flank.way * pair.geometry.base_pitch
-    start, inside = offset + pitch * phases[:-1], offset + 0.5 * pitch * (phases[:-1] + phases[1:])
+    elements = cycle.elements
+    pitch = flank.way * pair.geometry.base_pitch
+    start = offset + pitch * phases[:-1]
+    inside = offset + 0.5 * pitch * (phases[:-1] + phases[1:])
 
     def law(function: PathFunction) -> FloatArray:
         return _over_phase(function, start, inside, pitch)
@@ -220,7 +224,8 @@ class _Parts:
         systems = [self.without, *map(system, parts)]
         width = max(system.acceleration.shape[-1] for system in systems)
         rows = [_widened(system.acceleration, width) for system in systems]
-        self.base, self.each = rows[0], [row - rows[0] for row in rows[1:]]
+        self.base = rows[0]
+        self.each = [row - rows[0] for row in rows[1:]]
 
     def at(self, rpm: float) -> ContactSystem | None:
         """The system at a speed; None where the speed is not of the family."""

@@ -22,7 +22,9 @@ _FOLLOWS = 0.2
 _STEPS = 32
 #: Runs that follow a motion, whose starts differ by this part. Where two of them leave it, at a speed of the
 #: grid within so many times the cycles of settling, it does not last.
-_REPLICAS, _MOVED, _LONG = 16, 1e-6, 4
+_REPLICAS = 16
+_MOVED = 1e-6
+_LONG = 4
 #: Motions that are told apart at one speed.
 _MOST = 12
 _NONE = np.zeros(3)
@@ -108,7 +110,10 @@ class Survey:
         starts: list[tuple[float, FloatArray, float]],
         told: Callable[[float], object] = lambda done: None, deadline: Deadline = ENDLESS,
     ) -> None:  # fmt: skip
-        self.family, self.limits, self.rates, self.deadline = family, limits, rates, deadline
+        self.family = family
+        self.limits = limits
+        self.rates = rates
+        self.deadline = deadline
         self.levels: list[list[Motion]] = [[] for _ in rates]
         self.grown = list[Motion]()
         for j, rate in enumerate(rates):
@@ -134,7 +139,8 @@ class Survey:
 
     def _enter(self, j: int, result: Settled, i: int, parameter: float) -> Motion:
         """The motion at a speed that a run is like; a new one where there is none and room is left."""
-        level, size = self.levels[j], result.sizes[i]
+        level = self.levels[j]
+        size = result.sizes[i]
         like = [motion for motion in level if alike(motion.size, size)]
         if like or len(level) >= _MOST:
             return min(like or level, key=lambda motion: abs(float(motion.size[0] - size[0])))
@@ -155,7 +161,8 @@ class Survey:
         self, wanted: Callable[[LongRun], bool], identify: Callable[[Motion], LongRun]
     ) -> tuple[Attractor, ...]:
         """Follow what is ``wanted`` from speed to speed, all motions being identified, and find its ends."""
-        self.wanted, self.identify = wanted, identify
+        self.wanted = wanted
+        self.identify = identify
         left = [
             [motion for motion in level if wanted(motion.run) and self._lasts(motion)]
             for level in self.levels
@@ -163,9 +170,12 @@ class Survey:
         result = list[Attractor]()
         for j, level in enumerate(left):
             while level:
-                chain, ends = [level.pop(0)], list[AttractorEnd | None]()
+                chain = [level.pop(0)]
+                ends = list[AttractorEnd | None]()
                 for way in (-1, 1):
-                    at, last, end = j, chain[0 if way < 0 else -1], None
+                    at = j
+                    last = chain[0 if way < 0 else -1]
+                    end = None
                     while 0 <= at + way < self.rates.size and end is None:
                         last, end = self._onward(last, way, at + way, left[at + way])
                         at += way
@@ -194,7 +204,8 @@ class Survey:
 
     def _walk(self, last: Motion, rate: float) -> tuple[Motion, AttractorEnd | None]:
         """Go on from a motion in small steps to another speed: the motion there, or where it ended before."""
-        good, states = last, self._replicas(last)
+        good = last
+        states = self._replicas(last)
         for step in last.rate * (rate / last.rate) ** (np.arange(1.0, _STEPS + 1.0) / _STEPS):
             result, left = self._left(states, float(step), good)
             if np.count_nonzero(left) > 1:
@@ -213,10 +224,12 @@ class Survey:
 
     def _lasts(self, motion: Motion) -> bool:
         """Whether runs stay on a motion; chaos that they leave soon is a way to another motion."""
-        states, count = self._replicas(motion), 0
+        states = self._replicas(motion)
+        count = 0
         for _ in range(_LONG):
             result, left = self._left(states, motion.rate, motion)
-            states, count = result.states[~left], count + int(np.count_nonzero(left))
+            states = result.states[~left]
+            count = count + int(np.count_nonzero(left))
             if count > 1:
                 return False
         return True

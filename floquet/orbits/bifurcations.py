@@ -28,7 +28,8 @@ _Test = Callable[[Orbit, FloatArray], float]
 _ZERO = 1e-5
 #: Part of a step to which a place is refined; a contact begins to open or to close in a step of its test
 #: function, which is halved, and no other result builds on that place.
-_REFINED, _GRAZES = 1e-13, 1e-7
+_REFINED = 1e-13
+_GRAZES = 1e-7
 #: Inside a tongue the linear system has motions of any amplitude at one speed: a branch that neither turns.
 _ROUNDING = 1e-11
 #: Least cosine between a tangent and the chord for a cubic between neighbours.
@@ -66,7 +67,8 @@ def with_bifurcations(along: Continuation, path: Path, result: list[Bifurcation]
     ]
     ordered = sorted(b.place for b in result)
     for one, two in pairwise(ordered):
-        j, middle = int(one), 0.5 * (one + two)
+        j = int(one)
+        middle = 0.5 * (one + two)
         if two < j + 1 and two > one:
             chord = path.X[j + 1] - path.X[j]
             with contextlib.suppress(NumericalError):
@@ -83,7 +85,8 @@ def bifurcations(
     ``intervals`` are the indices of the points after which they are looked for, the most useful first; None:
     all. Second come those for which the deadline left no time.
     """
-    result, left = list[Bifurcation](), list[int]()
+    result = list[Bifurcation]()
+    left = list[int]()
     for j in range(len(path.orbits) - 1) if intervals is None else intervals:
         tests = _tests(path, j)
         if tests and deadline.passed:
@@ -155,7 +158,8 @@ def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -
     def value(part: float) -> float:
         at = bisect_left(places, part)
         if at == len(places) or places[at] != part:
-            one, two = known[at - 1], known[at]
+            one = known[at - 1]
+            two = known[at]
             share = (part - places[at - 1]) / (places[at] - places[at - 1])
             X, orbit, turned, _ = along.correct(_between(one, two, chord, share), chord)
             places.insert(at, part)
@@ -177,7 +181,10 @@ class _Known:
     """A point between two of a path, with its tangent and the value of a test there."""
 
     def __init__(self, X: FloatArray, orbit: Orbit, tangent: FloatArray, test: _Test) -> None:
-        self.X, self.orbit, self.tangent, self.value = X, orbit, tangent, test(orbit, tangent)
+        self.X = X
+        self.orbit = orbit
+        self.tangent = tangent
+        self.value = test(orbit, tangent)
 
 
 def _between(one: _Known, two: _Known, chord: FloatArray, t: float) -> FloatArray:

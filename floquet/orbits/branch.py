@@ -20,7 +20,9 @@ from lumped.typing import FloatArray
 
 End = Literal["range", "amplitude", "closed", "doubling", "lost", "points", "calm", "time"]
 
-_FIRST_STEP, _LEAST_STEP, _LARGEST_STEP = 0.02, 1e-7, 0.2
+_FIRST_STEP = 0.02
+_LEAST_STEP = 1e-7
+_LARGEST_STEP = 0.2
 _CORNER_STEP = 2e-4
 _MOST_CORRECTIONS = 8
 #: Relative change of T by which coefficients that depend on it are differenced.
@@ -100,9 +102,12 @@ class Continuation:
     """Follows orbits of n cycles in (x, p, log 1/T), scaled so that each is of order one."""
 
     def __init__(self, family: Family, n: int, limits: Limits) -> None:
-        self.family, self.n, self.limits = family, n, limits
+        self.family = family
+        self.n = n
+        self.limits = limits
         system = family.at(1.0 / limits.slowest)
-        self.size, self.balanced = system.size, system.balanced
+        self.size = system.size
+        self.balanced = system.balanced
         state = np.repeat([limits.length, _RATE * limits.length], self.size // 2)
         extra = [limits.parameter] if self.balanced else []
         self.scale = np.concatenate([state, extra, [_SPEED]])
@@ -172,7 +177,8 @@ class Continuation:
         by_coefficients = self._by_coefficients_near(X)
         for iteration in range(_MOST_CORRECTIONS):
             F, J, orbit = self.evaluate(X, by_coefficients)
-            right[:-1, 0], right[-1, 0] = -F, plane - border @ X
+            right[:-1, 0] = -F
+            right[-1, 0] = plane - border @ X
             try:
                 step, tangent = np.linalg.solve(np.vstack([J, border]), right).T
             except np.linalg.LinAlgError as error:
@@ -204,12 +210,15 @@ class Continuation:
 
     def extend(self, path: Path, deadline: Deadline = ENDLESS) -> None:
         """Follow a path on from its last orbit until an end of the limits, or of the time."""
-        step, path.end = path.step, "points"
+        step = path.step
+        path.end = "points"
         while len(path.orbits) < self.limits.points:
             if deadline.passed:
-                path.end, path.step = "time", step
+                path.end = "time"
+                path.step = step
                 break
-            X, tangent = path.X[-1], path.tangents[-1]
+            X = path.X[-1]
+            tangent = path.tangents[-1]
             try:
                 new, orbit, turned, iterations = self.correct(X + step * tangent, tangent)
                 good = float(turned @ tangent) > _BEND and float(np.linalg.norm(new - X)) < 2.0 * step
@@ -244,7 +253,8 @@ class Continuation:
         return float((one / scale) @ (two / scale)) <= 0.0
 
     def _end(self, path: Path, step: float) -> End | None:
-        run, rate = path.orbits[-1].run, 1.0 / path.orbits[-1].period
+        run = path.orbits[-1].run
+        rate = 1.0 / path.orbits[-1].period
         if not self.limits.slowest <= rate <= self.limits.fastest:
             return "range"
         if max(run.most - run.mean, run.mean - run.least) > self.limits.amplitude:
@@ -265,7 +275,8 @@ class Continuation:
 
     def _pass_corner(self, path: Path) -> bool:
         """Where an event makes the branch turn sharply: go on along the tangent of the motion just beyond."""
-        X, tangent = path.X[-1], path.tangents[-1]
+        X = path.X[-1]
+        tangent = path.tangents[-1]
         try:
             _, J, _ = self.evaluate(X + 100.0 * _LEAST_STEP * tangent)
         except NumericalError:

@@ -21,8 +21,11 @@ from lumped.typing import FloatArray
 
 FoldEnd = Literal["value", "speed", "turn", "lost", "points"]
 
-_FIRST_STEP, _LEAST_STEP, _LARGEST_STEP = 0.1, 1e-5, 1.0
-_MOST_CORRECTIONS, _MOST_POINTS = 8, 400
+_FIRST_STEP = 0.1
+_LEAST_STEP = 1e-5
+_LARGEST_STEP = 1.0
+_MOST_CORRECTIONS = 8
+_MOST_POINTS = 400
 _BEND = 0.9
 #: Change of the scaled unknowns by which derivatives are differenced.
 _DIFFERENCE = 1e-4
@@ -80,13 +83,16 @@ class FoldContinuation:
     """
 
     def __init__(self, at: Callable[[float], Continuation], low: float, high: float) -> None:
-        self.at, self.low, self.high = at, low, high
+        self.at = at
+        self.low = low
+        self.high = high
         self._size = (high - low) / 20.0
 
     def _evaluate(self, Y: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, Fold]:
         """Residual with the bordered determinant, their derivatives by X, null vectors, and the motion."""
         value = float(Y[-1]) * self._size
-        along, X = self.at(value), Y[:-1]
+        along = self.at(value)
+        X = Y[:-1]
         F, J, orbit = along.evaluate(X)
         A = J[:, :-1]
         left, _, right = np.linalg.svd(A)
@@ -101,7 +107,8 @@ class FoldContinuation:
 
     def _by_value(self, Y: FloatArray, v: FloatArray, w: FloatArray) -> FloatArray:
         """Derivative of the residual and of the bordered determinant by the second parameter."""
-        X, value = Y[:-1], float(Y[-1]) * self._size
+        X = Y[:-1]
+        value = float(Y[-1]) * self._size
         (F, J, _), (G, K, _) = (
             self.at(value + sign * _DIFFERENCE * self._size).evaluate(X) for sign in (1.0, -1.0)
         )
@@ -109,13 +116,16 @@ class FoldContinuation:
 
     def _correct(self, Y: FloatArray, border: FloatArray) -> tuple[FloatArray, Fold, FloatArray]:
         """Newton's method in the plane through Y across the border -> Y, the fold, the tangent."""
-        plane, by_value = float(border @ Y), None
+        plane = float(border @ Y)
+        by_value = None
         for _ in range(_MOST_CORRECTIONS):
             F, J, v, w, fold = self._evaluate(Y)
             if by_value is None:  # needs two more systems: once for all iterations, which hardly change it
                 by_value = self._by_value(Y, v, w)
             right = np.zeros((Y.size, 2))
-            right[:-1, 0], right[-1, 0], right[-1, 1] = -F, plane - border @ Y, 1.0
+            right[:-1, 0] = -F
+            right[-1, 0] = plane - border @ Y
+            right[-1, 1] = 1.0
             try:
                 matrix = np.vstack([np.column_stack([J, by_value]), border])
                 step, tangent = np.linalg.solve(matrix, right).T
@@ -135,7 +145,8 @@ class FoldContinuation:
         """
         Y = np.append(self.at(value).unknowns(orbit), value / self._size)
         Y, fold, tangent = self._correct(Y, direction * np.eye(Y.size)[-1])
-        points, step = [fold], _FIRST_STEP
+        points = [fold]
+        step = _FIRST_STEP
         while len(points) < _MOST_POINTS:
             try:
                 new, fold, turned = self._correct(Y + step * tangent, self._border(tangent))
@@ -155,7 +166,8 @@ class FoldContinuation:
             if turned[-1] * tangent[-1] < 0.0:
                 return FoldCurve((*points, self._turning(Y, tangent, step, fold)), "turn")
             points.append(fold)
-            Y, tangent = new, turned
+            Y = new
+            tangent = turned
             limits = self.at(fold.value).limits
             if not limits.slowest <= 1.0 / fold.orbit.period <= limits.fastest:
                 return FoldCurve(tuple(points), "speed")

@@ -19,7 +19,9 @@ from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 #: What a contact does: it carries load, its flanks still overlap but would pull, or there is a gap.
-GAP, RECOVERING, CLOSED = 0, 1, 2
+GAP = 0
+RECOVERING = 1
+CLOSED = 2
 _GAUSS_NODES, _GAUSS_WEIGHTS = (np.ascontiguousarray(a) for a in np.polynomial.legendre.leggauss(12))
 
 
@@ -106,7 +108,9 @@ def _step_size(z: FloatArray, v: FloatArray, order: int, columns: int, tolerance
     """Largest step up to h whose last two terms are below the tolerance, each column by its own size."""
     n, m = v.shape[1], z.shape[1]
     for q in range(columns):
-        size, last, before = 0.0, 0.0, 0.0
+        size = 0.0
+        last = 0.0
+        before = 0.0
         for r in range(n):
             size = max(size, abs(v[0, r, q]))
             last = max(last, abs(v[order, r, q]))
@@ -158,19 +162,28 @@ def propagate(
     Returns the number of events, or -1 where more than 1000 a cycle happen or a number is not finite.
     """
     n, m = K.shape
-    contacts, pieces = u.shape[0], phases.size - 1
+    contacts = u.shape[0]
+    pieces = phases.size - 1
     columns = 2 * m + 3 if derivatives else 1
     width = k.shape[2]
     z = np.zeros((order + 1, m, columns))
     v = np.zeros((order + 1, n, columns))
     shape = (contacts, order + 1, columns)
-    load, d, w = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    kk, cc, ee = np.zeros((contacts, width)), np.zeros((contacts, width)), np.zeros((contacts, width))
-    bb, al, be = np.zeros((contacts, width)), np.zeros((contacts, width)), np.zeros((contacts, width))
+    load = np.zeros(shape)
+    d = np.zeros(shape)
+    w = np.zeros(shape)
+    kk = np.zeros((contacts, width))
+    cc = np.zeros((contacts, width))
+    ee = np.zeros((contacts, width))
+    bb = np.zeros((contacts, width))
+    al = np.zeros((contacts, width))
+    be = np.zeros((contacts, width))
     aa = np.zeros((contacts, n, a.shape[3]))
     watch = np.zeros((contacts, order + width))
     depth = np.zeros((contacts, order + 1))
-    turns, series, push = np.zeros(contacts), np.zeros(order + 1), np.zeros(order + 1)
+    turns = np.zeros(contacts)
+    series = np.zeros(order + 1)
+    push = np.zeros(order + 1)
     state = np.empty(contacts, np.int64)
     for i in range(m):
         z[0, i, 0] = x[i]
@@ -179,12 +192,15 @@ def propagate(
             z[0, i, 1 + i] = 1.0
             v[0, i, 1 + m + i] = 1.0
     totals[:] = 0.0
-    totals[2], totals[3], totals[5] = math.inf, -math.inf, math.inf
+    totals[2] = math.inf
+    totals[3] = -math.inf
+    totals[5] = math.inf
     events = 0
     for cycle in range(cycles):
         at = 0
         for piece in range(pieces):
-            tau, end = phases[piece], phases[piece + 1]
+            tau = phases[piece]
+            end = phases[piece + 1]
             fresh = True
             while tau < end:
                 local = tau - phases[piece]
@@ -201,7 +217,8 @@ def propagate(
                     for r in range(n):
                         shift(a[piece, i, r], local, aa[i, r])
                     if fresh:  # the state of a contact follows from the motion alone
-                        gap, rate = -ee[i, 0], -bb[i, 0]
+                        gap = -ee[i, 0]
+                        rate = -bb[i, 0]
                         for p in range(m):
                             gap += u[i, p] * z[0, p, 0]
                             rate += u[i, p] * v[0, p, 0]
@@ -264,13 +281,16 @@ def propagate(
                 # Samples in [tau, tau + step).
                 last = tau + step
                 while at < samples.size and samples[at] < last:
-                    s, row = samples[at] - tau, cycle * samples.size + at
+                    s = samples[at] - tau
+                    row = cycle * samples.size + at
                     for p in range(m):
-                        inner, other = 0.0, 0.0
+                        inner = 0.0
+                        other = 0.0
                         for j in range(order, -1, -1):
                             inner = inner * s + z[j, p, 0]
                             other = other * s + v[j, p, 0]
-                        sampled[row, p], sampled[row, m + p] = inner, other
+                        sampled[row, p] = inner
+                        sampled[row, m + p] = other
                     for i in range(contacts):
                         loads[row, i] = (
                             _load(load[i, :, 0], order, s) / (T * T) if state[i] == CLOSED else 0.0
@@ -319,7 +339,9 @@ def propagate(
                             )
                         state[i] = new
                         if events < log.shape[0]:
-                            log[events, 0], log[events, 1], log[events, 2] = cycle + tau + step, i, new
+                            log[events, 0] = cycle + tau + step
+                            log[events, 1] = i
+                            log[events, 2] = new
                         events += 1
                     if events > 1000 * cycles:
                         return -1

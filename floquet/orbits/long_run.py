@@ -121,7 +121,8 @@ def _run(
     """`ContactSystem.run`, in parts where there is a deadline."""
     if not deadline.limited or cycles <= _PART:
         return system.run(start, period, cycles, parameter)
-    done, result = 0, None
+    done = 0
+    result = None
     while done < cycles:
         deadline.check()
         count = min(_PART, cycles - done)
@@ -199,7 +200,9 @@ def lyapunov_exponent(
         run = system.run(x, period, 1, parameter, derivatives=True)
         vector = (run.derivative[: start.size, : start.size] @ (vector * scale)) / scale
         length = float(np.linalg.norm(vector))
-        growth[j], vector, x = np.log(length), vector / length, run.end
+        growth[j] = np.log(length)
+        vector = vector / length
+        x = run.end
     counted = growth[cycles // BLOCKS :]
     blocks = np.array([block.mean() for block in np.array_split(counted, BLOCKS - 1)])
     return float(counted.mean()), float(blocks.std(ddof=1) / np.sqrt(blocks.size))

@@ -82,7 +82,8 @@ class Orbit:
         low = self.system.run(
             self.start, self.period, self.n, self.parameter, derivatives=True, order=_LOWER_ORDER
         )
-        size, scale = self.system.size, state_scale(self.start)
+        size = self.system.size
+        scale = state_scale(self.start)
         to_norm = scale / scale[:, None]
         M = self.monodromy * to_norm
         off = np.linalg.norm(low.derivative[:size, :size] * to_norm - M, 2)
@@ -149,7 +150,8 @@ def find_orbit(
     It starts from displacements and phase rates (2m,), and from ``parameter`` where the system has an
     accumulated row. Raises NumericalError where no motion is found.
     """
-    x, size = np.array(start, dtype=float), system.size
+    x = np.array(start, dtype=float)
+    size = system.size
     unknowns = [*range(size), *([size + 1] if system.balanced else [])]
     for _ in range(_MOST_ITERATIONS):
         r, J, run = one_pass(system, x, period, n, parameter)

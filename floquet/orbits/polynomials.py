@@ -32,7 +32,8 @@ def slope(c: FloatArray, s: float) -> float:
 
 @compiled(nogil=True)
 def value_and_slope(c: FloatArray, s: float) -> tuple[float, float]:
-    total, rate = 0.0, 0.0
+    total = 0.0
+    rate = 0.0
     for j in range(c.size - 1, -1, -1):
         rate = rate * s + total
         total = total * s + c[j]
@@ -55,7 +56,8 @@ def shift(c: FloatArray, s: float, out: FloatArray) -> None:
 @compiled(nogil=True)
 def bounds(c: FloatArray, h: float) -> tuple[float, float]:
     """Bounds on [0, h]: those of the quadratic part, less and more the size of the rest."""
-    rest, power = 0.0, h * h * h
+    rest = 0.0
+    power = h * h * h
     for j in range(3, c.size):
         rest += abs(c[j]) * power
         power *= h
@@ -73,11 +75,14 @@ def crossing(c: FloatArray, h: float, sign: float) -> float:
     least, most = bounds(c, h)
     if (least if sign > 0.0 else -most) > 0.0:
         return 2.0 * h
-    low, before, falling = 0.0, sign * c[0], sign * c[1] < 0.0
+    low = 0.0
+    before = sign * c[0]
+    falling = sign * c[1] < 0.0
     for k in range(1, _SAMPLES + 1):
         high = h * k / _SAMPLES
         y, rate = value_and_slope(c, high)
-        now, down = sign * y, sign * rate < 0.0
+        now = sign * y
+        down = sign * rate < 0.0
         if now <= 0.0:
             return _root(c, low, high, sign, before, now)
         if falling and not down:  # it may have crossed twice between the samples
@@ -93,7 +98,9 @@ def crossing(c: FloatArray, h: float, sign: float) -> float:
                     b = middle
                 if sign * y <= 0.0:
                     return _root(c, low, middle, sign, before, sign * y)
-        low, before, falling = high, now, down
+        low = high
+        before = now
+        falling = down
     return 2.0 * h
 
 
@@ -126,7 +133,8 @@ def extremes(c: FloatArray, h: float, low: float, high: float) -> tuple[float, f
     if least >= low and most <= high:
         return low, high
     low, high = min(low, c[0]), max(high, c[0])
-    before, rising = 0.0, c[1] > 0.0
+    before = 0.0
+    rising = c[1] > 0.0
     for k in range(1, _SAMPLES + 1):
         s = h * k / _SAMPLES
         y, rate = value_and_slope(c, s)
@@ -142,5 +150,6 @@ def extremes(c: FloatArray, h: float, low: float, high: float) -> tuple[float, f
                     b = middle
             y = value(c, 0.5 * (a + b))
             low, high = min(low, y), max(high, y)
-        before, rising = s, now
+        before = s
+        rising = now
     return low, high

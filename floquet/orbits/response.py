@@ -32,7 +32,9 @@ _SPREAD = np.array([[-8.0, 5.0], [-6.5, 6.5]])
 _CLOSE = 0.03
 #: Cycles that a run which has settled settles once more, and is observed; cycles of a motion for which Newton
 #: looks near a run that has not come to one yet.
-_AGAIN, _OBSERVE, _MOST_CYCLES = 40, 400, 4
+_AGAIN = 40
+_OBSERVE = 400
+_MOST_CYCLES = 4
 #: Cycles in which a run leaves a motion that has lost its stability, before it is looked at first.
 _AWAY = 100
 #: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
@@ -69,9 +71,11 @@ class Branch:
     def at(self, period: float) -> list[Orbit]:
         """All orbits of the branch at a period, by Newton's method from the neighbours."""
         away = self.rates - 1.0 / period
-        system, result = self.family.at(period), list[Orbit]()
+        system = self.family.at(period)
+        result = list[Orbit]()
         for j in np.flatnonzero(away[:-1] * away[1:] <= 0.0):
-            one, two = self.orbits[j], self.orbits[j + 1]
+            one = self.orbits[j]
+            two = self.orbits[j + 1]
             part = away[j] / (away[j] - away[j + 1]) if away[j] != away[j + 1] else 0.5
             start = (1.0 - part) * one.start + part * two.start
             parameter = (1.0 - part) * one.parameter + part * two.parameter
@@ -120,7 +124,8 @@ class Response:
     def basins(self, member: Member, rate: float, places: FloatArray) -> list[tuple[LongRun, int]]:
         """To what runs from places (k, 2) of the unit square settle at a speed, and how many of them."""
         survey = Survey(member.family, member.limits, np.array([rate]), member.apart(rate, places))
-        orbits, result = self.at(1.0 / rate), list[tuple[Motion, int]]()
+        orbits = self.at(1.0 / rate)
+        result = list[tuple[Motion, int]]()
         for motion in survey.levels[0]:
             motion.identify(member.exactly(motion, orbits))
             same = [j for j, (other, _) in enumerate(result) if _same(motion, other)]
@@ -165,7 +170,8 @@ class Member:
     def apart(self, rate: float, places: FloatArray) -> list[tuple[float, FloatArray, float]]:
         """Starts apart from the motion while all contacts hold, at places (k, 2) of the unit square."""
         state, parameter = self.start(1.0 / rate)
-        half, limits = state.size // 2, self.limits
+        half = state.size // 2
+        limits = self.limits
         lengths = _SPREAD[:, 0] + places * np.diff(_SPREAD, axis=1)[:, 0]
         states = np.tile(state, (len(places), 1))
         states[:, [0, half]] += lengths * limits.length * [1.0, 2.0 * np.pi * limits.frequency / rate]

@@ -29,7 +29,8 @@ STARTS = 12
 #: Least number of such speeds in a window.
 _LEAST_STARTS = 3
 #: Part of a speed that is rounding; speeds of the grid in an octave, at most.
-_SAME, _EVEN = 1e-9, 10_000
+_SAME = 1e-9
+_EVEN = 10_000
 _SUBHARMONICS = 10
 #: Motions of each branch of a neighbour from which Newton's method starts.
 _NEIGHBOURS = 6
@@ -38,7 +39,10 @@ _RUNS = 32
 _FILL = np.array([0.7548776662466927, 0.5698402909980532])
 #: Parts of the time that is left: for a window beside others, for one branch of many, for following within
 #: those (what remains is for refining what was found), and for one run of many.
-_WINDOW, _BRANCH, _FOLLOWING, _RUN = 0.5, 0.25, 0.5, 0.5
+_WINDOW = 0.5
+_BRANCH = 0.25
+_FOLLOWING = 0.5
+_RUN = 0.5
 
 Window = tuple[float, float]
 
@@ -201,9 +205,13 @@ class _Search:
     def __init__(
         self, member: Member, periods: set[int], agenda: Agenda | None = None, deadline: Deadline = ENDLESS
     ) -> None:
-        self.member, self.periods = member, periods
-        self.family, self.limits, self.start = member.family, member.limits, member.start
-        self.agenda, self.deadline = agenda, deadline
+        self.member = member
+        self.periods = periods
+        self.family = member.family
+        self.limits = member.limits
+        self.start = member.start
+        self.agenda = agenda
+        self.deadline = deadline
         whole = self.limits.slowest, self.limits.fastest
         self.reported: Window = agenda.reported if agenda else whole
         self.asked: list[Window] = sorted(agenda.windows, key=self._from_first) if agenda else [whole]

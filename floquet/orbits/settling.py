@@ -20,7 +20,9 @@ from lumped.typing import BoolArray, FloatArray
 #: Steps in a period of the fastest natural motion.
 _STEPS = 48
 #: Periods of the fastest natural motion and cycles, at least, that a run settles; cycles that are observed.
-_SETTLE, _LEAST_CYCLES, _OBSERVED = 150.0, 40, 128
+_SETTLE = 150.0
+_LEAST_CYCLES = 40
+_OBSERVED = 128
 #: Runs side by side whose states stay in the cache of a core.
 _SIDE_BY_SIDE = 64
 
@@ -64,7 +66,8 @@ def settle(
     family: Family, limits: Limits, starts: FloatArray, periods: FloatArray, parameters: FloatArray
 ) -> Settled:
     """Let runs from states (L, 2m) settle at periods (L,) with parameters (L,)."""
-    states, stats = np.array(starts, dtype=float), np.empty((4, periods.size))
+    states = np.array(starts, dtype=float)
+    stats = np.empty((4, periods.size))
     order = np.argsort(periods, kind="stable")
     cuts = np.arange(_SIDE_BY_SIDE, order.size, _SIDE_BY_SIDE)
     if not family.constant:
@@ -75,13 +78,16 @@ def settle(
         cycles = max(int(np.ceil(_SETTLE / (limits.frequency * T))), _LEAST_CYCLES)
         half = np.ascontiguousarray(states[runs].T)
         m = half.shape[0] // 2
-        z, v, found = half[:m], half[m:], np.zeros((4, runs.size))
+        z = half[:m]
+        v = half[m:]
+        found = np.zeros((4, runs.size))
         arguments: tuple[Any, ...] = (
             *(z, v, np.ascontiguousarray(periods[runs]), np.ascontiguousarray(parameters[runs])),
             *(cycles, _OBSERVED, *_tables(system, max(1.0, _STEPS * limits.frequency * T)), found),
         )
         _run(*arguments)
-        states[runs], stats[:, runs] = half.T, found
+        states[runs] = half.T
+        stats[:, runs] = found
     mean, square, least, most = stats
     with np.errstate(invalid="ignore"):
         return Settled(states, mean, np.sqrt(np.maximum(square - mean**2, 0.0)), least, most)
@@ -116,9 +122,15 @@ def _run(
 ) -> None:  # fmt: skip
     """Take states (m, L) over whole cycles, in place; found (4, L): mean, mean square, extremes at last."""
     m, runs = z.shape
-    zs, vs, dz, dv = np.empty_like(z), np.empty_like(z), np.empty_like(z), np.empty_like(z)
-    force, d, w = np.empty_like(z), np.empty(runs), np.empty(runs)
-    found[2], found[3] = np.inf, -np.inf
+    zs = np.empty_like(z)
+    vs = np.empty_like(z)
+    dz = np.empty_like(z)
+    dv = np.empty_like(z)
+    force = np.empty_like(z)
+    d = np.empty(runs)
+    w = np.empty(runs)
+    found[2] = np.inf
+    found[3] = -np.inf
     for cycle in range(cycles + observed):
         for s in range(h.size):
             if cycle >= cycles:
@@ -137,7 +149,8 @@ def _run(
                 for p in range(m):
                     for q in range(runs):
                         if stage == 0:
-                            zs[p, q], vs[p, q] = z[p, q], v[p, q]
+                            zs[p, q] = z[p, q]
+                            vs[p, q] = v[p, q]
                         else:
                             step = vs[p, q]
                             zs[p, q] = z[p, q] + ahead * step
@@ -150,7 +163,8 @@ def _run(
                             for q in range(runs):
                                 force[p, q] -= T[q] * (T[q] * K[p, r] * zs[r, q] + C[p, r] * vs[r, q])
                 for i in range(u.shape[0]):
-                    stiff, damped = k[s, node, i], c[s, node, i]
+                    stiff = k[s, node, i]
+                    damped = c[s, node, i]
                     if stiff == 0.0 and damped == 0.0:
                         continue
                     for q in range(runs):
@@ -169,7 +183,8 @@ def _run(
                 for p in range(m):
                     for q in range(runs):
                         if stage == 0:
-                            dz[p, q], dv[p, q] = weight * vs[p, q], weight * force[p, q]
+                            dz[p, q] = weight * vs[p, q]
+                            dv[p, q] = weight * force[p, q]
                         else:
                             dz[p, q] += weight * vs[p, q]
                             dv[p, q] += weight * force[p, q]

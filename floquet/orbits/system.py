@@ -192,8 +192,10 @@ class ContactSystem:
         n, m = self.stiffness.shape
         samples = np.empty(0) if samples is None else np.ascontiguousarray(samples, dtype=float)
         contacts = len(self.contacts)
-        states, loads = np.zeros((cycles * samples.size, 2 * m)), np.zeros((cycles * samples.size, contacts))
-        log, totals = np.zeros((logged, 3)), np.zeros(6)
+        states = np.zeros((cycles * samples.size, 2 * m))
+        loads = np.zeros((cycles * samples.size, contacts))
+        log = np.zeros((logged, 3))
+        totals = np.zeros(6)
         final = np.zeros((m + n, 2 * m + 3 if derivatives else 1))
         start = np.ascontiguousarray(start, dtype=float)
         arguments: tuple[Any, ...] = (

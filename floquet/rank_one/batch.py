@@ -96,8 +96,10 @@ def fast_monodromies(
     # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
     # exp(angle): to an eighth of the tolerance.
     limits = Limits(tolerance, min(max(math.log(tolerance) + 30.5, 3.0), 9.0))
-    problem, n = packed(system), 2 * system.v.size
-    M, bound = np.empty((T.size, n, n)), np.empty(T.size)
+    problem = packed(system)
+    n = 2 * system.v.size
+    M = np.empty((T.size, n, n))
+    bound = np.empty(T.size)
 
     def run(part: slice) -> int:
         failed = propagate_points(problem, factors[part], zeta[part], T[part], limits, M[part], bound[part])
@@ -148,7 +150,8 @@ def spectral_radii(
     flow = fast_monodromies(system, periods, damping_factors, tolerance=tolerance)
 
     def largest(part: slice) -> FloatArray:
-        matrices, errors = flow.matrices[part], flow.errors[part]
+        matrices = flow.matrices[part]
+        errors = flow.errors[part]
         values, _, safe = _quick(matrices, errors)
         values[~safe] = np.linalg.eigvals(matrices[~safe])
         radii = np.asarray(np.abs(values).max(axis=1))
@@ -169,7 +172,8 @@ def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
 
 def _quick(matrices: FloatArray, errors: FloatArray) -> tuple[ComplexArray, FloatArray, BoolArray]:
     """Eigenvalues (N, n), bounds on their errors (N, n), and where the bounds hold (N,)."""
-    values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
+    values = np.empty(matrices.shape[:2], dtype=complex)
+    radii = np.empty(matrices.shape[:2])
     safe = np.empty(errors.size, dtype=bool)
     spectra(matrices, errors, values, radii, safe)
     return values, radii, safe

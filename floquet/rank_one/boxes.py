@@ -29,7 +29,8 @@ from lumped.typing import FloatArray, IntArray, Progress
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
 #: Nodes of the polynomial along period and damping, and its terms over a box whose signs count.
-_NODES, _TERMS = (24, 16), (8, 4)
+_NODES = (24, 16)
+_TERMS = (8, 4)
 #: What a polynomial may be wrong by; the size of its patch follows.
 _TOLERANCE = 1e-6
 _RADII = np.geomspace(1.5, 200.0, 40)  # sums of the semi-axes of the ellipses that are tried
@@ -56,7 +57,8 @@ def proven_cells(
     periods, damping : (N+1,) [s] and (M+1,), increasing: edges of the cells; damping is the factor on wd
     factors : on the varied gains, powers of the period or linear in its logarithm, else nothing is proven
     """
-    problem, rows = packed(system), damping.size - 1
+    problem = packed(system)
+    rows = damping.size - 1
     verdict = np.zeros((periods.size - 1, rows), dtype=np.intp)
     ends = _scaled(np.geomspace(periods[0], periods[-1], _NODES[1]), factors)
     if ends is None:
@@ -66,7 +68,8 @@ def proven_cells(
         some = damping[[j, min(j + _ROWS, rows)]]
         verdict[np.searchsorted(periods, slow_period(system, some, ends)) :, j : j + _ROWS] = 1
     end = int(np.flatnonzero((verdict == 0).any(axis=1)).max(initial=-1)) + 1
-    i, growth = 0, 2.0
+    i = 0
+    growth = 2.0
     while i < end:
         size = _Size(problem, growth)
 
@@ -80,7 +83,8 @@ def proven_cells(
                 return size.error(T, damping[[c, k]])
 
             d = _last(c, rows, tall)
-            patch, here = None, verdict[i:b, c:d]
+            patch = None
+            here = verdict[i:b, c:d]
             if not here.all():
                 patch = FlowPolynomial.of(system, problem, periods[[i, b]], damping[[c, d]], factors)
             if patch is not None:
@@ -107,12 +111,15 @@ def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray)
     """
     if system.gyroscopic is not None:
         return math.inf
-    form, problem = system.modal(), packed(system)
-    m, share = form.omega.size, np.repeat(np.diff(system.phases) / _CELLS, _CELLS)
+    form = system.modal()
+    problem = packed(system)
+    m = form.omega.size
+    share = np.repeat(np.diff(system.phases) / _CELLS, _CELLS)
     middle = (2.0 * np.arange(_CELLS) + 1.0) / _CELLS - 1.0
     values, spreads = zip(*(_around(poly, middle) for poly in (form.w, form.wd)), strict=True)
     calm = np.zeros((share.size, 2 * m, 2 * m))
-    calm[:, range(m), range(m, 2 * m)], calm[:, range(m, 2 * m), range(m)] = form.omega, -form.omega
+    calm[:, range(m), range(m, 2 * m)] = form.omega
+    calm[:, range(m, 2 * m), range(m)] = -form.omega
     calm[:, m:, m:] -= form.C
     calm[:, m:, :m] += np.outer(form.reference, form.v / form.omega)
 
@@ -134,7 +141,9 @@ def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray)
         turned = L @ A @ V
         top = np.linalg.eigvalsh(turned + np.conj(np.swapaxes(turned, 1, 2)))[:, -1]
         rate = np.maximum(rate, 0.5 * top + rounding * np.linalg.norm(A, axis=(1, 2)))
-    most, z, column = np.abs(gains).max(axis=0), float(damping.max()), np.abs(L[:, :, m:])
+    most = np.abs(gains).max(axis=0)
+    z = float(damping.max())
+    column = np.abs(L[:, :, m:])
     into = np.linalg.norm(form.v / form.omega @ V[:, :m], axis=1), np.linalg.norm(form.v @ V[:, m:], axis=1)
     for spread, factor, row in zip(spreads, (1.0, z), into, strict=True):
         moved = np.einsum("kij,kj->ki", column, factor * np.tensordot(most, spread, 1))
@@ -163,7 +172,8 @@ class _Size:
 
     def __init__(self, problem: Problem, growth: float, gains: FloatArray | None = None) -> None:
         self.growth = growth
-        shares, lean = np.diff(problem.phases), np.linalg.norm(problem.v / problem.omega)
+        shares = np.diff(problem.phases)
+        lean = np.linalg.norm(problem.v / problem.omega)
         rates = (problem.sizes + problem.fit_error).transpose(2, 0, 1) @ shares * (1.0 + 1e-9)
         edges = problem.edge_error.sum(axis=1)
         #: Integrals of the norms of the feedback of each part over the cycle.
@@ -176,14 +186,17 @@ class _Size:
         self, T: FloatArray, damping: FloatArray, along: FloatArray, up: FloatArray, moved: FloatArray
     ) -> FloatArray:
         """Bounds d of a patch, (radii,), at so many times its half widths; moved (Q, radii): the factors."""
-        z, dz = damping.mean(), 0.5 * up * (damping[1] - damping[0])
+        z = damping.mean()
+        dz = 0.5 * up * (damping[1] - damping[0])
         half = 0.5 * along * (T[1] - T[0])
         turned = dz * self.wd + self.each[0] @ moved + (z + dz) * (self.each[1] @ moved)
         return np.asarray(half * (self.calm + self.w + z * self.wd) + (T.mean() + half) * turned)
 
     def error(self, T: FloatArray, damping: FloatArray, moved: FloatArray | None = None) -> float:
         """Bound on the error of the polynomial (Trefethen, theorem 8.2, along each axis)."""
-        semi, one, total = 0.5 * (_RADII + 1.0 / _RADII), np.ones_like(_RADII), 0.0
+        semi = 0.5 * (_RADII + 1.0 / _RADII)
+        one = np.ones_like(_RADII)
+        total = 0.0
         moved = np.zeros((len(self.each[0]), _RADII.size)) if moved is None else moved
         for count, reach, weight in (
             (_NODES[0], (semi, one, moved), 1.0),
@@ -222,7 +235,8 @@ class FlowPolynomial:
         """Between two periods and two values of damping; None: factors of no known law."""
         (x, to_T), (y, to_z) = to_series(_NODES[0]), to_series(_NODES[1])
         T, z = periods.mean() + 0.5 * np.diff(periods) * x, damping.mean() + 0.5 * np.diff(damping) * y
-        t, zeta = float(periods.mean()), float(damping.mean())
+        t = float(periods.mean())
+        zeta = float(damping.mean())
         at = _scaled(np.append(T, t), factors)
         if at is None:
             return None
@@ -259,7 +273,8 @@ def _scaled(T: FloatArray, factors: Factors) -> FloatArray | None:
 
 def _slopes(T: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Change of factors and of their logarithms (Q-1,) with the logarithm of the period."""
-    width, size = np.log(T[1] / T[0]), np.maximum(np.abs(at), np.finfo(float).tiny)
+    width = np.log(T[1] / T[0])
+    size = np.maximum(np.abs(at), np.finfo(float).tiny)
     return (at[1] - at[0]) / width, np.log(size[1] / size[0]) / width
 
 
@@ -282,11 +297,13 @@ def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray)
     verdict = np.zeros((x.size - 1, y.size - 1), dtype=np.intp)
     boxes = [(0, x.size - 1, 0, y.size - 1)]
     while boxes:
-        now, boxes = boxes[:_BATCH], boxes[_BATCH:]
+        now = boxes[:_BATCH]
+        boxes = boxes[_BATCH:]
         a, b, c, d = np.array(now).T
         result, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
         for k, (i, j, p, q) in enumerate(now):
-            wide, tall = j - i > 1, q - p > 1
+            wide = j - i > 1
+            tall = q - p > 1
             if result[k]:
                 verdict[i:j, p:q] = result[k]
             elif wide or tall:
@@ -329,7 +346,9 @@ def bounded_entries(
     parts = np.swapaxes(E[:, :, :J], 1, 2) @ patch.coefficients.reshape(_NODES[0], -1)
     parts = np.swapaxes(F[:, None, :, :K], 2, 3) @ parts.reshape(count, J, _NODES[1], -1)
     parts = parts.reshape(count, J * K, n, n)
-    sizes, tall, wide = np.linalg.norm(patch.coefficients, axis=(2, 3)), np.abs(E), np.abs(F)
+    sizes = np.linalg.norm(patch.coefficients, axis=(2, 3))
+    tall = np.abs(E)
+    wide = np.abs(F)
     every = np.einsum("ka,ab,kb->k", tall.sum(axis=2), sizes, wide.sum(axis=2))
     some = np.einsum("ka,ab,kb->k", tall[:, :, :J].sum(axis=2), sizes, wide[:, :, :K].sum(axis=2))
     # 64 a^2 units: values of T_a at the nodes, sums over a and b, series and their restriction.
@@ -339,13 +358,15 @@ def bounded_entries(
     Y = np.linalg.inv(V)
     N = (Y[:, None] @ parts @ V[:, None]).reshape(count, J, K, n, n)
     reach = np.linalg.norm(Y, axis=2)[:, :, None] * np.linalg.norm(V, axis=1)[:, None, :]
-    moduli, off = np.abs(N), rest[:, None, None] * reach
+    moduli = np.abs(N)
+    off = rest[:, None, None] * reach
     f = (moduli.sum(axis=(1, 2)) + off) * (1.0 + 1e-12)
     # Y is the inverse of V but for q.
     q = (np.abs(np.eye(n) - Y @ V) + 4.0 * (n + 4.0) * _U * reach).sum(axis=2)
     worst = np.minimum(q.max(axis=1), 0.5)
     turned = (q / (1.0 - worst)[:, None])[:, :, None] * f.max(axis=1)[:, None, :]
-    f, off = f + turned, off + turned
+    f = f + turned
+    off = off + turned
     own = np.einsum("kJKii->kiJK", N)
     (X, to_X), (Z, to_Z) = to_series(2 * J - 1), to_series(2 * K - 1)
     square = to_X @ np.abs(chebvander(X, J - 1) @ own @ chebvander(Z, K - 1).T) ** 2 @ to_Z.T
@@ -356,7 +377,8 @@ def bounded_entries(
     high = np.sqrt(square[:, :, 0, 0] + varied) * (1.0 + 1e-12) + wrong
     f[:, range(n), range(n)] = 0.0
     moduli[..., range(n), range(n)] = 0.0
-    across, square = moduli[:, 1:, 0].sum(axis=(1, 2, 3)), np.abs(square)
+    across = moduli[:, 1:, 0].sum(axis=(1, 2, 3))
+    square = np.abs(square)
     across += square[:, :, 1:, 0].sum(axis=2).max(axis=1)
     upward = moduli[:, :, 1:].sum(axis=(1, 2, 3, 4)) + square[:, :, :, 1:].sum(axis=(2, 3)).max(axis=1)
     return V, low, high, f, across, upward

@@ -17,7 +17,8 @@ def packed(system: RankOneSystem) -> Problem:
     """Arrange a system for the kernels: modal coordinates, lanes, and bounds that do not change per point."""
     form = system.modal()
     pieces = system.phases.size - 1
-    w_size, wd_size = _norms(form.w), _norms(form.wd)
+    w_size = _norms(form.w)
+    wd_size = _norms(form.wd)
     centred = form.w[0, :, :, 0] - form.reference
     w_size[0] += np.linalg.norm(centred, axis=1) - np.linalg.norm(form.w[0, :, :, 0], axis=1)
     ratios, unequal = _ratios(form.w, form.wd, wd_size)
@@ -53,10 +54,13 @@ def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, flo
     Phi^-1 is (I - E)^-1 Phi^T g, E = I - Phi^T g Phi; the gains go through 57 + m roundings of the sum of
     their moduli. Sources: docs/theory/proven_bounds.md, "The matrix of a step".
     """
-    Phi, omega = form.shapes, form.omega
+    Phi = form.shapes
+    omega = form.omega
     Y = Phi.T * system.metric
     m = omega.size
-    absolute, twice = np.abs(Y), (2.0 * m + 6.0) * _U  # of a product of three matrices
+    # of a product of three matrices
+    absolute = np.abs(Y)
+    twice = (2.0 * m + 6.0) * _U
     E = float(np.linalg.norm(np.eye(m) - Y @ Phi) + (m + 5.0) * _U * np.linalg.norm(absolute @ np.abs(Phi)))
     E /= 1.0 - min(E, 0.5)
 
@@ -104,7 +108,8 @@ def _degrees(poly: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
 def _ratios(w: FloatArray, wd: FloatArray, wd_size: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The ratio rho (P,) of wd to w, nan where there is none; norms (Q, P) of wd - rho w."""
     w, wd = (padded(poly, max(w.shape[3], wd.shape[3])) for poly in (w, wd))
-    above, below = (w * wd).sum(axis=(0, 2, 3)), (w * w).sum(axis=(0, 2, 3))
+    above = (w * wd).sum(axis=(0, 2, 3))
+    below = (w * w).sum(axis=(0, 2, 3))
     rho = np.divide(above, below, out=np.zeros_like(above), where=below > 0.0)
     unequal = _norms(wd - rho[:, None, None] * w)
     rho[unequal.sum(axis=0) > _PROPORTIONAL * wd_size.sum(axis=0)] = np.nan

@@ -99,7 +99,8 @@ def fit_pieces(
     segment = np.arange(low.size)
     sizes: FloatArray | None = None
     for depth in range(_MAX_HALVINGS + 1):
-        centre, half = 0.5 * (low + high), 0.5 * (high - low)
+        centre = 0.5 * (low + high)
+        half = 0.5 * (high - low)
         values, errors, fixed = gains(centre, half, segment, nodes)
         values = values * root
         if not np.isfinite(values).all():

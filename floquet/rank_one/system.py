@@ -94,7 +94,8 @@ class RankOneSystem:
 
     def modal(self) -> ModalForm:
         """Return the system in modal coordinates of its time average, see `ModalForm`."""
-        g, mean = self.metric, self.mean_of(self.total.w) if self.mean is None else self.mean
+        g = self.metric
+        mean = self.mean_of(self.total.w) if self.mean is None else self.mean
         k = float(g @ (mean * self.v)) / float(self.v @ self.v) if (g * mean) @ self.v > 0 else 0.0
         K = g[:, None] * self.stiffness + k * np.outer(self.v, self.v)
         if not np.abs(K - K.T).max() <= 1e-9 * np.abs(K).max():

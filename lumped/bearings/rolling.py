@@ -17,7 +17,8 @@ from collections.abc import Mapping
 import numpy as np
 
 #: Types of rolling bearings.
-BALL, ROLLER = "ball", "roller"
+BALL = "ball"
+ROLLER = "roller"
 TYPES = (BALL, ROLLER)
 #: Number of rolling elements -> stiffness across the load over that along it.
 _ACROSS: Mapping[str, Mapping[int, float]] = {
@@ -25,7 +26,8 @@ _ACROSS: Mapping[str, Mapping[int, float]] = {
     ROLLER: {8: 0.49, 12: 0.66, 16: 0.74},
 }
 #: Shear stress of a shaft under its torque [Pa]; size of a rolling element over the diameter of the shaft.
-_TORSION, _ELEMENT = 30e6, 0.3
+_TORSION = 30e6
+_ELEMENT = 0.3
 #: Diameter of a shaft from which on it runs in rollers [m].
 _ROLLERS_FROM = 0.05
 #: Number of rolling elements of a bearing that is assumed.

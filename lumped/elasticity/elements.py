@@ -52,7 +52,8 @@ class Quadrature(NamedTuple):
 def quadrature(nodes: FloatArray, elements: IntArray, points: int) -> Quadrature:
     """Gauss rule of points x points in each element (e, 9) of nodes (n, 2)."""
     shapes, slopes, weights = square_shapes(points)
-    corners, count = nodes[elements], weights.size
+    corners = nodes[elements]
+    count = weights.size
     j = (slopes.reshape(2 * count, 9) @ corners).reshape(-1, 2, count, 2)
     (xs, ys), (xt, yt) = ((j[:, d, :, 0], j[:, d, :, 1]) for d in (0, 1))
     determinant = xs * yt - ys * xt
@@ -76,7 +77,8 @@ def assembled(nodes: FloatArray, elements: IntArray, poisson: float) -> tuple[sp
     strain[..., 0, 0::2] = strain[..., 2, 1::2] = gradients[:, 0]
     strain[..., 1, 1::2] = strain[..., 2, 0::2] = gradients[:, 1]
     stress = plane_law(poisson) @ strain * area[..., None, None]
-    size, rows = len(elements), area.shape[1] * 3
+    size = len(elements)
+    rows = area.shape[1] * 3
     stiffness = strain.reshape(size, rows, 18).transpose(0, 2, 1) @ stress.reshape(size, rows, 18)
     freedoms = np.stack([2 * elements, 2 * elements + 1], axis=-1).reshape(size, 18)
     index = np.broadcast_to(freedoms[:, :, None], stiffness.shape)

@@ -20,9 +20,11 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.typing import FloatArray
 
 #: Elements at the surface of the mesh, and of the coarser one that shows its error [modules].
-FINE, COARSE = 0.2, 0.3
+FINE = 0.2
+COARSE = 0.3
 #: Loads along the flank, and terms in each direction that neighbours, which hardly feel the place, are given.
-_LOADS, _TERMS = 14, 4
+_LOADS = 14
+_TERMS = 4
 #: Nearer than this to the edge of the tip the half plane of the load ends [modules].
 _EDGE = 0.05
 #: Nearer than this to the base circle the flank is too curved for it [modules].

@@ -21,7 +21,8 @@ from lumped.elasticity.sector import SPREAD_POINTS, Sector
 from lumped.typing import FloatArray
 
 #: Radii between which chi falls [modules].
-NEAR, FAR = 0.15, 1.1
+NEAR = 0.15
+FAR = 1.1
 
 
 def flank_load(
@@ -35,8 +36,10 @@ def flank_load(
     """
     edge, shapes, point, normal = mesh.edge_at(length)
     reading = np.zeros(2 * len(mesh.nodes))
-    reading[2 * edge], reading[2 * edge + 1] = shapes * normal[0], shapes * normal[1]
-    near, far = radii[0], outer_radius(mesh, point, radii[1])
+    reading[2 * edge] = shapes * normal[0]
+    reading[2 * edge + 1] = shapes * normal[1]
+    near = radii[0]
+    far = outer_radius(mesh, point, radii[1])
     distance = np.hypot(*(mesh.nodes - point).T)
     load = np.zeros_like(reading)
 
@@ -50,7 +53,8 @@ def flank_load(
     _add(load, edges, -np.einsum("epc,pk->ekc", traction, values))
 
     near_by = (distance[mesh.elements] < far).any(axis=1)
-    elements, square = mesh.elements[near_by], mesh.quadrature.shapes
+    elements = mesh.elements[near_by]
+    square = mesh.quadrature.shapes
     at, gradient, area = (part[near_by] for part in mesh.quadrature[1:])
     moved, stress, chi, fall = flamant(at - point, normal, poisson, near, far)
     force = (stress @ fall[..., None])[..., 0] * area[..., None]
@@ -64,11 +68,13 @@ def flank_load(
     # Quadrature leaves force and moment off by some 1e-4, which the twist of a small bore would multiply.
     rigid, even = (np.zeros((len(mesh.nodes), 2, 3)) for _ in range(2))
     rigid[:, 0, 0] = rigid[:, 1, 1] = 1.0
-    rigid[:, 0, 2], rigid[:, 1, 2] = -mesh.nodes[:, 1], mesh.nodes[:, 0]
+    rigid[:, 0, 2] = -mesh.nodes[:, 1]
+    rigid[:, 1, 2] = mesh.nodes[:, 0]
     a, b = np.moveaxis(at, -1, 0)
     for axis, motion, field in ((0, 0, area), (1, 1, area), (0, 2, -b * area), (1, 2, a * area)):
         np.add.at(even[:, axis, motion], elements, field @ square)
-    motions, forces = rigid.reshape(-1, 3), even.reshape(-1, 3)
+    motions = rigid.reshape(-1, 3)
+    forces = even.reshape(-1, 3)
     load += forces @ np.linalg.solve(motions.T @ forces, motions.T @ (reading - load))
     held = chi * area
     taken = np.array([(held * x).sum(), (held * y).sum(), (held * (a * y - b * x)).sum()])
@@ -96,7 +102,9 @@ def flamant(
     side = np.array([-normal[1], normal[0]])
     x, y = off @ normal, off @ side
     r = np.maximum(np.hypot(x, y), 1e-9)
-    angle, c, s = np.arctan2(y, x), x / r, y / r
+    angle = np.arctan2(y, x)
+    c = x / r
+    s = y / r
     radial = -(2.0 * c * np.log(r) + (1.0 - poisson) * angle * s) / np.pi
     around = (2.0 * s * np.log(r) - (1.0 - poisson) * angle * c + (1.0 + poisson) * s) / np.pi
     out = c[..., None] * normal + s[..., None] * side

@@ -63,7 +63,8 @@ def compliances(
         for each in zip(*(flank_load(mesh, poisson, length, *options) for length in lengths), strict=True)
     )
     matrix, heavy = assembled(mesh.nodes, mesh.elements, poisson)
-    pitch, count = 2.0 * math.pi / teeth, lengths.size
+    pitch = 2.0 * math.pi / teeth
+    count = lengths.size
     one = _condensed(mesh, matrix, np.concatenate([applied, read, heavy], axis=1), pitch, support)
     body = slice(2 * count, 2 * count + 3)
     rest = Chain(one.stiffness, one.loads[:, body], one.work[body, body])
@@ -72,7 +73,8 @@ def compliances(
     cut = one.stiffness.shape[0] // 2
     cuts = reach + 2 if left else reach + 1
     columns = count * (reach + 2) + 3
-    total, work = np.zeros((cuts, cut, cuts, cut)), np.zeros((columns, columns))
+    total = np.zeros((cuts, cut, cuts, cut))
+    work = np.zeros((columns, columns))
     loads = np.zeros((cuts, cut, columns))
 
     def add(chain: Chain, chosen: np.ndarray, behind: int, ahead: int, turn: float) -> None:
@@ -97,14 +99,16 @@ def compliances(
     if left:
         add(_row(rest, left, pitch), last, reach + 1, 0, (reach + 1) * pitch)
 
-    stiffness, forces = total.reshape(cuts * cut, -1), loads.reshape(cuts * cut, -1)
+    stiffness = total.reshape(cuts * cut, -1)
+    forces = loads.reshape(cuts * cut, -1)
     kept = np.ones(len(stiffness), dtype=bool)
     balance = np.eye(columns)
     resultants = np.zeros((3, columns))
     if support == "free":
         rigid = np.zeros((len(applied), 3))
         rigid[::2, 0] = rigid[1::2, 1] = 1.0
-        rigid[::2, 2], rigid[1::2, 2] = -mesh.nodes[:, 1], mesh.nodes[:, 0]
+        rigid[::2, 2] = -mesh.nodes[:, 1]
+        rigid[1::2, 2] = mesh.nodes[:, 0]
         own = rigid.T @ heavy
         mass = teeth * np.array([own[0, 0], own[0, 0], own[2, 2]])
         resultants[:, :count] = rigid.T @ applied
@@ -168,7 +172,8 @@ def _connected(a: Chain, b: Chain, turn: float) -> Chain:
         np.linalg.solve(middle, np.concatenate([pulled, force], axis=1)), [2 * half], 1
     )
     ends = np.zeros_like(a.stiffness)
-    ends[:half, :half], ends[half:, half:] = a.stiffness[:half, :half], b.stiffness[half:, half:]
+    ends[:half, :half] = a.stiffness[:half, :half]
+    ends[half:, half:] = b.stiffness[half:, half:]
     return Chain(
         ends - pulled.T @ by_ends,
         np.concatenate([a.loads[:half], b.loads[half:]]) - pulled.T @ by_force,
@@ -178,7 +183,10 @@ def _connected(a: Chain, b: Chain, turn: float) -> Chain:
 
 def _row(one: Chain, count: int, pitch: float) -> Chain:
     """Equal pitches in a row."""
-    result, found_count, power, power_count = None, 0, one, 1
+    result = None
+    found_count = 0
+    power = one
+    power_count = 1
     while True:
         if count & power_count:
             result = power if result is None else _connected(result, power, found_count * pitch)
@@ -186,4 +194,5 @@ def _row(one: Chain, count: int, pitch: float) -> Chain:
         if found_count == count:
             assert result is not None
             return result
-        power, power_count = _connected(power, power, power_count * pitch), 2 * power_count
+        power = _connected(power, power, power_count * pitch)
+        power_count = 2 * power_count

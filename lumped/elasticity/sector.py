@@ -19,7 +19,9 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.typing import FloatArray, IntArray
 
 #: Where elements at the surface are 0.3 modules long: growth of the rows below it, their largest share of r.
-_COARSE, _GROWTH, _LARGEST = 0.3, 0.45, 0.3
+_COARSE = 0.3
+_GROWTH = 0.45
+_LARGEST = 0.3
 #: Gauss points along an edge and a side of an element where a load is spread.
 SPREAD_POINTS = 4
 #: Shorter arcs between the fillets' ends are none [modules].
@@ -94,12 +96,14 @@ def stations(profile: ToothProfile, tip: float, bore: float, size: float) -> Sta
     """Stations for elements of about one size at the surface; radii and size in modules."""
     foot = _foot(profile)
     bottom, joint = profile.fillet_range
-    start, root = profile.form_length, profile.root_radius
+    start = profile.form_length
+    root = profile.root_radius
     flank = (tip**2 - profile.base_radius**2 - start**2) / (2.0 * profile.base_radius)
     # Even steps along the flank, not along the base tangent.
     squares = np.linspace(start**2, tip**2 - profile.base_radius**2, _count(flank, size) + 1)
     _, half, _ = profile.fillet_points(np.array([foot]))
-    end, middle = profile.root_half_angle, math.pi / profile.teeth
+    end = profile.root_half_angle
+    middle = math.pi / profile.teeth
     land = (middle - end) * root
     return Stations(
         above=_even(foot, joint, _arc(profile, foot, joint), size),
@@ -117,16 +121,19 @@ def sector(profile: ToothProfile, tip: float, bore: float, at: Stations) -> Sect
     u_1, h_1, _ = profile.fillet_points(at.above)
     u_2, h_2, *_ = profile.involute_points(at.lengths)
     u, h = np.concatenate([u_1, u_2[1:]]), np.concatenate([h_1, h_2[1:]])
-    foot, half = math.hypot(u[0], h[0]), math.atan2(h[0], u[0])
+    foot = math.hypot(u[0], h[0])
+    half = math.atan2(h[0], u[0])
     top = math.atan2(h[-1], u[-1])
-    eta, s = at.across, np.linspace(0.0, 1.0, u.size)[:, None]
+    eta = at.across
+    s = np.linspace(0.0, 1.0, u.size)[:, None]
     x = u[:, None] + (1.0 - s) ** 2 * foot * (np.cos(eta * half) - math.cos(half))
     x += s**2 * tip * (np.cos(eta * top) - math.cos(top))
     y = h[:, None] * eta
     y[0] = foot * np.sin(eta * half)
     # The rim: the surface from space to space, and rows below it.
     u_3, h_3, _ = profile.fillet_points(at.below)
-    radius, angle = np.hypot(u_3, h_3), np.arctan2(h_3, u_3)
+    radius = np.hypot(u_3, h_3)
+    angle = np.arctan2(h_3, u_3)
     more = at.land[1:]
     radius = np.append(radius, np.full(more.size, profile.root_radius))
     angle = np.append(angle, more)
@@ -185,14 +192,17 @@ def _even(start: float, end: float, length: float, size: float) -> FloatArray:
 
 def _with_middles(ends: FloatArray) -> FloatArray:
     full = np.empty(2 * ends.size - 1)
-    full[::2], full[1::2] = ends, 0.5 * (ends[1:] + ends[:-1])
+    full[::2] = ends
+    full[1::2] = 0.5 * (ends[1:] + ends[:-1])
     return full
 
 
 def _rows(root: float, bore: float, size: float) -> FloatArray:
     """Rows of nodes of the rim as shares of its height, from the bore up."""
     finer = size / _COARSE
-    radius, step, ends = root, 0.8 * size, [root]
+    radius = root
+    step = 0.8 * size
+    ends = [root]
     while radius - 1.4 * step > bore:
         radius -= step
         ends.append(radius)

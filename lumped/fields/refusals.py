@@ -130,7 +130,9 @@ def _below(root: type[BaseModel], path: str) -> str:
 
 def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     parts, models = _location(item["loc"], root)
-    path, kind, context = ".".join(parts), item["type"], item.get("ctx", {})
+    path = ".".join(parts)
+    kind = item["type"]
+    context = item.get("ctx", {})
     cause = context.get("error")
     if isinstance(cause, ParameterError):
         return [

@@ -77,7 +77,8 @@ def about_digits(text: str) -> str:
     result = _COMMA.match(text)
     if result is None:
         return "write decimals with a point" if "," in text else ""
-    whole, decimals = result[1].replace(".", ""), result[2]
+    whole = result[1].replace(".", "")
+    decimals = result[2]
     rest = text[result.end() :]
     if len(decimals) == 3 and "." not in result[1]:
         return (

@@ -153,11 +153,13 @@ def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
     """Constant where the law is held; else each complex logarithm is at most |log10| and pi/ln 10."""
-    centre, cap = 0.5 * (low + high), max(_cap(path, settings), 0.0)
+    centre = 0.5 * (low + high)
+    cap = max(_cap(path, settings), 0.0)
     level = _level(centre, path)
     held = (level <= 0.0) | (level >= cap)
     around = Ellipses.clear_of(low, high, [p for p in (path.L_XP, path.still) if p is not None])
-    d, v_e = around.distances(path.L_XP), entraining(around, path)
+    d = around.distances(path.L_XP)
+    v_e = entraining(around, path)
     with np.errstate(divide="ignore"):
         logs = [
             np.maximum(np.abs(np.log10(v[0] / v_0)), np.abs(np.log10(v[1] / v_0))) + np.pi / np.log(10.0)

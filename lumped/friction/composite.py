@@ -99,7 +99,8 @@ def _excess(path: ContactPath, threshold: float, xi: FloatArray) -> FloatArray:
 def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
-    ratio, size = np.empty_like(low), np.empty_like(low)
+    ratio = np.empty_like(low)
+    size = np.empty_like(low)
     for law, inside in _parts(0.5 * (low + high), path, settings):
         if inside.any() and law.analytic is not None:
             ratio[inside], size[inside] = law.analytic(low[inside], high[inside], path, settings)

@@ -28,7 +28,8 @@ _TO_SERIES[:, 0] *= 0.5
 #: Lebesgue's constant of these points, rounded up: 2/pi log 65 + 1.
 _LEBESGUE = 4.0
 #: Largest r; smallest one with which a piece counts as clear of what is singular.
-_LARGEST, _CLEAR = 2.5, 1.1
+_LARGEST = 2.5
+_CLEAR = 1.1
 #: Roundings in the formula of a law, relative to it: the exponent of law III is near 9, each power adds 20.
 _ROUNDINGS = 400.0 * _U
 #: The same of a position, relative to L_XY, with the search of switches, see `ContactPath.crossings`.
@@ -52,7 +53,8 @@ class Ellipses:
     @classmethod
     def clear_of(cls, low: FloatArray, high: FloatArray, points: Sequence[complex] = ()) -> Ellipses:
         """Ellipses that come to these points at most half as near as the pieces do."""
-        centre, half = 0.5 * (low + high), 0.5 * (high - low)
+        centre = 0.5 * (low + high)
+        half = 0.5 * (high - low)
         ratio = np.full(centre.shape, _LARGEST)
         for point in points:
             if point.imag == 0.0:
@@ -87,7 +89,8 @@ class Ellipses:
 
 def entraining(around: Ellipses, path: ContactPath) -> tuple[FloatArray, FloatArray]:
     """Bounds (k,) on |v_e| [m/s] in ellipses."""
-    point, rate = path.still, abs(path.omega_pinion - path.omega_gear)
+    point = path.still
+    rate = abs(path.omega_pinion - path.omega_gear)
     if point is None:
         both = np.full(around.centre.shape, path.omega_pinion * path.L_XY)
         return both, both
@@ -114,7 +117,8 @@ def fit_misfit(
     if law.analytic is None:
         return np.zeros(low.size)
     ratio, most = law.analytic(low, high, path, settings)
-    half, width = 0.5 * (high - low), high - low
+    half = 0.5 * (high - low)
+    width = high - low
     xi = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
     mu = law.signed(path.held(xi.ravel()), path, settings).reshape(xi.shape)
     left = np.abs((mu - function(xi)) @ _TO_SERIES).sum(axis=1)

@@ -53,7 +53,8 @@ def _analytic(
 
     On a piece that holds a transition too short for its polynomial, |mu| is at most mu_avg.
     """
-    phi, pole = settings.sharpness, path.L_XP + 1j / settings.sharpness
+    phi = settings.sharpness
+    pole = path.L_XP + 1j / settings.sharpness
     around = Ellipses.clear_of(low, high, [pole])
     least = (phi * around.distances(pole)[0]) ** 2  # |1 + Phi^2 d^2|
     angle = 0.5 * np.pi + phi * around.reach / least

@@ -90,11 +90,9 @@ class FrictionTable(Section):
 
         A point at P ends one curve and begins another: the magnitude of most laws has a corner there.
         """
-        x, y, at = (
-            self.positions(path),
-            np.array(self.coefficient),
-            np.clip(xi, *self.positions(path)[[0, -1]]),
-        )
+        x = self.positions(path)
+        y = np.array(self.coefficient)
+        at = np.clip(xi, *self.positions(path)[[0, -1]])
         corner = [i for i in range(1, x.size - 1) if abs(x[i] - path.L_XP) <= _AT_PITCH * (x[-1] - x[0])]
         magnitude = np.empty_like(at)
         ends = [0, *corner, x.size - 1]

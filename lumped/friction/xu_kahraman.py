@@ -100,15 +100,19 @@ def _analytic(
     """
     _, b2, b3, b4, b5, b6, _, b8, _ = B
     points = [p for p in (path.L_XP, 0.0, path.L_XY, path.still) if p is not None]
-    around, centre = Ellipses.clear_of(low, high, points), 0.5 * (low + high)
-    v_e, middle = entraining(around, path), path.entraining_velocity(centre)
-    slow, fast = v_e[0] / middle, v_e[1] / middle
+    around = Ellipses.clear_of(low, high, points)
+    centre = 0.5 * (low + high)
+    v_e = entraining(around, path)
+    middle = path.entraining_velocity(centre)
+    slow = v_e[0] / middle
+    fast = v_e[1] / middle
     far = around.distances(path.L_XP)[1] / np.abs(centre - path.L_XP)
     ends = [around.distances(end) for end in (0.0, path.L_XY)]
     least, most = (ends[0][k] * ends[1][k] / (centre * (path.L_XY - centre)) for k in (0, 1))
     shear = path.slide_to_roll(centre) * path.hertz_pressure(centre) * 1e-9 * np.log10(path.viscosity * 1e3)
     moved = np.abs(shear) * (far / slow / np.sqrt(least) - 1.0)
-    power, curved = b6 - b3, b8 - 0.5 * b2
+    power = b6 - b3
+    curved = b8 - 0.5 * b2
     size = far**b3 * np.maximum(slow**power, fast**power) * np.maximum(least**curved, most**curved)
     size *= np.exp(abs(b4) * moved + b5 * np.exp(-shear) * np.expm1(moved))
     return around.ratio, np.abs(_signed(centre, path, settings)) * size

@@ -179,7 +179,8 @@ def _build(
     pinion: Wheel, gear: Wheel, centre_distance: float | None, backlash: float, omega_p: float
 ) -> Geometry:
     rack = pinion.tooth
-    alpha, m = rack.pressure_angle, rack.module
+    alpha = rack.pressure_angle
+    m = rack.module
     r_bp, r_bg = pinion.tooth.base_radius, gear.tooth.base_radius
     r_ap, r_ag = pinion.tip_radius, gear.tip_radius
     centre, alpha_w = _centre_distance(pinion.tooth, gear.tooth, centre_distance)
@@ -226,7 +227,9 @@ def _build(
 
 def _centre_distance(pinion: ToothProfile, gear: ToothProfile, distance: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
-    teeth, module, alpha = pinion.teeth + gear.teeth, pinion.module, pinion.pressure_angle
+    teeth = pinion.teeth + gear.teeth
+    module = pinion.module
+    alpha = pinion.pressure_angle
     if distance is None:
         distance = distance_without_backlash(teeth, module, alpha, pinion.profile_shift + gear.profile_shift)
     return distance, operating_pressure_angle(teeth, module, alpha, distance)
@@ -314,7 +317,9 @@ def _tip_length(wheel: Wheel) -> float:
 
 def _of_one_gear(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator[FieldProblem]:
     """Problems of the tip and the bore of one gear."""
-    tooth, base, mate_root = wheel.tooth, wheel.tooth.base_radius, mate.tooth.root_radius
+    tooth = wheel.tooth
+    base = wheel.tooth.base_radius
+    mate_root = mate.tooth.root_radius
     value = f"{2e3 * wheel.tip_radius:.4f} mm"
     if _tip_length(wheel) > g.L_XY and mate.tooth.undercut_length == 0.0:
         allowed = f"<= {2e3 * math.hypot(base, g.L_XY):.4f} mm"
@@ -332,7 +337,9 @@ def _of_one_gear(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator
 
 def _interference(name: Name, wheel: Wheel, mate: Wheel, g: Geometry) -> Iterator[FieldProblem]:
     """Where the mate's tip cuts into the teeth of a gear."""
-    tooth, base, form = wheel.tooth, wheel.tooth.base_radius, wheel.tooth.form_length
+    tooth = wheel.tooth
+    base = wheel.tooth.base_radius
+    form = wheel.tooth.form_length
     start = g.L_XY - _tip_length(mate)
     if tooth.undercut_length == 0.0 and start < form - _FORM_TOLERANCE * tooth.module:
         if start >= 0.0:  # else the mate's tip has passed the tangent point

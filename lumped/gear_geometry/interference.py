@@ -43,9 +43,11 @@ def tip_clearance(
     reached = radius >= centre - mate_tip
     if not reached.any():
         return math.inf
-    radius, outline = radius[reached], outline[reached]
+    radius = radius[reached]
+    outline = outline[reached]
     # Angles of the corner from the line of centres, about the mate's centre and about the gear's.
-    turned, seen = _angle_between(centre, mate_tip, radius), _angle_between(centre, radius, mate_tip)
+    turned = _angle_between(centre, mate_tip, radius)
+    seen = _angle_between(centre, radius, mate_tip)
     # With the flanks touching at the pitch point, the corner is corner_half - mate_half off the line.
     path = half + ratio * (turned + mate_half - corner_half) - seen
     return float((radius * (path - outline)).min())

@@ -294,7 +294,8 @@ def gear_table(
     g, (first, second) = pair.geometry, pair.wheels
     thinning = 0.5 * pair.mesh.backlash
     addendum = pair.basic_rack.addendum_coefficient
-    spans, sizes = teeth_spanned or (None, None), balls or (None, None)
+    spans = teeth_spanned or (None, None)
+    sizes = balls or (None, None)
     return GearTable(
         module=first.tooth.module,
         pressure_angle=first.tooth.pressure_angle,
@@ -319,7 +320,9 @@ def _measured(
 ) -> GearMeasures:
     tooth = wheel.tooth
     made = as_made(tooth, thinning)
-    reference, base, tip = tooth.reference_radius, tooth.base_radius, wheel.tip_radius
+    reference = tooth.reference_radius
+    base = tooth.base_radius
+    tip = wheel.tip_radius
     form = math.hypot(base, tooth.form_length)
     measured_at = _measuring_radius(tooth, form, tip)
     k = number or teeth_spanned(tooth, measured_at)
@@ -354,7 +357,9 @@ def _measuring_radius(tooth: ToothProfile, form: float, tip: float) -> float:
 
 
 #: Steps of ball diameters: for those from 2.5 mm on, and for smaller ones [m].
-_COARSE, _FINE, _COARSE_FROM = 0.25e-3, 0.05e-3, 2.5e-3
+_COARSE = 0.25e-3
+_FINE = 0.05e-3
+_COARSE_FROM = 2.5e-3
 
 
 def _standing_out(tooth: ToothProfile, ideal: float, tip: float) -> float:

@@ -15,7 +15,8 @@ from lumped.gear_geometry.tooth_profile import inverse_involute, involute
 #: Profile shift coefficients, and lengths over module, that are rounding of a centre distance [-].
 _ROUNDING = 1e-11
 #: Range of a profile shift coefficient, that of the schema [-].
-LEAST_SHIFT, LARGEST_SHIFT = -1.5, 2.0
+LEAST_SHIFT = -1.5
+LARGEST_SHIFT = 2.0
 
 
 def operating_pressure_angle(

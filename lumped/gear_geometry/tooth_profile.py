@@ -209,8 +209,10 @@ class ToothProfile:
         radius, half_width, down = self.rack_tip
         r = self.reference_radius
         along = half_width - r * roll
-        distance, radius = np.hypot(along, down), math.copysign(radius, down)
-        stretch, stretch_rate = 1.0 + radius / distance, radius * along * r / distance**3
+        distance = np.hypot(along, down)
+        radius = math.copysign(radius, down)
+        stretch = 1.0 + radius / distance
+        stretch_rate = radius * along * r / distance**3
         x_rate, y_rate = -r * stretch + along * stretch_rate, -down * stretch_rate
         turn = roll - math.pi / self.teeth
         cosine, sine = np.cos(turn), np.sin(turn)

@@ -71,11 +71,14 @@ def quasi_static_losses(
     ParameterError : an unknown law or sharing, or a law that the pair does not allow
     """
     pair = load_gear_pair(pair)
-    g, torque = pair.geometry, pair.operating.pinion_torque
-    mu, teeth = friction_path_function(pair, law), springs(pair, sharing)
+    g = pair.geometry
+    torque = pair.operating.pinion_torque
+    mu = friction_path_function(pair, law)
+    teeth = springs(pair, sharing)
     power_in = torque * g.omega_pinion
     at = quadrature(g, [mu, *teeth.functions])
-    share, coefficient = teeth.share(at), np.where(at.contact, mu(at.position), 0.0)
+    share = teeth.share(at)
+    coefficient = np.where(at.contact, mu(at.position), 0.0)
     arm = g.base_radius_pinion + at.position * coefficient
     normal = torque / (share * arm).sum(axis=0) * share
     loss = at.mean((coefficient * normal * sliding_velocity(g, at.position)).sum(axis=0))

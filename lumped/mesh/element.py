@@ -99,7 +99,8 @@ BY_APPROACH, BY_RATE, AT_REST = range(3)
 _MOST_STEPS = 200
 #: Change of the loads in a Newton step, over their sum, that ends the iteration: quick, where loads are
 #: wanted, whose error is its square; exact, where tangents are fitted, whose error it is.
-QUICK, EXACT = 1e-8, 1e-13
+QUICK = 1e-8
+EXACT = 1e-13
 
 
 class ContactLaw(NamedTuple):
@@ -243,7 +244,8 @@ def tip_decides(
     """Positive where the tip corner decides the gap of ``flank_end``, and passes 0 where it begins to [m]."""
     if edge <= 0.0:
         return beyond
-    of_tip, of_edge = min(beyond, 0.0), 0.0
+    of_tip = min(beyond, 0.0)
+    of_edge = 0.0
     if tip_touches(beyond, tip, back, edge, length, flank_radius, tip_radius):
         gap = corner_gap(beyond, tip, length, flank_radius, tip_radius).gap
         of_tip = math.sqrt(max(gap, 0.0) * tip_radius)
@@ -445,7 +447,8 @@ def share_load(
 ) -> None:
     """Gaps and elastic loads of all pairs at an approach, into ``contacts``, from the loads there."""
     for i in range(pairs.size):
-        pair, contact = pairs[i], contacts[i]
+        pair = pairs[i]
+        contact = contacts[i]
         if pair.stiffness <= 0.0:
             contact.compression = 0.0
             contact.load = 0.0
@@ -493,7 +496,8 @@ def mesh_force(
     """
     total = friction = moment = separating = power = 0.0
     for i in range(pairs.size):
-        pair, contact = pairs[i], contacts[i]
+        pair = pairs[i]
+        contact = contacts[i]
         normal[i] = 0.0
         if not acts(pair, contact, law):
             continue
@@ -529,11 +533,15 @@ def static_approach(
     stiffest = 1e-300
     for i in range(pairs.size):
         stiffest = max(stiffest, pairs[i].stiffness)
-    scale, low, high, approach = force / stiffest, -math.inf, math.inf, guess
+    scale = force / stiffest
+    low = -math.inf
+    high = math.inf
+    approach = guess
     reach = 2.0 * scale  # of the next step outwards; it doubles, as a light load is far smaller than the gaps
     for _ in range(_MOST_STEPS):
         share_load(approach, pairs, line, law, coupling, matrix, contacts)
-        excess, slope = -force, 0.0
+        excess = -force
+        slope = 0.0
         for i in range(pairs.size):
             excess += contacts[i].load
             if contacts[i].load > 0.0:

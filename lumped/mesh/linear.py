@@ -141,7 +141,8 @@ class Instant(NamedTuple):
 
 def empty_instant(tables: MeshTables) -> Instant:
     """Records for a mesh; not compiled, for that takes half a second."""
-    nodes, count = tables.position.shape[1], tables.position.shape[2]
+    nodes = tables.position.shape[1]
+    count = tables.position.shape[2]
     return Instant(
         np.zeros(count, PAIR),
         np.zeros(1, LINE),
@@ -171,11 +172,14 @@ def lagrange(x: float, nodes: FloatArray, share: FloatArray) -> None:
 def put_between(step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant) -> None:
     """Write the pairs at a place of a step, 0 to 1, by the polynomials through those at its nodes."""
     lagrange(x, tables.nodes, at.share)
-    line, nodes, count = at.line[0], tables.nodes.size, at.pairs.size
+    line = at.line[0]
+    nodes = tables.nodes.size
+    count = at.pairs.size
     line.length = line.lengthening = line.turn = line.gap_rate = 0.0
     line.moment_pinion = line.moment_gear = 0.0
     for j in range(nodes):
-        share, there = at.share[j], mesh.lines[step, j]
+        share = at.share[j]
+        there = mesh.lines[step, j]
         line.length += share * there.length
         line.lengthening += share * there.lengthening
         line.turn += share * there.turn
@@ -183,12 +187,14 @@ def put_between(step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: I
         line.moment_pinion += share * there.moment_pinion
         line.moment_gear += share * there.moment_gear
     for i in range(count):
-        pair, position = at.pairs[i], 0.0
+        pair = at.pairs[i]
+        position = 0.0
         pair.stiffness = pair.damping = pair.friction = pair.gap = pair.gap_slope = 0.0
         for n in range(count):
             at.coupling[i, n] = 0.0
         for j in range(nodes):
-            share, of_node = at.share[j], mesh.pairs[step, j, i]
+            share = at.share[j]
+            of_node = mesh.pairs[step, j, i]
             position += share * of_node.position
             pair.stiffness += share * of_node.stiffness
             pair.damping += share * of_node.damping
@@ -223,12 +229,15 @@ def linearise(
     state.moment_gear = line.moment_gear
     state.damper_by_square = state.damper_by_rate = state.damper_at_rest = 0.0
     for i in range(pairs.size):
-        pair, contact, load = pairs[i], contacts[i], loads[i]
+        pair = pairs[i]
+        contact = contacts[i]
+        load = loads[i]
         load.static = load.by_approach = load.by_rate = load.at_rest = 0.0
         if not acts(pair, contact, law):
             continue
         damping = pair.damping * damper_share(contact.load, law)
-        closing, rolling = 1.0 - contact.gap_by_approach, rolling_rate(contact, line, law)
+        closing = 1.0 - contact.gap_by_approach
+        rolling = rolling_rate(contact, line, law)
         load.static = contact.load
         load.by_approach = contact.tangent
         load.by_rate = damping * closing
@@ -247,7 +256,8 @@ def write_signs(
 ) -> None:
     """Write the numbers of each pair that change their sign at a kink."""
     for i in range(pairs.size):
-        pair, contact = pairs[i], at.contacts[i]
+        pair = pairs[i]
+        contact = at.contacts[i]
         for sign in range(SIGNS):
             at.signs[sign, i] = 0.0
         if pair.stiffness <= 0.0 or law.windows:
@@ -293,10 +303,13 @@ def linear_of_step(
     """``linear_at`` a place of a step whose pairs ``mesh`` has: 0 to 1, or -1 - j for the node j."""
     if x > -0.5:
         put_between(step, x, tables, mesh, at)
-        pairs, line, coupling = at.pairs, at.line, at.coupling
+        pairs = at.pairs
+        line = at.line
+        coupling = at.coupling
     else:
         node = int(-1.0 - x)
-        pairs, line = mesh.pairs[step, node], mesh.lines[step, node : node + 1]
+        pairs = mesh.pairs[step, node]
+        line = mesh.lines[step, node : node + 1]
         coupling = tables.coupling[step, node]
     linear_at(pairs, line[0], coupling, tables.law, at, forces, state)
 
@@ -320,7 +333,8 @@ def linear_places(
     for step in range(known.size):
         known[step] = -1
     for n in range(asked.shape[0]):
-        cycle, step = int(asked[n, 0]), int(asked[n, 1])
+        cycle = int(asked[n, 0])
+        step = int(asked[n, 1])
         if known[step] != cycle:
             known[step] = cycle
             fill_steps(start + cycle, step, step + 1, tables, mesh)
@@ -333,7 +347,8 @@ def linear_places(
 def add_part(part: float, forces: Records, state: Record, of_forces: Records, of_state: Record) -> None:
     """Add a part of a linear form to another one."""
     for n in range(3):
-        force, of_force = forces[n], of_forces[n]
+        force = forces[n]
+        of_force = of_forces[n]
         force.normal += part * of_force.normal
         force.friction += part * of_force.friction
         force.friction_moment += part * of_force.friction_moment
@@ -370,7 +385,8 @@ def keep_kink(phase: float, step: int, kinks: Kinks) -> None:
     while place > 0 and kinks.phase[place - 1] > phase:
         kinks.phase[place], kinks.step[place] = kinks.phase[place - 1], kinks.step[place - 1]
         place -= 1
-    kinks.phase[place], kinks.step[place] = phase, step
+    kinks.phase[place] = phase
+    kinks.step[place] = step
     kinks.known[0] += 1
 
 
@@ -394,7 +410,8 @@ def find_kink(
     An end of a step between them is looked at first: kinks of like teeth are there.
     """
     (low, high), (at_low, at_high), edges, last = ends, values, tables.edges, -1
-    root, here = 0.0, step
+    root = 0.0
+    here = step
     for left in range(rounds, -1, -1):
         root = (low * at_high - high * at_low) / (at_high - at_low)
         if left == rounds and low < edges[step + 1] < high:
@@ -407,10 +424,14 @@ def find_kink(
         value = at.signs[sign, i]
         if (value < 0.0) == (at_low < 0.0):
             at_high *= 0.5 if last == 0 else 1.0
-            low, at_low, last = root, value, 0
+            low = root
+            at_low = value
+            last = 0
         else:
             at_low *= 0.5 if last == 1 else 1.0
-            high, at_high, last = root, value, 1
+            high = root
+            at_high = value
+            last = 1
     keep_kink(root, here, kinks)
 
 
@@ -432,7 +453,9 @@ def fill_moments(
     With the rule of the nodes on both sides of each kink, f_j = sum_q w_q l_j(x_q) f(x_q)/b_j has the moments
     of f on the polynomials l_j of the nodes.
     """
-    nodes, edges, low = tables.nodes.size, tables.edges, 0.0
+    nodes = tables.nodes.size
+    edges = tables.edges
+    low = 0.0
     for j in range(nodes):
         clear(to_forces[j], to_states[j])
     while low < 1.0:
@@ -480,19 +503,23 @@ def linear_cycles(
     """
     (steps, _, count), edges, looked = tables.position.shape, tables.edges, looks.size
     one = LinearForm(np.empty(3, FORCE), np.empty(1, STATE))
-    phase, values = np.empty(steps * looked), np.empty((steps * looked, SIGNS, count))
+    phase = np.empty(steps * looked)
+    values = np.empty((steps * looked, SIGNS, count))
     most = phase.size * signs * count
     kinks = Kinks(np.empty(most), np.empty(most, np.int64), np.empty(1, np.int64))
-    found, known = np.empty(16), 0
+    found = np.empty(16)
+    known = 0
     first = steps - steps  # the literal 0 would be compiled for itself
     for look in range(phase.size):
-        step, x = look // looked, looks[look % looked]
+        step = look // looked
+        x = looks[look % looked]
         place = x if x > -0.5 else tables.nodes[int(-1.0 - x)]
         phase[look] = edges[step] + (edges[step + 1] - edges[step]) * place
     for cycle in range(form.states.shape[0]):
         fill_steps(start + cycle, first, steps, tables, mesh)
         for look in range(phase.size):
-            step, j = look // looked, look % looked
+            step = look // looked
+            j = look % looked
             forces = form.forces[cycle, step, j] if fills else one.forces
             state = form.states[cycle, step, j] if fills else one.states[0]
             linear_of_step(step, looks[j], tables, mesh, at, forces, state)

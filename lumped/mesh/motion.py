@@ -176,18 +176,28 @@ def run_cycles(
     The nodes of ``tables`` are start, middle and end of each step; ``mesh`` is worked in, ``work`` (1,)
     is added to.
     """
-    m, count, steps = body.torque.size, tables.position.shape[2], tables.edges.size - 1
+    m = body.torque.size
+    count = tables.position.shape[2]
+    steps = tables.edges.size - 1
     outputs = 0
     for step in range(steps):
         outputs += recorded * tables.outputs[step]
-    states, loads = np.empty((outputs, 2 * m)), np.empty((count, outputs))
-    state, stage_state, rates = np.empty(2 * m), np.empty(2 * m), np.empty((4, 2 * m))
+    states = np.empty((outputs, 2 * m))
+    loads = np.empty((count, outputs))
+    state = np.empty(2 * m)
+    stage_state = np.empty(2 * m)
+    rates = np.empty((4, 2 * m))
     for j in range(2 * m):
         state[j] = initial[j]
         rates[-1, j] = 0.0
-    law, edges = tables.law, tables.edges
-    contacts, matrix, normal = mesh.contacts, mesh.matrix, np.empty(count)
-    row, first = 0, steps - steps  # the literal 0 would be compiled for itself
+    law = tables.law
+    edges = tables.edges
+    contacts = mesh.contacts
+    matrix = mesh.matrix
+    normal = np.empty(count)
+    # the literal 0 would be compiled for itself
+    row = 0
+    first = steps - steps
     for cycle in range(start, start + cycles):
         keeps = cycle >= start + cycles - recorded
         fill_steps(cycle, first, steps, tables, mesh)
@@ -200,7 +210,8 @@ def run_cycles(
                     stage_state[j] = state[j] + part * rates[stage - 1, j]
                 approach = dot(body.deflection, stage_state, 0)
                 closing = dot(body.deflection, stage_state, m)
-                pairs, line = mesh.pairs[step, node], mesh.lines[step, node]
+                pairs = mesh.pairs[step, node]
+                line = mesh.lines[step, node]
                 share_load(approach, pairs, line, law, tables.coupling[step, node], matrix, contacts)
                 force = mesh_force(closing, pairs, line, law, contacts, normal)
                 accelerate(stage_state, force, line, body, rates[stage])

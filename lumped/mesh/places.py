@@ -34,7 +34,8 @@ def linear_form_at(
     Returned are FORCE (..., 3) and STATE (...), and PAIR_LOAD (..., pairs) where ``loads`` are asked for.
     """
     asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
-    shape, asked = asked.shape[:-1], asked.reshape(-1, 3)
+    shape = asked.shape[:-1]
+    asked = asked.reshape(-1, 3)
     form = LinearForm(np.zeros((len(asked), 3), FORCE), np.zeros(len(asked), STATE))
     of_pairs = np.zeros((len(asked) if loads else 0, tables.ahead.size), PAIR_LOAD)
     linear_places(start, tables, asked, form, of_pairs, cycle_pairs(tables), empty_instant(tables))
@@ -51,7 +52,8 @@ def _all_carried(form: LinearForm) -> None:
 def fill_linear_form(tables: MeshTables, start: int, form: LinearForm) -> None:
     """Fill FORCE (cycles, steps, nodes, 3) and STATE (cycles, steps, nodes) of consecutive cycles."""
     nodes = np.arange(tables.nodes.size, dtype=np.float64)
-    mesh, at = cycle_pairs(tables), empty_instant(tables)
+    mesh = cycle_pairs(tables)
+    at = empty_instant(tables)
     linear_cycles(start, tables, -1.0 - nodes, 2, _FEW_ROUNDS, form, True, mesh, at)
     _all_carried(form)
 
@@ -67,6 +69,7 @@ def kinks(tables: MeshTables, start: int, cycles: int, looks: FloatArray, rounds
     """Phases of all kinks of mesh cycles from ``start`` on, in cycles after it; see ``linear_cycles``."""
     shape = (cycles, tables.edges.size - 1, 0)
     nothing = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
-    mesh, at = cycle_pairs(tables), empty_instant(tables)
+    mesh = cycle_pairs(tables)
+    at = empty_instant(tables)
     found: FloatArray = linear_cycles(start, tables, looks, SIGNS, rounds, nothing, False, mesh, at)
     return found

@@ -108,7 +108,8 @@ def static_approaches(
     """
     n, count = phases.position.shape
     pairs, contacts, lines, matrix = space
-    found, guess = np.empty(n), 0.0
+    found = np.empty(n)
+    guess = 0.0
     for phase in range(n):
         put_pairs(phases, phase, flanks[0], law, pairs, lines[0])
         coupling = phases.coupling[phase if law.coupled else 0]
@@ -141,7 +142,8 @@ def middle_contacts(
     pairs, contacts, lines, matrix = space
     middle = count // 2
     for phase in range(n):
-        line, coupling = lines[0], phases.coupling[phase if law.coupled else 0]
+        line = lines[0]
+        coupling = phases.coupling[phase if law.coupled else 0]
         put_pairs(phases, phase, flanks[0], law, pairs, line)
         share_load(approach[phase], pairs, line, law, coupling, matrix, contacts)
         one = found[phase]

@@ -120,9 +120,11 @@ class CyclePairs(NamedTuple):
 def cycle_pairs(tables: MeshTables) -> CyclePairs:
     """Empty records for the pairs of a mesh cycle; not compiled, for that takes half a second."""
     steps, nodes, count = tables.position.shape
-    pairs, lines = np.zeros((steps, nodes, count), PAIR), np.zeros((steps, nodes), LINE)
+    pairs = np.zeros((steps, nodes, count), PAIR)
+    lines = np.zeros((steps, nodes), LINE)
     kind, pinion, gear = np.zeros((3, count), np.int64)
-    contacts, matrix = np.zeros(count, CONTACT), np.zeros((count, count))
+    contacts = np.zeros(count, CONTACT)
+    matrix = np.zeros((count, count))
     return CyclePairs(pairs, lines, kind, pinion, gear, contacts, matrix, np.zeros((tables.turning.size, 2)))
 
 
@@ -159,7 +161,9 @@ def turn_line(
     line.moment_gear = 0.0
     gap = shift = 0.0
     for which in range(tables.turning.size):
-        shaft, start, turned = tables.turning[which], starts[which], tables.turned[step, node, which]
+        shaft = tables.turning[which]
+        start = starts[which]
+        turned = tables.turned[step, node, which]
         if shaft.amplitude == 0.0:
             continue
         cosine = start[0] * turned[0] - start[1] * turned[1]
@@ -186,8 +190,10 @@ def look_up(step: int, node: int, shift: float, tables: MeshTables) -> tuple[int
     The step is that of the shifted middle of the own one: all nodes of a step see a law from the same side of
     its jumps, and a shift that vanishes changes nothing.
     """
-    edges, nodes = tables.edges, tables.nodes
-    pitch, length = tables.law.rolling_speed * tables.duration, edges[step + 1] - edges[step]
+    edges = tables.edges
+    nodes = tables.nodes
+    pitch = tables.law.rolling_speed * tables.duration
+    length = edges[step + 1] - edges[step]
     middle = edges[step] + 0.5 * length + shift / pitch
     whole = math.floor(middle)
     middle -= whole
@@ -197,11 +203,13 @@ def look_up(step: int, node: int, shift: float, tables: MeshTables) -> tuple[int
     while middle < edges[at]:
         at -= 1
     phase = edges[step] + nodes[node] * length + shift / pitch - whole
-    near, way = 0, math.inf
+    near = 0
+    way = math.inf
     for other in range(nodes.size):
         left = pitch * (phase - edges[at] - nodes[other] * (edges[at + 1] - edges[at]))
         if abs(left) < abs(way):
-            near, way = other, left
+            near = other
+            way = left
     return at, near, whole, way
 
 
@@ -219,7 +227,8 @@ def fill_pair(
     """Write the laws of the pair in place ``i`` from a place of the tables, ``way`` before it [m]."""
     laws = tables.laws[into.kind[i], step, node, column]
     slopes = tables.slopes[into.kind[i], step, node, column]
-    shape, shape_slope = tables.shape[step, node, column], tables.shape_slope[step, node, column]
+    shape = tables.shape[step, node, column]
+    shape_slope = tables.shape_slope[step, node, column]
     pinion, gear = tables.pinion[into.pinion[i]], tables.gear[into.gear[i]]
     pair.stiffness = laws.stiffness + slopes.stiffness * way
     pair.damping = laws.damping + slopes.damping * way
@@ -231,7 +240,8 @@ def fill_pair(
 @inlined
 def fill_steps(cycle: int, low: int, high: int, tables: MeshTables, into: CyclePairs) -> None:
     """Write the pairs of a mesh cycle at the nodes of its steps from ``low`` to before ``high``."""
-    nodes, count = tables.position.shape[1], tables.position.shape[2]
+    nodes = tables.position.shape[1]
+    count = tables.position.shape[2]
     begin_cycle(cycle, tables, into)
     for step in range(low, high):
         for node in range(nodes):
@@ -241,7 +251,8 @@ def fill_steps(cycle: int, low: int, high: int, tables: MeshTables, into: CycleP
             swings = shift != 0.0 and not tables.law.windows
             at, near, whole, way = look_up(step, node, shift, tables) if swings else (step, node, 0, shift)
             for i in range(count):
-                pair, column = into.pairs[step, node, i], i - whole
+                pair = into.pairs[step, node, i]
+                column = i - whole
                 if 0 <= column < count:
                     fill_pair(pair, i, at, near, column, way, tables, into)
                 else:  # far beyond the flanks

@@ -76,5 +76,6 @@ def close_period(
         derivatives = derivatives + np.outer(left, change) / (change @ change)
         age += 1
         if (largest := float(np.abs(left).max())) < best.left:
-            best, age = Closed(unknowns, largest, passed, derivatives), 0
+            best = Closed(unknowns, largest, passed, derivatives)
+            age = 0
     return best

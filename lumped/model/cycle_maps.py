@@ -43,7 +43,8 @@ _LEAST_STEPS = 32
 #: Steps are so much longer than asked for where they then end at every output.
 _LONGER = 1.25
 #: Mesh cycles that are worked on together, and those by which the error of the steps is estimated.
-_BLOCK, _ESTIMATED = 64, 16
+_BLOCK = 64
+_ESTIMATED = 16
 #: Forces of which ``CycleSteps.strength`` has the strengths: fields of FORCE, then, where gears are eccentric
 #: or a torque has a ripple, the moments of N on both gears, and both torques.
 NORMAL, FRICTION, FRICTION_MOMENT, SEPARATING = range(4)
@@ -66,7 +67,8 @@ class CycleSteps:
     def __init__(
         self, pair: GearPair, system: LTVSystem, samples: int, steps: int, only: range | None = None
     ) -> None:
-        self.pair, self.system = pair, system
+        self.pair = pair
+        self.system = system
         self.laws = ToothLaws(pair)
         tableau = gauss_tableau(STAGES)
         steps = samples if samples <= steps <= _LONGER * samples else steps
@@ -82,7 +84,8 @@ class CycleSteps:
         self.free = self.free_steps()
         self.width = self.free.along.shape[1]
         numbers = range(self.tables.period) if only is None else only
-        self.first, count = numbers.start, len(numbers)
+        self.first = numbers.start
+        count = len(numbers)
         self.cycles = [(first, min(_BLOCK, numbers.stop - first)) for first in numbers[::_BLOCK]]
         # At the stages; large arrays, for the system gives many small ones slowly.
         shape = (count, self.lengths.size, STAGES)
@@ -91,26 +94,33 @@ class CycleSteps:
 
     def free_steps(self, *, with_rates: bool = False) -> FreeSteps:
         """``without_mesh`` for all forces of ``strength``."""
-        system, m = self.system, len(self.system.coordinates)
+        system = self.system
+        m = len(self.system.coordinates)
         torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
         forces = system.directions
         if self.turns:
             forces = np.vstack([forces, moments(system), torques[m:].T])
-        extra, tableau = padded(system, torques), gauss_tableau(STAGES)
+        extra = padded(system, torques)
+        tableau = gauss_tableau(STAGES)
         return without_mesh(system, self.distinct, extra, tableau, forces, with_rates=with_rates)
 
     def with_like_teeth(self) -> CycleSteps:
         """The same steps through the one mesh cycle of like teeth, by their laws."""
-        system, tables = self.system, self.tables
+        system = self.system
+        tables = self.tables
         low, high = tables.edges[:-1] * system.period, tables.edges[1:] * system.period
         segment = np.searchsorted(system.cycle.edges, 0.5 * (low + high)) - 1
         times = low[:, None] + (high - low)[:, None] * tables.nodes
         forces, pairs = system.mesh_forces(times.ravel(), np.repeat(segment, STAGES))
         states = np.zeros(times.size, STATE)
         square, rate, rest = pairs.damper_power
-        states["damper_by_square"], states["damper_by_rate"], states["damper_at_rest"] = square, rate, rest
+        states["damper_by_square"] = square
+        states["damper_by_rate"] = rate
+        states["damper_at_rest"] = rest
         like = copy.copy(self)
-        like.pair, like.first, like.cycles = self.pair.healthy, 0, [(0, 1)]
+        like.pair = self.pair.healthy
+        like.first = 0
+        like.cycles = [(0, 1)]
         like.form = LinearForm(forces.reshape(1, *times.shape, 3), states.reshape(1, *times.shape))
         return like
 
@@ -127,7 +137,9 @@ class CycleSteps:
 
     def strength(self, first: int, form: LinearForm) -> FloatArray:
         """Strengths (cycles, steps, stages, 3, forces) in cycles from one on, for ``propagate``."""
-        forces, states, tables = form.forces, form.states, self.tables
+        forces = form.forces
+        states = form.states
+        tables = self.tables
         of_mesh = forces.view(np.float64).reshape(*forces.shape, -1)
         if not self.turns:
             return of_mesh
@@ -154,13 +166,16 @@ class CycleSteps:
 
         States that move no tooth, of which all cycles make the same, are followed once.
         """
-        support, n = self.system.supports, 2 * len(self.system.coordinates)
+        support = self.system.supports
+        n = 2 * len(self.system.coordinates)
         fed = len(support.coordinates("mesh").names)
-        full, twice = self.system.form == "full", np.eye(2)
+        full = self.system.form == "full"
+        twice = np.eye(2)
         to = np.kron(twice, (support.relative if full else np.eye(n // 2))[:fed])
         back = np.kron(twice, (support.back if full else np.eye(n // 2))[:, :fed])
         units = np.zeros((1, 2 * fed + 3, self.width))
-        units[0, : 2 * fed, :n], units[0, 2 * fed :, n : n + 3] = back.T, np.eye(3)
+        units[0, : 2 * fed, :n] = back.T
+        units[0, 2 * fed :, n : n + 3] = np.eye(3)
         others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
         nothing = np.zeros((1, self.lengths.size, STAGES, 3, self.free.by_force.shape[2]))
         still = self.along(others[None], 0, nothing, self.free).ends[0].T
@@ -201,9 +216,12 @@ def linear_motion(
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     twin = periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
     steps = linear_steps(system) if steps is None else steps
-    m, dte, relative = len(system.coordinates), system.deflection, system.supports.relative
+    m = len(system.coordinates)
+    dte = system.deflection
+    relative = system.supports.relative
     form = CycleSteps(pair, system, samples, steps)
-    own, like = stepped_motion(form), stepped_motion(form.with_like_teeth())
+    own = stepped_motion(form)
+    like = stepped_motion(form.with_like_teeth())
     states = own.states + (twin.states - like.states[0])
     weights = own.weights + (twin.weights - like.weights)
     of_twin = mean_powers(twin).by_place
@@ -221,7 +239,8 @@ def linear_motion(
     of_blocks, stiffness = zip(*in_threads(loads, form.cycles), strict=True)
     load = np.concatenate(of_blocks, axis=1)
     time = np.arange(load.shape[1]) / samples * system.period
-    torque, brake = system.pinion_torque + float(weights[1]), float(weights[2])
+    torque = system.pinion_torque + float(weights[1])
+    brake = float(weights[2])
     largest = np.abs(starts @ relative.T).max()
     closure = float(np.abs(relative @ (starts[-1] - starts[0])).max() / largest)
     touch = Touch.TIED if form.tables.law.windows else Touch.LINEAR
@@ -242,10 +261,13 @@ def stepped_run(
     ``state`` (n,) at the start; ``weights`` (3,) of the forcings, as of ``SteppedMotion``. After the cycles
     of the form its first one follows again.
     """
-    kept, known = form.tables.outputs == 1, sum(number for _, number in form.cycles)
-    start, found = np.zeros((1, 1, form.width)), []
+    kept = form.tables.outputs == 1
+    known = sum(number for _, number in form.cycles)
+    start = np.zeros((1, 1, form.width))
+    found = []
     for cycle in range(first, first + count):
-        start[0, 0, : state.size], start[0, 0, state.size : state.size + weights.size] = state, weights
+        start[0, 0, : state.size] = state
+        start[0, 0, state.size : state.size + weights.size] = weights
         at = form.first + (cycle - form.first) % known
         ends, states, _ = form.along(start, 1, form.strength(at, form.part(at, 1)), form.free)
         found.append(states[0, kept, 0])
@@ -261,14 +283,17 @@ def stepped_motion(form: CycleSteps) -> SteppedMotion:
 
 def _closed(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     """States at the starts of the cycles, (cycles + 1, n), and weights of the forcings, by the own maps."""
-    system, support = form.system, form.system.supports
+    system = form.system
+    support = form.system.supports
     maps = form.cycle_maps()
-    whole, n = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0], maps.shape[1]
+    whole = chained(maps, np.zeros(maps.shape[0], dtype=np.int64))[0]
+    n = maps.shape[1]
     if not np.isfinite(whole).all():
         raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
     start, weights = balanced_start(system, whole[:, :n], whole[:, n : n + 3])
     # Rounding of the closing equations fades in a period, but that of the common rotation, which grows.
-    moved, scale = (states_along(maps, start, weights)[-1] - start).reshape(2, n // 2), support.common_weights
+    moved = (states_along(maps, start, weights)[-1] - start).reshape(2, n // 2)
+    scale = support.common_weights
     moved -= np.outer(moved @ scale, support.common) / (scale @ support.common)
     return states_along(maps, start + moved.ravel(), weights), weights
 
@@ -278,8 +303,10 @@ def _inside(form: CycleSteps, cycles: FloatArray, weights: FloatArray) -> tuple[
 
     Gauss steps keep the first law: over a period the powers of all forces at the stages, so weighted, cancel.
     """
-    system, tables = form.system, form.tables
-    m, weight = len(system.coordinates), form.lengths[:, None] * gauss_tableau(STAGES)[1]
+    system = form.system
+    tables = form.tables
+    m = len(system.coordinates)
+    weight = form.lengths[:, None] * gauss_tableau(STAGES)[1]
     places, (per_rate, nominal) = system.supports.places, _velocities(form)
     free = form.free_steps(with_rates=True)
 
@@ -294,7 +321,8 @@ def _inside(form: CycleSteps, cycles: FloatArray, weights: FloatArray) -> tuple[
         # One-dimensional: numpy takes rows of four numbers slowly.
         approach, closing = inside[:, :, 0, : 2 * STAGES].reshape(-1, 2, STAGES).swapaxes(0, 1).reshape(2, -1)
         rates = inside[:, :, 0, 2 * STAGES :].reshape(-1, m)
-        times, velocities = np.tile(weight.ravel(), count), per_rate @ rates.T + nominal[:, None]
+        times = np.tile(weight.ravel(), count)
+        velocities = per_rate @ rates.T + nominal[:, None]
         work = np.empty(nominal.size)
         for force, parts in enumerate(strength.reshape(-1, 3, strength.shape[-1]).T[: nominal.size]):
             load = parts[BY_APPROACH] * approach + parts[BY_RATE] * closing + parts[AT_REST]
@@ -323,8 +351,11 @@ def _velocities(form: CycleSteps) -> tuple[FloatArray, FloatArray]:
     Friction takes power by the sliding, (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi)
     - (y_p' - y_g'). The other forces work on the vibration.
     """
-    gears, g = form.system.gears, form.pair.geometry
-    off_line, pinion, gear = gears[4] - gears[5], gears[0], gears[1]
+    gears = form.system.gears
+    g = form.pair.geometry
+    off_line = gears[4] - gears[5]
+    pinion = gears[0]
+    gear = gears[1]
     per_rate = [form.system.deflection, -(g.L_XY * gear + off_line), pinion + gear, off_line]
     nominal = [0.0, -g.L_XY * g.omega_gear, g.omega_pinion + g.omega_gear, 0.0]
     if form.turns:
@@ -337,10 +368,13 @@ def loads_of(
     form: CycleSteps, outer: MeshTables, first: int, states: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Loads (pairs, k) [N], stiffness of the mesh (k,) [N/m] at states (k, n) at outputs from a cycle on."""
-    m, dte, kept = len(form.system.coordinates), form.system.deflection, outer.outputs == 1
+    m = len(form.system.coordinates)
+    dte = form.system.deflection
+    kept = outer.outputs == 1
     here = states.reshape(-1, int(kept.sum()), states.shape[-1])
     loads = static_loads(outer, first, len(here))[1][:, kept]
-    approach, rate = (here[..., :m] @ dte)[..., None], (here[..., m:] @ dte)[..., None]
+    approach = (here[..., :m] @ dte)[..., None]
+    rate = (here[..., m:] @ dte)[..., None]
     carried = loads["by_approach"] * approach + loads["by_rate"] * rate + loads["at_rest"]
     carried = np.asarray(carried.reshape(-1, carried.shape[-1]).T, dtype=np.float64)
     return carried, np.asarray(loads["by_approach"].sum(axis=-1).ravel(), dtype=np.float64)

@@ -19,7 +19,9 @@ from lumped.stiffness.iso6336 import mean_mesh_stiffness, pair_single_stiffness
 #: Class of ISO 1328-1 that is taken where a pair states none: ground industrial gears.
 TOLERANCE_CLASS = 6
 _RUN_IN = 0.075
-_SUBCRITICAL, _MAIN, _SUPERCRITICAL = 0.85, 1.15, 1.5
+_SUBCRITICAL = 0.85
+_MAIN = 1.15
+_SUPERCRITICAL = 1.5
 
 
 @dataclass(frozen=True)
@@ -69,14 +71,17 @@ def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -
     main = c[0] * b_p + c[1] * b_f + c[3] * b_k + 1.0
     fast = c[4] * b_p + c[5] * b_f + c[6]
     if n <= limit:
-        factor, zone = n * (c[0] * b_p + c[1] * b_f + c[2] * b_k) + 1.0, "subcritical"
+        factor = n * (c[0] * b_p + c[1] * b_f + c[2] * b_k) + 1.0
+        zone = "subcritical"
     elif n <= _MAIN:
-        factor, zone = main, "main resonance"
+        factor = main
+        zone = "main resonance"
     elif n < _SUPERCRITICAL:
         factor = fast + (main - fast) / (_SUPERCRITICAL - _MAIN) * (_SUPERCRITICAL - n)
         zone = "intermediate"
     else:
-        factor, zone = fast, "supercritical"
+        factor = fast
+        zone = "supercritical"
     return IsoDynamicFactor(factor, n, zone, tolerance_class)
 
 

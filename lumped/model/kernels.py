@@ -42,7 +42,8 @@ def feedback_at_stages(strength: FloatArray, by_force: FloatArray, to: FloatArra
 
     ``strength`` (s, 3, forces) per deflection, per rate and without motion; ``by_force`` (s, forces, rows).
     """
-    stages, rows = strength.shape[0], fixed.size
+    stages = strength.shape[0]
+    rows = fixed.size
     for row in range(rows):
         fixed[row] = 0.0
     for stage in range(stages):
@@ -67,7 +68,10 @@ def add_rows(found: FloatArray, values: FloatArray, rows: FloatArray, first: int
     Four rows together, for a processor loads and stores fewer; there are a multiple of four.
     """
     for i in range(0, values.size, 4):
-        f0, f1, f2, f3 = values[i], values[i + 1], values[i + 2], values[i + 3]
+        f0 = values[i]
+        f1 = values[i + 1]
+        f2 = values[i + 2]
+        f3 = values[i + 3]
         if f0 == 0.0 and f1 == 0.0 and f2 == 0.0 and f3 == 0.0:  # most of a unit column
             continue
         part = rows[i : i + 4]
@@ -103,15 +107,23 @@ def propagate(
     deflection : (m,)
     """
     runs, count, wide = columns.shape
-    steps, stages, m = strength.shape[1], strength.shape[2], deflection.size
-    n, rows = 2 * m, free.shape[2] if kept > 0 else stages + 2 * m
+    steps = strength.shape[1]
+    stages = strength.shape[2]
+    m = deflection.size
+    n = 2 * m
+    rows = free.shape[2] if kept > 0 else stages + 2 * m
     further = rows - stages - n
-    ends, states = np.empty((runs, count, n)), np.empty((runs, steps, kept, n))
+    ends = np.empty((runs, count, n))
+    states = np.empty((runs, steps, kept, n))
     inside = np.empty((runs, steps, kept, 2 * stages + further))
     fours = -(-2 * stages // 4) * 4  # as ``add_rows`` takes them
-    to, fixed, found = np.zeros((fours, rows)), np.empty(rows), np.empty(rows)
-    at_stages, p = np.zeros(fours), np.empty(stages)
-    matrix, inverse = np.empty((stages, stages)), np.empty((stages, stages))
+    to = np.zeros((fours, rows))
+    fixed = np.empty(rows)
+    found = np.empty(rows)
+    at_stages = np.zeros(fours)
+    p = np.empty(stages)
+    matrix = np.empty((stages, stages))
+    inverse = np.empty((stages, stages))
     now = np.empty((count, wide))
     for run in range(runs):
         _copy(now, columns[run])
@@ -134,7 +146,8 @@ def propagate(
                     found[row] = fixed[row] * x[n]
                 add_rows(found, x, free[of], 0)
                 for stage in range(stages):
-                    at_stages[stage], at_stages[stages + stage] = place + reach[of, stage] * rate, rate
+                    at_stages[stage] = place + reach[of, stage] * rate
+                    at_stages[stages + stage] = rate
                 for i in range(2 * stages):
                     for row in range(stages):
                         found[row] += to[i, row] * at_stages[i]
@@ -225,7 +238,8 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     k, n, width = maps.shape
     found = np.empty((group[k - 1] + 1, n, width))
     most = int(np.log2(k)) + 2
-    waiting, doubled = np.empty((most, n, width)), np.empty(most, dtype=np.int64)
+    waiting = np.empty((most, n, width))
+    doubled = np.empty(most, dtype=np.int64)
     product = np.empty((n, width))
     held = 0
     for j in range(k):

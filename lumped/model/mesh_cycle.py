@@ -207,11 +207,14 @@ class MeshCycle:
             tau = np.where(tau > self.period - same, 0.0, tau)
             index = np.searchsorted(self.edges[1:-1], tau + same, side="right")
         else:
-            tau, index = t, np.broadcast_to(segment, t.shape)
-        speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
+            tau = t
+            index = np.broadcast_to(segment, t.shape)
+        speed = g.omega_pinion * g.base_radius_pinion
+        inside = _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
-        contact, place = np.take(self._contact, index, axis=1), self.offsets[:, None] + shift
+        contact = np.take(self._contact, index, axis=1)
+        place = self.offsets[:, None] + shift
         slope, k, c, mu, error, *corners = (
             np.where(contact, law(place), 0.0) for law in (self.elements.error_slope, *self._laws)
         )

@@ -21,10 +21,13 @@ from lumped.typing import FloatArray
 
 #: Steps in a period of the fastest vibration, and least steps in a mesh cycle: where a pair touches inside a
 #: step, 256 cost 0.1 % of a motion with contact loss.
-_STEPS, _LEAST_STEPS = 40, 512
+_STEPS = 40
+_LEAST_STEPS = 512
 #: Where a mesh cycle has so many steps, each vibration gets fewer, but no fewer than these: a slow pair has
 #: damped them within a small part of the cycle. Most steps in a mesh cycle: a second for each of its passes.
-_MANY_STEPS, _FEWEST, _MOST_STEPS = 16_384, 8, 65_536
+_MANY_STEPS = 16_384
+_FEWEST = 8
+_MOST_STEPS = 65_536
 
 
 def steps_of(system: LTVSystem) -> int:
@@ -60,7 +63,8 @@ def without_drift(
 
     ``end`` (2m,) is the state after the period of ``duration`` [s].
     """
-    support, m = system.supports, len(system.coordinates)
+    support = system.supports
+    m = len(system.coordinates)
     scale = float(support.common_weights @ support.common)
 
     def common(part: FloatArray) -> FloatArray:
@@ -87,7 +91,9 @@ def run(
     torques: FloatArray,
 ) -> Run:
     """``run_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
-    ripples, mesh, work = torque_ripples(pair), cycle_pairs(tables), np.zeros(1, WORK)
+    ripples = torque_ripples(pair)
+    mesh = cycle_pairs(tables)
+    work = np.zeros(1, WORK)
     found: Run = run_cycles(
         start, cycles, recorded, tables, body_of(system, torques), ripples, state, mesh, work
     )
@@ -96,7 +102,9 @@ def run(
 
 def body_of(system: LTVSystem, torques: FloatArray) -> Body:
     """The gears on their supports as numbers, under constant torques (2m,) of acceleration."""
-    g, m, rates = system.pair.geometry, len(system.coordinates), system.gears
+    g = system.pair.geometry
+    m = len(system.coordinates)
+    rates = system.gears
     per_normal, per_friction, per_friction_moment = np.ascontiguousarray(system.per_load)
     return Body(
         constant=np.ascontiguousarray(system.constant[m:]),

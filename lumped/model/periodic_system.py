@@ -134,9 +134,12 @@ class LTVSystem:
         support = SUPPORTS[supports](pair, s)
         z = support.coordinates(form)
         m = len(z.names)
-        constant, torques = np.zeros((2 * m, 2 * m)), np.zeros((2, 2 * m))
+        constant = np.zeros((2 * m, 2 * m))
+        torques = np.zeros((2, 2 * m))
         constant[:m, m:] = np.eye(m)
-        constant[m:, :m], constant[m:, m:], torques[:, m:] = -z.stiffness, -z.damping, z.torques
+        constant[m:, :m] = -z.stiffness
+        constant[m:, m:] = -z.damping
+        torques[:, m:] = z.torques
         return cls(
             pair=pair,
             form=form,

@@ -81,7 +81,8 @@ def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> 
     solution : periodic motion of the "full" system
     conservative : whether the brake balances every loss, and not only moments; default that of the contact
     """
-    powers, brake_torque = mean_powers(solution), solution.brake_torque
+    powers = mean_powers(solution)
+    brake_torque = solution.brake_torque
     if contact_of(solution.system.pair).conservative if conservative is None else conservative:
         brake_torque -= powers.energy_residual / solution.system.pair.geometry.omega_gear
     return {
@@ -123,9 +124,13 @@ def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatA
     Inside an interval the motion is the quintic that has its displacements, rates and accelerations at both
     ends: the losses err by some 1e-7 of themselves (5e-5 at 3 rpm, where intervals are bounded in number).
     """
-    time, states = solution.cycle_time, solution.cycle_states
+    time = solution.cycle_time
+    states = solution.cycle_states
     m = len(solution.system.coordinates)
-    low, high, z, v = states[:-1], states[1:], slice(0, m), slice(m, 2 * m)
+    low = states[:-1]
+    high = states[1:]
+    z = slice(0, m)
+    v = slice(m, 2 * m)
     h = np.diff(time)
     segment = np.searchsorted(solution.system.cycle.edges, time[:-1] + 0.5 * h) - 1
     first = _accelerations(solution, time[:-1], low, segment)
@@ -141,7 +146,8 @@ def _accelerations(
     solution: PeriodicSolution, times: FloatArray, states: FloatArray, segment: IntArray
 ) -> FloatArray:
     """Accelerations (k, m) at states (k, 2m), as limits from inside the smooth segments."""
-    system, m = solution.system, len(solution.system.coordinates)
+    system = solution.system
+    m = len(solution.system.coordinates)
     gain = system.gain(times, segment)
     found = states @ system.constant[m:].T + gain.error
     found += gain.stiffness * (states[:, :m] @ system.deflection)[:, None]
@@ -155,7 +161,8 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     from lumped.model.results import corner_force, response
 
     system = solution.system
-    pairs, rates = system.cycle.sample(times), states[:, len(system.coordinates) :]
+    pairs = system.cycle.sample(times)
+    rates = states[:, len(system.coordinates) :]
     values = response(system, times, states, pairs=pairs)
     supports = system.supports.powers(rates)
     return np.stack(

@@ -26,7 +26,9 @@ _ROUNDING = 1e-15
 _SHORT_PIECE = 0.5
 #: Bounds on memory: steps solved together where they are not kept, most numbers of maps that are kept (and so
 #: many steps in any case), and most intervals where every step is one.
-_BLOCK, _MOST_KEPT, _MOST_INTERVALS = 1024, 4_000_000, 16384
+_BLOCK = 1024
+_MOST_KEPT = 4_000_000
+_MOST_INTERVALS = 16384
 _ALWAYS_KEPT = 4096
 #: Most steps of a mesh cycle: some ten seconds of work.
 _MAX_STEPS = 1_000_000
@@ -94,7 +96,8 @@ class StepMaps:
         dampers take f_i c_i (delta' - e_i')^2. The rest, f_i c_i (delta' - e_i')^2 - N_i delta', is of no
         energy: in the mean all other powers cancel.
         """
-        state, work = initial, 0.0
+        state = initial
+        work = 0.0
         for steps in self.steps():
             states = states_along(steps.maps, state, weights)
             given = np.column_stack([states[:-1], np.broadcast_to(weights, (len(states) - 1, weights.size))])
@@ -157,7 +160,9 @@ def step_maps(
             yield _steps(system, grid.segment[at], grid.edges[:-1][at], grid.length[at], which[at], free)
 
     kept = list(steps()) if few else None
-    parts, groups, low = [], [], 0
+    parts = []
+    groups = []
+    low = 0
     for block in kept or steps():
         group = grid.interval[low : low + together]
         parts.append(merged(block.maps, group - group[0]))
@@ -255,10 +260,15 @@ def without_mesh(
     ``with_rates``: the rates of all coordinates at the stages are further rows.
     """
     a, b, c = gauss
-    s, m, k, u = c.size, system.size // 2, h.size, system.deflection
-    stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
+    s = c.size
+    m = system.size // 2
+    k = h.size
+    u = system.deflection
+    stiffness = system.constant[m:, :m]
+    damping = system.constant[m:, m:]
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
-    lengths, h = h, h[:, None, None]
+    lengths = h
+    h = h[:, None, None]
     left = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
     inverse = np.linalg.inv(left).reshape(k, s, m, s, m)
     right = np.zeros((k, s, m, 2 * m + forces.shape[1]))
@@ -304,12 +314,15 @@ class _StepGrid:
 
 def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_angle: float) -> _StepGrid:
     """Steps that end at outputs, wherever a law is not smooth, and wherever its pieces are short."""
-    period, switches, breaks = system.period, system.cycle.edges, system.cycle.breaks
+    period = system.period
+    switches = system.cycle.edges
+    breaks = system.cycle.breaks
     marks = np.union1d(switches, system.cycle.bends)
     largest = step_angle / fastest_frequency(system)
     marks = _distinct(np.union1d(marks, outputs), system)
     # Joints join pieces of one smooth law, which varies fast where its pieces are short.
-    pieces, gaps = np.diff(breaks), np.diff(marks)
+    pieces = np.diff(breaks)
+    gaps = np.diff(marks)
     at = np.clip(np.searchsorted(marks, breaks[1:-1], side="right") - 1, 0, gaps.size - 1)
     short = np.minimum(pieces[:-1], pieces[1:]) < _SHORT_PIECE * np.minimum(gaps, largest)[at]
     marks = _distinct(np.union1d(marks, breaks[1:-1][short]), system)

@@ -125,7 +125,8 @@ def response(
     """
     g, s = system.pair.geometry, system.structure
     z, rates = system.gear_motion(states)
-    dte, dte_dot = z @ s.deflection, rates @ s.deflection
+    dte = z @ s.deflection
+    dte_dot = rates @ s.deflection
     pairs = system.cycle.sample(time) if pairs is None else pairs
     if (normal := normal_load) is None:
         normal = pairs.load(dte, dte_dot)
@@ -170,9 +171,12 @@ def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> flo
     of the interval; where a force jumps inside an interval, with the square.
     """
     step = np.diff(time)
-    rise, start, end = np.diff(values), rates[:-1] * step, rates[1:] * step
+    rise = np.diff(values)
+    start = rates[:-1] * step
+    end = rates[1:] * step
     # values[j] + start s + square s^2 + cube s^3 for s from 0 to 1
-    square, cube = 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise
+    square = 3.0 * rise - 2.0 * start - end
+    cube = start + end - 2.0 * rise
     root = np.sqrt(np.maximum(square**2 - 3.0 * cube * start, 0.0))
     sum_of = -(square + np.copysign(root, square))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -186,9 +190,7 @@ def cycle_peak_to_peak(run: xr.Dataset, name: str, period: float | None = None) 
     """Peak to peak of a displacement of a result; ``period`` where it closes and leaves its end out [s]."""
     time, values, rates = (run[key].to_numpy() for key in ("time", name, f"{name}_dot"))
     if period is not None:
-        time, values, rates = (
-            np.append(time, time[0] + period),
-            np.append(values, values[0]),
-            np.append(rates, rates[0]),
-        )
+        time = np.append(time, time[0] + period)
+        values = np.append(values, values[0])
+        rates = np.append(rates, rates[0])
     return peak_to_peak(time, values, rates)

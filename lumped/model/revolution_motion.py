@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: Most and least outputs of a mesh cycle by default, and how many all cycles together are to have.
-_MOST_SAMPLES, _LEAST_SAMPLES, _ALL_SAMPLES = 512, 32, 65536
+_MOST_SAMPLES = 512
+_LEAST_SAMPLES = 32
+_ALL_SAMPLES = 65536
 
 
 #: Argument ``contact``: teeth that are tied to the linear form, or that only push.
@@ -118,7 +120,8 @@ class RevolutionMotion:
         """
         if not self.powers:
             return {"brake_torque": self.brake_torque, "pinion_torque": self.pinion_torque}
-        g, torque = self.pair.geometry, self.pinion_torque
+        g = self.pair.geometry
+        torque = self.pinion_torque
         brake = self.brake_torque - (self.powers["rolling"] / g.omega_gear if conservative else 0.0)
         efficiency = 1.0 - sum(self.losses.values()) / (torque * g.omega_pinion)
         return {"brake_torque": brake, "pinion_torque": torque, "mesh_efficiency": efficiency}
@@ -137,7 +140,8 @@ class RevolutionMotion:
     @cached_property
     def touches(self) -> BoolArray:
         """Whether the pair in each place can carry load, (pairs, k): in its window, or where it does."""
-        tables, g = self.tables, self.pair.geometry
+        tables = self.tables
+        g = self.pair.geometry
         if not tables.law.windows:
             return np.asarray(self.load != 0.0)
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
@@ -156,7 +160,8 @@ class RevolutionMotion:
         """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
         tables = self.tables
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
-        pitch, touches = tables.law.rolling_speed * tables.duration, self.touches
+        pitch = tables.law.rolling_speed * tables.duration
+        touches = self.touches
         moved = 0.0 * self.time if tables.law.windows else swing(tables, self.time)
         # As the integration does: the step is that of the shifted middle of the own one.
         middle = 0.5 * (tables.edges[step] + tables.edges[step + 1])
@@ -165,7 +170,8 @@ class RevolutionMotion:
         phase -= middle - tables.edges[step]
         place, when = np.nonzero(touches)
         place = np.clip(place - pitches[when].astype(np.int64), 0, tables.ahead.size - 1)
-        kind, way = tables.kinds[self.teeth][touches], ((phase - tables.edges[at]) * pitch)[when]
+        kind = tables.kinds[self.teeth][touches]
+        way = ((phase - tables.edges[at]) * pitch)[when]
         laws, slopes = (table[kind, at[when], 0, place] for table in (tables.laws, tables.slopes))
 
         def of_pairs(name: str) -> FloatArray:
@@ -191,7 +197,8 @@ def labelled_motion(
     Not ``periodic``: a transient, about which the attributes of the periodic motion say nothing.
     """
     system = motion.system
-    pairs, kept = motion.pairs, motion.kept
+    pairs = motion.pairs
+    kept = motion.kept
     values = response(system, motion.time, motion.states, motion.load[kept], pairs.of_places(kept))
     if motion.stiffness is not None:
         values["mesh_stiffness"] = motion.stiffness

@@ -101,7 +101,8 @@ def run_up(
     pairs = (pair.with_({"operating.pinion_speed": float(60.0 / pair.pinion.teeth * f)}) for f in hertz)
     of_groups = _linear if contact == "linear" else _unilateral
     parts = of_groups(pairs, groups, supports, samples_per_cycle)
-    times, values = [], []
+    times = []
+    values = []
     for (first, last), (period, part) in zip(groups, parts, strict=True):
         times.append(
             begins[first] + np.arange((last - first) * samples_per_cycle) * period / samples_per_cycle
@@ -109,7 +110,8 @@ def run_up(
         values.append(part)
         if progress is not None:
             progress(last / cycles)
-    time, found = np.concatenate(times), np.concatenate(values, axis=1)
+    time = np.concatenate(times)
+    found = np.concatenate(values, axis=1)
     if not np.isfinite(found).all():
         raise NumericalError("The motion grows beyond all numbers: raise the damping, or avoid the speed.")
     speed = ends[0] + (ends[1] - ends[0]) * time / duration
@@ -146,7 +148,8 @@ def _linear(
     given, alike = tee(pairs)
     systems = systems_over_speed((pair.healthy for pair in alike), supports)
     for (first, last), pair, system in zip(groups, given, systems, strict=True):
-        grid, count = sample_times(system.period, samples), last - first
+        grid = sample_times(system.period, samples)
+        count = last - first
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
         start, weights = balanced_start(system, *maps.over_all)
         ends = ends or [start, start, start]
@@ -185,9 +188,11 @@ def _unilateral(
     for (first, last), pair in zip(groups, pairs, strict=True):
         system = LTVSystem.of(pair.healthy, "full", supports=supports)
         linear = periodic_solution(system, np.zeros(1), estimate_error=False)
-        state, weights = linear.states[0] if state is None else state, system.supports.common_weights
+        state = linear.states[0] if state is None else state
+        weights = system.supports.common_weights
         tables = momentary_tables(ToothLaws(pair), system, 1.0 / steps_of(system), samples)
-        m, duration = weights.size, (last - first) * system.period
+        m = weights.size
+        duration = (last - first) * system.period
         per_torque = float(weights @ system.torque_gear[m:])
         rate = float(weights @ state[m:])
         brake = linear.brake_torque + (missing - rate / duration) / per_torque

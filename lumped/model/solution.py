@@ -101,7 +101,9 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
 
     ``system`` is the "full" one; the torque [N m] is by default the operating point's.
     """
-    g, support, m = system.pair.geometry, system.supports, len(system.coordinates)
+    g = system.pair.geometry
+    support = system.supports
+    m = len(system.coordinates)
     load = (system.pinion_torque if pinion_torque is None else pinion_torque) / g.base_radius_pinion
     mesh = system.reduction @ (system.structure.deflection / system.structure.mass)
     stiffness = -system.constant[m:, :m] + system.cycle.mean_stiffness * np.outer(mesh, system.deflection)

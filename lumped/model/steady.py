@@ -74,7 +74,8 @@ class PeriodicSolution:
     @property
     def between(self) -> dict[str, float]:
         """Variable -> how much of its peak to peak the times miss, with cubics between them [m]."""
-        times, states = np.append(self.time, self.system.period), np.vstack([self.states, self.states[:1]])
+        times = np.append(self.time, self.system.period)
+        states = np.vstack([self.states, self.states[:1]])
         seen = _peaks(self.system, times, states)
         return {name: whole - seen[name] for name, whole in self.peak_to_peak.items()}
 
@@ -166,14 +167,16 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
 
 def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Initial state (n,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
-    operating, n = system.pair.operating, system.size
+    operating = system.pair.operating
+    n = system.size
     brake = operating.brake_torque
     unknown = 2 if brake == "balanced" else 1
     known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
     matrix = np.zeros((n + 1, n + 1))
     matrix[:n, :n] = np.eye(n) - phi
     matrix[:n, n] = -forced[:, unknown]
-    unit, common = system.supports.units, system.supports.common_weights
+    unit = system.supports.units
+    common = system.supports.common_weights
     matrix[n, : common.size] = common
     right = np.append(forced @ known, 0.0)
     # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.

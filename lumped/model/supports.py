@@ -111,14 +111,15 @@ class Springs(Supports):
         self.structure = s
         self.bearings = np.zeros((2, 2, 6))
         self.bearings[[0, 1, 0, 1], [0, 0, 1, 1], [2, 3, 4, 5]] = 1.0
-        self.bearing_stiffness, self.bearing_dampers = (
-            s.stiffness[2:].reshape(2, 2).T,
-            s.damping[2:].reshape(2, 2).T,
-        )
+        self.bearing_stiffness = s.stiffness[2:].reshape(2, 2).T
+        self.bearing_dampers = s.damping[2:].reshape(2, 2).T
         u = s.deflection[:2]
-        self.relative, self.back = np.zeros((5, 6)), np.zeros((6, 5))
-        self.relative[0, :2], self.relative[1:, 2:] = u, np.eye(4)
-        self.back[0, 0], self.back[2:, 1:] = 1.0 / u[0], np.eye(4)
+        self.relative = np.zeros((5, 6))
+        self.back = np.zeros((6, 5))
+        self.relative[0, :2] = u
+        self.relative[1:, 2:] = np.eye(4)
+        self.back[0, 0] = 1.0 / u[0]
+        self.back[2:, 1:] = np.eye(4)
         self.units = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
         self.common = self.units * [1.0, 1.0, 0.0, 0.0, 0.0, 0.0]
         self.common_weights = s.mass * self.common
@@ -129,9 +130,11 @@ class Springs(Supports):
         m = {"full": 6, "elastic": 5, "mesh": 3}[form]
         if form == "full":
             names: tuple[str, ...] = COORDINATES
-            reduction, deflection = np.eye(6), s.deflection
+            reduction = np.eye(6)
+            deflection = s.deflection
         else:
-            names, reduction = ("q", "x_p", "x_g", "y_p", "y_g")[:m], self.relative[:m]
+            names = ("q", "x_p", "x_g", "y_p", "y_g")[:m]
+            reduction = self.relative[:m]
             deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m]
         # Bearings act on translations, which every form keeps as coordinates of their own.
         lift = np.asarray(np.linalg.pinv(reduction), dtype=np.float64)
@@ -158,18 +161,23 @@ class Shafts(Supports):
     places = ("bearings", "shafts")
 
     def __init__(self, pair: GearPair, s: Structure) -> None:
-        self.structure, self.speed = s, pair.geometry.omega_pinion
+        self.structure = s
+        self.speed = pair.geometry.omega_pinion
         self.modes = modes = shafted_pair(pair)
-        self.bearing_names, self.bearings = modes.bearing_names, modes.bearings
-        self.bearing_stiffness, self.bearing_dampers = modes.bearing_stiffness, modes.bearing_dampers
+        self.bearing_names = modes.bearing_names
+        self.bearings = modes.bearings
+        self.bearing_stiffness = modes.bearing_stiffness
+        self.bearing_dampers = modes.bearing_dampers
         m = modes.frequencies.size
-        self.relative, self.back = np.eye(m)[1:], np.eye(m)[:, 1:]
+        self.relative = np.eye(m)[1:]
+        self.back = np.eye(m)[:, 1:]
         self.common = self.common_weights = np.eye(m)[0]
         self.units = np.full(m, np.sqrt(s.mass[2]))
 
     def coordinates(self, form: Form) -> Coordinates:
         """All modes; without the common rotation but in "full", for gyroscopic moments couple y."""
-        modes, kept = self.modes, slice(0 if form == "full" else 1, None)
+        modes = self.modes
+        kept = slice(0 if form == "full" else 1, None)
         gears = modes.gears[:, kept]
         return Coordinates(
             names=modes.names[kept],

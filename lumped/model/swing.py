@@ -30,7 +30,8 @@ def swinging(tables: MeshTables, system: LTVSystem) -> MeshTables:
 
     ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2, A cos by -cos.
     """
-    g, support = system.pair.geometry, system.supports
+    g = system.pair.geometry
+    support = system.supports
     theta = system.gears[:2] @ support.common / float(support.common_weights @ support.common)
     way = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
     turning = tables.turning.copy()
@@ -39,7 +40,8 @@ def swinging(tables: MeshTables, system: LTVSystem) -> MeshTables:
     torques = np.stack([system.torque_pinion, system.torque_gear])[:, support.common_weights.size :]
     by_torque = (torques @ support.common_weights)[turning["shaft"][RIPPLES:].astype(np.int64)]
     turning["swing"] = way * np.append(by_moment, by_torque) / omega**2
-    swing, most = float(np.abs(turning["swing"] * turning["amplitude"]).sum()), _MOST_SWING * g.base_pitch
+    swing = float(np.abs(turning["swing"] * turning["amplitude"]).sum())
+    most = _MOST_SWING * g.base_pitch
     if swing > most:
         raise refuse(
             "operating.pinion_speed",

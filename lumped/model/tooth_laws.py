@@ -45,7 +45,9 @@ class ToothLaws:
     """Laws of tooth pairs over xi, of each kind, for tables; ``every`` end of a polynomial is a switch."""
 
     def __init__(self, pair: GearPair, every: bool = False) -> None:
-        self.pair, self.healthy, self.every = pair, pair.healthy, every
+        self.pair = pair
+        self.healthy = pair.healthy
+        self.every = every
         g = self.geometry = pair.geometry
         self.flanks = (pair.flank(0), pair.flank(1))
         self.mesh = StaticMesh(self.healthy)
@@ -115,13 +117,16 @@ class ToothLaws:
 
     def of_kind(self, kind: int, xi: FloatArray) -> Records:
         """LAWS of a kind at positions of any shape."""
-        g, inside = self.geometry, (xi >= self.low) & (xi <= self.high)
+        g = self.geometry
+        inside = (xi >= self.low) & (xi <= self.high)
         if self.elements is None:
             k = np.where(inside, self.mesh.stiffness.extended(xi), 0.0)
             gap = self.mesh.relief(xi)
             c = self._dampers(k)
         else:
-            k, c, gap = self.elements.stiffness(xi), self.elements.damping(xi), self.elements.error(xi)
+            k = self.elements.stiffness(xi)
+            c = self.elements.damping(xi)
+            gap = self.elements.error(xi)
         held = np.clip(xi, g.L_XA, g.L_XD)
         more = np.zeros(xi.shape)
         for which, length in enumerate(self.lengths(held)):
@@ -129,17 +134,21 @@ class ToothLaws:
                 more = more + fault.compliance(self.flanks[which], length)
                 gap = gap + fault.gap(self.flanks[which], length)
         if more.any():
-            whole, k = k, k / (1.0 + more * k)
+            whole = k
+            k = k / (1.0 + more * k)
             c = c * np.sqrt(k / np.where(whole > 0.0, whole, 1.0))
         first, last = self.friction.interval
         near = _INSIDE * g.base_pitch
         found = np.zeros(xi.shape, LAWS)
-        found["stiffness"], found["damping"], found["gap"] = k, c, gap
+        found["stiffness"] = k
+        found["damping"] = c
+        found["gap"] = gap
         found["friction"] = self.friction(np.clip(xi, first + near, last - near))
         return found
 
     def _dampers(self, k: FloatArray) -> FloatArray:
-        ratio, mass = self.pair.mesh.damping_ratio, bodies_of(self.pair).effective_mass
+        ratio = self.pair.mesh.damping_ratio
+        mass = bodies_of(self.pair).effective_mass
         return np.asarray(2.0 * ratio * np.sqrt(k * mass), dtype=np.float64)
 
     def shapes(self, xi: FloatArray) -> Records:
@@ -148,7 +157,8 @@ class ToothLaws:
         found = np.zeros((*xi.shape, 2), TOOTH)
         pitch = (g.L_XP, g.L_XY - g.L_XP)
         for which, length in enumerate(self.lengths(np.clip(xi, g.L_XA, g.L_XD))):
-            flank, gear = self.flanks[which], (self.pair.pinion, self.pair.gear)[which]
+            flank = self.flanks[which]
+            gear = (self.pair.pinion, self.pair.gear)[which]
             found["error"][..., which] = 1.0
             # Material at the tip, none at the pitch point, where the index is taken.
             found["slope"][..., which] = -(length - pitch[which]) / (flank.tip - flank.start)
@@ -169,10 +179,8 @@ class ToothLaws:
             min([fault.end(flank) for fault in faults], default=flank.tip + out)
             for flank, faults in zip(self.flanks, self.faults[kind], strict=True)
         ]
-        beyond, radii = (
-            np.linspace(0.0, self.high - self.low, 65)[1:],
-            (g.base_radius_pinion, g.base_radius_gear),
-        )
+        beyond = np.linspace(0.0, self.high - self.low, 65)[1:]
+        radii = (g.base_radius_pinion, g.base_radius_gear)
         no_edge = -beyond, 0.0, g.L_XY  # an edge only adds to the gap
         before = end_gaps(beyond, tips[1], *no_edge, *radii) / beyond**2
         behind = end_gaps(beyond, tips[0], *no_edge, *radii[::-1]) / beyond**2
@@ -192,7 +200,8 @@ class ToothLaws:
             z = one.error.size
             rows.append((which, one.eccentricity, one.phase + 2.0 * np.pi * first[which] / z, z, 0.0))
         for ripple in torque_ripples(self.pair):
-            start, cycles = ripple["start"] - 0.5 * np.pi, 2.0 * np.pi / ripple["angle"]
+            start = ripple["start"] - 0.5 * np.pi
+            cycles = 2.0 * np.pi / ripple["angle"]
             rows.append((ripple["shaft"], ripple["amplitude"], start, cycles, 0.0))
         return np.array(rows, TURNING)
 
@@ -205,7 +214,9 @@ def torque_ripples(pair: GearPair) -> Records:
 def _of_teeth(teeth: OwnTeeth) -> Records:
     """TOOTH of each tooth of a gear."""
     found = np.zeros(teeth.error.size, TOOTH)
-    found["error"], found["slope"], found["relief"] = teeth.error, teeth.slope, teeth.relief
+    found["error"] = teeth.error
+    found["slope"] = teeth.slope
+    found["relief"] = teeth.relief
     return found
 
 
@@ -226,7 +237,8 @@ def mesh_tables(
     nodes : places in a step, rising from 0 to 1
     ends : further phases at which steps end, in mesh cycles
     """
-    g, pair = laws.geometry, laws.pair
+    g = laws.geometry
+    pair = laws.pair
     phases = np.mod((laws.switches() - g.L_XA) / g.base_pitch, 1.0)
     even = np.arange(outputs + 1) / outputs
     marks = np.unique(np.concatenate([even, phases, ends]))

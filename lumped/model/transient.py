@@ -113,7 +113,9 @@ def _linear_run(
     grid = sample_times(system.period, samples)
     maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
     own_end = like_end = twin_end = initial_state(system, initial, steady)
-    states, loads, stiffness = [], [], []
+    states = []
+    loads = []
+    stiffness = []
     for cycle in range(cycles + 1):
         own, own_end = stepped_run(form, cycle, 1, own_end, weights)
         same, like_end = stepped_run(like, cycle, 1, like_end, weights)
@@ -154,7 +156,8 @@ def _unilateral_run(
         steady = _linear_balance(pair, system, samples)
     torques = steady.pinion_torque * system.torque_pinion + steady.brake_torque * system.torque_gear
     state = initial_state(system, initial, steady)
-    states, loads = [], []
+    states = []
+    loads = []
     # One cycle more gives the end of the last one.
     for first in range(0, cycles + 1, _BLOCK):
         count = min(_BLOCK, cycles + 1 - first)

@@ -38,7 +38,9 @@ from lumped.typing import FloatArray
 
 #: What may be left at the end of the period, over the size of the unknowns; with steps twice as long; and
 #: what is taken for closed where rounding lets no less be reached.
-_CLOSED, _NEARLY_CLOSED, _ACCEPTED = 1e-10, 1e-5, 1e-8
+_CLOSED = 1e-10
+_NEARLY_CLOSED = 1e-5
+_ACCEPTED = 1e-8
 #: Differences for derivatives, over the size of each unknown.
 _DIFFERENCE = 1e-4
 #: Size of the change of the torque over the torque.
@@ -49,12 +51,18 @@ _FADED = 1e-3
 _NEAR = 0.3
 #: Mesh cycles of the first run to settle, of which each next one has twice as many; how many runs; mesh
 #: cycles of the longest motion that is looked for, and at how many times as many a run is looked at.
-_SETTLING, _RUNS, _MOST_CYCLES, _LOOKED = 400, 5, 8, 8
+_SETTLING = 400
+_RUNS = 5
+_MOST_CYCLES = 8
+_LOOKED = 8
 #: Relative change after so many cycles that is called a repetition; outputs in a cycle of such a run.
-_REPEATS, _OUTPUTS = 1e-6, 16
+_REPEATS = 1e-6
+_OUTPUTS = 16
 #: Of teeth that differ: what a start is to have faded to before it is recorded, most cycles for that, and the
 #: largest mismatch after the period, over the largest displacement, that is called periodic.
-_START_FADED, _MOST_SETTLING, _CALLED_CLOSED = 1e-11, 20_000, 1e-4
+_START_FADED = 1e-11
+_MOST_SETTLING = 20_000
+_CALLED_CLOSED = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +119,8 @@ class Shooting:
     @cached_property
     def both(self) -> tuple[FloatArray, FloatArray]:
         """Matrices to states without the common rotation, and back."""
-        support, twice = self.system.supports, np.eye(2)
+        support = self.system.supports
+        twice = np.eye(2)
         to, back = (np.kron(twice, one) for one in (support.relative, support.back))
         return np.asarray(to, dtype=np.float64), np.asarray(back, dtype=np.float64)
 
@@ -129,7 +138,8 @@ class Shooting:
 
     def at_rest(self) -> FloatArray:
         """Unknowns of the static deflection under the mean torques."""
-        operating, ratio = self.pair.operating, self.pair.gear.teeth / self.pair.pinion.teeth
+        operating = self.pair.operating
+        ratio = self.pair.gear.teeth / self.pair.pinion.teeth
         return self.unknowns(
             static_deflection(self.system), operating.pinion_torque, ratio * operating.pinion_torque
         )
@@ -149,14 +159,16 @@ class Shooting:
     def left(self, unknowns: FloatArray, tables: MeshTables) -> tuple[FloatArray, Run]:
         """What is left after the cycles: of the state, and of the rate of the common rotation."""
         state, found = self.run(unknowns, tables)
-        moved, weights = found.end - state, self.system.supports.common_weights
+        moved = found.end - state
+        weights = self.system.supports.common_weights
         return np.append(self.both[0] @ moved, weights @ moved[weights.size :]), found
 
     def scales(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Sizes of the unknowns, and of what is left."""
         way, rate = np.abs(unknowns[:-1]).reshape(2, -1).max(axis=1)
         rate = max(rate, way / self.system.period)
-        of_states, support = np.repeat([way, rate], unknowns.size // 2), self.system.supports
+        of_states = np.repeat([way, rate], unknowns.size // 2)
+        support = self.system.supports
         sizes = np.append(of_states, _OF_TORQUE * abs(unknowns[-1]))
         return sizes, np.append(of_states, rate * float(support.common_weights @ support.common))
 
@@ -164,7 +176,8 @@ class Shooting:
         """Of what is left by the unknowns, both over their scales, by the maps of the linear motion."""
         (sizes, of_left), (to, back) = self.scales(unknowns), self.both
         phi, forced = linear.over_cycle
-        weights, torque = self.system.supports.common_weights, 2
+        weights = self.system.supports.common_weights
+        torque = 2
         if self.pair.operating.brake_torque != "balanced":
             torque = 1
         left = np.vstack([to, np.append(np.zeros(weights.size), weights)])
@@ -208,8 +221,10 @@ class Shooting:
 
     def motion(self, found: Closed[Run], radius: float = 1.0) -> RevolutionMotion:
         """The motion from unknowns that close the period; ``radius`` is that of a motion near by."""
-        system, support = self.system, self.system.supports
-        m, weights = support.common_weights.size, support.common_weights
+        system = self.system
+        support = self.system.supports
+        m = support.common_weights.size
+        weights = support.common_weights
         if radius >= _FADED:
             slopes = self.derivatives(found.unknowns)[:-1, :-1]
             radius = float(np.abs(np.linalg.eigvals(slopes + np.eye(2 * m - 2))).max())
@@ -260,7 +275,8 @@ class Shooting:
         ------
         NumericalError : the run grows, or has not come to such a motion
         """
-        looked, deflection = _LOOKED * _MOST_CYCLES, self.system.deflection
+        looked = _LOOKED * _MOST_CYCLES
+        deflection = self.system.deflection
         m = deflection.size
         tables = self.tables_of(2.0 * self.step, _OUTPUTS)
         for turn in range(_RUNS):
@@ -352,7 +368,9 @@ def settled_motion(
     laws = ToothLaws(pair)
     steps = steps_of(system) if steps is None else steps
     settling = _settling(twin.spectral_radius)
-    state, driving, brake = twin.states[0].copy(), twin.pinion_torque, twin.brake_torque
+    state = twin.states[0].copy()
+    driving = twin.pinion_torque
+    brake = twin.brake_torque
     weights = system.supports.common_weights
     m = weights.size
     coarse = np.zeros(0)
@@ -361,7 +379,8 @@ def settled_motion(
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + tables.period
         found = run(pair, tables, system, -settling, count, tables.period, state, torques)
-        states, end = found.states, found.end
+        states = found.states
+        end = found.end
         if not np.isfinite(end).all():
             raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
         duration = tables.period * system.period
@@ -378,7 +397,8 @@ def settled_motion(
         until = (settling + 0.5 * tables.period) * system.period  # to the middle of the record
         state[m:] -= (float(weights @ (end - states[0])[:m]) / duration - drift * until) * common
         dte = states[:, :m] @ system.deflection
-        error, coarse = float(np.abs(dte - coarse).max() if coarse.size else np.inf), dte
+        error = float(np.abs(dte - coarse).max() if coarse.size else np.inf)
+        coarse = dte
     time = (np.arange(states.shape[0]) / samples) * system.period
     relative = system.supports.relative
     closure = relative @ (end - states[0])[:m]
@@ -404,7 +424,8 @@ def settled_motion(
 
 def _drift_of_twin(twin: RevolutionMotion, step: float) -> float:
     """Weighted rate per time that the common rotation of like teeth gains by long steps."""
-    system, weights = twin.system, twin.system.supports.common_weights
+    system = twin.system
+    weights = twin.system.supports.common_weights
     tables = momentary_tables(ToothLaws(twin.pair), system, step, int(twin.tables.outputs.sum()))
     torques = twin.pinion_torque * system.torque_pinion + twin.brake_torque * system.torque_gear
     settling = _settling(twin.spectral_radius)

@@ -81,7 +81,8 @@ def _contact(
     pair: GearPair, law: str | None, interval: tuple[float, float] | None
 ) -> tuple[ContactPath, FrictionSettings, FrictionLaw]:
     """Contact, settings and law of `friction_path_function`."""
-    record, path = law_of(pair.friction, law), contact_path(pair)
+    record = law_of(pair.friction, law)
+    path = contact_path(pair)
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
         longer = replace(path, L_XA=interval[0], L_XD=interval[1])
@@ -231,7 +232,8 @@ def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
     and why.
     """
     pair = load_gear_pair(pair)
-    path, settings = contact_path(pair), pair.friction
+    path = contact_path(pair)
+    settings = pair.friction
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []
     laws = laws_with_friction(settings)

@@ -71,7 +71,8 @@ def plane_compliance(
     one_of("support", support, get_args(Support))
     count = whole_number("phases", phases, 1, 100_000)
     teeth = elastic_teeth(pair, plane, support)
-    phase, ahead = (np.arange(count) + 0.5) / count, np.arange(g.pairs)
+    phase = (np.arange(count) + 0.5) / count
+    ahead = np.arange(g.pairs)
     matrix, xi, total, apart = _sampled(pair, teeth, phase)
     # Between the phases at which a pair leaves, everything is smooth.
     leaves = math.fmod(g.contact_ratio, 1.0)

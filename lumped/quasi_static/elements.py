@@ -21,7 +21,8 @@ from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
 #: Speed [rad/s] and friction of the pairs by which static results are cached: any.
-_SPEED, _FRICTION = 100.0, Friction.model_construct(law="none")
+_SPEED = 100.0
+_FRICTION = Friction.model_construct(law="none")
 #: Samples over the searched range between which contact begins or ends at most once.
 _SAMPLES = 500
 
@@ -140,7 +141,8 @@ def positive_intervals(
 def restricted(function: PathFunction, intervals: FloatArray) -> PathFunction:
     """The function on the intervals (n, 2), zero between them; jumps are switches."""
     low, high = function.interval
-    function, ends = function.split(intervals), intervals.ravel()
+    function = function.split(intervals)
+    ends = intervals.ravel()
     middle = 0.5 * (function.breaks[:-1] + function.breaks[1:])
     kept = ((middle[:, None] > intervals[:, 0]) & (middle[:, None] < intervals[:, 1])).any(axis=1)
     jumps = ends[(ends > low) & (ends < high)]

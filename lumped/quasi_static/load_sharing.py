@@ -72,8 +72,10 @@ def share_load(
     moved = coupling is not None and bool(np.any(coupling))
     w = real_array("coupling", coupling) if moved else np.zeros((1, 1))
     lead = np.broadcast_shapes(k.shape[:-1], e.shape[:-1], applied.shape, w.shape[:-2])
-    pairs, reach = max(k.shape[-1], e.shape[-1]), np.isfinite(e)
-    gaps, load = _rows(np.where(reach, e, 0.0), lead, pairs), np.zeros((math.prod(lead), pairs))
+    pairs = max(k.shape[-1], e.shape[-1])
+    reach = np.isfinite(e)
+    gaps = _rows(np.where(reach, e, 0.0), lead, pairs)
+    load = np.zeros((math.prod(lead), pairs))
     phases = Phases(
         position=np.zeros(gaps.shape),
         stiffness=_rows(np.where(reach, k, 0.0), lead, pairs),

@@ -37,7 +37,8 @@ _REACH = 0.4
 #: Breaks closer than this fraction of a base pitch are one.
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
-_TOLERANCE, _LENGTH = 1e-11, 2e-17
+_TOLERANCE = 1e-11
+_LENGTH = 2e-17
 #: Fit error of a slope of the gap over the largest one.
 _SLOPE = 1e-8
 #: Fit error of the approach over that of the laws that follow from it.
@@ -210,8 +211,10 @@ class StaticMesh:
     """Static equilibrium of the mesh under the mean load at any position of a tooth pair."""
 
     def __init__(self, pair: GearPair) -> None:
-        g, bearings = pair.geometry, pair.bearings
-        self.pair, self.geometry = pair, g
+        g = pair.geometry
+        bearings = pair.bearings
+        self.pair = pair
+        self.geometry = g
         self.force = pair.operating.pinion_torque / g.base_radius_pinion
         self.stiffness, self.neighbours, softening = teeth_at_load(at_rest(pair))
         self.law = ContactLaw(
@@ -232,7 +235,8 @@ class StaticMesh:
         # Pairs further from one that is followed are not.
         reach = int(g.contact_ratio + 2.0 * _REACH)
         self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
-        tips, edges = (g.L_XY - g.tip_length_gear, g.tip_length_pinion), (g.undercut_pinion, g.undercut_gear)
+        tips = (g.L_XY - g.tip_length_gear, g.tip_length_pinion)
+        edges = (g.undercut_pinion, g.undercut_gear)
         self.flanks = np.array([(*tips, g.L_XY, *edges, 0.0, 0.0)], FLANKS)
         self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
         self._fitted: PathFunction | None = None
@@ -279,7 +283,8 @@ class StaticMesh:
         marks : positions of kinks of the approach, any whole number of pitches off [m]
         tolerance : largest error [m]
         """
-        start, pitch = self.geometry.L_XA, self.geometry.base_pitch
+        start = self.geometry.L_XA
+        pitch = self.geometry.base_pitch
         inside = np.unique(start + np.mod(marks - start, pitch))
         near = _SAME * pitch
         inside = inside[(inside > start + near) & (inside < start + pitch - near)]
@@ -289,7 +294,8 @@ class StaticMesh:
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
-        contact, phases = np.zeros(np.size(xi), CONTACT), self.phases(xi)
+        contact = np.zeros(np.size(xi), CONTACT)
+        phases = self.phases(xi)
         approach = self._approach(phases) if self._fitted is None else self.approach(xi)
         middle_contacts(approach, phases, self.flanks, self.law, contact, workspace(phases))
         return StaticPair(approach, contact)
@@ -306,18 +312,26 @@ class StaticMesh:
 
     def exchange(self, at_start: bool, xi: FloatArray) -> FloatArray:
         """Changes its sign where edge and tip corner exchange at start or end of undercut flanks, (n,)."""
-        g, half, back = self.geometry, self.half(xi), self.back(at_start, xi)
-        radii, length = (g.base_radius_pinion, g.base_radius_gear), g.L_XY + self.lengthening
+        g = self.geometry
+        half = self.half(xi)
+        back = self.back(at_start, xi)
+        radii = (g.base_radius_pinion, g.base_radius_gear)
+        length = g.L_XY + self.lengthening
         if at_start:
-            beyond, tip, edge = g.L_XY - xi + half - g.tip_length_gear, g.tip_length_gear, g.undercut_pinion
+            beyond = g.L_XY - xi + half - g.tip_length_gear
+            tip = g.tip_length_gear
+            edge = g.undercut_pinion
         else:
-            beyond, tip, edge = xi + half - g.tip_length_pinion, g.tip_length_pinion, g.undercut_gear
+            beyond = xi + half - g.tip_length_pinion
+            tip = g.tip_length_pinion
+            edge = g.undercut_gear
             radii = radii[::-1]
         return np.asarray(deciding_ways(beyond, tip, back, edge, length, *radii), dtype=np.float64)
 
     def back(self, at_start: bool, xi: FloatArray) -> FloatArray:
         """Way of the contact back from the edge at start or end of undercut flanks, (n,) [m]."""
-        g, half = self.geometry, self.half(xi)
+        g = self.geometry
+        half = self.half(xi)
         return g.undercut_pinion - xi - half if at_start else g.undercut_gear - (g.L_XY - xi) - half
 
 
@@ -344,8 +358,11 @@ def _damping(pair: GearPair, ratio: float) -> PathFunction:
 @lru_cache(maxsize=_KEPT)
 def loaded_contact(pair: GearPair) -> LoadedContact:
     """Contact of a tooth pair in the mesh under the mean torque, of a pair ``at_rest``."""
-    mesh, g = StaticMesh(pair), pair.geometry
-    law, stiffness_of, near = mesh.law, mesh.stiffness, _SAME * pair.geometry.base_pitch
+    mesh = StaticMesh(pair)
+    g = pair.geometry
+    law = mesh.law
+    stiffness_of = mesh.stiffness
+    near = _SAME * pair.geometry.base_pitch
     starts = relief_starts(pair) if pair.mesh.relief == "static" else np.empty(0)
     kinks = np.concatenate([stiffness_of.law.switches, starts, [g.L_XA, g.L_XD]])
     jumps = np.add.outer(kinks, mesh.shifts)
@@ -388,7 +405,8 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     stiffness = fitted(lambda xi: static(xi).tangent, largest)
     # Only the damper bends where it is whole. Its pieces are cut where those of the stiffness are: laws that
     # are cut at the same phases leave few pieces of a mesh cycle.
-    full, bends = FULL_DAMPING * mesh.force, inside
+    full = FULL_DAMPING * mesh.force
+    bends = inside
     for left, right in itertools.pairwise(breaks):
         bends = np.union1d(bends, _roots(lambda x: static(x).load - full, left, right))
     cuts = np.union1d(stiffness.breaks, bends)
@@ -427,7 +445,8 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
 
 def _corners(mesh: StaticMesh, low: float, high: float) -> list[float]:
     """Places where a tip corner or an edge begins to touch, or they exchange [m]."""
-    g, found = mesh.geometry, []
+    g = mesh.geometry
+    found = []
     # A tip leaves the line of action where the pair is half the approach inside the path of contact.
     if g.undercut_pinion == 0.0:
         found += _roots(lambda x: x - g.L_XA - mesh.half(x), g.L_XA, g.L_XP)

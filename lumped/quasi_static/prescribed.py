@@ -70,11 +70,14 @@ class Prescribed(Contact):
 @lru_cache(maxsize=32)
 def _loaded_mesh(pair: GearPair) -> tuple[PathFunction, PathFunction]:
     """k(xi; T) [N/m] at the operating torque, zero where the loaded pair is apart, and e(xi) [m]."""
-    g, torque = pair.geometry, pair.operating.pinion_torque
-    k, error = pair_stiffness(pair), error_function(pair)
+    g = pair.geometry
+    torque = pair.operating.pinion_torque
+    k = pair_stiffness(pair)
+    error = error_function(pair)
     if not error.coefficients.any():
         return k, error
-    force, shifts = torque / g.base_radius_pinion, np.arange(1 - g.pairs, g.pairs) * g.base_pitch
+    force = torque / g.base_radius_pinion
+    shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
 
     def clearance(xi: FloatArray) -> FloatArray:
         """Approach minus error of the pair at xi, with its neighbours a pitch apart; (n,) [m]."""

@@ -77,10 +77,14 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
     given = pair.operating.pinion_torque if torque is None else torque
     moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
     plain_tips = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
-    g, bare, force = pair.geometry, mesh_positions(plain_tips), moment / pair.geometry.base_radius_pinion
+    g = pair.geometry
+    bare = mesh_positions(plain_tips)
+    force = moment / pair.geometry.base_radius_pinion
     plain = share_load(bare.stiffness, bare.error, force, bare.coupling).transmission_error
-    scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
-    amounts, lengths = np.linspace(0.0, 2.0 * scale, 41), np.linspace(0.02, 0.6, 40) * path
+    scale = float(plain.max() - min(bare.error.min(), 0.0))
+    path = g.L_XD - g.L_XA
+    amounts = np.linspace(0.0, 2.0 * scale, 41)
+    lengths = np.linspace(0.02, 0.6, 40) * path
     grid = np.stack([_peak_to_peak(bare, g, force, amounts, float(one)) for one in lengths], axis=1)
     preferred = grid / scale + _LEAST_MATERIAL * amounts[:, None] / scale
     i, j = np.unravel_index(int(np.argmin(preferred)), grid.shape)
@@ -99,7 +103,8 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
         method="Nelder-Mead",
         options={"initial_simplex": simplex, "xatol": 1e-6, "fatol": 1e-9, "maxiter": 600},
     )
-    amount, length = float(search.x[0] * scale), float(search.x[1] * path)
+    amount = float(search.x[0] * scale)
+    length = float(search.x[1] * path)
     return OptimalRelief(
         amount=amount,
         length=length,

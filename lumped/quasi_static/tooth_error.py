@@ -48,7 +48,8 @@ def error_function(pair: GearPair) -> PathFunction:
     switches = relief_starts(pair)
     breaks = np.array([low, *switches, high])
     # Each piece is a parabola: three values fix it.
-    s, width = np.array([1e-9, 0.5, 1.0 - 1e-9]), np.diff(breaks)
+    s = np.array([1e-9, 0.5, 1.0 - 1e-9])
+    width = np.diff(breaks)
     values = relief_error(pair, breaks[:-1] + np.multiply.outer(s, width))
     return PathFunction(breaks, np.linalg.solve(np.vander(s), values) / width ** [[2], [1], [0]], switches)
 
@@ -69,9 +70,12 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     involutes of one base circle are parallel curves. Of tip and edge the larger gap counts: the flanks end at
     both. xi of any shape outside is where longer teeth would touch [m].
     """
-    g, place = geometry, np.asarray(xi, dtype=float)
-    at, radii = place.ravel(), (g.base_radius_pinion, g.base_radius_gear)
-    tips, edges = (g.tip_length_pinion, g.tip_length_gear), (g.undercut_pinion, g.undercut_gear)
+    g = geometry
+    place = np.asarray(xi, dtype=float)
+    at = place.ravel()
+    radii = (g.base_radius_pinion, g.base_radius_gear)
+    tips = (g.tip_length_pinion, g.tip_length_gear)
+    edges = (g.undercut_pinion, g.undercut_gear)
     way = g.L_XY - at - tips[1], at - tips[0]
     back = edges[0] - at, edges[1] - (g.L_XY - at)
     before = end_gaps(way[0], tips[1], back[0], edges[0], g.L_XY, *radii)

@@ -34,10 +34,13 @@ class Tried(Protocol):
 
 
 #: Profile shifts and tips are tried in hundredths of a module: so many of them, and so many at a time.
-_HUNDREDTHS, _STRIDE = 80, 5
+_HUNDREDTHS = 80
+_STRIDE = 5
 #: The same of teeth.
-_TEETH, _TEETH_STRIDE = 30, 4
-_LARGEST_SHIFT, _MOST_TEETH = 2.0, 1000
+_TEETH = 30
+_TEETH_STRIDE = 4
+_LARGEST_SHIFT = 2.0
+_MOST_TEETH = 1000
 
 
 def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
@@ -67,7 +70,8 @@ def what_would_mesh(pair: Tried, name: Name, sense: int = 1) -> str:
 
 
 def _alone(pair: Tried, name: Name, sense: int) -> Iterator[str]:
-    shift, teeth = _shift(pair, name), getattr(pair, name).teeth
+    shift = _shift(pair, name)
+    teeth = getattr(pair, name).teeth
 
     def toothed(step: int) -> Changes:
         return {name: {"teeth": teeth + step}}
@@ -87,7 +91,8 @@ def _alone(pair: Tried, name: Name, sense: int) -> Iterator[str]:
 
 def _beside_the_mate(pair: Tried, name: Name, sense: int) -> Iterator[str]:
     mate = MATE[name]
-    own, others = _shift(pair, name), _shift(pair, mate)
+    own = _shift(pair, name)
+    others = _shift(pair, mate)
     for opposite in (-1, 1):  # the first keeps the sum of the shifts, and so a given centre distance
 
         def both(step: int, opposite: int = opposite) -> Changes:
@@ -98,7 +103,8 @@ def _beside_the_mate(pair: Tried, name: Name, sense: int) -> Iterator[str]:
             values = both(step)
             yield " with ".join(f"{one}.profile_shift = {values[one]['profile_shift']:g}" for one in values)
             return
-    module, tip = pair.basic_rack.module, pair.wheels[mate == "gear"].tip_radius
+    module = pair.basic_rack.module
+    tip = pair.wheels[mate == "gear"].tip_radius
     other_forms = [field for field in ("addendum", "tip_alteration") if field in type(pair.gear).model_fields]
 
     def diameter(step: int) -> float:

@@ -163,7 +163,8 @@ def recorded(pair: Section, written: Assumed, derived: Mapping[str, Value]) -> A
 def _defaults_taken(section: Section, prefix: str) -> Iterator[tuple[str, None]]:
     """Paths of the fields of a section and those inside it that no file or caller gave."""
     for name in type(section).model_fields:
-        path, value = f"{prefix}{name}", getattr(section, name)
+        path = f"{prefix}{name}"
+        value = getattr(section, name)
         if path in ABOUT or path in WORDS:
             continue
         if isinstance(value, Section):

@@ -45,7 +45,8 @@ SHORT_NAMES = {
 _TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")
 
 #: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
-_SECTION, _STIFFNESS = "mesh.stiffness", "mesh.stiffness.model"
+_SECTION = "mesh.stiffness"
+_STIFFNESS = "mesh.stiffness.model"
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
     *((f"{gear}.addendum", f"{gear}.tip_diameter", f"{gear}.tip_alteration") for gear in _GEARS),
@@ -135,7 +136,8 @@ def _other_bearing(pair: Section, data: dict[str, Any], gear: str, changes: Mapp
     """
     start = f"bearings.{gear}."
     named = {path.removeprefix(start) for path in changes if path.startswith(start)}
-    springs, rolling = not named.isdisjoint(STIFFNESSES), not named.isdisjoint(ROLLING)
+    springs = not named.isdisjoint(STIFFNESSES)
+    rolling = not named.isdisjoint(ROLLING)
     section: dict[str, Any] = data["bearings"][gear]
     own = getattr(pair.__dict__["bearings"], gear)
     outdated: tuple[str, ...]

@@ -55,7 +55,8 @@ def without_assumed_defaults(data: Any, defaults: Mapping[str, str]) -> Any:
     """
     if not isinstance(data, Mapping):
         return data
-    mesh, assumed = data.get("mesh"), data.get("assumed")
+    mesh = data.get("mesh")
+    assumed = data.get("assumed")
     if not isinstance(mesh, Mapping) or not isinstance(assumed, Mapping):
         return data
     gone = [

@@ -99,17 +99,21 @@ def json_schema() -> dict[str, Any]:
 
 def _from_file(source: str | Path) -> GearPair:
     """The pair of a preset or a file; a name that can be no file is taken for a preset's."""
-    path, suffix = Path(source), Path(source).suffix.lower()
+    path = Path(source)
+    suffix = Path(source).suffix.lower()
     named = isinstance(source, str) and source in preset_names()
     if named or (suffix not in (".toml", *_NO_PAIRS) and "/" not in str(source) and not _exists(path)):
-        text, name, folder = preset_text(str(source)), f"preset {source}", Path()
+        text = preset_text(str(source))
+        name = f"preset {source}"
+        folder = Path()
     else:
         if suffix in _NO_PAIRS:
             raise refuse("file", path, "the parameters of a gear pair, a .toml file", _NO_PAIRS[suffix])
         instead = ", or a preset: " + ", ".join(preset_names())
         action = "Check the path, or start from 'spurcheck init'."
         text = read_text(path, MAX_FILE_BYTES, kind="TOML file", instead=instead, action=action)
-        name, folder = str(path), path.parent
+        name = str(path)
+        folder = path.parent
     data = parse_toml(text, name)
     for key, other in _OTHER_FILES.items():
         if key in data and "pinion" not in data:

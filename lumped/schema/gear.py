@@ -184,7 +184,8 @@ class Gear(Section):
                 problems.append(FieldProblem("mounting.eccentricity", value, "one source", action))
         for number, fault in enumerate(self.faults):
             if fault.tooth > self.teeth:
-                allowed, action = f"1 to {self.teeth}", "Name a tooth of this gear."
+                allowed = f"1 to {self.teeth}"
+                action = "Name a tooth of this gear."
                 problems.append(FieldProblem(f"faults.{number}.tooth", f"{fault.tooth}", allowed, action))
         if problems:
             raise ParameterError(problems)

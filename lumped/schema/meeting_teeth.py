@@ -52,11 +52,14 @@ def own_teeth(pair: GearPair) -> tuple[OwnTeeth, OwnTeeth]:
 
 
 def _of_gear(pair: GearPair, which: int) -> OwnTeeth:
-    gear, z = (pair.pinion, pair.gear)[which], (pair.pinion.teeth, pair.gear.teeth)[which]
+    gear = (pair.pinion, pair.gear)[which]
+    z = (pair.pinion.teeth, pair.gear.teeth)[which]
     given = gear.deviations
     slope, relief = (_listed(given, name, z, 1.0) for name in ("profile_slope", "tip_relief"))
     phase = gear.mounting.phase if gear.mounting else 0.0
-    error, index, eccentricity = np.zeros(z), np.zeros(z), gear.eccentricity
+    error = np.zeros(z)
+    index = np.zeros(z)
+    eccentricity = gear.eccentricity
     if given is not None:
         index = _listed(given, "index", z, -1.0)
         if given.tolerance_class is not None:

@@ -34,7 +34,8 @@ CONTACT = (
 )
 _GEOMETRY = ("xi", "radius", "slide_to_roll")
 #: Intervals on either side of the pitch point, and over a mesh cycle.
-_SIDE, _CYCLE = 60, 240
+_SIDE = 60
+_CYCLE = 240
 _GIVE = "a name, a function, a 1-D array, or columns with units in their names"
 
 
@@ -83,7 +84,8 @@ def is_own(path: str, value: object) -> bool:
 
 def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
     """Fields of a pair with a friction law of the user, sampled at the operating point of its contact."""
-    name, field = "table", "friction.law"
+    name = "table"
+    field = "friction.law"
     if isinstance(law, (int, float)):
         numerals: dict[float, str] = dict(enumerate(("I", "II", "III", "IV", "V"), 1))
         numeral = numerals.get(law)

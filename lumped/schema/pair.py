@@ -287,7 +287,8 @@ class GearPair(Section, metaclass=_InOurWords):
             )
         if problems and not any(problem.field in _OF_THE_MESH for problem in problems):
             return problems
-        rack, teeth = self.basic_rack, self.pinion.teeth + self.gear.teeth
+        rack = self.basic_rack
+        teeth = self.pinion.teeth + self.gear.teeth
         actions = [f"Delete centre_distance (it is then {free.centre_distance * 1e3:.6g} mm)"]
         with suppress(ParameterError):  # a centre distance below that of the base circles
             total = shift_sum(teeth, rack.module, rack.pressure_angle, self.centre_distance)
@@ -309,7 +310,8 @@ class GearPair(Section, metaclass=_InOurWords):
 
         See ``lumped.gear_geometry.profile_shift.resolved_shifts``.
         """
-        rack, gears = self.basic_rack, (self.pinion, self.gear)
+        rack = self.basic_rack
+        gears = (self.pinion, self.gear)
         return resolved_shifts(
             (self.pinion.profile_shift, self.gear.profile_shift),
             (gears[0].teeth, gears[1].teeth),
@@ -321,7 +323,9 @@ class GearPair(Section, metaclass=_InOurWords):
     @cached_property
     def tip_alteration(self) -> float:
         """Tip alteration k m [m] of a gear that gives none: it keeps the clearance of the basic rack."""
-        rack, teeth, shift = self.basic_rack, self.pinion.teeth + self.gear.teeth, sum(self.profile_shifts)
+        rack = self.basic_rack
+        teeth = self.pinion.teeth + self.gear.teeth
+        shift = sum(self.profile_shifts)
         centre = self.centre_distance
         if centre is None:
             centre = distance_without_backlash(teeth, rack.module, rack.pressure_angle, shift)
@@ -364,7 +368,8 @@ class GearPair(Section, metaclass=_InOurWords):
         """A first tooth that the gear does not have, and faults that do not fit its teeth."""
         gear: Gear = getattr(self, name)
         if self.mesh.first_teeth is not None and self.mesh.first_teeth[which] > gear.teeth:
-            value, allowed = f"{list(self.mesh.first_teeth)}", f"tooth of the {name} from 1 to {gear.teeth}"
+            value = f"{list(self.mesh.first_teeth)}"
+            allowed = f"tooth of the {name} from 1 to {gear.teeth}"
             yield FieldProblem("mesh.first_teeth", value, allowed, "Name a tooth that the gear has.")
         for number, fault in enumerate(gear.faults):
             for one in fault.problems(self.flank(which)):
@@ -400,12 +405,14 @@ class GearPair(Section, metaclass=_InOurWords):
     @property
     def nominal_contact(self) -> ContactPath:
         """What friction laws see, see ``lumped.path_of_contact.contact_path``."""
-        gears, torque = (self.pinion, self.gear), self.operating.pinion_torque
+        gears = (self.pinion, self.gear)
+        torque = self.operating.pinion_torque
         return own_laws.nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
 
     def flank(self, which: int) -> Flank:
         """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""
-        g, gear = self.geometry, (self.pinion, self.gear)[which]
+        g = self.geometry
+        gear = (self.pinion, self.gear)[which]
         moduli = [one.youngs_modulus / (1.0 - one.poisson_ratio**2) for one in (self.pinion, self.gear)]
         tip, start = ((g.tip_length_pinion, g.L_XA), (g.tip_length_gear, g.L_XY - g.L_XD))[which]
         hertz = 2.0 * (1.0 / moduli[0] + 1.0 / moduli[1]) / (math.pi * g.face_width)
@@ -451,7 +458,9 @@ class GearPair(Section, metaclass=_InOurWords):
 
     def __repr__(self) -> str:
         """Return the pair in one line; ``to_toml()`` says every field."""
-        pinion, gear, at = self.pinion, self.gear, self.operating
+        pinion = self.pinion
+        gear = self.gear
+        at = self.operating
         law = self.friction.law if self.friction.law != TABLE else law_of(self.friction).title
         return (
             f"<GearPair {self.name}: {pinion.teeth}/{gear.teeth} teeth, "

@@ -92,16 +92,19 @@ class ProfileRelief(Section):
 
     def off(self, flank: Flank, kind: str) -> ParameterError:
         """The refusal of a relief that does not start on the active flank, by the field that states it."""
-        radius, ends = flank.wheel.tooth.base_radius, (flank.start, flank.tip)
+        radius = flank.wheel.tooth.base_radius
+        ends = (flank.start, flank.tip)
         if self.length is not None:
             allowed = f"> 0 and < {1e3 * (flank.tip - flank.start):.4f} mm, the active flank"
             return refuse(f"{kind}.length", f"{1e3 * self.length:.6g} mm", allowed, _ON_IT)
         if self.start_diameter is not None:
             low, high = (1e3 * diameter_of(end / radius, radius) for end in ends)
-            value, allowed = f"{1e3 * self.start_diameter:.6g} mm", f"{low:.4f} to {high:.4f} mm"
+            value = f"{1e3 * self.start_diameter:.6g} mm"
+            allowed = f"{low:.4f} to {high:.4f} mm"
             return refuse(f"{kind}.start_diameter", value, allowed, _ON_IT)
         low, high = (math.degrees(end / radius) for end in ends)
-        value, allowed = f"{math.degrees(self.start_roll_angle):.4g} deg", f"{low:.4f} to {high:.4f} deg"
+        value = f"{math.degrees(self.start_roll_angle):.4g} deg"
+        allowed = f"{low:.4f} to {high:.4f} deg"
         return refuse(f"{kind}.start_roll_angle", value, allowed, _ON_IT)
 
     def to_mapping(self) -> dict[str, Any]:

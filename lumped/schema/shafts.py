@@ -37,7 +37,8 @@ class ShaftSegment(Section):
     def _has_a_wall(self) -> Self:
         largest = (1.0 - 2.0 * _WALL) * self.diameter
         if self.bore > largest:
-            value, allowed = f"{self.bore * 1e3:g} mm", f"<= {largest * 1e3:.6g} mm"
+            value = f"{self.bore * 1e3:g} mm"
+            allowed = f"<= {largest * 1e3:.6g} mm"
             action = "Lower the bore, or raise the diameter."
             raise refuse("bore", value, f"{allowed}, a wall of {_WALL:.0%} of the diameter", action)
         return self

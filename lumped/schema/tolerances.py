@@ -82,7 +82,8 @@ def flank_tolerances(teeth: int, module: float, tolerance_class: int) -> dict[st
     m = module * 1e3
     d = m * teeth
     step = 1e-6 * math.sqrt(2.0) ** (tolerance_class - 5)
-    slope, form = 0.4 * m + 0.001 * d + 4.0, 0.55 * m + 5.0
+    slope = 0.4 * m + 0.001 * d + 4.0
+    form = 0.55 * m + 5.0
     cumulative = 0.002 * d + 0.55 * math.sqrt(d) + 0.7 * m + 12.0
     found = {"f_p": 0.001 * d + 0.4 * m + 5.0, "F_p": cumulative, "f_Ha": slope, "f_fa": form}
     found |= {"F_a": math.hypot(slope, form), "F_r": 0.9 * cumulative}

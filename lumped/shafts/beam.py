@@ -70,7 +70,8 @@ class Piece:
     @property
     def shear_rigidity(self) -> float:
         """Kappa G A [N], with Cowper's coefficient of a hollow circle."""
-        nu, ratio = self.poisson_ratio, self.bore / self.diameter
+        nu = self.poisson_ratio
+        ratio = self.bore / self.diameter
         square = (1.0 + ratio**2) ** 2
         kappa = 6.0 * (1.0 + nu) * square / ((7.0 + 6.0 * nu) * square + (20.0 + 12.0 * nu) * ratio**2)
         return kappa * self.shear_modulus * self.area
@@ -119,7 +120,8 @@ def _bending(piece: Piece, length: float) -> tuple[FloatArray, FloatArray, Float
             [6.0 * length, (2.0 - phi) * ll, -6.0 * length, (4.0 + phi) * ll],
         ]
     )
-    s, none = _NODES, np.zeros_like(_BUBBLES)
+    s = _NODES
+    none = np.zeros_like(_BUBBLES)
     share = 1.0 / (1.0 + phi)
     deflection = np.stack(
         [
@@ -184,7 +186,8 @@ def beam(pieces: Sequence[Piece], places: Sequence[float], omega: float, angle: 
     z = np.concatenate(stations)
     n = z.size
     inside = len(_BUBBLES)
-    size, twist_size = 2 * n + 2 * inside * (n - 1), n + inside * (n - 1)
+    size = 2 * n + 2 * inside * (n - 1)
+    twist_size = n + inside * (n - 1)
     stiffness, mass, spin = np.zeros((3, size, size))
     twist_stiffness, twist_mass = np.zeros((2, twist_size, twist_size))
     for j, ((k, m, g), twist) in enumerate(elements):

@@ -39,9 +39,11 @@ PARTS = (
     "mesh",
     "bearings",
 )
-_MESH, _BEARINGS = 5, 6
+_MESH = 5
+_BEARINGS = 6
 #: From which share of the elastic energy a mode is the mesh's, and of the moving mass, of one shaft or plane.
-_MUCH, _MOST = 0.3, 0.75
+_MUCH = 0.3
+_MOST = 0.75
 
 
 def condensed_bearings(pair: AnyPair, frequency: float = 0.0) -> GearPair:
@@ -95,7 +97,8 @@ def _seen(shafted: ShaftedPair, row: int, omega: float) -> tuple[float, float, f
     """Stiffness [N/m], mass [kg] and damping [N s/m] that a gear's centre feels, teeth apart."""
     shape = shafted.gears[row]
     own = np.flatnonzero(shape)
-    shape, squares = shape[own], shafted.frequencies[own] ** 2
+    shape = shape[own]
+    squares = shafted.frequencies[own] ** 2
     receptance = float(np.sum(shape**2 / (squares - omega**2)))
     stiffness = 1.0 / receptance
     mass = stiffness**2 * float(np.sum((shape / (squares - omega**2)) ** 2))
@@ -106,7 +109,8 @@ def _seen(shafted: ShaftedPair, row: int, omega: float) -> tuple[float, float, f
 
 def _seen_inertia(shafted: ShaftedPair, which: int, omega: float) -> float:
     """Inertia that the rim of a gear feels [kg m^2], from all modes of its shaft's twist and its turn."""
-    shape, squares = shafted.gears[which], shafted.frequencies**2
+    shape = shafted.gears[which]
+    squares = shafted.frequencies**2
     elastic = squares > 0.0
     rigid = float(np.sum(shape[~elastic] ** 2))
     if omega == 0.0:
@@ -135,9 +139,13 @@ def shaft_modes(pair: AnyPair) -> xr.Dataset:
     ParameterError : the pair has no shafts
     """
     pair = load_gear_pair(pair)
-    shafts, elements, g = shafted_pair(pair), contact_of(pair).elements(pair), pair.geometry
+    shafts = shafted_pair(pair)
+    elements = contact_of(pair).elements(pair)
+    g = pair.geometry
     k, c = (mean_of_pairs(law, g.base_pitch) for law in (elements.stiffness, elements.damping))
-    m, squares = shafts.frequencies.size - 1, shafts.frequencies[1:] ** 2  # without the common rotation
+    # without the common rotation
+    m = shafts.frequencies.size - 1
+    squares = shafts.frequencies[1:] ** 2
     damping = (shafts.damping + g.omega_pinion * shafts.gyroscopic)[1:, 1:]
     u = shafts.deflection[1:]
     a = np.zeros((2 * m, 2 * m))
@@ -169,7 +177,8 @@ def _name(elastic: FloatArray, kinetic: FloatArray) -> str:
     if kinetic[4] > 0.5:
         return "torsion"
     bending = kinetic[:4].reshape(2, 2) / kinetic[:4].sum()
-    shafts, planes = bending.sum(axis=1), bending.sum(axis=0)
+    shafts = bending.sum(axis=1)
+    planes = bending.sum(axis=0)
     owner = ("pinion shaft", "gear shaft")[int(shafts.argmax())] if shafts.max() > _MOST else "both shafts"
     if planes.max() <= _MOST:
         return f"{owner} whirling"
@@ -184,16 +193,19 @@ def _shares(shafted: ShaftedPair, in_mesh: FloatArray, shapes: FloatArray) -> tu
     springs = shafted.bearing_stiffness[:, :, None] * np.abs(bearings) ** 2
     of_gear = np.array([name.startswith("gear") for name in shafted.bearing_names])
     elastic, kinetic = np.zeros((2, len(PARTS), shapes.shape[1]))
-    owner, kind = shafted.shaft[1:], shafted.kind[1:]
+    owner = shafted.shaft[1:]
+    kind = shafted.kind[1:]
     squares = shafted.frequencies[1:, None] ** 2
     for shaft in (0, 1):
         for plane in (0, 1):
-            own, part = (owner == shaft) & (kind == plane), 2 * shaft + plane
+            own = (owner == shaft) & (kind == plane)
+            part = 2 * shaft + plane
             kinetic[part] = size[own].sum(axis=0)
             in_bearings = springs[of_gear == bool(shaft), plane].sum(axis=0)
             elastic[part] = np.maximum((squares[own] * size[own]).sum(axis=0) - in_bearings, 0.0)
     twist = kind == 2
-    kinetic[4], elastic[4] = size[twist].sum(axis=0), (squares[twist] * size[twist]).sum(axis=0)
+    kinetic[4] = size[twist].sum(axis=0)
+    elastic[4] = (squares[twist] * size[twist]).sum(axis=0)
     elastic[_MESH] = in_mesh
     elastic[_BEARINGS] = springs.sum(axis=(0, 1))
     return (elastic / elastic.sum(axis=0)).T, (kinetic / kinetic.sum(axis=0)).T

@@ -86,7 +86,8 @@ def highest_frequency(pair: GearPair) -> float:
 
 def discs(pair: GearPair) -> tuple[Disc, Disc]:
     """Both gears as rigid discs: mass and polar inertia as without shafts, J/2 + m b^2/12 against tilting."""
-    b, twist = bodies_of(pair), body_twist(pair)
+    b = bodies_of(pair)
+    twist = body_twist(pair)
 
     def disc(mass: float, inertia: float, width: float, stiffness: float) -> Disc:
         return Disc(mass, inertia, 0.5 * inertia + mass * width**2 / 12.0, float(stiffness))
@@ -112,7 +113,8 @@ def supported_shafts(pair: GearPair) -> tuple[SupportedShaft, SupportedShaft]:
 def shafted_pair(pair: GearPair) -> ShaftedPair:
     """Return the modal data of a pair on its shafts."""
     both = supported_shafts(pair)
-    shafts, g = pair.shafts, pair.geometry
+    shafts = pair.shafts
+    g = pair.geometry
     assert shafts is not None
     counts = [[modes.frequencies.size for modes in shaft.planes] for shaft in both]
     m = int(np.sum(counts))
@@ -120,7 +122,10 @@ def shafted_pair(pair: GearPair) -> ShaftedPair:
         action = "Lower it: modes far above the mesh frequency follow statically."
         given = f"{highest_frequency(pair) / (2.0 * math.pi):.4g} Hz"
         raise refuse("shafts.max_frequency", given, f"at most {_MOST} modes, not {m}", action)
-    names, owner, kind, frequencies = [], [], [], []
+    names = []
+    owner = []
+    kind = []
+    frequencies = []
     bearing_names: list[str] = []
     gears = np.zeros((6, m))
     bearings = np.zeros((sum(len(shaft.bearings) for shaft in both), 2, m))
@@ -129,7 +134,8 @@ def shafted_pair(pair: GearPair) -> ShaftedPair:
     first = 0
     # The pinion turns clockwise in (x, y), the gear counter-clockwise, z_p/z_g as fast.
     for which, (shaft, turn) in enumerate(zip(both, (-1.0, g.omega_gear / g.omega_pinion), strict=True)):
-        at, row = [], len(bearing_names)
+        at = []
+        row = len(bearing_names)
         bearing_names += [f"{_GEARS[which]} {j + 1}" for j in range(len(shaft.bearings))]
         for number, (modes, label) in enumerate(zip(shaft.planes, ("x", "y", "twist"), strict=True)):
             count = modes.frequencies.size

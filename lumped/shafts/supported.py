@@ -166,7 +166,8 @@ def _on_mesh(
     bearings = tuple(2 * mesh.node(b.position) for b in shaft.bearings)
     planes = []
     for direction in ("loa", "oloa"):
-        mass, stiffness = mesh.mass.copy(), mesh.stiffness.copy()
+        mass = mesh.mass.copy()
+        stiffness = mesh.stiffness.copy()
         mass[2 * gear, 2 * gear] += disc.mass
         mass[2 * gear + 1, 2 * gear + 1] += disc.tilting
         for row, bearing in zip(bearings, shaft.bearings, strict=True):
@@ -192,10 +193,12 @@ def _twist(
 ) -> tuple[FloatArray, FloatArray, int, int, FloatArray]:
     """Mass and stiffness of the twist, rows of the rim and of the driven inertia, turn of the coupling."""
     n = mesh.twist_mass.shape[0]
-    elastic_body, rim = math.isfinite(disc.twist_stiffness), gear
+    elastic_body = math.isfinite(disc.twist_stiffness)
+    rim = gear
     size = n + elastic_body + (coupled is not None)
     mass, stiffness = np.zeros((2, size, size))
-    mass[:n, :n], stiffness[:n, :n] = mesh.twist_mass, mesh.twist_stiffness
+    mass[:n, :n] = mesh.twist_mass
+    stiffness[:n, :n] = mesh.twist_stiffness
     coupling = np.zeros(size)
     if elastic_body:
         rim = n
@@ -203,7 +206,8 @@ def _twist(
     mass[rim, rim] += disc.inertia
     driven = rim
     if coupled is not None:
-        driven, at = size - 1, mesh.node(coupled.position)
+        driven = size - 1
+        at = mesh.node(coupled.position)
         mass[driven, driven] = coupled.inertia
         _spring(stiffness, at, driven, coupled.coupling_stiffness)
         coupling[[at, driven]] = 1.0, -1.0

@@ -261,7 +261,9 @@ def _contact(pair: MeshingPair, xi: FloatArray, hertz: Contact) -> FloatArray:
 
 
 def _tooth(wheel: Wheel, material: Material, length: FloatArray, width: float) -> ToothCompliance:
-    profile, modulus, ratio = wheel.tooth, material.youngs_modulus, material.poisson_ratio
+    profile = wheel.tooth
+    modulus = material.youngs_modulus
+    ratio = material.poisson_ratio
     beam = beam_compliance(profile, length, modulus, ratio)
     *_, angle = profile.involute_points(length)
     radii = profile.base_radius, profile.root_radius

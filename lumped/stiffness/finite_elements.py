@@ -56,7 +56,8 @@ class ElasticTooth:
     @property
     def modulus(self) -> float:
         """E in plane stress, E/(1 - nu^2) in plane strain [Pa]."""
-        e, nu = self.material.youngs_modulus, self.material.poisson_ratio
+        e = self.material.youngs_modulus
+        nu = self.material.poisson_ratio
         return e if self.plane == "stress" else e / (1.0 - nu**2)
 
     def compliance(self, length: FloatArray, half_width: FloatArray) -> FloatArray:
@@ -66,7 +67,8 @@ class ElasticTooth:
         depth = h / np.cos(angle) / module
         tooth = self.flank.deflection(length / module) - 2.0 / math.pi * np.log(depth) - self.twist
         # The contact is narrow beside the face width: down to the depth the strain is plane in any case.
-        e, nu = self.material.youngs_modulus, self.material.poisson_ratio
+        e = self.material.youngs_modulus
+        nu = self.material.poisson_ratio
         contact = (2.0 * np.log(2.0 * depth * module / half_width) - nu / (1.0 - nu)) / math.pi
         return tooth / self.modulus + contact * (1.0 - nu**2) / e
 
@@ -89,7 +91,8 @@ def elastic_teeth(
     apart = math.floor(pair.geometry.contact_ratio + 2.0 * REACH)
     result = []
     for name, wheel, material in zip(("pinion", "gear"), pair.wheels, (pair.pinion, pair.gear), strict=True):
-        tooth, module = replace(wheel.tooth, module=1.0), wheel.tooth.module
+        tooth = replace(wheel.tooth, module=1.0)
+        module = wheel.tooth.module
         radius = 0.5 * wheel.bore / module if bore is None else tooth.root_radius / bore
         if support != "free" and radius == 0.0:
             action = "Give the bore, or choose support = 'free'."
@@ -130,7 +133,8 @@ def self_compliance(
 
     The contact is as wide as under the operating torque on a single pair.
     """
-    g, half = pair.geometry, hertz_half_width(pair, xi)
+    g = pair.geometry
+    half = hertz_half_width(pair, xi)
     total = teeth[0].compliance(xi, half) + teeth[1].compliance(g.L_XY - xi, half)
     return np.asarray(total / g.face_width, dtype=np.float64)
 
@@ -147,9 +151,11 @@ def cross_compliance(
 
 def pair_error(pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> FloatArray:
     """Share of ``self_compliance`` by which a coarser mesh differs, at positions xi of any shape [-]."""
-    g, off = pair.geometry, np.zeros(np.shape(xi))
+    g = pair.geometry
+    off = np.zeros(np.shape(xi))
     for tooth, length in zip(teeth, (xi, g.L_XY - xi), strict=True):
-        place, coarse = length / tooth.wheel.tooth.module, flank_compliance(tooth.body, COARSE)
+        place = length / tooth.wheel.tooth.module
+        coarse = flank_compliance(tooth.body, COARSE)
         off += abs(tooth.flank.deflection(place) - coarse.deflection(place)) / tooth.modulus
     return np.asarray(off / g.face_width / self_compliance(pair, teeth, xi), dtype=np.float64)
 

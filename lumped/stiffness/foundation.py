@@ -53,7 +53,8 @@ def coefficients(ratio: ArrayLike, half_angle: ArrayLike) -> FloatArray:
     >>> coefficients(4.0, 0.05).round(4).tolist()
     [6.9356, 1.3823, 5.9122, 0.346]
     """
-    h, theta = np.asarray(ratio, dtype=float), np.asarray(half_angle, dtype=float)
+    h = np.asarray(ratio, dtype=float)
+    theta = np.asarray(half_angle, dtype=float)
     terms = np.stack([1.0 / theta**2, h**2, h / theta, 1.0 / theta, h, np.ones_like(h)])
     return np.tensordot(COEFFICIENTS, terms, axes=1)
 

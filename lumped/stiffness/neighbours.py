@@ -116,7 +116,8 @@ def foot_compliance(ratio: float, poisson: float, half_angle: float, apart: floa
         ]
     )
     work = np.einsum("ian,nab,jbn->ijn", loads, _ring(ratio, poisson), loads) / math.pi
-    same, other = work @ np.cos(n * apart), work @ np.sin(n * apart)
+    same = work @ np.cos(n * apart)
+    other = work @ np.sin(n * apart)
     sine = np.array([1.0, 0.0, 1.0])  # whether the radial traction is odd
     sign = sine - sine[:, None]
     found = np.where(sign == 0.0, same, sign * other)
@@ -136,17 +137,21 @@ def _ring(ratio: float, poisson: float) -> FloatArray:
     sin(n x). In polar coordinates u_r = r^s cos, u_t = B r^s sin solve plane stress for s = n + 1, n - 1,
     1 - n, -n - 1; of order 1 the third is ln(r) cos, (D - ln(r)) sin.
     """
-    plane, shear, inner = 1.0 / (1.0 - poisson**2), 0.5 / (1.0 + poisson), 1.0 / ratio
+    plane = 1.0 / (1.0 - poisson**2)
+    shear = 0.5 / (1.0 + poisson)
+    inner = 1.0 / ratio
     n = np.arange(1.0, _HARMONICS + 1.0)[:, None]
     s = np.concatenate([n + 1.0, n - 1.0, 1.0 - n, -n - 1.0], axis=1)
     # Radial equilibrium: s sigma_r + n tau - sigma_t = 0.
     free = plane * (s * s - 1.0) - shear * n * n
     tied = plane * n * (poisson * s - 1.0) + shear * n * (s - 1.0)
     b = -free / tied
-    radial, tangential = plane * (s + poisson * (1.0 + n * b)), shear * ((s - 1.0) * b - n)
+    radial = plane * (s + poisson * (1.0 + n * b))
+    tangential = shear * ((s - 1.0) * b - n)
     reference = np.where(s >= 0.0, 1.0, inner)  # each solution is 1 at its larger end
     with np.errstate(under="ignore"):
-        outside, inside = (1.0 / reference) ** s, (inner / reference) ** s
+        outside = (1.0 / reference) ** s
+        inside = (inner / reference) ** s
     conditions = np.stack([inside, b * inside, radial * outside, tangential * outside], axis=1)
     rim = np.stack([outside, b * outside], axis=1)
     d = -(shear + poisson * plane) / (plane + shear)

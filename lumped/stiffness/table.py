@@ -109,7 +109,8 @@ class TableStiffness(StiffnessModel):
         part that its potential-energy stiffness has in the sum of theirs.
         """
         g = pair.geometry
-        position, stiffness = self._positions(g), np.array(self.stiffness)
+        position = self._positions(g)
+        stiffness = np.array(self.stiffness)
         if not self.whole_mesh:
             return ramped(_pair_curve(position, stiffness, self, g), self.ramp_length)
         check_ramp_length(self.ramp_length, g.L_XA, g.L_XD)
@@ -149,7 +150,8 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
     period = geometry.base_pitch
     phase = np.mod(x - geometry.L_XA, period)
     order = np.argsort(phase, kind="stable")
-    phase, y = phase[order], y[order]
+    phase = phase[order]
+    y = y[order]
     same = np.diff(phase, append=phase[0] + period) <= _SAME * period
     if same.any():  # several periods, or both ends of one: equal phases must agree
         following = np.roll(y, -1)
@@ -160,7 +162,8 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
                 f"a curve with the period {period * 1e3:.4f} mm (one base pitch)",
                 "Check the axis and unit, or give one period only.",
             )
-        phase, y = phase[~same], y[~same]
+        phase = phase[~same]
+        y = y[~same]
     _check_gaps(np.diff(phase, append=phase[0] + period).max(), geometry)
     # Periodic by repetition: the middle copy of three is what an infinite table gives.
     tiled = np.concatenate([phase - period, phase, phase + period])
@@ -169,7 +172,9 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
 
 def _shared(total: PPoly, ramp_length: float, pair: MeshingPair) -> PathFunction:
     geometry = pair.geometry
-    low, high, period = geometry.L_XA, geometry.L_XD, geometry.base_pitch
+    low = geometry.L_XA
+    high = geometry.L_XD
+    period = geometry.base_pitch
     shifts = np.arange(1 - geometry.pairs, geometry.pairs) * period
     weight = ramped(energy_curve(pair), ramp_length)
 
@@ -191,7 +196,8 @@ def _neighbour_breaks(
     ``switches`` are where one pair alone jumps or has a kink, A and D among them, ``knots`` where it passes
     to its next piece. No break is within rounding of another.
     """
-    g, same = geometry, _SAME * geometry.base_pitch
+    g = geometry
+    same = _SAME * geometry.base_pitch
     shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
 
     def within(positions: ArrayLike) -> FloatArray:
@@ -199,7 +205,8 @@ def _neighbour_breaks(
         moved = moved[(moved > g.L_XA + same) & (moved < g.L_XD - same)]
         return moved[np.diff(moved, prepend=-np.inf) > same]
 
-    jumps, joints = within(switches), within(knots)
+    jumps = within(switches)
+    joints = within(knots)
     apart = np.abs(np.subtract.outer(joints, jumps)).min(axis=1, initial=np.inf) > same
     return np.unique(np.concatenate([[g.L_XA, g.L_XD], jumps, joints[apart]])), jumps
 

@@ -127,7 +127,8 @@ def two_loads(
 
     From the loads of linear springs by Chebyshev's method: Newton's step, and what the bend adds to it.
     """
-    first, second = 1.0 / stiffness[0], 1.0 / stiffness[1]
+    first = 1.0 / stiffness[0]
+    second = 1.0 / stiffness[1]
     determinant = first * second - coupling * coupling
     one = (second * pressed[0] - coupling * pressed[1]) / determinant
     other = (first * pressed[1] - coupling * pressed[0]) / determinant
@@ -141,7 +142,8 @@ def two_loads(
         inverse = 1.0 / (first * second - coupling * coupling)
         step_one = (second * rest_one - coupling * rest_other) * inverse
         step_other = (first * rest_other - coupling * rest_one) * inverse
-        rest_one, rest_other = bend_one * step_one * step_one, bend_other * step_other * step_other
+        rest_one = bend_one * step_one * step_one
+        rest_other = bend_other * step_other * step_other
         step_one += (second * rest_one - coupling * rest_other) * inverse
         step_other += (first * rest_other - coupling * rest_one) * inverse
         one, other = one - step_one, other - step_other
@@ -162,10 +164,12 @@ def _many_loads(
     loads: FloatArray,
 ) -> None:
     """Loads of more than two pairs that touch (bits ``touch``), by Newton's steps from ``loads``."""
-    matrix, rest = np.empty((count, count)), np.empty(count)
+    matrix = np.empty((count, count))
+    rest = np.empty(count)
     for _ in range(_MOST_STEPS):
         for i in range(count):
-            secant, tangent = 1.0, 1.0
+            secant = 1.0
+            tangent = 1.0
             acts = touch >> i & 1
             if acts:
                 secant, tangent, _ = compliances(loads[i], stiffness[i], softening, nominal)
@@ -218,10 +222,14 @@ def shared_loads(
             touch |= 1 << i
             loads[i] = stiffness[i] * pressed[i]
     for _ in range(2 * count + 1):
-        number, one, other = 0, 0, 0
+        number = 0
+        one = 0
+        other = 0
         for i in range(count):
             if touch >> i & 1:
-                number, one, other = number + 1, other, i
+                number = number + 1
+                one = other
+                other = i
         if number == 1:
             loads[other] = elastic_load(pressed[other], stiffness[other], softening, nominal)
         elif number == 2:
@@ -241,9 +249,12 @@ def shared_loads(
                 left -= coupling[i, j] * loads[j]
             if touch >> i & 1:
                 if loads[i] <= 0.0 and not pulls >> i & 1:
-                    touch, loads[i], settled = touch & ~(1 << i), 0.0, False
+                    touch = touch & ~(1 << i)
+                    loads[i] = 0.0
+                    settled = False
             elif stiffness[i] > 0.0 and left > 0.0:
-                touch, settled = touch | 1 << i, False
+                touch = touch | 1 << i
+                settled = False
         if settled:
             break
 
@@ -270,7 +281,8 @@ def relief_at(p: FloatArray, xi: float, own_p: float, own_g: float) -> tuple[flo
         width = p[row + 2] - p[row + 1]
         share = (roll - p[row + 1]) / width
         if share > 0.0:
-            power, amount = p[row + 4], p[row + 3]
+            power = p[row + 4]
+            amount = p[row + 3]
             if width > 0.0:  # a tip relief: a root relief grows as the roll angle falls
                 amount += own_p if pinion else own_g
             error += amount * share**power

@@ -30,21 +30,29 @@ from multibody.contact.kinematics import (
 )
 
 #: Kinds of events, the first column of an event table; the second is the place xi [m] of the last two.
-ENTRY, EXIT, SWITCH, SLIDING = 0.0, 1.0, 2.0, 3.0
+ENTRY = 0.0
+EXIT = 1.0
+SWITCH = 2.0
+SLIDING = 3.0
 #: First touch of a tip corner before the path of contact, where its damper lets one behind it go, and last
 #: touch; of letting go the second column is the stiffness there [N/m].
-FIRST_TOUCH, LET_GO, LAST_TOUCH = 4.0, 5.0, 6.0
+FIRST_TOUCH = 4.0
+LET_GO = 5.0
+LAST_TOUCH = 6.0
 #: Length of an ordinary step over the base pitch. Where the jumps of a law and its first two derivatives come
 #: to less than this share of its largest value within a step, nothing happens.
-_STEP, _NEGLIGIBLE = 0.005, 1e-6
+_STEP = 0.005
+_NEGLIGIBLE = 1e-6
 #: Most switches of the stiffness per mesh cycle at which to stop, the largest; to stop at each of a table's
 #: hundreds would cost more than it saves.
 _MOST_SWITCHES = 12
 #: A prediction is repeated until it moves by less than this share of the mesh cycle, or so often.
-_SHARP, _MOST_ITERATIONS = 1e-13, 10
+_SHARP = 1e-13
+_MOST_ITERATIONS = 10
 #: The same where the force only bends; and how often the place of a touch beyond the tips is corrected by
 #: what the loads there move.
-_BENDS, _PLACES = 1e-10, 2
+_BENDS = 1e-10
+_PLACES = 2
 
 
 def event_table(
@@ -114,7 +122,10 @@ def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArra
     There the damper pulls as the spring presses: at the load c u, u the rate at which the compression falls,
     or where it acts with the share x^2 (3 - 2 x) at x N_f, where c u x (3 - 2 x) = N_f.
     """
-    rp, rg, tip, length = line.radius_p, line.radius_g, p[kn.TIP_P], line.length
+    rp = line.radius_p
+    rg = line.radius_g
+    tip = p[kn.TIP_P]
+    length = line.length
     vx, vy = v[0] - v[3], v[1] - v[4]
     omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
     turning = lengthening = 0.0
@@ -133,7 +144,8 @@ def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArra
             break
         load = pull if pull > full else 0.25 * (3.0 + math.sqrt(9.0 - 8.0 * full / pull)) * full
         left = gap - load * compliances(load, stiffness, softening, p[kn.NOMINAL_FORCE])[0]
-        before, beyond = beyond, corner_reach(left, tip, length, rp, rg)
+        before = beyond
+        beyond = corner_reach(left, tip, length, rp, rg)
         if abs(beyond - before) < _BENDS * p[kn.PITCH]:
             break
     return float(beyond)
@@ -228,19 +240,26 @@ def time_to_event(
     Over the time ``near`` [s] a Taylor polynomial of q, v, a (6,) foretells the vibration; further ahead only
     the nominal speed is asked.
     """
-    pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
+    pitch = float(p[kn.PITCH])
+    speed = float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
     coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and p[kn.COUPLED] > 0.0
-    contacts, count, ahead = np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD)), 0, np.empty((3, 6))
-    later, moving = ahead[0], ahead[1]
+    contacts = np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    count = 0
+    ahead = np.empty((3, 6))
+    later = ahead[0]
+    moving = ahead[1]
     if coupled:
         for j in range(6):
-            later[j], moving[j] = q[j], v[j]
+            later[j] = q[j]
+            moving[j] = v[j]
         count = contact_forces(t, ahead, p, flags, table, contacts)
-    way, which = math.inf, 0
+    way = math.inf
+    which = 0
     for i in range(events.shape[0]):
         d = distance(events[i, 0], events[i, 1], t, q, v, p, flags, contacts, count) % pitch
         if d < way:
-            way, which = d, i
+            way = d
+            which = i
     wait = way / speed
     kind = float(events[which, 0]) if events.shape[0] else ENTRY
     if not wait < near:
@@ -248,7 +267,8 @@ def time_to_event(
     before = shift = 0.0
     for turn in range(_MOST_ITERATIONS):
         for j in range(6):
-            later[j], moving[j] = q[j] + wait * (v[j] + 0.5 * wait * a[j]), v[j] + wait * a[j]
+            later[j] = q[j] + wait * (v[j] + 0.5 * wait * a[j])
+            moving[j] = v[j] + wait * a[j]
         if coupled and kind >= FIRST_TOUCH:
             count = contact_forces(t + wait, ahead, p, flags, table, contacts)
         d = distance(kind, events[which, 1], t + wait, later, moving, p, flags, contacts, count)
@@ -256,7 +276,8 @@ def time_to_event(
         share = 1.0  # of the way that the secant through the last two predictions goes
         if turn > 0 and abs(change) < 0.5 * abs(shift):
             share = (wait - before) / (shift - change)
-        before, shift = wait, change
+        before = wait
+        shift = change
         wait += share * change
         if abs(change) * speed < (_SHARP if kind < FIRST_TOUCH else _BENDS) * pitch:
             break

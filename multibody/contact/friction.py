@@ -60,7 +60,8 @@ TABLE = 6.0
 _NONE, _I, _II, _III, _IV, _V = range(6)
 
 #: Branches of law II, as ``branch`` tells them beside the codes of the laws: at its two bounds.
-AT_MAXIMUM, AT_ZERO = 20, 21
+AT_MAXIMUM = 20
+AT_ZERO = 21
 #: Distance from the pitch point within which law II is held [m]. A position is known to some 2e-18 m, so any
 #: closer the logarithm of the sliding velocity would be rounding noise.
 _CLOSEST = 1e-8
@@ -68,7 +69,8 @@ _CLOSEST = 1e-8
 _ROLLING = 0.1
 #: Places on either side of the pitch point, at distances that grow geometrically, between which a law
 #: switches at most once per branch, and halvings until such a place is known to rounding.
-_SEARCHED, _HALVINGS = 400, 60
+_SEARCHED = 400
+_HALVINGS = 60
 #: Branches of law II.
 _LAW_TWO = (AT_ZERO, AT_MAXIMUM, _II)
 #: Gauss-Legendre rule of the mean coefficient.
@@ -88,7 +90,8 @@ def film_parameter(f: FloatArray, rolling: float, radius: float, w: float) -> fl
         return math.inf
     modulus = f[MODULUS]
     alpha = 1e-6 * f[PRESSURE_K] * (1e3 * f[VISCOSITY]) ** f[PRESSURE_S]  # mm^2/N -> 1/Pa
-    material, speed = alpha * modulus, f[VISCOSITY] * rolling / (2.0 * modulus * radius)
+    material = alpha * modulus
+    speed = f[VISCOSITY] * rolling / (2.0 * modulus * radius)
     thickness = 3.06 * material**0.56 * speed**0.69 * (w / (modulus * radius)) ** -0.10 * radius
     band = 2.0 * math.sqrt(8.0 * w * radius / (math.pi * modulus))
     return float(thickness / f[COMPOSITE_ROUGHNESS] * math.sqrt(f[FILM_LENGTH] / band))
@@ -109,7 +112,8 @@ def xu_kahraman(f: FloatArray, sliding: float, rolling: float, radius: float, w:
     """Law III, equation (18); p_h in GPa, V_e = v_e/2 in m/s, eta in mPa s, R in m, S in um there."""
     if w <= 0.0 or sliding == 0.0:
         return 0.0
-    pressure, eta = 1e-9 * hertz_pressure(f, radius, w), 1e3 * f[VISCOSITY]
+    pressure = 1e-9 * hertz_pressure(f, radius, w)
+    eta = 1e3 * f[VISCOSITY]
     slide_to_roll = 2.0 * sliding / rolling
     shear = slide_to_roll * pressure * math.log10(eta)
     exponent = -8.916465 - 0.354068 * shear + 2.812084 * math.exp(-shear)
@@ -202,7 +206,8 @@ def at_edge(p: FloatArray, xi: float) -> float:
 @compiled
 def nominal_friction(p: FloatArray, xi: float) -> float:
     """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
-    f, xi = p[kn.FRICTION :], at_edge(p, xi)
+    f = p[kn.FRICTION :]
+    xi = at_edge(p, xi)
     distance = xi - p[kn.L_XP]
     sliding = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * abs(distance)
     rho_g = p[kn.L_XY] - xi
@@ -233,7 +238,8 @@ def signed_friction(
     speeds = p[kn.OMEGA_P] + p[kn.OMEGA_G]
     if not flags & kn.SLIDING:
         rho_p = at_edge(p, xi)
-        slide, rho_g = flank * speeds * (rho_p - p[kn.L_XP]), p[kn.L_XY] - rho_p
+        slide = flank * speeds * (rho_p - p[kn.L_XP])
+        rho_g = p[kn.L_XY] - rho_p
         rolling = p[kn.OMEGA_P] * rho_p + p[kn.OMEGA_G] * rho_g
     if slide == 0.0:
         return 0.0
@@ -245,11 +251,13 @@ def signed_friction(
 
 def fill_friction(pair: GearPair, p: FloatArray) -> None:
     """Write a pair's friction parameters behind its geometry and speeds."""
-    law, f = pair.friction, p[kn.FRICTION :]
+    law = pair.friction
+    f = p[kn.FRICTION :]
     width = min(pair.pinion.face_width, pair.gear.face_width)
     roughness = (pair.pinion.roughness, pair.gear.roughness)
     composite = law.composite_roughness
-    f[SHARPNESS], f[MAXIMUM] = law.sharpness, law.maximum
+    f[SHARPNESS] = law.sharpness
+    f[MAXIMUM] = law.maximum
     f[BOUNDARY], f[MIXED], _ = law.thresholds
     # The load of the paper's laws: the whole torque on one face width (docs/theory/friction.md).
     f[NOMINAL_LOAD] = pair.operating.pinion_torque / p[kn.RADIUS_P] / width
@@ -275,7 +283,8 @@ def fill_friction(pair: GearPair, p: FloatArray) -> None:
 
 def _iso_14179(p: FloatArray) -> float:
     """Mean coefficient of ISO/TR 14179-2, eta in mPa s, Ra in um: w/(v rho) is N/mm over m/s and mm there."""
-    f, tangent = p[kn.FRICTION :], p[kn.L_XP]
+    f = p[kn.FRICTION :]
+    tangent = p[kn.L_XP]
     rolling = 2.0 * p[kn.OMEGA_P] * tangent
     radius = 1e3 * reduced_radius(tangent, p[kn.L_XY] - tangent)
     ratio = 1e-3 * f[NOMINAL_LOAD] / (rolling * radius)
@@ -298,7 +307,8 @@ def viscosity(lubricant: Lubricant) -> float:
     else:
         assert law.kinematic_viscosity_40 is not None  # the schema asks for the grade or for both
         assert law.kinematic_viscosity_100 is not None
-        at_40, at_100 = 1e6 * law.kinematic_viscosity_40, 1e6 * law.kinematic_viscosity_100
+        at_40 = 1e6 * law.kinematic_viscosity_40
+        at_100 = 1e6 * law.kinematic_viscosity_100
     low, high = (math.log10(math.log10(nu + 0.7)) for nu in (at_40, at_100))
     kelvin = law.temperature
     share = math.log10(kelvin / 313.15) / math.log10(373.15 / 313.15)

@@ -56,7 +56,9 @@ def contact_forces(
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
     Returns number of contacts, or -1 when a force is not finite
     """
-    q, v, wrench = state[0], state[1], state[2]
+    q = state[0]
+    v = state[1]
+    wrench = state[2]
     wrench[:] = 0.0
     rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
     teeth = p[int(p[kn.OWN]) :]
@@ -70,16 +72,20 @@ def contact_forces(
     vx, vy = v[0] - v[3], v[1] - v[4]
     unilateral = (flags & kn.CONTACT_LOSS) != 0
     coupled = p[kn.COUPLED] > 0.0 and (flags & kn.NEIGHBOURS) != 0
-    softening, nominal = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0, p[kn.NOMINAL_FORCE]
+    softening = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0
+    nominal = p[kn.NOMINAL_FORCE]
     # One array, for each costs as much as a contact's geometry.
     known = np.empty((kn.N_STATE, kn.MAX_PAIRS))
-    arms, coupling = known[kn.ARMS : kn.COUPLINGS].reshape((kn.MAX_PAIRS, 2)), known[kn.COUPLINGS : kn.SLOPES]
+    arms = known[kn.ARMS : kn.COUPLINGS].reshape((kn.MAX_PAIRS, 2))
+    coupling = known[kn.COUPLINGS : kn.SLOPES]
     count = int(np.int64(0))
     for side in range(2 if flags & kn.BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
         own_teeth = OwnPair(0.0, 0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G], 0.0, 0.0)
         line, delta, rho, _ = mesh_position(t, q, p, flags, flank)
-        ex, ey, length = line.ex, line.ey, line.length
+        ex = line.ex
+        ey = line.ey
+        length = line.length
         if not math.isfinite(delta):
             return -1
         # The nominal speeds roll, and would only blur it.
@@ -94,19 +100,26 @@ def contact_forces(
         candidates = engaged(rho, delta, length, p, flags, arms)
         bound = pairs = int(np.int64(0))  # bound: bits of pairs that cannot lose contact
         for candidate in range(candidates):
-            rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
+            rho_p = arms[candidate, 0]
+            rho_g = arms[candidate, 1]
+            i = pairs
             xi = 0.5 * (rho_p - rho_g + p[kn.L_XY])
             if p[kn.OWN] > 0.0 and side == 0:
                 own_teeth = tooth_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
-            late, tip_p, tip_g = own_teeth.error, own_teeth.tip_p, own_teeth.tip_g
+            late = own_teeth.error
+            tip_p = own_teeth.tip_p
+            tip_g = own_teeth.tip_g
             more_p, more_g = own_teeth.relief_p, own_teeth.relief_g
             error, error_slope = relief_at(p, xi, more_p, more_g)
             error_slope += own_teeth.rise
-            pressed, pressing = delta - error - late, rate - error_slope * xi_rate
-            corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
+            pressed = delta - error - late
+            pressing = rate - error_slope * xi_rate
+            corners = Corners(0.0, 0.0, 0.0, 0.0)
+            beyond = False
             if flags & kn.TIP_CONTACT:
                 if xi < p[kn.L_XA] or xi > p[kn.L_XD]:
-                    error_slope, held = 0.0, min(max(xi, p[kn.L_XA]), p[kn.L_XD])
+                    error_slope = 0.0
+                    held = min(max(xi, p[kn.L_XA]), p[kn.L_XD])
                     error = relief_at(p, held, more_p, more_g)[0]
                 edges = p[kn.EDGE_P], p[kn.EDGE_G]
                 corners = corners_at(line, rho_p, rho_g, (tip_p, tip_g), edges)
@@ -122,12 +135,16 @@ def contact_forces(
                     - corners.by_length * length_rate
                 )
             pairs += 1
-            arms[i, 0], arms[i, 1] = rho_p, rho_g
+            arms[i, 0] = rho_p
+            arms[i, 1] = rho_g
             if not (unilateral or beyond):
                 bound |= 1 << i
-            known[kn.POSITION, i], known[kn.PRESSED, i], known[kn.PRESSING, i] = xi, pressed, pressing
+            known[kn.POSITION, i] = xi
+            known[kn.PRESSED, i] = pressed
+            known[kn.PRESSING, i] = pressing
             known[kn.RELIEF_SLOPE, i] = error_slope
-            known[kn.BY_P, i], known[kn.BY_G, i] = corners.by_p, corners.by_g
+            known[kn.BY_P, i] = corners.by_p
+            known[kn.BY_G, i] = corners.by_g
             known[kn.BY_L, i] = corners.by_length
             k, slope = stiffness_and_slope(table, xi)
             share = 1.0 / (1.0 + own_teeth.softer * k)
@@ -145,13 +162,20 @@ def contact_forces(
                     moved, moved_slope = coupling_at(p, i - j, known[kn.POSITION, j])
                     coupling[i, j] = coupling[j, i] = moved
                     known[kn.SLOPES + i, j] = known[kn.SLOPES + j, i] = moved_slope
-            pressed_by, stiff, loads = known[kn.PRESSED], known[kn.STIFFNESS], known[kn.NORMAL]
+            pressed_by = known[kn.PRESSED]
+            stiff = known[kn.STIFFNESS]
+            loads = known[kn.NORMAL]
             shared_loads(pairs, pressed_by, stiff, bound, coupling, softening, nominal, loads)
         for i in range(pairs):
-            xi, pressed, pressing = known[kn.POSITION, i], known[kn.PRESSED, i], known[kn.PRESSING, i]
-            elastic, stiffness = known[kn.NORMAL, i], known[kn.STIFFNESS, i]
+            xi = known[kn.POSITION, i]
+            pressed = known[kn.PRESSED, i]
+            pressing = known[kn.PRESSING, i]
+            elastic = known[kn.NORMAL, i]
+            stiffness = known[kn.STIFFNESS, i]
             error_slope = known[kn.RELIEF_SLOPE, i]
-            own, moved, moved_slope = pressed, 0.0, 0.0
+            own = pressed
+            moved = 0.0
+            moved_slope = 0.0
             if coupled:
                 for j in range(pairs):
                     if j != i:
@@ -186,12 +210,21 @@ def contact_forces(
                 by_p, by_g = normal * known[kn.BY_P, i] + along, normal * known[kn.BY_G, i] - along
                 add_gradient(wrench, line, by_p, by_g, normal * known[kn.BY_L, i])
             record = contacts[count]
-            record[kn.XI], record[kn.LOAD], record[kn.MU] = xi, normal, mu
+            record[kn.XI] = xi
+            record[kn.LOAD] = normal
+            record[kn.MU] = mu
             record[kn.FRICTION_FORCE] = mu * normal
-            record[kn.K], record[kn.C], record[kn.SLIDE] = stiffness, damping, slide
-            record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.FLANK] = pressed, pressing, flank
-            record[kn.CLOSING], record[kn.ELASTIC], record[kn.ENERGY] = rate, elastic, stored
-            record[kn.PATH], record[kn.PATH_RATE] = path, xi_rate
+            record[kn.K] = stiffness
+            record[kn.C] = damping
+            record[kn.SLIDE] = slide
+            record[kn.OVERLAP] = pressed
+            record[kn.OVERLAP_RATE] = pressing
+            record[kn.FLANK] = flank
+            record[kn.CLOSING] = rate
+            record[kn.ELASTIC] = elastic
+            record[kn.ENERGY] = stored
+            record[kn.PATH] = path
+            record[kn.PATH_RATE] = xi_rate
             count += 1
     if p[kn.OWN] > 0.0:
         move_moments(centres[2], wrench)
@@ -211,9 +244,13 @@ def linear_forces(
 
     Of the flags ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. No back sides.
     """
-    q, v, wrench = state[0], state[1], state[2]
+    q = state[0]
+    v = state[1]
+    wrench = state[2]
     wrench[:] = 0.0
-    rp, rg, pitch = p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH]
+    rp = p[kn.RADIUS_P]
+    rg = p[kn.RADIUS_G]
+    pitch = p[kn.PITCH]
     tau = min(max(t, p[kn.T_LOW]), p[kn.T_HIGH])
     speed = p[kn.OMEGA_P] * rp
     advance = speed * tau
@@ -221,7 +258,10 @@ def linear_forces(
     delta = q[0] - q[3] - rp * q[2] - rg * q[5]
     rate = v[0] - v[3] - rp * v[2] - rg * v[5]
     count = 0
-    k, c, e, gap = int(p[kn.K_ROWS]), int(p[kn.C_ROWS]), int(p[kn.E_ROWS]), int(p[kn.GAP_ROWS])
+    k = int(p[kn.K_ROWS])
+    c = int(p[kn.C_ROWS])
+    e = int(p[kn.E_ROWS])
+    gap = int(p[kn.GAP_ROWS])
     tilted = k + c + e + gap
     closed = tilted + int(p[kn.TILT_ROWS])
     loaded = k > 0
@@ -237,15 +277,18 @@ def linear_forces(
             tilt = law_at(table, tilted, closed - 1, xi)[0]
             closing = law_at(table, closed, table.shape[0] - 1, xi)[0]
         else:
-            tilt, closing = 0.0, 1.0
+            tilt = 0.0
+            closing = 1.0
             error, slope = relief_at(p, xi, 0.0, 0.0)
             stiffness, stiffness_slope = stiffness_and_slope(table, xi)
             damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
-        pressed, pressing = delta - error, rate - slope * speed
+        pressed = delta - error
+        pressing = rate - slope * speed
         normal = stiffness * pressed + damping * pressing
         if flags & kn.CONTACT_LOSS and (pressed <= 0.0 or normal < 0.0):
             stiffness = damping = normal = 0.0
-        friction, apart = mu * normal, tilt * normal
+        friction = mu * normal
+        apart = tilt * normal
         wrench[0] -= normal
         wrench[1] += friction - apart
         wrench[2] += rp * normal + xi * friction
@@ -253,14 +296,22 @@ def linear_forces(
         wrench[4] -= friction - apart
         wrench[5] += rg * normal + (p[kn.L_XY] - xi) * friction
         record = contacts[count]
-        record[kn.XI], record[kn.LOAD], record[kn.FRICTION_FORCE], record[kn.MU] = xi, normal, friction, mu
-        record[kn.K], record[kn.C], record[kn.FLANK] = stiffness, damping, 1.0
+        record[kn.XI] = xi
+        record[kn.LOAD] = normal
+        record[kn.FRICTION_FORCE] = friction
+        record[kn.MU] = mu
+        record[kn.K] = stiffness
+        record[kn.C] = damping
+        record[kn.FLANK] = 1.0
         # The approach moves a tip corner's contact outside, and closes it by less than itself.
-        record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.CLOSING] = pressed, closing * pressing, rate
+        record[kn.OVERLAP] = pressed
+        record[kn.OVERLAP_RATE] = closing * pressing
+        record[kn.CLOSING] = rate
         gear_arm = p[kn.L_XY] - xi
         slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
         record[kn.SLIDE] = slide
-        record[kn.ELASTIC], record[kn.ENERGY] = stiffness * pressed, 0.5 * stiffness * pressed**2
+        record[kn.ELASTIC] = stiffness * pressed
+        record[kn.ENERGY] = 0.5 * stiffness * pressed**2
         # The damper works on the gap itself, the spring on the error that stands for it with loaded contact.
         error_slope = law_at(table, k + c, k + c + e - 1, xi)[1] if loaded else slope
         elastic = stiffness * pressed
@@ -294,10 +345,13 @@ def tooth_forces_over(
 
     Returns wrenches (n, 6), contact records (n, 2 MAX_PAIRS, N_RECORD), and how many of each count (n,)
     """
-    wrenches, counts = np.empty((times.size, 6)), np.empty(times.size, np.int64)
-    contacts, state = np.zeros((times.size, 2 * kn.MAX_PAIRS, kn.N_RECORD)), np.empty((3, 6))
+    wrenches = np.empty((times.size, 6))
+    counts = np.empty(times.size, np.int64)
+    contacts = np.zeros((times.size, 2 * kn.MAX_PAIRS, kn.N_RECORD))
+    state = np.empty((3, 6))
     for i, t in enumerate(times.tolist()):
-        state[0], state[1] = q[i, :6], v[i, :6]
+        state[0] = q[i, :6]
+        state[1] = v[i, :6]
         counts[i] = tooth_forces(t, state, p, flags, table, contacts[i])
         wrenches[i] = state[2]
     return wrenches, contacts, counts

@@ -25,8 +25,19 @@ MAX_PAIRS = 4
 N_FRICTION = 18
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
-ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
-FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128, 256, 512, 1024, 2048, 4096
+ROTATION_PHASE = 1
+MOVING_LINE = 2
+SLIDING = 4
+ENTRY_SHIFT = 8
+CONTACT_LOSS = 16
+BACK_SIDE = 32
+LINEAR = 64
+FRICTION_LOAD = 128
+PATH_WORK = 256
+TIP_CONTACT = 512
+CONTACT_LAW = 1024
+NEIGHBOURS = 2048
+CLEARANCE = 4096
 
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
@@ -46,13 +57,15 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
     FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
 ) = range(35)  # fmt: skip
 #: Columns of one relief, and the most reliefs: tip and root of both flanks.
-RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
+RELIEF_COLUMNS = 5
+MOST_RELIEFS = 4
 #: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
 FRICTION = FIRST_RELIEF + RELIEF_COLUMNS * MOST_RELIEFS
 #: How far pairs 1, 2, ... base pitches apart move each other: the number of such functions, then each as
 #: a row of ``elements.stiffness_and_slope`` over the position of the pair behind [m/N].
 COUPLED = FRICTION + N_FRICTION
-FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
+FIRST_COUPLED = COUPLED + 1
+COUPLED_COLUMNS = FIT_DEGREE + 3
 #: The rows of ``friction_size``'s table, if there is one, stand behind all others.
 N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
 
@@ -98,7 +111,8 @@ N_STATE = SLOPES + MAX_PAIRS
 #: How far beyond the tips contact is looked for, over the base pitch.
 _REACH = 0.4
 #: Flanks: the one that drives in the pinion's running sense, and the back side.
-DRIVE, COAST = 1.0, -1.0
+DRIVE = 1.0
+COAST = -1.0
 
 
 class Line(NamedTuple):
@@ -203,7 +217,9 @@ def add_wrench(
     The pinion receives -N e + F n, the gear the opposite, both at the contact point; moments are about the
     centres, counter-clockwise. ``friction`` F has the sign of the sliding velocity.
     """
-    ex, ey, flank = line.ex, line.ey, line.flank
+    ex = line.ex
+    ey = line.ey
+    flank = line.flank
     nx, ny = -flank * ey, flank * ex
     fx, fy = -normal * ex + friction * nx, -normal * ey + friction * ny
     wrench[0] += fx
@@ -365,7 +381,9 @@ def corners_at(
 
     tips, edges : tangent lengths of tip circles and edges of pinion and gear [m], an edge of 0 is none
     """
-    length, radius_p, radius_g = line.length, line.radius_p, line.radius_g
+    length = line.length
+    radius_p = line.radius_p
+    radius_g = line.radius_g
     end = end_of_flank(rho_p, tips[0], rho_g, edges[1], length, radius_p, radius_g)
     start = end_of_flank(rho_g, tips[1], rho_p, edges[0], length, radius_g, radius_p)
     return Corners(end[0] + start[0], end[1] + start[2], end[2] + start[1], end[3] + start[3])
@@ -418,15 +436,21 @@ def off_axis(own: FloatArray, t: float, state: FloatArray, omega_p: float, omega
     """Rows of (x, y, phi) of both: state of the base circles' centres, rates, their way from the axes."""
     found = np.empty((3, 6))
     for j in range(6):
-        found[0, j], found[1, j] = state[0, j], state[1, j]
+        found[0, j] = state[0, j]
+        found[1, j] = state[1, j]
     for which in range(2):
-        row, sense = OWN_COLUMNS * which, 1.0 - 2.0 * which  # the pinion turns clockwise
+        # the pinion turns clockwise
+        row = OWN_COLUMNS * which
+        sense = 1.0 - 2.0 * which
         x, y = 3 * which, 3 * which + 1
         turned = (omega_g if which else omega_p) * t - sense * state[0, x + 2]
         rate = (omega_g if which else omega_p) - sense * state[1, x + 2]
-        size, angle = own[row + ECCENTRICITY], turned + own[row + ANGLE]
-        along, off = -sense * size * math.cos(angle), size * math.sin(angle)
-        found[2, x], found[2, y] = along, off
+        size = own[row + ECCENTRICITY]
+        angle = turned + own[row + ANGLE]
+        along = -sense * size * math.cos(angle)
+        off = size * math.sin(angle)
+        found[2, x] = along
+        found[2, y] = off
         found[0, x] += along
         found[0, y] += off
         found[1, x] += sense * off * rate
@@ -493,25 +517,32 @@ def tooth_pair(
     z_p, z_g = int(own[TEETH]), int(own[OWN_COLUMNS + TEETH])
     pinion = (int(own[FIRST]) + number_p) % z_p
     gear = (int(own[OWN_COLUMNS + FIRST]) + number_g) % z_g
-    errors, rises = own[OWN_ERRORS:], own[OWN_ERRORS + z_p + z_g :]
+    errors = own[OWN_ERRORS:]
+    rises = own[OWN_ERRORS + z_p + z_g :]
     reliefs = rises[z_p + z_g :]
-    rise, held = rises[pinion] - rises[z_p + gear], min(max(xi, p[L_XA]), p[L_XD])
+    rise = rises[pinion] - rises[z_p + gear]
+    held = min(max(xi, p[L_XA]), p[L_XD])
     error = errors[pinion] + errors[z_p + gear] + rise * (held - p[L_XP])
     rise = rise if held == xi else 0.0
-    softer, slope, tip_p, tip_g = 0.0, 0.0, p[TIP_P], p[TIP_G]
+    softer = 0.0
+    slope = 0.0
+    tip_p = p[TIP_P]
+    tip_g = p[TIP_G]
     for i in range(int(own[OWN_FAULTS])):
         row = OWN_ERRORS + 3 * (z_p + z_g) + FAULT_COLUMNS * i
         of_gear = own[row + FAULT_GEAR] == 1.0
         if own[row + FAULT_TOOTH] != (gear if of_gear else pinion):
             continue
-        end, radius = own[row + FLANK_END], p[RADIUS_G] if of_gear else p[RADIUS_P]
+        end = own[row + FLANK_END]
+        radius = p[RADIUS_G] if of_gear else p[RADIUS_P]
         sense, place = (-1.0, p[L_XY] - xi) if of_gear else (1.0, xi)
         if of_gear:
             tip_g = min(tip_g, end)
         else:
             tip_p = min(tip_p, end)
         if place > end:
-            sense, place = 0.0, end
+            sense = 0.0
+            place = end
         turn = place / radius - own[row + HALF_TOOTH]
         arm = radius - own[row + ROOT] * math.cos(turn)
         softer += own[row + CRACK] * arm * arm

@@ -47,7 +47,8 @@ Supports = Literal["springs", "shafts"]
 #: Where shafts.max_frequency is not given, modes of shafts with their gears held are kept up to so many times
 #: the fastest mode of the gears on springs, and to this order of the mesh frequency: the rest changes the
 #: transmission error by some thousandths of its peak to peak (docs/theory/shafts.md).
-_MESH_FREQUENCIES, _MESH_ORDERS = 4.0, 5.0
+_MESH_FREQUENCIES = 4.0
+_MESH_ORDERS = 5.0
 #: Largest operating pressure angle that is looked for [rad].
 _STEEPEST = 1.4
 
@@ -100,7 +101,8 @@ class Machine:
 
     def torques(self, t: FloatArray, q: FloatArray) -> FloatArray:
         """Driving and braking torque (n, 2), ripples at the actual angles of their rotors, at n states."""
-        p, angles = self.parameters, np.zeros((t.size, 6))
+        p = self.parameters
+        angles = np.zeros((t.size, 6))
         angles[:, [2, 5]] = q[:, [2, 5]] if self.train is None else q @ self.train.torques.T
         found = np.tile([self.torque_pinion, self.torque_gear], (t.size, 1))
         if self.own.size:
@@ -115,8 +117,10 @@ class Machine:
         The pinion turns clockwise, so its driving torque is negative; the brake's acts against the gear.
         """
         rows = np.zeros((4, 2, 3))
-        rows[0, :, :2], rows[0, :, 2] = self.mass[:, None], self.inertia
-        rows[1, :, :2], rows[2, :, :2] = self.bearing_stiffness, self.bearing_damping
+        rows[0, :, :2] = self.mass[:, None]
+        rows[0, :, 2] = self.inertia
+        rows[1, :, :2] = self.bearing_stiffness
+        rows[2, :, :2] = self.bearing_damping
         rows[3, :, 2] = -self.torque_pinion, -self.torque_gear
         return rows.reshape(4, 6)
 
@@ -152,21 +156,32 @@ def machine(
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
     tooth_p = base_tooth_angle(pair, 0, drawn.base_pinion)
     tooth_g = base_tooth_angle(pair, 1, drawn.base_gear)
-    relieved, loaded = reliefs(pair, drawn), pair.mesh.contact == "loaded"
+    relieved = reliefs(pair, drawn)
+    loaded = pair.mesh.contact == "loaded"
     parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
     whole = loaded or parts or flags & (kn.TIP_CONTACT | kn.CLEARANCE)
     if cycle is None and (not whole or (loaded and flags & kn.LINEAR)):
         cycle = MeshCycle(pair.geometry, contact_of(pair).elements(pair))
     stiffness = pair_stiffness(pair) if whole or cycle is None else cycle.elements.stiffness
-    softening, coupling = contact_softening(pair), cross_compliances(pair)[: kn.MAX_PAIRS - 1]
-    r_p, r_g, pitch, l_xy = drawn.base_pinion, drawn.base_gear, drawn.pitch, drawn.tangent
+    softening = contact_softening(pair)
+    coupling = cross_compliances(pair)[: kn.MAX_PAIRS - 1]
+    r_p = drawn.base_pinion
+    r_g = drawn.base_gear
+    pitch = drawn.pitch
+    l_xy = drawn.tangent
     tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear
-    l_xa, l_xd, l_xp = drawn.start, drawn.end, l_xy * r_p / (r_p + r_g)
+    l_xa = drawn.start
+    l_xd = drawn.end
+    l_xp = l_xy * r_p / (r_p + r_g)
     omega_p = pair.operating.pinion_speed
     p = np.zeros(kn.N_PARAMETERS)
-    p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH] = r_p, r_g, pitch
-    p[kn.TIP_P], p[kn.TIP_G] = tip_p, tip_g
-    p[kn.EDGE_P], p[kn.EDGE_G] = drawn.edge_pinion, drawn.edge_gear
+    p[kn.RADIUS_P] = r_p
+    p[kn.RADIUS_G] = r_g
+    p[kn.PITCH] = pitch
+    p[kn.TIP_P] = tip_p
+    p[kn.TIP_G] = tip_g
+    p[kn.EDGE_P] = drawn.edge_pinion
+    p[kn.EDGE_G] = drawn.edge_gear
     # At t = 0 the line of action is the x axis and one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA,
     # so chi_g = pi - rho_g/r_bg, and the flanks are neither apart nor pressed.
     p[kn.CHI_P] = -l_xa / r_p
@@ -174,10 +189,17 @@ def machine(
     p[kn.CHI_P_BACK] = p[kn.CHI_P] + math.pi + tooth_p
     chi_g = math.pi + tooth_g - (l_xy - l_xa) / r_g
     p[kn.APART_BACK] = r_p * p[kn.CHI_P_BACK] + r_g * chi_g - l_xy
-    p[kn.CENTRE_PY], p[kn.CENTRE_GX], p[kn.CENTRE_GY] = -r_p, l_xy, r_g
-    p[kn.L_XA], p[kn.L_XP], p[kn.L_XD], p[kn.L_XY] = l_xa, l_xp, l_xd, l_xy
-    p[kn.OMEGA_P], p[kn.OMEGA_G] = omega_p, omega_p * r_p / r_g
-    p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
+    p[kn.CENTRE_PY] = -r_p
+    p[kn.CENTRE_GX] = l_xy
+    p[kn.CENTRE_GY] = r_g
+    p[kn.L_XA] = l_xa
+    p[kn.L_XP] = l_xp
+    p[kn.L_XD] = l_xd
+    p[kn.L_XY] = l_xy
+    p[kn.OMEGA_P] = omega_p
+    p[kn.OMEGA_G] = omega_p * r_p / r_g
+    p[kn.T_LOW] = -math.inf
+    p[kn.T_HIGH] = math.inf
     p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(_mesh_mass(p, inertia))
     p[kn.SOFTENING] = softening
     p[kn.NOMINAL_FORCE] = pair.operating.pinion_torque / r_p
@@ -235,7 +257,8 @@ def own_block(pair: GearPair) -> FloatArray:
     """Teeth that differ, as numbers behind the parameters (see ``kinematics``); empty for like teeth."""
     if pair.healthy is pair:
         return np.zeros(0)
-    teeth, firsts = own_teeth(pair), first_teeth(pair)
+    teeth = own_teeth(pair)
+    firsts = first_teeth(pair)
     turned = [2.0 * math.pi * first / one.error.size for one, first in zip(teeth, firsts, strict=True)]
     rows = [
         (one.eccentricity, one.phase + angle, one.error.size, first)
@@ -259,7 +282,8 @@ def own_block(pair: GearPair) -> FloatArray:
 
 def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
     """A fault as a row of ``kinematics``; the crack's strip is that of ``lumped.faults``, its arm is not."""
-    flank, gear = pair.flank(which), (pair.pinion, pair.gear)[which]
+    flank = pair.flank(which)
+    gear = (pair.pinion, pair.gear)[which]
     row = np.zeros(kn.FAULT_COLUMNS)
     row[[kn.FAULT_GEAR, kn.FAULT_TOOTH, kn.FLANK_END]] = which, fault.tooth - 1, flank.tip
     radius = flank.wheel.tooth.base_radius
@@ -268,12 +292,11 @@ def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
         x = fault.depth * math.sin(fault.angle) / (2.0 * half)
         strip = x**2 / (1.0 - x) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)
         row[kn.CRACK] = 6.0 * strip / (gear.youngs_modulus * flank.face_width * half**2)
-        row[kn.ROOT], row[kn.HALF_TOOTH] = centre, 0.5 * base_tooth_angle(pair, which, radius)
+        row[kn.ROOT] = centre
+        row[kn.HALF_TOOTH] = 0.5 * base_tooth_angle(pair, which, radius)
     elif isinstance(fault, Spall):
-        row[kn.SPALL_START], row[kn.SPALL_END] = (
-            fault.start_roll_angle * radius,
-            fault.end_roll_angle * radius,
-        )
+        row[kn.SPALL_START] = fault.start_roll_angle * radius
+        row[kn.SPALL_END] = fault.end_roll_angle * radius
         width = flank.face_width if fault.width is None else fault.width
         if width < flank.face_width:
             row[kn.SPALL] = flank.hertz * (flank.face_width / (flank.face_width - width) - 1.0)
@@ -425,7 +448,8 @@ def bearing_constants(pair: GearPair, mass: FloatArray) -> tuple[FloatArray, Flo
 
     x is along the line of action and y off it; d = 2 zeta sqrt(k m) is the damping of one mass on one spring.
     """
-    stiffness, damping = np.empty((2, 2)), np.empty((2, 2))
+    stiffness = np.empty((2, 2))
+    damping = np.empty((2, 2))
     for row, bearing in enumerate((pair.bearings.pinion, pair.bearings.gear)):
         stiffness[row] = bearing.loa_stiffness, bearing.oloa_stiffness
         ratio = np.array([bearing.loa_damping_ratio, bearing.oloa_damping_ratio])
@@ -449,7 +473,8 @@ def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, f
             acts = pair.mesh.relief == "static"
             if relief is None or not (own or (acts and relief.amount != 0.0)):
                 continue
-            power, amount = 1.0 if relief.shape == "linear" else 2.0, relief.amount if acts else 0.0
+            power = 1.0 if relief.shape == "linear" else 2.0
+            amount = relief.amount if acts else 0.0
             start = _relief_start(relief, base, end, sense)
             rows.append((which, start, end / base, amount, power))
     return rows
@@ -472,7 +497,9 @@ def base_tooth_angle(pair: GearPair, which: int, base: float) -> float:
 
     ``which``: pinion (0) or gear (1), with the base radius ``base`` [m].
     """
-    rack, gear, shift = pair.basic_rack, (pair.pinion, pair.gear)[which], profile_shifts(pair)[which]
+    rack = pair.basic_rack
+    gear = (pair.pinion, pair.gear)[which]
+    shift = profile_shifts(pair)[which]
     alpha = rack.pressure_angle
     at_reference = (0.5 * math.pi + 2.0 * shift * math.tan(alpha)) / (0.5 * gear.teeth)
     return at_reference + 2.0 * (math.tan(alpha) - alpha) - 0.5 * pair.mesh.backlash / base
@@ -484,7 +511,8 @@ def _tip_radius(pair: GearPair, which: int, centre_distance: float) -> float:
     The tip stays off the mate's root by the clearance of the rack, and does not reach beyond the addendum
     that the rack gives.
     """
-    gear, rack = (pair.pinion, pair.gear)[which], pair.basic_rack
+    gear = (pair.pinion, pair.gear)[which]
+    rack = pair.basic_rack
     if gear.tip_diameter is not None:
         return gear.tip_diameter / 2.0
     if gear.addendum is not None:
@@ -498,7 +526,8 @@ def _tip_radius(pair: GearPair, which: int, centre_distance: float) -> float:
 
 def _close_mesh(pair: GearPair, base: float) -> float:
     """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
-    alpha, teeth = pair.basic_rack.pressure_angle, pair.pinion.teeth + pair.gear.teeth
+    alpha = pair.basic_rack.pressure_angle
+    teeth = pair.pinion.teeth + pair.gear.teeth
     shift = sum(profile_shifts(pair))
 
     def gap(angle: float) -> float:
@@ -511,7 +540,9 @@ def _close_mesh(pair: GearPair, base: float) -> float:
 
 
 def _disc(pair: GearPair, gear: Gear) -> tuple[float, float]:
-    outer, inner = pair.basic_rack.module * gear.teeth, gear.bore  # diameters
+    # diameters
+    outer = pair.basic_rack.module * gear.teeth
+    inner = gear.bore
     mass = 0.25 * math.pi * (outer**2 - inner**2) * gear.face_width * gear.density
     inertia = math.pi / 32.0 * (outer**4 - inner**4) * gear.face_width * gear.density
     return (mass if gear.mass is None else gear.mass), (inertia if gear.inertia is None else gear.inertia)

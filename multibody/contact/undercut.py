@@ -13,7 +13,8 @@ from scipy.optimize import brentq
 from lumped.schema.gear import BasicRack
 
 #: Rolls at which the crossing is looked for, and the depth of a cut that counts, in modules.
-_ROLLS, _LEAST = 201, 1e-4
+_ROLLS = 201
+_LEAST = 1e-4
 
 
 def undercut_edge(rack: BasicRack, teeth: int, shift: float) -> float:
@@ -23,8 +24,10 @@ def undercut_edge(rack: BasicRack, teeth: int, shift: float) -> float:
     moves the rack's pitch line by r phi along the pitch circle, and the centre of its rounded tip with it.
     The tip cuts where the line from the pitch point through that centre leaves the rounding.
     """
-    angle, radius = rack.pressure_angle, 0.5 * teeth
-    base, rounding = radius * math.cos(angle), rack.fillet_radius_coefficient
+    angle = rack.pressure_angle
+    radius = 0.5 * teeth
+    base = radius * math.cos(angle)
+    rounding = rack.fillet_radius_coefficient
     straight = rack.dedendum_coefficient - rounding * (1.0 - math.sin(angle)) - shift  # reach of the flank
     if radius * math.sin(angle) ** 2 >= straight - _LEAST * math.sin(angle):
         return 0.0

@@ -24,7 +24,8 @@ def profile_shifts(pair: GearPair) -> tuple[float, float]:
         return given[0], given[1]
     if pair.centre_distance is None:
         return given[0] or 0.0, given[1] or 0.0
-    rack, teeth = pair.basic_rack, (pair.pinion.teeth, pair.gear.teeth)
+    rack = pair.basic_rack
+    teeth = (pair.pinion.teeth, pair.gear.teeth)
     base = 0.5 * rack.module * sum(teeth) * math.cos(rack.pressure_angle)
     leg = math.sqrt(pair.centre_distance**2 - base**2) / base
     slope = math.tan(rack.pressure_angle)
@@ -39,5 +40,6 @@ def profile_shifts(pair: GearPair) -> tuple[float, float]:
 
 def root_radius(pair: GearPair, which: int) -> float:
     """Root radius of the pinion (0) or the gear (1) [m], cut by the tip line of the rack."""
-    rack, gear = pair.basic_rack, (pair.pinion, pair.gear)[which]
+    rack = pair.basic_rack
+    gear = (pair.pinion, pair.gear)[which]
     return rack.module * (0.5 * gear.teeth + profile_shifts(pair)[which] - rack.dedendum_coefficient)

@@ -48,7 +48,8 @@ _CLOSED = 10.0
 #: ... and accepts this much where it stops falling before.
 _ACCEPTED = 1e-5
 #: Steps without a smaller mismatch before the iteration is given up, and most steps.
-_PATIENCE, _ITERATIONS = 8, 40
+_PATIENCE = 8
+_ITERATIONS = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,12 +151,14 @@ def find_orbit(
     near : motion of the pair with other effects, to start from with its matrix
     Raises NumericalError : the iteration does not close the cycle
     """
-    machine, scale = setup.machine, state_scale(setup.machine, setup.deflection)
+    machine = setup.machine
+    scale = state_scale(setup.machine, setup.deflection)
     if near is None:
         state = _packed(machine, setup.q, setup.v)
         derivatives = -_first_matrix(setup, state, scale, cycles, near_lumped)
     else:
-        state, derivatives = near.state, near.derivatives
+        state = near.state
+        derivatives = near.derivatives
         machine = replace(machine, torque_gear=near.machine.torque_gear)
     torque = machine.torque_gear
 
@@ -190,7 +193,8 @@ def _first_matrix(
     """Matrix of the first step to a periodic motion, from the state of ``setup``; see ``find_orbit``."""
     machine = setup.machine
     if near_lumped and setup.motion is not None:
-        transition, by_torque = setup.motion.transition, setup.motion.by_torque
+        transition = setup.motion.transition
+        by_torque = setup.motion.by_torque
     elif near_lumped:
         system = setup.system
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
@@ -329,7 +333,8 @@ def _differences(
     """Columns of the map: differences to ``end``, where the state itself arrives, else central ones."""
     columns = []
     for i, h in enumerate(steps):
-        ahead, behind = state.copy(), state.copy()
+        ahead = state.copy()
+        behind = state.copy()
         ahead[i] += h
         behind[i] -= h
         change = (flow(ahead) - flow(behind)) / 2.0 if end is None else flow(ahead) - end
@@ -342,7 +347,8 @@ def _relative(machine: Machine) -> tuple[FloatArray, FloatArray]:
     p = machine.parameters
     radii = np.array([p[kn.RADIUS_P], -p[kn.RADIUS_G]])
     by_inertia = radii / machine.inertia
-    down, up = np.zeros((5, 6)), np.zeros((6, 5))
+    down = np.zeros((5, 6))
+    up = np.zeros((6, 5))
     down[0, :2] = radii
     up[:2, 0] = by_inertia / (radii @ by_inertia)
     down[1:, 2:] = up[2:, 1:] = np.eye(4)

@@ -41,7 +41,8 @@ _MOST_EVENTS = 64
 _NEAR = 0.2
 #: Further ahead the nominal speed tells the time of an event, which vibration shifts by less than this; much
 #: more where sliding turns, which depends on rates.
-_FAR, _FAR_SLIDING = 0.04, 0.15
+_FAR = 0.04
+_FAR_SLIDING = 0.15
 #: Most steps that are taken without exudyn at a time.
 _BRIDGED = 12
 #: exudyn takes an interval as finished so long before its end [s].
@@ -59,7 +60,9 @@ _TABLEAU = np.array(
     ]
 )
 #: Part of the next step that the error of this one allows, and by what a step may change.
-_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
+_SAFETY = 0.9
+_SHRINK = 0.2
+_GROW = 5.0
 #: What is left before an interval's end is bridged if it is no longer than so many ordinary steps.
 _FEW = 3.0
 #: A step this much smaller than an ordinary one is left to exudyn.
@@ -89,36 +92,50 @@ def bridge(
     tableau : ``_TABLEAU``; as a constant it would be compiled into unrolled loops
     Returns number of rows filled, step to go on with [s], number of force evaluations
     """
-    state, contacts = np.empty((3, 6)), np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD))
-    place, speed, wrench = state[0], state[1], state[2]
-    speeds, rates = np.empty((7, 6)), np.empty((7, 6))
-    q, v, a = states[0], states[1], states[2]
-    step, rows, calls = ordinary, 1, 0
+    state = np.empty((3, 6))
+    contacts = np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    place = state[0]
+    speed = state[1]
+    wrench = state[2]
+    speeds = np.empty((7, 6))
+    rates = np.empty((7, 6))
+    q = states[0]
+    v = states[1]
+    a = states[2]
+    step = ordinary
+    rows = 1
+    calls = 0
     while rows < times.size and times[rows - 1] < stop:
-        left, j = stop - times[rows - 1], rows - 1
+        left = stop - times[rows - 1]
+        j = rows - 1
         if rows > 1 and step >= ordinary and left > _FEW * ordinary:
             break
         equal = math.ceil(left / step)
         h = left / equal
         for i in range(6):
-            speeds[0, i], rates[0, i] = v[j, i], a[j, i]
+            speeds[0, i] = v[j, i]
+            rates[0, i] = a[j, i]
         for stage in range(6):
             for i in range(6):
                 further = faster = 0.0
                 for k in range(stage + 1):
                     further += tableau[stage, k] * speeds[k, i]
                     faster += tableau[stage, k] * rates[k, i]
-                place[i], speed[i] = q[j, i] + h * further, v[j, i] + h * faster
+                place[i] = q[j, i] + h * further
+                speed[i] = v[j, i] + h * faster
             calls += 1
             t = times[j] + h * tableau[stage, 6]
             if tooth_forces(t, state, p, flags, table, contacts) < 0:
                 return rows, step, calls
             for i in range(6):
                 force = wrench[i] + bodies[3, i] - bodies[1, i] * place[i] - bodies[2, i] * speed[i]
-                speeds[stage + 1, i], rates[stage + 1, i] = speed[i], force / bodies[0, i]
+                speeds[stage + 1, i] = speed[i]
+                rates[stage + 1, i] = force / bodies[0, i]
         worst = 0.0
         for i in range(6):
-            q[rows, i], v[rows, i], a[rows, i] = place[i], speed[i], rates[6, i]
+            q[rows, i] = place[i]
+            v[rows, i] = speed[i]
+            a[rows, i] = rates[6, i]
             further = faster = 0.0
             for k in range(7):
                 further += tableau[6, k] * speeds[k, i]
@@ -156,7 +173,9 @@ class Segment:
         h = (self.times[j + 1] - self.times[j])[:, None]
         s = (t - self.times[j])[:, None] / h
         # Coefficients of s^3, s^4, s^5 from what the Taylor start (q, v, a) leaves at the far end.
-        start, speed, bend = self.q[j], h * self.v[j], h * h * self.a[j]
+        start = self.q[j]
+        speed = h * self.v[j]
+        bend = h * h * self.a[j]
         gap = self.q[j + 1] - start - speed - 0.5 * bend
         gap_1 = h * self.v[j + 1] - speed - bend
         gap_2 = h * h * self.a[j + 1] - bend
@@ -185,7 +204,8 @@ def settings(rtol: float, atol: float, period: float) -> exu.SimulationSettings:
     ti = s.timeIntegration
     ti.solverType = exu.DynamicSolverType.DOPRI5
     ti.automaticStepSize = True
-    ti.relativeTolerance, ti.absoluteTolerance = rtol, atol
+    ti.relativeTolerance = rtol
+    ti.absoluteTolerance = atol
     ti.minimumStepSize = _STEP_FLOOR * period
     ti.numberOfSteps = 1
     ti.verboseMode = 0
@@ -229,7 +249,8 @@ def integrate(
 def keep_inside(model: ExudynModel, start: float, stop: float) -> None:
     """Let the model evaluate the nominal phase strictly inside an interval, whose ends are switches."""
     margin = 1e-12 * model.machine.period
-    model.parameters[kn.T_LOW], model.parameters[kn.T_HIGH] = start + margin, stop - margin
+    model.parameters[kn.T_LOW] = start + margin
+    model.parameters[kn.T_HIGH] = stop - margin
 
 
 def _interval(
@@ -243,7 +264,9 @@ def _interval(
     locate: bool,
 ) -> tuple[Segment, float]:
     """Integrate over one interval, from event to event; returns it and a step size to go on with."""
-    m, parts, t = model.machine, [], start
+    m = model.machine
+    parts = []
+    t = start
     gears = slice(0, 6)
     a = accelerations(model, np.array([t]), q[None], v[None])[0]
     # Times in swings of the fastest mode. A Taylor step of second order errs by the square of the radians it
@@ -262,7 +285,8 @@ def _interval(
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:
                 break
-            part, bent = _across(model, t, q, v, a, t + wait, beyond), True
+            part = _across(model, t, q, v, a, t + wait, beyond)
+            bent = True
         else:
             # Stop short of it by what vibration may shift it: the third order of the Taylor polynomial.
             ahead = wait / swing
@@ -275,7 +299,10 @@ def _interval(
             part, step = _steps_until(model, s, q, v, a, t, until, step, bent=bent)
             bent = False
         parts.append(part)
-        t, q, v, a = float(part.times[-1]), part.q[-1], part.v[-1], part.a[-1]
+        t = float(part.times[-1])
+        q = part.q[-1]
+        v = part.v[-1]
+        a = part.a[-1]
     part, step = _steps_until(model, s, q, v, a, t, stop, step, bent=bent)
     return Segment.concatenated([*parts, part]), step
 
@@ -296,10 +323,13 @@ def _steps_until(
 
     ``bent``: an event has just been passed, behind which the step size is not known.
     """
-    parts, first, ti = [], step, s.timeIntegration
+    parts = []
+    first = step
+    ti = s.timeIntegration
     if (bent or stop - start <= _FEW * step) and model.machine.train is None:
         m = model.machine
-        times, states = np.full(_BRIDGED + 1, start), np.empty((3, _BRIDGED + 1, 6))
+        times = np.full(_BRIDGED + 1, start)
+        states = np.empty((3, _BRIDGED + 1, 6))
         states[:, 0] = q, v, a
         rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
         rows, first, calls = bridge(
@@ -307,13 +337,18 @@ def _steps_until(
         )
         model.budget.calls += calls
         parts = [Segment(times[:rows], *states[:, :rows])]
-        start, q, v = float(times[rows - 1]), states[0, rows - 1], states[1, rows - 1]
-    atol, share = ti.absoluteTolerance, 1.0
+        start = float(times[rows - 1])
+        q = states[0, rows - 1]
+        v = states[1, rows - 1]
+    atol = ti.absoluteTolerance
+    share = 1.0
     while start < stop:
         ti.absoluteTolerance = share * atol
         parts.append(_run(model, s, q, v, start, stop, first))
         step = first = _middle_step(parts[-1], step)
-        start, q, v = float(parts[-1].times[-1]), parts[-1].q[-1], parts[-1].v[-1]
+        start = float(parts[-1].times[-1])
+        q = parts[-1].q[-1]
+        v = parts[-1].v[-1]
         share = 1.5 - share  # where it stands still, the other of a half and the whole
     ti.absoluteTolerance = atol
     return Segment.concatenated(parts), step
@@ -331,7 +366,8 @@ def _across(
     """Taylor step from t to an event, and a hair beyond it, where the force is another."""
     times = np.array([t, event, beyond])
     h = (times - t)[:, None]
-    states_q, states_v = q + h * (v + 0.5 * h * a), v + h * a
+    states_q = q + h * (v + 0.5 * h * a)
+    states_v = v + h * a
     states_a = np.repeat(a[None], 3, axis=0)
     states_a[2:] = accelerations(model, times[2:], states_q[2:], states_v[2:])
     return Segment(times, states_q, states_v, states_a)
@@ -351,9 +387,12 @@ def _run(
     Its error is scaled by atol + rtol max(x, x before), without taking the size of x: at x = -atol/rtol no
     error is small enough. The steps so far hold; with another atol that place is elsewhere.
     """
-    ti, system, budget = s.timeIntegration, model.system, model.budget
+    ti = s.timeIntegration
+    system = model.system
+    budget = model.budget
     budget.watch(start, _STANDSTILL * model.machine.period)
-    ti.startTime, ti.endTime = start, stop
+    ti.startTime = start
+    ti.endTime = stop
     ti.initialStepSize = min(step, stop - start)
     system.systemData.SetODE2Coordinates(q.tolist(), configuration=exu.ConfigurationType.Initial)
     system.systemData.SetODE2Coordinates_t(v.tolist(), configuration=exu.ConfigurationType.Initial)
@@ -365,7 +404,8 @@ def _run(
             raise KeyboardInterrupt from None
         if budget.reason != "standstill":
             raise _failure(model, start, stop) from error
-        finished, stop = True, start
+        finished = True
+        stop = start
     if not finished:
         raise _failure(model, start, stop)
     times, states_q, states_v = stored(model)
@@ -373,14 +413,18 @@ def _run(
         budget.reason = "not finite"
         raise _failure(model, start, stop)
     keep = np.diff(times, prepend=-np.inf) > 0.0
-    times, states_q, states_v = times[keep], states_q[keep], states_v[keep]
+    times = times[keep]
+    states_q = states_q[keep]
+    states_v = states_v[keep]
     states_a = accelerations(model, times, states_q, states_v)
     if times[-1] < stop:
         # exudyn counts an interval as finished up to 1e-10 s before its end. Left out, that would shift every
         # later time; a Taylor step over so little is exact to rounding.
         last = _across(model, float(times[-1]), states_q[-1], states_v[-1], states_a[-1], stop, stop)
-        states_q, states_v = np.vstack([states_q, last.q[2:]]), np.vstack([states_v, last.v[2:]])
-        times, states_a = np.append(times, stop), np.vstack([states_a, last.a[2:]])
+        states_q = np.vstack([states_q, last.q[2:]])
+        states_v = np.vstack([states_v, last.v[2:]])
+        times = np.append(times, stop)
+        states_a = np.vstack([states_a, last.a[2:]])
     return Segment(times, states_q, states_v, states_a)
 
 

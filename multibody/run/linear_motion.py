@@ -60,7 +60,8 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     start = np.zeros((2 * n, 2 * n + 3))
     start[:, : 2 * n] = np.eye(2 * n)
     _, _, end = deque(_propagated(machine, start, np.eye(3)), maxlen=1)[0]
-    transition, forced = end[:, : 2 * n], end[:, 2 * n :]
+    transition = end[:, : 2 * n]
+    forced = end[:, 2 * n :]
     # Columns: the mesh's own forcing with the machine's driving torque, a unit more of it, a unit of brake.
     unknown = 2 if brake is None else 1
     weights = np.array([1.0, 0.0, 0.0 if brake is None else brake])
@@ -87,7 +88,8 @@ def state_scale(machine: Machine, deflection: float) -> FloatArray:
 
     On shafts of the 2n states, else of the lumped ones, whose first two are angles.
     """
-    radii, lengths = machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]], np.full(machine.size, deflection)
+    radii = machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+    lengths = np.full(machine.size, deflection)
     places = machine.train.angles if machine.train else (np.array([0]), np.array([1]))
     for angles, radius in zip(places, radii, strict=True):
         lengths[angles] *= 1.0 / radius  # an angle that moves the base circle by as much
@@ -109,9 +111,11 @@ def bordered(
 
 def energy_residual(machine: Machine, motion: LinearMotion) -> float:
     """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W]."""
-    train, p = machine.train, machine.parameters
+    train = machine.train
+    p = machine.parameters
     assert train is not None
-    n, lost = train.size, 0.0
+    n = train.size
+    lost = 0.0
     weights = np.array([[1.0], [motion.torque_pinion - machine.torque_pinion], [motion.torque_gear]])
     run = _propagated(machine, motion.state[:, None], weights, _STEP_ANGLE / 4.0)
     for (low, high), steps in itertools.groupby(run, key=lambda step: step[0]):
@@ -120,7 +124,8 @@ def energy_residual(machine: Machine, motion: LinearMotion) -> float:
         states = np.array([found[:, 0] for _, _, found in rows])
         q, v = states[:, :n], states[:, n:]
         contacts = _contacts(machine, times, q, v, low, high)[1]
-        load, rate = contacts[..., kn.LOAD], contacts[..., kn.OVERLAP_RATE]
+        load = contacts[..., kn.LOAD]
+        rate = contacts[..., kn.OVERLAP_RATE]
         powers = contacts[..., kn.FRICTION_FORCE] * contacts[..., kn.SLIDE]
         powers += (load - contacts[..., kn.ELASTIC]) * rate
         shafts = np.einsum("ti,ij,tj->t", v, train.damping, v)  # gyroscopic terms take no power
@@ -136,12 +141,15 @@ def _propagated(
     Every interval yields its start, too. ``forcing`` (3, k) has the weights of the three forcings in the last
     k columns of ``start`` (2n, m).
     """
-    train, period = machine.train, machine.period
+    train = machine.train
+    period = machine.period
     assert train is not None
     n, k = train.size, forcing.shape[1]
     fastest = 2.0 * np.pi * machine.vibrations_per_cycle / period
-    springs, dampers = train.inverse @ train.stiffness, train.inverse @ train.damping
-    reach, row = train.inverse[:, :6], machine.overlap
+    springs = train.inverse @ train.stiffness
+    dampers = train.inverse @ train.damping
+    reach = train.inverse[:, :6]
+    row = machine.overlap
     torques = -(train.inverse @ train.torques.T)
     edges = _smooth(machine) * period
     state = start
@@ -163,14 +171,16 @@ def _propagated(
                 force += np.outer(by_rate[step, stage], row @ v[:6])
                 own = constant[step, stage] + torques[:, 0] * machine.torque_pinion
                 force[:, -k:] += np.stack([own, torques[:, 0], torques[:, 1]], axis=1) @ forcing
-                rates[stage, :n], rates[stage, n:] = v, force
+                rates[stage, :n] = v
+                rates[stage, n:] = force
             state = state + h * np.tensordot(_B, rates, 1)
             yield (float(low), float(high)), float(low + (step + 1) * h), state
 
 
 def _smooth(machine: Machine) -> FloatArray:
     """Ends of the smooth parts of the mesh cycle as phases: switches, and where polynomials of a law meet."""
-    p, places = machine.parameters, np.unique(machine.table[:, :2])
+    p = machine.parameters
+    places = np.unique(machine.table[:, :2])
     joints = np.mod((places - p[kn.L_XA]) / p[kn.PITCH], 1.0)
     phases = np.sort(np.concatenate([machine.switches, joints, [1.0]]))
     return np.asarray(phases[np.diff(phases, prepend=-1.0) > _SAME_PHASE])
@@ -183,7 +193,8 @@ def mesh_wrench(
 
     The times (k,) lie in the smooth interval from ``low`` to ``high`` [s].
     """
-    at_rest, moved = np.zeros((times.size, 6)), np.zeros((times.size, 6))
+    at_rest = np.zeros((times.size, 6))
+    moved = np.zeros((times.size, 6))
     moved[:, 0] = 1.0
     states = ((moved, at_rest), (at_rest, moved), (at_rest, at_rest))
     found = [_contacts(machine, times, q, v, low, high)[0] for q, v in states]
@@ -194,6 +205,8 @@ def _contacts(
     machine: Machine, times: FloatArray, q: FloatArray, v: FloatArray, low: float, high: float
 ) -> tuple[FloatArray, FloatArray]:
     """Wrench (k, 6) and contact records of the linear mesh inside a smooth interval."""
-    p, margin = machine.parameters.copy(), 1e-12 * machine.period
-    p[kn.T_LOW], p[kn.T_HIGH] = low + margin, high - margin
+    p = machine.parameters.copy()
+    margin = 1e-12 * machine.period
+    p[kn.T_LOW] = low + margin
+    p[kn.T_HIGH] = high - margin
     return tooth_forces_over(times, q, v, p, kn.LINEAR, machine.table)[:2]

@@ -77,7 +77,10 @@ class CallBudget:
 
     def watch(self, t: float, least: float) -> None:
         """Stop also if the time t [s] advances by less than ``least`` in some hundred calls."""
-        self.reason, self.seen, self.least, self.last = "", t, least, math.nan
+        self.reason = ""
+        self.seen = t
+        self.least = least
+        self.last = math.nan
         self.look = min(self.calls + _WATCHED, self.before + self.limit)
 
     def check(self, t: float) -> None:
@@ -159,7 +162,8 @@ def _sensor(system: exu.MainSystem, body: int, kind: exu.OutputVariableType) -> 
 def stored(model: ExudynModel) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Times (n,), coordinates and velocities (n, size) that the sensors stored in the last run."""
     found = [[np.asarray(model.system.GetSensorStoredData(one)) for one in kind] for kind in model.sensors]
-    times, train = found[0][0][:, 0], model.machine.train
+    times = found[0][0][:, 0]
+    train = model.machine.train
     if train is None:
         return times, found[0][0][:, 1:], found[1][0][:, 1:]
     q, v = np.empty((2, times.size, train.size))
@@ -181,7 +185,8 @@ def _add_shafts(
     )
     objects = []
     for which, (node, shaft) in enumerate(zip(nodes, train.shafts, strict=True)):
-        on, further = [node], shaft.size - 3
+        on = [node]
+        further = shaft.size - 3
         if further:
             modal = items.NodeGenericODE2(
                 numberOfODE2Coordinates=further,
@@ -203,7 +208,9 @@ def _add_shafts(
 
 def _load_of(machine: Machine, train: Train, which: int) -> dict[str, object]:
     """Force on a shaft by its motor or load: constant, or with ripples a function."""
-    row, own, state = train.shafts[which].torque, train.places[which], np.zeros((1, train.size))
+    row = train.shafts[which].torque
+    own = train.places[which]
+    state = np.zeros((1, train.size))
 
     def force(_: object, t: float, _item: int, q: list[float], _rates: list[float]) -> FloatArray:
         state[0, own] = q
@@ -256,10 +263,12 @@ def _force_function(
     state = np.frombuffer(buffer).reshape(3, 6)
     wrench = state[2]
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
-    table, pack = machine.table, struct.Struct("12d").pack_into
+    table = machine.table
+    pack = struct.Struct("12d").pack_into
     as_list: Callable[[], list[float]] = wrench.tolist
     last_coordinates: list[float] = []
-    last_rates, found = last_coordinates, last_coordinates
+    last_rates = last_coordinates
+    found = last_coordinates
 
     def forces(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
@@ -271,7 +280,9 @@ def _force_function(
         # The last stage of a step is the first of the next.
         if t == budget.last and coordinates == last_coordinates and rates == last_rates:
             return found
-        budget.last, last_coordinates, last_rates = t, coordinates, rates
+        budget.last = t
+        last_coordinates = coordinates
+        last_rates = rates
         pack(buffer, 0, *coordinates, *rates)
         if tooth_forces(t, state, p, flags, table, contacts) < 0:
             budget.reason = "not finite"

@@ -58,7 +58,8 @@ def rotor_speeds(machine: Machine, v: FloatArray) -> tuple[FloatArray, FloatArra
 
 def powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> Powers:
     """Powers at n states: times (n,) [s], coordinates and rates (n, size)."""
-    machine, none = model.machine, np.zeros(t.size)
+    machine = model.machine
+    none = np.zeros(t.size)
     torques = machine.torques(t, q)
     driven, braked = rotor_speeds(machine, v)
     bearings, shafts = _support_powers(machine, v)

@@ -35,7 +35,8 @@ Fidelity = Literal["linear", "exact"]
 MOST_CYCLES = 100_000
 #: Force evaluations allowed in one interval; more in proportion where a mesh cycle has more vibrations of the
 #: fastest mode than this. One takes some 500 at rtol 1e-8, and an ordinary mesh cycle has some five.
-CALL_LIMIT, _ORDINARY_VIBRATIONS = 400_000, 80
+CALL_LIMIT = 400_000
+_ORDINARY_VIBRATIONS = 80
 #: Most vibrations in a mesh cycle: up to half a million force evaluations, a second or two.
 _MOST_VIBRATIONS = 500
 #: Largest static deflection over the base pitch: the pairing of flanks is lost at half a pitch.
@@ -140,14 +141,16 @@ def prepare(
     numbers = machine(pair, flags, supports, system.cycle)
     call_limit = _call_limit(numbers)
     if pair.mesh.contact == "loaded":
-        offsets, start = system.cycle.offsets, system.cycle.geometry.L_XA
+        offsets = system.cycle.offsets
+        start = system.cycle.geometry.L_XA
         ahead = round((float(offsets[0]) - start) / system.cycle.geometry.base_pitch)
         numbers = replace(numbers, pairs=offsets.size, ahead=ahead)
     elif flags & kn.TIP_CONTACT:  # corners lengthen the contact of every pair
         numbers = replace(numbers, pairs=min(numbers.pairs + 1, MAX_PAIRS))
     begin = _on_springs if supports == "springs" else _on_shafts
     numbers, q, v, mean_balance, motion = begin(pair, system, numbers, flags, initial)
-    velocity, reason = 0.0, "sign of the nominal sliding velocity"
+    velocity = 0.0
+    reason = "sign of the nominal sliding velocity"
     if flags & kn.SLIDING:
         asked = friction_velocity
         velocity, reason = choose_friction_velocity(numbers) if asked is None else (asked, "as given")
@@ -222,7 +225,8 @@ def _on_shafts(
     brake = pair.operating.brake_torque
     motion = linear_motion(straight, None if brake == "balanced" else brake)
     omega_p, omega_g = numbers.parameters[[kn.OMEGA_P, kn.OMEGA_G]]
-    torque, driving = motion.torque_gear, motion.torque_pinion * omega_p
+    torque = motion.torque_gear
+    driving = motion.torque_pinion * omega_p
     if flags & kn.PATH_WORK and brake == "balanced":
         torque -= energy_residual(straight, motion) / omega_g
     numbers = replace(numbers, torque_pinion=motion.torque_pinion, torque_gear=torque)
@@ -286,7 +290,8 @@ def choose_friction_velocity(machine: Machine) -> tuple[float, str]:
     a_f = mu N/m_s, 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g, and vibration by up to a_f/(2 zeta). Where
     less than a_f may be left friction can stick, and sign() has no solution.
     """
-    p, place = machine.parameters, float(machine.parameters[kn.L_XP])
+    p = machine.parameters
+    place = float(machine.parameters[kn.L_XP])
     beside = max(abs(nominal_friction(p, place + side * _BESIDE)) for side in (-1.0, 1.0))
     path = np.linspace(p[kn.L_XA], p[kn.L_XD], _PLACES)
     if beside <= _CONTINUOUS * max(abs(nominal_friction(p, xi)) for xi in path):

@@ -53,8 +53,11 @@ class Recorder:
     """Collects states and contacts at the output times (n,) [s] while the integration runs."""
 
     def __init__(self, model: ExudynModel, time: FloatArray) -> None:
-        self.model, self.time = model, time
-        machine, p, n = model.machine, model.machine.parameters, time.size
+        self.model = model
+        self.time = time
+        machine = model.machine
+        p = model.machine.parameters
+        n = time.size
         self.q, self.v = np.zeros((n, machine.size)), np.zeros((n, machine.size))
         phase = time / machine.period
         self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
@@ -63,7 +66,8 @@ class Recorder:
             name: np.zeros((machine.pairs, n)) for name in (*_COLUMNS, "contact", "normal_load_back")
         }
         self.pairs["position"] += p[kn.L_XA] + ahead + self.advance  # a pair out of contact: nominal
-        self.stiffness, self.overlap = np.zeros(n), np.full(n, np.nan)
+        self.stiffness = np.zeros(n)
+        self.overlap = np.full(n, np.nan)
 
     def visit(self, segment: Segment, start: float, stop: float) -> None:
         """Record the output times in [start, stop)."""
@@ -77,20 +81,26 @@ class Recorder:
 
     def finish(self, q: FloatArray, v: FloatArray, end: float) -> None:
         """Record the last output time, as the first instant of the cycle that would follow."""
-        p, period = self.model.parameters, self.model.machine.period
-        self.q[-1], self.v[-1] = q, v
+        p = self.model.parameters
+        period = self.model.machine.period
+        self.q[-1] = q
+        self.v[-1] = v
         if np.isfinite(p[kn.T_LOW]):
-            p[kn.T_LOW], p[kn.T_HIGH] = end + 1e-12 * period, end + 1e-9 * period
+            p[kn.T_LOW] = end + 1e-12 * period
+            p[kn.T_HIGH] = end + 1e-9 * period
         self._contacts(self.time.size - 1, self.time.size)
 
     def _contacts(self, low: int, high: int) -> None:
         """Evaluate the contacts at output times low ... high - 1 and sort them into the pairs' slots."""
-        machine, part = self.model.machine, slice(low, high)
+        machine = self.model.machine
+        part = slice(low, high)
         _, contacts, count = contact_state(self.model, self.time[part], self.q[part], self.v[part])
-        p, slots = machine.parameters, machine.pairs
+        p = machine.parameters
+        slots = machine.pairs
         for j in range(int(count.max(initial=0))):
             found = np.flatnonzero(j < count)
-            record, rows = contacts[found, j], low + found
+            record = contacts[found, j]
+            rows = low + found
             # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
             # takes the slot of the pair that is out of contact.
             pitches = np.rint((record[:, kn.XI] - p[kn.L_XA] - self.advance[rows]) / p[kn.PITCH])
@@ -108,7 +118,8 @@ class Recorder:
         """Return everything recorded under the lumped model's names."""
         import xarray as xr
 
-        p, per_pair = self.model.machine.parameters, dict(self.pairs)
+        p = self.model.machine.parameters
+        per_pair = dict(self.pairs)
         back = per_pair.pop("normal_load_back")
         values = self._motion() | per_pair
         nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * (per_pair["position"] - p[kn.L_XP])
@@ -140,13 +151,15 @@ class Recorder:
         values = dict(zip(states, to_lumped_state(q, v).T, strict=True))
         values |= {"dte": q @ machine.overlap, "dte_dot": v @ machine.overlap}
         if machine.train is not None:
-            force, names = machine.train.bearing_force(self.q, self.v), machine.train.bearing_names
+            force = machine.train.bearing_force(self.q, self.v)
+            names = machine.train.bearing_names
             for gear, name in (("p", "pinion"), ("g", "gear")):
                 own = [i for i, bearing in enumerate(names) if bearing.startswith(name)]
                 for j, axis in enumerate("xy"):
                     values[f"bearing_force_{axis}_{gear}"] = force[own, j].sum(axis=0)
             return values
-        stiffness, damping = machine.bearing_stiffness, machine.bearing_damping
+        stiffness = machine.bearing_stiffness
+        damping = machine.bearing_damping
         for i, gear in enumerate("pg"):
             for j, axis in enumerate("xy"):
                 name = f"{axis}_{gear}"
@@ -267,9 +280,11 @@ def at_mean_speed(
     names = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
     state = np.array([float(reference[name][0]) for name in names])
     setup = prepare(pair, initial=state, supports="springs")
-    p, inertia = setup.machine.parameters, setup.machine.inertia
+    p = setup.machine.parameters
+    inertia = setup.machine.inertia
     radii = p[[kn.RADIUS_P, kn.RADIUS_G]]
-    mass, period = float((inertia / radii**2).sum()), setup.machine.period
+    mass = float((inertia / radii**2).sum())
+    period = setup.machine.period
 
     def away(motion: xr.Dataset, last: int | None = None) -> FloatArray:
         turned = np.stack([motion[name].to_numpy()[:last] for name in ("theta_p", "theta_g")])
@@ -350,9 +365,12 @@ def speed_sweep(
         # Whole cycles end at the phase they started with, so the deviations carry over as they are.
         state = to_lumped_state(q, v)
         # The last sample is the first of a next cycle: means over whole cycles are without it.
-        dte, overlap = run["dte"].to_numpy()[:-1], run["overlap"].to_numpy()[:-1]
-        table["dte_rms"][j], table["dte_peak_to_peak"][j] = np.std(dte), cycle_peak_to_peak(run, "dte")
-        table["overlap_min"][j], table["separated"][j] = overlap.min(), np.mean(overlap <= 0.0)
+        dte = run["dte"].to_numpy()[:-1]
+        overlap = run["overlap"].to_numpy()[:-1]
+        table["dte_rms"][j] = np.std(dte)
+        table["dte_peak_to_peak"][j] = cycle_peak_to_peak(run, "dte")
+        table["overlap_min"][j] = overlap.min()
+        table["separated"][j] = np.mean(overlap <= 0.0)
         table["back_side"][j] = np.mean(run["normal_load_back"].to_numpy()[:, :-1].sum(0) > 0.0)
         halves = [np.std(half) for half in np.split(dte, [cycles // 2 * samples_per_cycle]) if half.size]
         table["unsettled"][j] = abs(halves[-1] - halves[0]) / np.std(dte)

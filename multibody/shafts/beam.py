@@ -51,7 +51,8 @@ class Interval:
     @property
     def shear_coefficient(self) -> float:
         """Mean shear over the shear at the axis, Cowper's for a hollow circle [-]."""
-        nu, square = self.poisson_ratio, (self.bore / self.diameter) ** 2
+        nu = self.poisson_ratio
+        square = (self.bore / self.diameter) ** 2
         both = (1.0 + square) ** 2
         return 6.0 * (1.0 + nu) * both / ((7.0 + 6.0 * nu) * both + (20.0 + 12.0 * nu) * square)
 
@@ -83,9 +84,12 @@ def shape_functions(order: int, places: FloatArray) -> tuple[FloatArray, FloatAr
 
     The first two are the linear functions of the left and the right end.
     """
-    values, slopes = np.empty((order + 1, places.size)), np.empty((order + 1, places.size))
-    values[0], values[1] = 0.5 * (1.0 - places), 0.5 * (1.0 + places)
-    slopes[0], slopes[1] = -0.5, 0.5
+    values = np.empty((order + 1, places.size))
+    slopes = np.empty((order + 1, places.size))
+    values[0] = 0.5 * (1.0 - places)
+    values[1] = 0.5 * (1.0 + places)
+    slopes[0] = -0.5
+    slopes[1] = 0.5
     polynomials = legendre.legvander(places, order).T
     for k in range(2, order + 1):
         values[k] = (polynomials[k] - polynomials[k - 2]) / math.sqrt(4.0 * k - 2.0)
@@ -114,12 +118,14 @@ def bending(intervals: Sequence[Interval], order: int) -> Bending:
     w, w_slope = shape_functions(order, nodes)
     psi, psi_slope = shape_functions(order - 1, nodes)
     for i, part in enumerate(intervals):
-        at_w, at_psi = places_of(order, i, count), rotation + places_of(order - 1, i, count)
+        at_w = places_of(order, i, count)
+        at_psi = rotation + places_of(order - 1, i, count)
         both = np.ix_(np.concatenate([at_w, at_psi]), np.concatenate([at_w, at_psi]))
         measure = 0.5 * part.length * weights
         shear = np.vstack([2.0 / part.length * w_slope, -psi])
         bend = np.vstack([np.zeros_like(w), 2.0 / part.length * psi_slope])
-        turn, move = np.vstack([np.zeros_like(w), psi]), np.vstack([w, np.zeros_like(psi)])
+        turn = np.vstack([np.zeros_like(w), psi])
+        move = np.vstack([w, np.zeros_like(psi)])
         rigidity = part.shear_coefficient * part.shear_modulus * part.area
         stiffness[both] += rigidity * (shear * measure) @ shear.T
         stiffness[both] += part.youngs_modulus * part.second_moment * (bend * measure) @ bend.T
@@ -138,7 +144,8 @@ def torsion(intervals: Sequence[Interval], order: int) -> tuple[FloatArray, Floa
     twist, slope = shape_functions(order, nodes)
     for i, part in enumerate(intervals):
         at = places_of(order, i, count)
-        both, polar = np.ix_(at, at), 2.0 * part.second_moment
+        both = np.ix_(at, at)
+        polar = 2.0 * part.second_moment
         mass[both] += part.density * polar * 0.5 * part.length * (twist * weights) @ twist.T
         stiffness[both] += part.shear_modulus * polar * 2.0 / part.length * (slope * weights) @ slope.T
     return mass, stiffness
@@ -147,7 +154,8 @@ def torsion(intervals: Sequence[Interval], order: int) -> tuple[FloatArray, Floa
 #: Largest change of a kept frequency from one order to the next but one, over the highest.
 FREQUENCY_ERROR = 1e-6
 #: Orders that are tried. Beyond the last, a shaft is too long beside the waves of its highest mode.
-_FIRST_ORDER, _LAST_ORDER = 4, 24
+_FIRST_ORDER = 4
+_LAST_ORDER = 24
 
 
 @dataclass(frozen=True, eq=False)

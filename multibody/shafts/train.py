@@ -102,7 +102,9 @@ def reduced_shaft(
     def plane(which: int) -> Callable[[int], tuple[FloatArray, FloatArray, int]]:
         def matrices(order: int) -> tuple[FloatArray, FloatArray, int]:
             beam = bending(intervals, order)
-            mass, stiffness, turn = beam.mass.copy(), beam.stiffness.copy(), beam.rotation
+            mass = beam.mass.copy()
+            stiffness = beam.stiffness.copy()
+            turn = beam.rotation
             mass[gear, gear] += disc.mass
             mass[turn + gear, turn + gear] += disc.tilting
             np.add.at(stiffness, (at, at), springs[:, which])
@@ -135,7 +137,9 @@ def reduced_shaft(
         full_mass, full_stiffness, _ = matrices(order)
         mass[np.ix_(own, own)] = field.basis.T @ full_mass @ field.basis
         stiffness[np.ix_(own, own)] = field.basis.T @ full_stiffness @ field.basis
-    stiffness[2], stiffness[:, 2] = 0.0, 0.0  # the shaft turns freely: what is left there is rounding
+    # the shaft turns freely: what is left there is rounding
+    stiffness[2] = 0.0
+    stiffness[:, 2] = 0.0
     damping += modal_damping(mass, stiffness, damping_ratio)
     rows = np.zeros((at.size, 2, size))
     for which in range(2):
@@ -150,9 +154,11 @@ def reduced_shaft(
     if coupled is None:
         torque[2] = 1.0
     else:
-        at_inertia, at_station = fields[2].basis[station if rigid else -1], fields[2].basis[station]
+        at_inertia = fields[2].basis[station if rigid else -1]
+        at_station = fields[2].basis[station]
         along = np.zeros(size)
-        torque[columns[2]], along[columns[2]] = at_inertia, at_inertia - at_station
+        torque[columns[2]] = at_inertia
+        along[columns[2]] = at_inertia - at_station
         damping += coupled.coupling_damping * np.outer(along, along)
     return ReducedShaft(
         fields=fields,
@@ -213,7 +219,8 @@ def _attached(
     mass: FloatArray, stiffness: FloatArray, where: int, inertia: float, spring: float
 ) -> tuple[FloatArray, FloatArray]:
     """Matrices with an inertia behind a spring at a coordinate, as the last one."""
-    mass, stiffness = np.pad(mass, (0, 1)), np.pad(stiffness, (0, 1))
+    mass = np.pad(mass, (0, 1))
+    stiffness = np.pad(stiffness, (0, 1))
     mass[-1, -1] = inertia
     ends = np.array([where, -1])
     stiffness[np.ix_(ends, ends)] += spring * np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -312,11 +319,13 @@ class Train:
 
     def fastest(self, mesh_stiffness: FloatArray) -> tuple[float, float]:
         """Largest natural frequency with the mesh (6, 6), and largest rate of a root with dampers [rad/s]."""
-        n, stiffness = self.size, self.stiffness.copy()
+        n = self.size
+        stiffness = self.stiffness.copy()
         stiffness[:6, :6] += mesh_stiffness
         state = np.zeros((2 * n, 2 * n))
         state[:n, n:] = np.eye(n)
-        state[n:, :n], state[n:, n:] = -self.inverse @ stiffness, -self.inverse @ self.damping
+        state[n:, :n] = -self.inverse @ stiffness
+        state[n:, n:] = -self.inverse @ self.damping
         natural = float(np.sqrt(eigvalsh(stiffness, self.mass)[-1]))
         return natural, max(natural, float(np.abs(eigvals(state)).max()))
 
@@ -383,7 +392,8 @@ def train(
 
 def disc(pair: GearPair, which: int, mass: float, inertia: float) -> Disc:
     """Pinion (0) or gear (1) as a rigid disc; its bored body twists between shaft and rim (Lame)."""
-    twist, gear = math.inf, (pair.pinion, pair.gear)[which]
+    twist = math.inf
+    gear = (pair.pinion, pair.gear)[which]
     if gear.bore > 0.0:
         root = root_radius(pair, which)
         shear = gear.youngs_modulus / (2.0 * (1.0 + gear.poisson_ratio))

@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 #: A step over less than the first share of the mesh cycle leads across an event. So does one over less than
 #: the second in which the number of contacts changes, where contact begins with a load: a jump that was not
 #: predicted, as where soft bearings move it far or friction sticks, shrinks the step.
-_HAIR, _SHRUNK = 1e-11, 1e-6
+_HAIR = 1e-11
+_SHRUNK = 1e-6
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,8 @@ def motion_balance(pair: GearPair, motion: xr.Dataset, rtol: float = 1e-8) -> Po
     motion : on springs, of ``multibody.steady_state`` or ``simulate``, from the start of a mesh cycle
     rtol : relative tolerance of the run
     """
-    start, about = motion.isel(time=0), motion.attrs
+    start = motion.isel(time=0)
+    about = motion.attrs
     if about["supports"] == "shafts":
         action = 'Compute the motion with supports="springs".'
         raise refuse("supports", "shafts", '"springs" for multibody.motion_balance', action)
@@ -121,7 +123,9 @@ def motion_balance(pair: GearPair, motion: xr.Dataset, rtol: float = 1e-8) -> Po
 
 def balance_of(setup: Setup, cycles: int) -> PowerBalance:
     """Power balance of a model that is ready to run, over mesh cycles."""
-    totals, stored, jumps = np.zeros(len(Powers._fields)), [0.0], [0.0]
+    totals = np.zeros(len(Powers._fields))
+    stored = [0.0]
+    jumps = [0.0]
 
     def energy(segment: Segment, t: FloatArray) -> FloatArray:
         _, contacts, counts = contact_state(setup.model, t, *segment.at(t))
@@ -130,7 +134,8 @@ def balance_of(setup: Setup, cycles: int) -> PowerBalance:
 
     def leads_across(segment: Segment) -> BoolArray:
         steps = np.diff(segment.times) / setup.machine.period
-        across, short = steps < _HAIR, np.flatnonzero(steps < _SHRUNK)
+        across = steps < _HAIR
+        short = np.flatnonzero(steps < _SHRUNK)
         before, after = (
             contact_state(setup.model, segment.times[j], segment.q[j], segment.v[j])[2]
             for j in (short, short + 1)

@@ -170,7 +170,8 @@ def _means(ax: Axes, record: FigureRecord) -> None:
 def draw_figure3(record: FigureRecord) -> Figure:
     """Draw figure 3 from its data, with a close-up of the pitch point."""
     data = record.data["normalised_laws"]
-    pitch, end = data.attrs["pitch"], data.attrs["contact_ratio"]
+    pitch = data.attrs["pitch"]
+    end = data.attrs["contact_ratio"]
     figure, axes = new_figure(1, 2, height=3.0, width_ratios=(1.7, 1.0))
     for ax in axes[0]:
         for law, (colour, dash) in LAW_LOOK.items():
@@ -258,7 +259,8 @@ def draw_figure7(record: FigureRecord) -> Figure:
 
 def _roll_angle_axis(ax: Axes, data: xr.Dataset) -> None:
     """Add the pinion roll angle of pair A along the top."""
-    cycles, roll = data["cycles"].to_numpy(), data["roll_angle"].to_numpy()
+    cycles = data["cycles"].to_numpy()
+    roll = data["roll_angle"].to_numpy()
     slope = float((roll[-1] - roll[0]) / (cycles[-1] - cycles[0]))
     start = float(roll[0] - slope * cycles[0])
 

@@ -77,7 +77,8 @@ def _twin(pair: GearPair, samples: int) -> tuple[xr.Dataset, float]:
     except NumericalError:
         run = multibody.simulate(pair, samples_per_cycle=samples, initial="periodic")
         dte = run["dte"].to_numpy()
-        last, before = dte[-samples - 1 : -1], dte[-2 * samples - 1 : -samples - 1]
+        last = dte[-samples - 1 : -1]
+        before = dte[-2 * samples - 1 : -samples - 1]
         return run.isel(time=slice(-samples - 1, -1)), float(np.abs(last - before).max() / np.ptp(last))
 
 

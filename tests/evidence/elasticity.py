@@ -23,10 +23,14 @@ from tests.evidence.check import Check, rows
 
 #: Root over bore radius of the ring that the energy method's foundation stands for.
 _RING = 4.0
-_TEETH, _SHIFT, _POISSON = 9, 0.5, 0.3
+_TEETH = 9
+_SHIFT = 0.5
+_POISSON = 0.3
 #: Length along the base tangent of the load, near the tip, whose land only the larger circle meets; elements
 #: at the surface; radii of another cut-off [modules].
-_LENGTH, _SIZE, _OTHER = 3.9, 0.2, (0.2, 0.6)
+_LENGTH = 3.9
+_SIZE = 0.2
+_OTHER = (0.2, 0.6)
 
 
 def elasticity(pair: GearPair) -> Iterator[Check]:
@@ -44,8 +48,10 @@ def _load() -> Check:
     term that is left out, of the surface, of the cut-off or of the body's mean motion, is seen here.
     """
     profile = ToothProfile(_TEETH, 1.0, math.radians(20.0), _SHIFT, 1.25, 0.38)
-    tip, bore = 0.5 * _TEETH + 1.0 + _SHIFT, profile.root_radius / 4.0
-    mesh, place = meshed(profile, tip, bore, _SIZE), np.array([_LENGTH])
+    tip = 0.5 * _TEETH + 1.0 + _SHIFT
+    bore = profile.root_radius / 4.0
+    mesh = meshed(profile, tip, bore, _SIZE)
+    place = np.array([_LENGTH])
     one, other = (
         compliances(mesh, _POISSON, _TEETH, place, 1, "free", radii) for radii in ((NEAR, FAR), _OTHER)
     )
@@ -78,7 +84,8 @@ def _standard(pair: GearPair) -> Check:
 
 def _neighbours(pair: GearPair) -> Check:
     """Motion of the next pair by finite elements, over that of the Fourier ring."""
-    g, ring = pair.geometry, elastic_teeth(pair, support="untwisted", bore=_RING)
+    g = pair.geometry
+    ring = elastic_teeth(pair, support="untwisted", bore=_RING)
     place = np.array([0.5 * (g.L_XA + g.L_XD - g.base_pitch)])
     by_fourier = neighbour_compliances(pair)[0](place)[0]
     ratio = float(cross_compliance(pair, ring, 1, place)[0] / by_fourier)
@@ -89,7 +96,9 @@ def _neighbours(pair: GearPair) -> Check:
 
 def _contact(pair: GearPair) -> Check:
     """In plane strain no depth is left: u_c + (2 ln(2/a) - nu')/pi over E', with the other formula for a."""
-    g, bodies, teeth = pair.geometry, (pair.pinion, pair.gear), elastic_teeth(pair)
+    g = pair.geometry
+    bodies = (pair.pinion, pair.gear)
+    teeth = elastic_teeth(pair)
     xi = np.linspace(g.L_XA, g.L_XD, 23)[1:-1]
     load = pair.operating.pinion_torque / (g.base_radius_pinion * g.face_width)
     moduli = bodies[0].youngs_modulus, bodies[1].youngs_modulus

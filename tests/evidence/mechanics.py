@@ -117,7 +117,8 @@ def _forces(pair: GearPair) -> Check:
         scale = k * max(float(np.abs(motion[name]).max()), 1e-300)
         mean = float(motion[f"bearing_force_{name}"].mean())
         both.append((mean / scale + 1.0, 1.0 - k * float(motion[name].mean()) / scale))
-    omega_p, teeth = pair.operating.pinion_speed, pair.pinion.teeth / pair.gear.teeth
+    omega_p = pair.operating.pinion_speed
+    teeth = pair.pinion.teeth / pair.gear.teeth
     sliding = omega_p * motion["position"] - omega_p * teeth * (pair.geometry.L_XY - motion["position"])
     wanted = -(motion["friction_force"] * sliding).sum("pair")
     size = max(float(np.abs(wanted).max()), 1e-300)
@@ -127,7 +128,8 @@ def _forces(pair: GearPair) -> Check:
         both.append((float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque))
     # A pair is in contact from A to D, loaded where the static mesh has it; samples on either end
     # may round to either side.
-    g, place = pair.geometry, motion["position"].to_numpy()
+    g = pair.geometry
+    place = motion["position"].to_numpy()
     loaded = pair.mesh.contact == "loaded"
     low, high = mesh_elements(pair).stiffness.interval if loaded else (g.L_XA, g.L_XD)
     clear = np.minimum(np.abs(place - low), np.abs(place - high)) > 1e-6 * g.base_pitch

@@ -120,7 +120,9 @@ def missed_values() -> list[str]:
 def _tooth() -> Check:
     sine = math.sin(math.radians(20.0))
     profile = ToothProfile(62, 2e-3, math.radians(20.0), 0.0, 1.25, 0.25 / (1.0 - sine))
-    modulus, shear, width = 211e9, 81.2e9, 20e-3
+    modulus = 211e9
+    shear = 81.2e9
+    width = 20e-3
     errors = []
     for angle, *wanted in ROSS:
         length = np.array([profile.base_radius * math.tan(angle)])
@@ -149,7 +151,8 @@ def _compliances(pair: GearPair) -> Check:
         total += (
             beam.bending + beam.shear + beam.axial + local_compliance(half_width, h / np.cos(angle), e, nu)
         )
-        root, half = profile.root_radius, profile.root_half_angle
+        root = profile.root_radius
+        half = profile.root_half_angle
         total += foundation_compliance(profile.base_radius, root, half, angle, e, nu)
     error = float(np.abs(found * total / g.face_width - 1.0).max())
     return Check("energy method", "its parts, of both teeth and their contact, added up again", error, 1e-9)

@@ -68,10 +68,13 @@ def published_stiffness() -> Iterator[Beside]:
         yield Beside(name, "c′ at the pitch point", "N/(mm µm)", source, theirs, held_rim(rims))
     for name in ("fzg_c", "nasa_art_25_31", "nasa_28_28", "kahraman_blankenship_50_50"):
         pair = load_gear_pair(name)
-        free, scale = plane_compliance(pair, phases=1).attrs, pair.geometry.face_width * _UNIT
+        free = plane_compliance(pair, phases=1).attrs
+        scale = pair.geometry.face_width * _UNIT
         gears = f"{pair.pinion.teeth}/{pair.gear.teeth}"
-        single, mean = free["iso_single"] / scale, free["iso_mean"] / scale
-        largest, total = free["largest_alone"] / scale, free["mean"] / scale
+        single = free["iso_single"] / scale
+        mean = free["iso_mean"] / scale
+        largest = free["largest_alone"] / scale
+        total = free["mean"] / scale
         theory = "ISO 6336-1 before the 0.8 for measurements"
         yield Beside(gears, "c′", "N/(mm µm)", "ISO 6336-1, from measurements", single, largest)
         yield Beside(gears, "c′", "N/(mm µm)", theory, single / iso6336.CORRECTION, largest)

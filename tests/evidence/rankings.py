@@ -34,7 +34,10 @@ RESULTS = {
 }
 #: Largest difference of a share, in points of 100.
 LIMIT = 5.0
-SAMPLES, FEW, PLAIN, SEED = 512, 128, 1000, 20260101
+SAMPLES = 512
+FEW = 128
+PLAIN = 1000
+SEED = 20260101
 
 
 @dataclass(frozen=True)
@@ -124,7 +127,9 @@ def plain(case: Case, samples: int, seed: int) -> tuple[dict[str, float], int]:
     rng = np.random.default_rng(seed)
     inputs = [uncertain_inputs(pair) for pair in case.variants]
     fields = sorted({one.field for of in inputs for one in of})
-    won, count, refused = dict.fromkeys(RESULTS, 0), 0, 0
+    won = dict.fromkeys(RESULTS, 0)
+    count = 0
+    refused = 0
     for _ in range(samples):
         common = dict(zip(fields, rng.random(len(fields)), strict=True))
         numbers = []

@@ -40,7 +40,8 @@ class Refinement(NamedTuple):
     @property
     def passes(self) -> bool:
         """Whether the used resolution is within its limit and refining has brought the error down to it."""
-        first, used = self.levels[0].error, next(level.error for level in self.levels if level.used)
+        first = self.levels[0].error
+        used = next(level.error for level in self.levels if level.used)
         return math.isfinite(used) and used <= self.limit and used <= max(first, self.limit)
 
 

@@ -48,9 +48,12 @@ def stability_routes(pair: GearPair) -> Iterator[Check]:
 
 def fit_bound(pair: GearPair) -> Check:
     """The misfit that the compiled multipliers' bound counts with, against the gains of A(t) themselves."""
-    block, system = gear_block(pair), periodic_system(pair, "mesh")
-    fitted, m = as_periodic_system(block), block.v.size
-    ends, u = block.phases * block.period, np.linspace(-1.0, 1.0, _PLACES + 2)[1:-1]
+    block = gear_block(pair)
+    system = periodic_system(pair, "mesh")
+    fitted = as_periodic_system(block)
+    m = block.v.size
+    ends = block.phases * block.period
+    u = np.linspace(-1.0, 1.0, _PLACES + 2)[1:-1]
     used = 0.0
     for piece, (low, high) in enumerate(itertools.pairwise(ends.tolist())):
         times = 0.5 * (low + high) + 0.5 * (high - low) * u

@@ -40,7 +40,9 @@ _FEW = 31
 #: Change of a compression for a tangent, over the approach.
 _STEP = 1e-4
 #: Of the ring: harmonics, nodes over the radius, nodes over a foot.
-_HARMONICS, _RADII, _FOOT = 400, 48, 40
+_HARMONICS = 400
+_RADII = 48
+_FOOT = 40
 
 
 def written_twice(pair: GearPair) -> Iterator[Check]:
@@ -88,7 +90,9 @@ def _damping(pair: GearPair) -> Iterator[Check]:
     """Of prescribed contact; that of loaded contact belongs to its static mesh."""
     if pair.mesh.contact == "loaded":
         return
-    elements, xi, p = mesh_elements(pair), _inside(pair), machine(pair).parameters
+    elements = mesh_elements(pair)
+    xi = _inside(pair)
+    p = machine(pair).parameters
     own = p[kn.DAMPING] * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
     scale = max(float(np.abs(own).max()), 1e-300)
     found = elements.damping(xi)
@@ -97,7 +101,8 @@ def _damping(pair: GearPair) -> Iterator[Check]:
 
 def _laws(pair: GearPair) -> Check:
     """Largest difference of a friction coefficient, over its largest value."""
-    worst, xi = 0.0, _inside(pair)
+    worst = 0.0
+    xi = _inside(pair)
     for name in FRICTIONAL:
         try:
             law = friction_path_function(pair, name)
@@ -119,7 +124,8 @@ def _relief(pair: GearPair) -> Iterator[Check]:
     reliefs = [r for gear in (pair.pinion, pair.gear) for r in (gear.tip_relief, gear.root_relief) if r]
     if not reliefs:
         return
-    xi, p = _inside(pair), machine(pair.with_({"mesh.relief": "static"})).parameters
+    xi = _inside(pair)
+    p = machine(pair.with_({"mesh.relief": "static"})).parameters
     own = np.array([relief_at(p, x, 0.0, 0.0)[0] for x in xi])
     scale = float(sum(r.amount for r in reliefs))
     yield rows(
@@ -171,14 +177,17 @@ class _Mesh:
     def pressed(self, places: FloatArray, delta: float) -> tuple[FloatArray, FloatArray]:
         """Approach less relief and corner gaps of pairs at places (pairs,) [m], and their tilt."""
         p = self.machine.parameters
-        half, length = 0.5 * (delta + self.longer), float(p[kn.L_XY] + self.longer)
+        half = 0.5 * (delta + self.longer)
+        length = float(p[kn.L_XY] + self.longer)
         line = Line(1.0, 0.0, length, DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
-        found, tilt = np.empty(places.size), np.empty(places.size)
+        found = np.empty(places.size)
+        tilt = np.empty(places.size)
         for i, xi in enumerate(places):
             arms = xi + half, p[kn.L_XY] - xi + half
             corners = corners_at(line, *arms, (p[kn.TIP_P], p[kn.TIP_G]), (p[kn.EDGE_P], p[kn.EDGE_G]))
             relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]), 0.0, 0.0)
-            found[i], wrench = delta - relief - corners.gap, np.zeros(6)
+            found[i] = delta - relief - corners.gap
+            wrench = np.zeros(6)
             add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)
             tilt[i] = -wrench[1]
         return found, tilt
@@ -187,7 +196,8 @@ class _Mesh:
         """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
         p, n = self.machine.parameters, places.size
         stiffness = np.array([stiffness_at(self.machine.table, xi) for xi in places])
-        coupling, loads = np.zeros((n, n)), np.zeros(n)
+        coupling = np.zeros((n, n))
+        loads = np.zeros(n)
         for i in range(n):
             for j in range(i):
                 coupling[i, j] = coupling[j, i] = coupling_at(p, i - j, places[j])[0]
@@ -197,10 +207,12 @@ class _Mesh:
 
     def at(self, xi: float) -> _Equilibrium:
         """The pair at xi in equilibrium."""
-        p, reach = self.machine.parameters, 0.4 * self.machine.parameters[kn.PITCH]
+        p = self.machine.parameters
+        reach = 0.4 * self.machine.parameters[kn.PITCH]
         places = xi + p[kn.PITCH] * np.arange(-4, 5)
         near = (places > p[kn.L_XA] - reach) & (places < p[kn.L_XD] + reach)
-        own, places = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0]), places[near]
+        own = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0])
+        places = places[near]
 
         def missing(delta: float) -> float:
             return float(self.loads(places, self.pressed(places, delta)[0])[0].sum() - self.force)
@@ -220,7 +232,8 @@ class _Mesh:
 
 
 def _static_mesh(pair: GearPair) -> Check:
-    mesh, elements = _Mesh(machine(pair, effect_flags(None, "loaded"))), mesh_elements(pair)
+    mesh = _Mesh(machine(pair, effect_flags(None, "loaded")))
+    elements = mesh_elements(pair)
     low, high = elements.stiffness.interval
     # Close to both ends a pair takes up its first load, and with it its damper.
     near = np.array([0.002, 0.004])
@@ -236,7 +249,8 @@ def _static_mesh(pair: GearPair) -> Check:
         "damping": np.array([one.damping for one in found]),
         "tilt": np.array([one.tilt for one in found]),
     }
-    delta, found_rows = found[0].approach, []
+    delta = found[0].approach
+    found_rows = []
     for name, values in own.items():
         scale = delta if name == "error" else max(float(values.max()), 1e-300)
         found_rows.append(np.stack([getattr(elements, name)(places), values], axis=1) / scale + 1.0)
@@ -251,7 +265,8 @@ def _static_mesh(pair: GearPair) -> Check:
 
 def _softening(pair: GearPair, softening: float) -> Check:
     """From the curves at two torques: 1/k(T) = 1/k(T_0) - D ln(T/T_0)."""
-    torque, places = pair.operating.pinion_torque, np.linspace(*pair_stiffness(pair).interval, 5)[1:-1]
+    torque = pair.operating.pinion_torque
+    places = np.linspace(*pair_stiffness(pair).interval, 5)[1:-1]
     twice = pair.with_({"operating.pinion_torque": 2.0 * torque})
     found = (1.0 / pair_stiffness(pair)(places) - 1.0 / pair_stiffness(twice)(places)) / np.log(2.0)
     exact = "stiffness curves at two torques"  # fitted to 1e-10, of which the softening is a hundredth
@@ -261,7 +276,8 @@ def _softening(pair: GearPair, softening: float) -> Check:
 
 def _neighbours(pair: GearPair) -> Check:
     """From the ring solved by collocation over the radius, tractions and motions summed over the feet."""
-    g, both = pair.geometry, []
+    g = pair.geometry
+    both = []
     for apart, function in enumerate(pair.mesh.stiffness.neighbours(pair), 1):
         low, high = function.interval
         places = low + (high - low) * np.array([0.3, 0.8])
@@ -283,7 +299,8 @@ def _neighbours(pair: GearPair) -> Check:
 def _foot_loads(wheel: Wheel, length: FloatArray) -> FloatArray:
     """Force across and along the centre line, and couple, that balance a unit load, (3, n); root radius 1."""
     tooth = wheel.tooth
-    angle, half = length / tooth.base_radius - tooth.base_half_angle, tooth.root_half_angle
+    angle = length / tooth.base_radius - tooth.base_half_angle
+    half = tooth.root_half_angle
     moment = -tooth.base_radius / tooth.root_radius  # about the centre of the gear
     across = -np.cos(angle)
     return np.stack([across, -np.sin(angle), moment - across * np.sin(half) / half])
@@ -292,7 +309,8 @@ def _foot_loads(wheel: Wheel, length: FloatArray) -> FloatArray:
 def _feet(half: float, apart: float, poisson: float) -> FloatArray:
     """Motions of a foot (rows) by unit loads at one ``apart`` behind it (columns); E, radius and width 1."""
     x, weight = np.polynomial.legendre.leggauss(_FOOT)
-    x, weight = half * x, half * weight
+    x = half * x
+    weight = half * weight
     # Radial and tangential traction of unit loads: across, along, and a couple of forces along.
     couple = np.sin(x) / (half - np.sin(half) * np.cos(half))
     radial = np.array([np.sin(x) / (2 * half), np.cos(x) / (2 * half), -couple * np.cos(x)]) * weight
@@ -322,16 +340,22 @@ def _rings(poisson: float) -> FloatArray:
     c = np.where((np.arange(m) == 0) | (np.arange(m) == m - 1), 2.0, 1.0) * (-1.0) ** np.arange(m)
     d = np.outer(c, 1.0 / c) / (node[:, None] - node + np.eye(m))
     d = (d - np.diag(d.sum(axis=1))) * 2.0 / np.log(LOCAL_RATIO)
-    one, zero, plane, shear = np.eye(m), np.zeros((m, m)), 1.0 / (1.0 - poisson**2), 0.5 / (1.0 + poisson)
+    one = np.eye(m)
+    zero = np.zeros((m, m))
+    plane = 1.0 / (1.0 - poisson**2)
+    shear = 0.5 / (1.0 + poisson)
     found = np.zeros((_HARMONICS + 1, 2, 2))
     for n in range(_HARMONICS + 1):
         hoop = np.hstack([one, n * one])  # r times the strains, of (u_r, u_t)
-        stretch, slip = np.hstack([d, zero]), np.hstack([-n * one, d - one])
-        radial, around = plane * (stretch + poisson * hoop), plane * (hoop + poisson * stretch)
+        stretch = np.hstack([d, zero])
+        slip = np.hstack([-n * one, d - one])
+        radial = plane * (stretch + poisson * hoop)
+        around = plane * (hoop + poisson * stretch)
         tangential = shear * slip
         # r^2 times equilibrium, with r d/dr(s/r) = (d - 1) s of s, r times a stress.
         rows = np.vstack([d @ radial + n * tangential - around, d @ tangential - n * around + tangential])
-        rows[0], rows[m] = radial[0], tangential[0]
+        rows[0] = radial[0]
+        rows[m] = tangential[0]
         rows[m - 1], rows[2 * m - 1] = np.eye(2 * m)[[m - 1, 2 * m - 1]]
         right = np.zeros((2 * m, 2))
         right[0, 0] = right[m, 1] = 1.0

@@ -115,7 +115,8 @@ def test_24_two_blades_are_the_published_propeller_on_the_mean_and_exact_on_an_e
     assert "[" in module.draw(result).axes[0].get_xlabel()
     # Turning with the blades an equal mount makes the equations constant: multipliers exp(s T).
     system = module.two_blades({"pitch": 0.3, "yaw": 0.3})
-    found, s = floquet.monodromy(system), np.linalg.eigvals(system.evaluate([0.0])[0])
+    found = floquet.monodromy(system)
+    s = np.linalg.eigvals(system.evaluate([0.0])[0])
     expected = np.exp(s * system.period)
     for z, error in zip(found.multipliers, found.multiplier_errors, strict=True):
         assert np.abs(expected - z).min() <= error + 1e-12
@@ -146,9 +147,11 @@ def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(shown):
     assert result.attrs["certificate"] == "proven"
     unstable = result["speed_rpm"].where(result["verdict"] == -1, drop=True)
     # Ninth mode of ross.MultiRotor (2.3.0) of both shafts without damping, with the mean mesh stiffness.
-    system, mode = module.on_shafts(19000.0), 4544.12869547
+    system = module.on_shafts(19000.0)
+    mode = 4544.12869547
     x, weights = np.polynomial.legendre.leggauss(8)
-    start, width = system.edges[:-1, None], np.diff(system.edges)[:, None]
+    start = system.edges[:-1, None]
+    width = np.diff(system.edges)[:, None]
     A = system.evaluate((start + 0.5 * width * (x + 1.0)).ravel())
     mean = np.tensordot((0.5 * width * weights).ravel() / system.period, A, axes=1)
     frequencies = np.sqrt(np.sort(np.linalg.eigvals(-mean[9:, :9]).real)) / (2.0 * np.pi)

@@ -32,10 +32,14 @@ class ByHand:
     """One gear of a pair beside its mate [mm, rad]."""
 
     def __init__(self, pair: GearPair, gear: str) -> None:
-        rack, own = pair.basic_rack, getattr(pair, gear)
-        self.pair, self.gear = pair, gear
-        self.m, self.alpha = 1e3 * rack.module, float(rack.pressure_angle)
-        self.dedendum, self.fillet = rack.dedendum_coefficient, rack.fillet_radius_coefficient
+        rack = pair.basic_rack
+        own = getattr(pair, gear)
+        self.pair = pair
+        self.gear = gear
+        self.m = 1e3 * rack.module
+        self.alpha = float(rack.pressure_angle)
+        self.dedendum = rack.dedendum_coefficient
+        self.fillet = rack.fillet_radius_coefficient
         self.z, self.x = own.teeth, own.profile_shift or 0.0  # none of these pairs takes it from a
         self.r = 0.5 * self.m * self.z
         self.r_b = self.r * math.cos(self.alpha)
@@ -51,7 +55,8 @@ class ByHand:
     @property
     def r_a(self) -> float:
         """Of the file, else a - r_f of the mate - clearance of the rack, up to the full addendum."""
-        own, rack = getattr(self.pair, self.gear), self.pair.basic_rack
+        own = getattr(self.pair, self.gear)
+        rack = self.pair.basic_rack
         if own.tip_diameter is not None:
             return 0.5e3 * float(own.tip_diameter)
         if own.addendum is not None:
@@ -71,7 +76,8 @@ class ByHand:
     def operating_angle(self) -> float:
         if self.pair.centre_distance is not None:
             return math.acos(self.base_radii / (1e3 * self.pair.centre_distance))
-        shift, teeth = self.x + self.mate.x, self.z + self.mate.z
+        shift = self.x + self.mate.x
+        teeth = self.z + self.mate.z
         involute = inv(self.alpha) + 2.0 * shift * math.tan(self.alpha) / teeth
         return root_of(lambda angle: inv(angle) - involute, 0.0, 1.4)
 
@@ -118,9 +124,11 @@ class Contact:
     """
 
     def __init__(self, pair: GearPair, xi: FloatArray | None = None) -> None:
-        hand, steel = ByHand(pair, "pinion"), (pair.pinion, pair.gear)
+        hand = ByHand(pair, "pinion")
+        steel = (pair.pinion, pair.gear)
         self.start, self.end = 1e-3 * hand.start_length, 1e-3 * hand.tip_length
-        line, self.pitch = 1e-3 * hand.line, 1e-3 * hand.r_b * math.tan(hand.operating_angle)
+        line = 1e-3 * hand.line
+        self.pitch = 1e-3 * hand.r_b * math.tan(hand.operating_angle)
         self.xi = np.linspace(self.start, self.end, 203)[1:-1] if xi is None else xi
         self.width = min(pair.pinion.face_width, pair.gear.face_width)
         omega = float(pair.operating.pinion_speed)

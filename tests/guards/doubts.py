@@ -70,7 +70,8 @@ def _width(modules: float) -> Callable[[GearPair, str], float]:
 
 def _disc(pair: GearPair, gear: str) -> tuple[float, float]:
     """Mass and inertia of the gear, a disc of the reference diameter with a bore [kg, kg m^2]."""
-    own, radius = getattr(pair, gear), 1e-3 * ByHand(pair, gear).r
+    own = getattr(pair, gear)
+    radius = 1e-3 * ByHand(pair, gear).r
     area = math.pi * (radius**2 - 0.25 * own.bore**2)
     mass = own.density * area * own.face_width
     return float(mass), float(0.5 * mass * (radius**2 + 0.25 * own.bore**2))
@@ -299,7 +300,8 @@ def _reversed_at(share: float) -> flags.Flag:
 
     A pair without load, which slides backwards further out, does not count.
     """
-    g, scale = _PAIR.geometry, np.array([[-1.5, -0.5, 0.5], [-9.0, -8.0, 0.5]])
+    g = _PAIR.geometry
+    scale = np.array([[-1.5, -0.5, 0.5], [-9.0, -8.0, 0.5]])
     motion = _motion(position=(g.L_XP + g.base_pitch * share * scale).tolist(), contact=[[1.0] * 3] * 2,
                      sliding_velocity=[[-1.0, 1.0, 1.0]] * 2, normal_load=[[9.0] * 3, [0.0] * 3])  # fmt: skip
     return flags.sliding_reversal(g, motion)

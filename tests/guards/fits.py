@@ -14,9 +14,12 @@ from tests.guards.by_hand import ByHand, Contact, root_of
 from tests.guards.guard import MATE, Changes, Guard, friction, law_range, stiffness_range
 from tests.guards.refused import FAST, LONG, RACK_25, RELIEVED, SMALL, UNLIKE_TEETH, of
 
-_ISO, _FOUNDATION = "lumped/stiffness/iso6336.py", "lumped/stiffness/foundation.py"
-_II, _III = "lumped/friction/benedict_kelley.py", "lumped/friction/xu_kahraman.py"
-_ISO_LAW, _TABLE = "lumped/friction/iso_14179.py", "lumped/friction/table.py"
+_ISO = "lumped/stiffness/iso6336.py"
+_FOUNDATION = "lumped/stiffness/foundation.py"
+_II = "lumped/friction/benedict_kelley.py"
+_III = "lumped/friction/xu_kahraman.py"
+_ISO_LAW = "lumped/friction/iso_14179.py"
+_TABLE = "lumped/friction/table.py"
 
 #: (Law or model, quantity) -> (unit, low, high) of every range that a source states.
 RANGES: dict[tuple[str, str], tuple[str, float | None, float | None]] = {
@@ -120,7 +123,8 @@ def _scaled(quantity: Callable[[Contact], float], limit: float, power: float, fi
 
 def _mean_of_law_ii(pair: GearPair, gear: str) -> float:
     """Own Ra [um] for a mean of 0.1 of law II, 0.0127 * 1.13/(1.13 - S) log10(number) from 0 to its cap."""
-    level, cap = 0.0127 * 1.13 * np.log10(Contact(pair).friction_number), pair.friction.maximum
+    level = 0.0127 * 1.13 * np.log10(Contact(pair).friction_number)
+    cap = pair.friction.maximum
     mean = root_of(lambda s: float(np.clip(level / (1.13 - s), 0.0, cap).mean()) - 0.1, 0.0, 1.1)
     return 2.0 * mean - 1e6 * float(getattr(pair, MATE[gear]).roughness)
 
@@ -135,7 +139,8 @@ def _of_law_iii(c: Contact) -> FloatArray:
 
 def _too_rough(pair: GearPair, gear: str) -> float:
     """Own Ra [um] with which law III reaches mu = 1 on the path: it goes with exp(0.620305 exp(S))."""
-    largest, mean = _of_law_iii(Contact(pair)).max(), 0.5e6 * (pair.pinion.roughness + pair.gear.roughness)
+    largest = _of_law_iii(Contact(pair)).max()
+    mean = 0.5e6 * (pair.pinion.roughness + pair.gear.roughness)
     roughness = math.log(math.exp(mean) - math.log(largest) / 0.620305)
     return 2.0 * roughness - 1e6 * float(getattr(pair, MATE[gear]).roughness)
 
@@ -144,7 +149,8 @@ def _law(name: str) -> Changes:
     return {"friction.law": name}
 
 
-_SPEED, _TORQUE = "operating.pinion_speed", "operating.pinion_torque"
+_SPEED = "operating.pinion_speed"
+_TORQUE = "operating.pinion_torque"
 _XU = {"judge": law_range, "after": _law("xu_kahraman"), "beside": True}
 _BK = {"judge": law_range, "after": _law("benedict_kelley")}
 _AT = {"friction.law": "table", "friction.table": {"points": [0, 9, 18, 50], "coefficient": [0.05] * 4,

@@ -16,11 +16,9 @@ from multibody.contact.undercut import undercut_edge
 from tests.guards.by_hand import ByHand, inv, root_of
 from tests.guards.guard import MATE, Changes, Choice, Guard, curve, friction, relief
 
-SMALL, LONG, RELIEVED = (
-    "contact_ratio_1_1_large_shifts",
-    "contact_ratio_2_3_on_shafts",
-    "heavily_relieved_under_load",
-)
+SMALL = "contact_ratio_1_1_large_shifts"
+LONG = "contact_ratio_2_3_on_shafts"
+RELIEVED = "heavily_relieved_under_load"
 FAST, RACK_25, UNLIKE_TEETH = (
     "larger_gear_drives_contact_lost", "rack_25_degrees_always_pushing", "unlike_teeth_finite_elements",
 )  # fmt: skip
@@ -94,14 +92,17 @@ def _deepest_tip(hand: ByHand) -> float:
     The corner's path in axes that turn with the gear, beside the cuts of the rack's tip: a point of the path
     at the radius R is compared with the cut there, both as angles from the middle of the space.
     """
-    mate, r, m = hand.mate, hand.r, hand.m
+    mate = hand.mate
+    r = hand.r
+    m = hand.m
     down = m * (hand.dedendum - hand.fillet - hand.x)
     off = m * (0.25 * math.pi - (hand.dedendum - hand.fillet) * math.tan(hand.alpha))
     off -= m * hand.fillet / math.cos(hand.alpha)
     roll = np.linspace(off / r, off / r - down / (r * math.tan(hand.alpha)), 4001)
     stretch = 1.0 + m * hand.fillet / np.hypot(off - r * roll, down)
     cut = ((off - r * roll) * stretch + 1j * (r - down * stretch)) * np.exp(-1j * roll)
-    far, cut_at = np.abs(cut), np.arctan2(cut.real, cut.imag)
+    far = np.abs(cut)
+    cut_at = np.arctan2(cut.real, cut.imag)
     centre = hand.base_radii / math.cos(hand.operating_angle)
     play = math.pi / hand.z - (hand.psi_b - inv(hand.operating_angle))
     play -= (mate.psi_b - inv(hand.operating_angle)) * mate.z / hand.z  # to the driving flank from the middle
@@ -118,7 +119,8 @@ def _deepest_tip(hand: ByHand) -> float:
     return root_of(depth, mate.r_a, mate.r_a + 0.5 * m)
 
 
-_GEOMETRY, _SHIFT = "lumped/gear_geometry/geometry.py", "lumped/gear_geometry/profile_shift.py"
+_GEOMETRY = "lumped/gear_geometry/geometry.py"
+_SHIFT = "lumped/gear_geometry/profile_shift.py"
 _FEW = {
     "pinion.teeth": 11, "gear.teeth": 61, "pinion.profile_shift": 0.0, "gear.profile_shift": 0.0,
     "centre_distance": None, "pinion.addendum": None, "gear.addendum": None, "pinion.tip_diameter": None,
@@ -191,7 +193,8 @@ GEOMETRY = (
 
 def _disc(pair: GearPair, gear: str) -> float:
     """Mass of the solid disc of the reference diameter [kg]."""
-    own, radius = getattr(pair, gear), 0.5e-3 * ByHand(pair, gear).m * getattr(pair, gear).teeth
+    own = getattr(pair, gear)
+    radius = 0.5e-3 * ByHand(pair, gear).m * getattr(pair, gear).teeth
     return float(own.density * math.pi * radius**2 * own.face_width)
 
 
@@ -248,8 +251,11 @@ def _one_segment(long: bool) -> Callable[[GearPair, str, float], Changes]:
     return sets
 
 
-_PAIR, _GEAR, _CONTACT = "lumped/schema/pair.py", "lumped/schema/gear.py", "lumped/schema/contact.py"
-_SHAFTS, _TEETH = "lumped/schema/shafts.py", "lumped/schema/teeth.py"
+_PAIR = "lumped/schema/pair.py"
+_GEAR = "lumped/schema/gear.py"
+_CONTACT = "lumped/schema/contact.py"
+_SHAFTS = "lumped/schema/shafts.py"
+_TEETH = "lumped/schema/teeth.py"
 _BEARINGS = "lumped/schema/bearings.py"
 _BALLS = {"type": "ball", "number": 8, "size": 6.0}
 _BLANK = {"teeth": 33, "face_width": 15, "roughness": 0.4}

@@ -54,7 +54,8 @@ def test_multipliers_come_in_conjugate_pairs_and_det_is_liouvilles(pairs, data):
     found = quiet(gear_pair_multipliers, pair)
     if found is None:
         return
-    values, errors = found.multipliers, found.multiplier_errors
+    values = found.multipliers
+    errors = found.multiplier_errors
     for value, error in zip(values, errors, strict=True):
         distance = np.abs(values - value.conjugate())
         # Each conjugate is there to within the errors that the analysis itself states.

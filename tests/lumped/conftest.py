@@ -107,11 +107,15 @@ def written_out():
 
     def accelerations(pair, geometry, masses, t, state, elements, torque, brake):
         """Elements are k, c, mu, e over xi; state is theta_p, theta_g, x_p, x_g, y_p, y_g and rates."""
-        k, c, mu, e = elements.stiffness, elements.damping, elements.friction, elements.error
+        k = elements.stiffness
+        c = elements.damping
+        mu = elements.friction
+        e = elements.error
         e_slope = e.slope
         th_p, th_g, x_p, x_g, y_p, y_g, dth_p, dth_g, dx_p, dx_g, dy_p, dy_g = state
         r_bp, r_bg = geometry.base_radius_pinion, geometry.base_radius_gear
-        lam, omega = geometry.base_pitch, geometry.omega_pinion
+        lam = geometry.base_pitch
+        omega = geometry.omega_pinion
         delta = r_bp * th_p - r_bg * th_g + x_p - x_g
         rate = r_bp * dth_p - r_bg * dth_g + dx_p - dx_g
         n = math.floor(geometry.contact_ratio)
@@ -132,7 +136,8 @@ def written_out():
         def held(gear, way, mass, x, rate):
             """Force of a bearing on its gear."""
             b = getattr(pair.bearings, gear)
-            stiffness, ratio = getattr(b, f"{way}_stiffness"), getattr(b, f"{way}_damping_ratio")
+            stiffness = getattr(b, f"{way}_stiffness")
+            ratio = getattr(b, f"{way}_damping_ratio")
             return -2 * ratio * math.sqrt(stiffness * mass) * rate - stiffness * x
 
         return np.array(

@@ -161,7 +161,8 @@ def _expected(name, kind, found):
     pair = changed(name, KINDS[kind])
     if name == "validation.measurements.evaluate":
         at_record = found.prediction.pair
-        ours, theirs = pair.to_mapping(), at_record.to_mapping()
+        ours = pair.to_mapping()
+        theirs = at_record.to_mapping()
         for key in ("operating", "sources", "assumed"):
             for data in (ours, theirs):
                 data.pop(key, None)
@@ -277,7 +278,8 @@ def _repeated(like: Any, own: Any) -> tuple[Any, Any]:
     if isinstance(own, xr.DataArray):
         own = own.transpose(*like.dims).to_numpy()
         like = like.to_numpy()
-    like, own = np.asarray(like), np.asarray(own)
+    like = np.asarray(like)
+    own = np.asarray(own)
     return np.tile(like, [b // a if a else 1 for a, b in zip(like.shape, own.shape, strict=True)]), own
 
 

@@ -203,7 +203,8 @@ json.dump(ends, open(sys.argv[2], "w"))
 
 def registered(text, imported, name, item):
     """Add an import and an item of the registry ``name`` to the text of a module, whatever else it holds."""
-    lines, body = text.splitlines(keepends=True), ast.parse(text).body
+    lines = text.splitlines(keepends=True)
+    body = ast.parse(text).body
     (value,) = (
         node.value
         for node in body
@@ -211,10 +212,13 @@ def registered(text, imported, name, item):
     )
     held = next((node for node in ast.walk(value) if isinstance(node, ast.Tuple | ast.List | ast.Dict)), None)
     if held is None:  # A | B
-        last, added = value, f" | {item}"
+        last = value
+        added = f" | {item}"
     else:
-        last, added = (held.values if isinstance(held, ast.Dict) else held.elts)[-1], f", {item}"
-    line, column = last.end_lineno - 1, last.end_col_offset
+        last = (held.values if isinstance(held, ast.Dict) else held.elts)[-1]
+        added = f", {item}"
+    line = last.end_lineno - 1
+    column = last.end_col_offset
     whole = lines[line].encode()
     lines[line] = whole[:column].decode() + added + whole[column:].decode()
     end = max(node.end_lineno for node in body if isinstance(node, ast.Import | ast.ImportFrom))

@@ -80,7 +80,8 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 def test_every_file_of_the_packages_goes_into_the_wheel():
     data = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     patterns = data["tool"]["setuptools"]["package-data"]
-    found, left_out = 0, []
+    found = 0
+    left_out = []
     for package in PACKAGES:
         for path in sorted((ROOT / package).rglob("*")):
             if path.is_dir() or path.suffix == ".py" or path.parent.name == "__pycache__":

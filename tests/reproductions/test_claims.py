@@ -69,7 +69,8 @@ def test_load_spread_is_of_the_total():
 
 def test_regime_change_is_where_half_of_the_path_has_changed(pair):
     found = numbers.regime_change(pair)
-    speed, width = found["switch_speed"], found["switch_width"]
+    speed = found["switch_speed"]
+    width = found["switch_width"]
     at = pair.with_(operating__pinion_torque=22.6)
     g = geometry(at)
     xi = np.linspace(g.L_XA, g.L_XD, 4001)
@@ -85,7 +86,8 @@ def test_regime_change_is_where_half_of_the_path_has_changed(pair):
 def test_the_motions_behind_the_claims_are_judged_by_their_worst(pair, stated):
     """Figure 4: the worst of four laws; figure 7: law III. Largest multiplier and smallest load of a pair."""
     for figure, point, laws in (("4", FIGURE_4, LAWS), ("7", FIGURE_7[1], ["xu_kahraman"])):
-        radii, loads = [], []
+        radii = []
+        loads = []
         for law in laws:
             at = point.of(pair).with_({"friction.law": law})
             radii.append(gear_pair_multipliers(at, rtol=1e-9).spectral_radius)

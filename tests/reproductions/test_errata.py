@@ -88,7 +88,8 @@ def test_drift_is_that_of_the_unbalanced_torque(pair):
     # As printed, T_g* balances the mean; under the repaired model's T_g the rotors speed up by
     # (T_g* - T_g)/(J_p + J_g) (equal gears).
     assert abs(speed_drift(pair)) < 1e-9  # 20 cycles at a tolerance of 1e-8 of the deflection
-    right, wrong = response(pair), response(pair, as_printed=(1,))
+    right = response(pair)
+    wrong = response(pair, as_printed=(1,))
     b, g = bodies(pair), geometry(pair)
     acceleration = (wrong.brake_torque - right.brake_torque) / (b.inertia_pinion + b.inertia_gear)
     expected = acceleration * 20 * g.mesh_period / g.omega_pinion
@@ -121,7 +122,8 @@ def test_printed_law_iii_differs_by_powers_of_its_exponents(pair):
 def test_law_iv_is_a_derivative_only_as_repaired(pair):
     assert derivative_residual(pair, friction_path_function(pair, law="smoothed_coulomb"), 0.05) < 1e-6
     # |2/pi d (sigma - Phi)/(1 + Phi^2 d^2)| is largest at d = 1/Phi: (Phi - sigma)/(pi Phi), in 1/mm
-    sigma, phi = geometry(pair).contact_ratio, pair.friction.sharpness * 1e-3
+    sigma = geometry(pair).contact_ratio
+    phi = pair.friction.sharpness * 1e-3
     found = derivative_residual(pair, law_iv_printed(pair), 0.05)
     assert found == pytest.approx((phi - sigma) / (np.pi * phi), rel=1e-3)  # 4001 points see the peak to 1e-3
 

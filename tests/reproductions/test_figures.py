@@ -35,7 +35,8 @@ def records(pair):
 def test_figure_2a_holds_the_laws_at_its_operating_point(pair, records):
     data = records["2"].data["friction_in_time"].sel(gears="28/28", law="III")
     at = pair.with_(operating__pinion_torque=22.6, operating__pinion_speed=1000)
-    g, path = geometry(at), contact_path(at)
+    g = geometry(at)
+    path = contact_path(at)
     cycles = data["cycles"].to_numpy()
     np.testing.assert_allclose(data["time"], cycles * g.mesh_period, rtol=1e-14)
     assert cycles[-1] == pytest.approx(g.contact_ratio, rel=1e-12)
@@ -67,7 +68,8 @@ def test_figure_2b_switches_where_it_was_calibrated_to(records):
 
 def test_figure_3_is_normalised_and_antisymmetric(records):
     data = records["3"].data["normalised_laws"]
-    cycles, pitch = data["cycles"].to_numpy(), data.attrs["pitch"]
+    cycles = data["cycles"].to_numpy()
+    pitch = data.attrs["pitch"]
     for law in data["law"].to_numpy():
         mu = data["normalised_mu"].sel(law=law).to_numpy()
         # trapezoidal mean of a function with a peak at P that 900 points resolve to a per cent

@@ -38,7 +38,8 @@ def test_neutral_assumptions_give_the_stated_numbers(pair, stated):
 
 def test_every_assumption_reaches_its_parameter(pair):
     values = np.array([0.7, 2.1, 5e7, 1.6, 0.03, 0.08, 0.4, 23.0, 0.15, 90.0, 0.9])
-    varied, own = vary(pair, values), bodies(pair)
+    varied = vary(pair, values)
+    own = bodies(pair)
     new = bodies(varied)
     assert (new.inertia_pinion, new.inertia_gear) == pytest.approx(
         (0.7 * own.inertia_pinion, 0.7 * own.inertia_gear), rel=1e-12

@@ -142,7 +142,8 @@ def _show(found: xr.Dataset) -> None:
     values = "".join(f" | >{letter}" for letter in letters)
     show("", f"result{values} | >{'B less A' if two else 'best'} | as given | >holds in, of 100", rows)
     refused = f", {found.attrs['refused']} left out without a prediction" if found.attrs["refused"] else ""
-    taken, asked = found.attrs["taken"], found.attrs["asked"]
+    taken = found.attrs["taken"]
+    asked = found.attrs["asked"]
     begun = f"{taken} of {asked}" if taken < asked else f"{taken}"
     end = f"; {opt.time_words(found)}" if taken < asked else ""
     console.print(f"{begun} possible machines, seed {found.attrs['seed']}{refused}{end}")

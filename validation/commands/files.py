@@ -96,7 +96,8 @@ def init(
         made = "This is a file already: edit it, or copy it."
         action = made if Path(preset).exists() else f"To write this file: spurcheck init -o {preset}."
         raise refuse("preset", preset, "one of " + ", ".join(preset_names()), action)
-    text, name = preset_text(preset), preset
+    text = preset_text(preset)
+    name = preset
     given = {option: (path, value) for option, (path, value) in own.items() if value is not None}
     values = {path: opt.value_of(value) for path, value in given.values()}
     options = {field: option for option, (path, _) in given.items() for field in fields_of(path)}
@@ -120,7 +121,8 @@ def init(
         mapping, notes = gear_pair_from_rexs(from_rexs, stage, values)
         for remark in notes:
             note(remark)
-        text, name = parameter_text(mapping, notes), from_rexs.name.split(".")[0] or "rexs"
+        text = parameter_text(mapping, notes)
+        name = from_rexs.name.split(".")[0] or "rexs"
     elif teeth is not None:
         try:
             text = new_pair_text(name, {"teeth": teeth} | values)

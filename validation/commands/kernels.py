@@ -59,7 +59,9 @@ class _Listener:
     """Tells how many functions numba has compiled, beside the progress of the work."""
 
     def __init__(self, bar: Progress) -> None:
-        self._bar, self._done, self._fraction = bar, 0, 0.0
+        self._bar = bar
+        self._done = 0
+        self._fraction = 0.0
 
     def tell(self, fraction: float, stage: str = "", /) -> None:
         """Take the progress of the work, and remember how far it is."""

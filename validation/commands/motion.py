@@ -65,7 +65,8 @@ def simulate(
     from validation.validity.flags import contact_loss
 
     held = supports_of(pair, supports)
-    rising, exact = run_up is not None, model == "multibody"
+    rising = run_up is not None
+    exact = model == "multibody"
     for option, wrong, allowed in (
         ("--steady", steady and exact, "without --model multibody"),
         ("--run-up", rising and (steady or exact), "without --steady and --model multibody"),
@@ -97,7 +98,8 @@ def simulate(
 
             common |= {"fidelity": fidelity, "initial": initial}
             result = multibody.simulate(pair, cycles, progress=tell, **common)
-    g, form = pair.geometry, contact_of(pair)
+    g = pair.geometry
+    form = contact_of(pair)
     # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
     last = result.isel(time=slice(-samples - (not steady), None))
     largest, smallest = load_range(pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
@@ -147,7 +149,8 @@ def _show_run_up(name: str, supports: opt.SupportsName, result: xr.Dataset, *, a
 
     orders = range(1, _MESH_ORDERS + 1)
     amplitude = waterfall(result)["amplitude"].sel(order=list(orders), method="nearest")
-    sizes, speeds = amplitude.max("speed_rpm").to_numpy(), amplitude.idxmax("speed_rpm").to_numpy()
+    sizes = amplitude.max("speed_rpm").to_numpy()
+    speeds = amplitude.idxmax("speed_rpm").to_numpy()
     if as_json:
         largest = dict(zip(orders, zip(sizes.tolist(), speeds.tolist(), strict=True), strict=True))
         print_json({"gear_pair": name, "supports": supports, "variable": "dte", "largest": largest})
@@ -212,7 +215,8 @@ def uncertainty(
         "linear": "with the linear motion, as no other was found",
     }  # fmt: skip
     shares = ", ".join(f"{found.attrs[name]} {words}" for name, words in counts.items())
-    taken, asked = found.attrs["taken"], found.attrs["asked"]
+    taken = found.attrs["taken"]
+    asked = found.attrs["asked"]
     stdout().print(f"{taken} of {asked} samples, seed {seed}: {shares}")
     if taken < asked:
         note(f"{opt.time_words(found)}.")

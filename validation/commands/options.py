@@ -75,7 +75,8 @@ Settings = Annotated[
         help="Change any parameter, as often as needed: --set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
-SAMPLES, SAMPLE_SECONDS = 128, 30.0
+SAMPLES = 128
+SAMPLE_SECONDS = 30.0
 Samples = Annotated[
     int | None,
     typer.Option(
@@ -320,7 +321,8 @@ def number_in(option: str, text: str, unit: str) -> float:
     from lumped.errors import refuse
     from lumped.fields.units import to_si, to_stated
 
-    stated, allowed = unit.replace(" ", "*"), "a number" if unit == "1" else f"a number in {unit}"
+    stated = unit.replace(" ", "*")
+    allowed = "a number" if unit == "1" else f"a number in {unit}"
     try:
         number = to_stated(to_si(value_of(text.strip()), stated), stated)
     except (ValueError, TypeError) as error:

@@ -88,7 +88,8 @@ def report(
             progress=tell,
             early=_show_early,
         )
-    console, first = stdout(), written.first
+    console = stdout()
+    first = written.first
     console.print(first.title)
     console.print(f"{first.headline} {first.reason}".strip(), style="bold")
     for row in first.numbers:
@@ -198,7 +199,9 @@ def _print(check: CrossCheck) -> None:
     )
     from validation.cross_check.words import whole_difference as whole
 
-    console, name, verdict = stdout(), check.pair.name, check.verdict
+    console = stdout()
+    name = check.pair.name
+    verdict = check.verdict
     loss = [] if check.loss is None else [(LOSS, check.loss.judgement)]
     judged: dict[str, list[tuple[str, Judgement]]] = {
         "same equations": [(NAMES[a.quantity], a.judgement) for a in check.of("linear")],

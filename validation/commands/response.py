@@ -77,7 +77,8 @@ def response(
         return
     whole_number("--periods", periods, 1, 8)
     with progress_bar("branches") as tell:
-        many, cycles = 20 if seeds is None else seeds, range(1, periods + 1)
+        many = 20 if seeds is None else seeds
+        cycles = range(1, periods + 1)
         found = floquet.response_branches(
             pair, None, cycles, seeds=many, back_side=back_side, seconds=budget, progress=tell
         )

@@ -115,9 +115,11 @@ def _check(
     from lumped.errors import refuse
     from validation.files.output import DATA_SUFFIXES
 
-    named, others = ", ".join(axes) or "none", len(set(axes) - {"speed_rpm"})
+    named = ", ".join(axes) or "none"
+    others = len(set(axes) - {"speed_rpm"})
     figure = next((one for one in files.paths if one.suffix.lower() not in DATA_SUFFIXES), None)
-    shafts, layer = supports == "shafts", "--prove" if prove else "--tongues"
+    shafts = supports == "shafts"
+    layer = "--prove" if prove else "--tongues"
     for wrong, option, value, allowed, action in (
         (view == "boundaries" and others != 1, "--axis", named, "one axis other than speed_rpm, with or "
          "without speed_rpm, for --view boundaries", "For example --axis damping_ratio=0.005:0.05:5."),

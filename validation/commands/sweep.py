@@ -103,7 +103,8 @@ def _estimate(study: Study, processes: int) -> None:
     from validation.studies.cases import CaseList, StudyEvaluator
     from validation.studies.workers import evaluate_chunk
 
-    cases, evaluator = CaseList(study), StudyEvaluator.of(study)
+    cases = CaseList(study)
+    evaluator = StudyEvaluator.of(study)
     numbers = [study.count // 2, 0, study.count // 3, study.count - 1]
     values = cases.values(numbers)
     evaluate_chunk(evaluator, numbers[:1], values[:1])

@@ -32,7 +32,10 @@ if TYPE_CHECKING:
 
 #: Exit codes: a verdict that fails, an input that is refused, a computation or the writing of its result
 #: that fails, an interruption.
-FAILED, REFUSED, NUMERICAL, INTERRUPTED = 1, 2, 3, 130
+FAILED = 1
+REFUSED = 2
+NUMERICAL = 3
+INTERRUPTED = 130
 
 
 #: Categories of characters that control a terminal or reorder a line; only the line end is let through.

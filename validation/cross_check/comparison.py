@@ -42,7 +42,8 @@ _COMPARED_CYCLES = 4
 #: swing Hermite's rule errs by (2 pi/6)^4/720, 0.2 %, and by a 16th of that at twelve.
 _PER_SWING = 12
 #: Cycles of the asymmetric variant, and samples in each.
-_VARIANT_CYCLES, _VARIANT_SAMPLES = 2, 64
+_VARIANT_CYCLES = 2
+_VARIANT_SAMPLES = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -230,7 +231,8 @@ def _compared(
     # So many times as many samples as asked for, that the vibration is seen.
     numbers = machine(pair)
     every = -int(-_PER_SWING * numbers.vibrations_per_cycle // samples_per_cycle)
-    samples, runs = every * samples_per_cycle, 1 + len(fidelities)
+    samples = every * samples_per_cycle
+    runs = 1 + len(fidelities)
 
     def part(done: int) -> Progress:
         return lambda fraction, stage="", /: progress((done + fraction) / runs)
@@ -250,7 +252,8 @@ def _compared(
             progress=part(0),
         )
     else:
-        stable, reference = True, repeated(orbit.sampled(samples), cycles)
+        stable = True
+        reference = repeated(orbit.sampled(samples), cycles)
     cycle = reference.isel(time=slice(-samples - 1, -1))
     rtol = integration_tolerances({name: cycle[name].to_numpy() for name in QUANTITIES})
     results: dict[Fidelity, xr.Dataset] = {}

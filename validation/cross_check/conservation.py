@@ -45,12 +45,14 @@ POWERS: Mapping[str, str] = {
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 #: Panels of the quadrature in a mesh cycle, at least, and largest angle of the fastest vibration in a panel
 #: [rad]: Gauss's rule with four nodes then leaves some 1e-12 of a power, which swings twice as fast.
-_PANELS, _PANEL_ANGLE = 160, 0.7
+_PANELS = 160
+_PANEL_ANGLE = 0.7
 #: Rounding of a product of a coefficient and a velocity over the largest one.
 _ROUNDING = 1e-9
 #: Phases at which load over stiffness is checked, and fit error of the shares of all pairs over the largest
 #: stiffness.
-_PHASES, _SHARES = 256, 1e-8
+_PHASES = 256
+_SHARES = 1e-8
 #: Laws that several checks of one model stand for.
 _FAMILIES = ("action and reaction", "mean bearing load", "power ")
 #: Share of the driving power that the integration may lose at each fidelity: ten times its relative tolerance
@@ -152,7 +154,9 @@ def losses(
 ) -> dict[str, float]:
     """Mean powers of what a lumped motion loses [W], from (k,) times, (k, 12) states and (k,) weights."""
     p = machine.parameters
-    values, pairs, rates = response(system, times, states), system.cycle.sample(times), states[:, 6:]
+    values = response(system, times, states)
+    pairs = system.cycle.sample(times)
+    rates = states[:, 6:]
     place = values["position"]
     sliding = (p[kn.OMEGA_P] + rates[:, 0]) * place
     sliding -= (p[kn.OMEGA_G] + rates[:, 1]) * (p[kn.L_XY] - place) + rates[:, 4] - rates[:, 5]
@@ -198,7 +202,8 @@ def _mesh_histories(
 ) -> tuple[FloatArray, FloatArray]:
     """Moment of friction about the pinion, and the force on it off the line of action, of all pairs."""
     load, force, place = (np.asarray(motion[name]) for name in ("normal_load", "friction_force", "position"))
-    tilt, across = contact_of(pair).elements(pair).tilt, force
+    tilt = contact_of(pair).elements(pair).tilt
+    across = force
     if tilt is not None:
         across = force - tilt(place) * load
     return (force * place).sum(axis=0), across.sum(axis=0)
@@ -228,7 +233,8 @@ def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
     table = pair.mesh.stiffness
     if not isinstance(table, TableStiffness) or not table.whole_mesh:
         return []
-    p, static = m.parameters, static_transmission_error(pair, phases=_PHASES)
+    p = m.parameters
+    static = static_transmission_error(pair, phases=_PHASES)
     phase = static["phase"].to_numpy()
     given = pair.mesh.stiffness_factor * table.total(pair.geometry, phase)
     force = m.torque_pinion / p[kn.RADIUS_P]
@@ -289,7 +295,9 @@ def _action_and_reaction(m: Machine, name: str, motion: xr.Dataset) -> list[Judg
 
 def _integral(time: FloatArray, x: FloatArray, v: FloatArray, every: int = 1) -> FloatArray:
     """Integral of x from the first time on, by Hermite's cubic, (k,); a coarser one is held between."""
-    t, y, rate = time[::every], x[::every], v[::every]
+    t = time[::every]
+    y = x[::every]
+    rate = v[::every]
     h = np.diff(t)
     parts = 0.5 * h * (y[1:] + y[:-1]) + h**2 / 12.0 * (rate[:-1] - rate[1:])
     sums = np.concatenate([[0.0], np.cumsum(parts)])
@@ -307,7 +315,8 @@ def _mean_bearing_loads(
     p, (k_p, k_g) = m.parameters, m.bearing_stiffness
     moment, total = _mesh_histories(pair, motion)
     load = pair.operating.pinion_torque / p[kn.RADIUS_P]
-    along, across = load - moment.mean() / p[kn.RADIUS_P], total.mean()
+    along = load - moment.mean() / p[kn.RADIUS_P]
+    across = total.mean()
     stiffness = {"x_p": -k_p[0], "x_g": k_g[0], "y_p": k_p[1], "y_g": -k_g[1]}
     sampled = {
         "x": variation[0] / moment.size / p[kn.RADIUS_P] / load,
@@ -328,7 +337,8 @@ def _mean_bearing_loads(
 
 def _missed(motion: xr.Dataset, name: str) -> float:
     """What even times can miss of the mean of a displacement: step^2/8 times the variation of its rate."""
-    rate, time = motion[f"{name}_dot"].to_numpy(), motion["time"].to_numpy()
+    rate = motion[f"{name}_dot"].to_numpy()
+    time = motion["time"].to_numpy()
     step = float(time[1] - time[0])
     return step * float(np.abs(np.diff(rate, append=rate[:1])).sum()) / (8.0 * rate.size)
 

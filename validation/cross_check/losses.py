@@ -74,7 +74,8 @@ class LossAgreement:
 
 def loss_agreement(pair: GearPair, lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
     """Compare the losses that a motion of each model carries; None where one of them carries none."""
-    own, other = losses_of(lumped), losses_of(multibody)
+    own = losses_of(lumped)
+    other = losses_of(multibody)
     power = pair.operating.pinion_torque * pair.geometry.omega_pinion
     return LossAgreement(own, other, input_power=power) if own and other else None
 

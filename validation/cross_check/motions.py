@@ -145,7 +145,8 @@ def periodic_motion(
 
 def repeated(cycle: xr.Dataset, cycles: int) -> xr.Dataset:
     """A motion of one mesh cycle, its end left out, over several cycles, the last end included."""
-    samples, period = cycle.sizes["time"], float(cycle["time"][1]) * cycle.sizes["time"]
+    samples = cycle.sizes["time"]
+    period = float(cycle["time"][1]) * cycle.sizes["time"]
     number = np.arange(cycles * samples + 1)
     time = period * (number // samples) + cycle["time"].to_numpy()[number % samples]
     repeated = cycle.isel(time=number % samples).assign_coords(time=("time", time, cycle["time"].attrs))

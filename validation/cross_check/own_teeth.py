@@ -18,7 +18,9 @@ from lumped.schema.meeting_teeth import period_of
 from multibody.run.simulation import at_mean_speed
 
 #: Longest period that is compared as a whole, cycles of a window, and cycles in which a start is forgotten.
-_WHOLE, _WINDOW, _FORGOTTEN = 64, 6, 10
+_WHOLE = 64
+_WINDOW = 6
+_FORGOTTEN = 10
 
 
 def worst_cycle(pair: GearPair) -> int:

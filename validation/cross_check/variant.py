@@ -53,7 +53,8 @@ def prediction_holds(pair: GearPair) -> bool:
     loaded contact, where a pair begins and ends its contact gradually, all pairs together must press.
     """
     motion = periodic_cycle(pair, _SAMPLES)
-    pairs, values = motion.system.cycle.sample(motion.time), motion.values
+    pairs = motion.system.cycle.sample(motion.time)
+    values = motion.values
     touching = (values["dte"] >= pairs.error) | (pairs.stiffness == 0.0)
     load, touching = contact_of(pair).pressing(values["normal_load"], touching)
     return bool(motion.spectral_radius <= UNSTABLE and touching.all() and load.min() >= 0.0)

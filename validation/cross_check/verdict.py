@@ -49,7 +49,8 @@ class Judgement:
 
 #: Largest difference from the exact model over the peak to peak: of quantities that the tooth load drives
 #: (``crosscheck(limit=...)`` sets another), and of those that friction drives.
-LOAD_LIMIT, FRICTION_LIMIT = 0.05, 0.20
+LOAD_LIMIT = 0.05
+FRICTION_LIMIT = 0.20
 _INTEGRATION = "the same equations, assembled and integrated independently: only integration error may remain"
 _SMALL = f"{_INTEGRATION}; the quantity is about mu times the loads that carry the error, so ten times more"
 #: Quantities that friction drives.

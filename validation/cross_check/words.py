@@ -64,7 +64,8 @@ def _failed(judgement: Judgement) -> str:
     if kind != "same equations":
         return f"{judgement.check} {number(judgement.value, 2)}, limit {number(judgement.limit, 2)}"
     of = " of its asymmetric variant" if check != judgement.check else ""
-    value, limit = percent(judgement.value), percent(judgement.limit)
+    value = percent(judgement.value)
+    limit = percent(judgement.limit)
     return f"{NAMES[name]}{of} {value} off with the same equations, limit {limit}"
 
 
@@ -106,7 +107,8 @@ def whole_difference(check: CrossCheck) -> str:
     )
     if worst.quantity == "dte":
         return f"{whole}, limit {percent(dte.limit)}."
-    name, limit = NAMES[worst.quantity], percent(worst.limit)
+    name = NAMES[worst.quantity]
+    limit = percent(worst.limit)
     return f"{whole}; {name}, {swings[1]} beside {swings[0]}, by {share(worst.difference)}, limit {limit}."
 
 
@@ -135,7 +137,9 @@ def cause_of_difference(check: CrossCheck) -> str:
 
 def _without(check: CrossCheck, quantity: str, effect: str) -> float:
     """The difference with one effect of the exact model switched off; infinite where no motion is found."""
-    pair, orbit, reference = check.pair, check.orbit, check.lumped
+    pair = check.pair
+    orbit = check.orbit
+    reference = check.lumped
     cycles = round(float(reference["time"][-1]) / pair.geometry.mesh_period)
     samples = (reference.sizes["time"] - 1) // cycles
     try:
@@ -148,7 +152,8 @@ def _without(check: CrossCheck, quantity: str, effect: str) -> float:
         )
     except NumericalError:
         return np.inf
-    last, limit = reference.isel(time=slice(-samples - 1, None)), limit_of(quantity, "exact")
+    last = reference.isel(time=slice(-samples - 1, None))
+    limit = limit_of(quantity, "exact")
     return agreement(pair, quantity, "exact", repeated(motion, 1), last, limit).difference
 
 

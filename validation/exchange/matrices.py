@@ -176,7 +176,8 @@ def _model(fields: dict[str, Any], *, matlab: bool) -> SecondOrderModel:
     ]
     steps: list[tuple[Literal["C", "K"], FloatArray, FloatArray]] = []
     for of in ("C", "K"):
-        times, values = f"{of}_times", f"{of}_values"
+        times = f"{of}_times"
+        values = f"{of}_values"
         if (times in fields) != (values in fields):
             missing = times if values in fields else values
             raise refuse(missing, "missing", f"{times} and {values}", "Save both, or neither.")

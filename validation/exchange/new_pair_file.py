@@ -124,7 +124,8 @@ _LOAD_INTENSITY = 20e6
 #: Damping ratio of a gear on its bearings: the formula c = 1.25e-5 s k gives 0.03 to 0.25 for most pairs, but
 #: it was measured below the frequencies of gears (docs/theory/bearings.md).
 _BEARING_DAMPING = 0.05
-_FILLET, _DEDENDUM = "basic_rack.fillet_radius_coefficient", "basic_rack.dedendum_coefficient"
+_FILLET = "basic_rack.fillet_radius_coefficient"
+_DEDENDUM = "basic_rack.dedendum_coefficient"
 #: Clearance of the standard basic rack over module (ISO 53).
 _CLEARANCE = 0.25
 #: Field -> value in file units that stands in where a file has none.
@@ -143,7 +144,8 @@ _STAND_INS: dict[str, Any] = {
 }
 #: Oil temperature where a file has viscosities but no temperature [degC], and dynamic viscosity where it has
 #: none [mPa s].
-_TEMPERATURE, _VISCOSITY = 70.0, 10.0
+_TEMPERATURE = 70.0
+_VISCOSITY = 10.0
 
 
 def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
@@ -155,7 +157,8 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
     pair = _filled({"name": name}, values)
     by_user = [path for path in leaf_paths(pair) if any(within(path, one) for one in values)]
     pair = marked(pair, dict.fromkeys(by_user, GIVEN))
-    given, assumed = len(pair.sources), len(pair.assumed)
+    given = len(pair.sources)
+    assumed = len(pair.assumed)
     notes = [
         "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
         f"{given} values are given, {assumed} assumed: replace what you know, first bearings.",
@@ -185,7 +188,8 @@ def reasons(pair: GearPair) -> dict[str, str]:
         filled = _filled({"name": pair.name}, _values(known))
     except ParameterError:  # such as a kind of stiffness that the program would not assume
         return {}
-    own, values = filled.assumed.to_mapping() | leaf_paths(filled), pair.assumed.to_mapping()
+    own = filled.assumed.to_mapping() | leaf_paths(filled)
+    values = pair.assumed.to_mapping()
     return {path: _why(path, value) for path, value in values.items() if own.get(path) == value}
 
 
@@ -224,7 +228,8 @@ def _backlash(pair: GearPair) -> float:
     j = 2/3 (0.06 + 0.0005 a + 0.03 m) mm for centre distance a and module m from 1.5 mm on (ISO/TR 10064-2,
     annex A); a tenth of the module where that is less, as with fine teeth.
     """
-    module, centre = 1e3 * pair.basic_rack.module, 1e3 * pair.geometry.centre_distance
+    module = 1e3 * pair.basic_rack.module
+    centre = 1e3 * pair.geometry.centre_distance
     return round(min((0.06 + 0.0005 * centre + 0.03 * module) / 1.5, 0.1 * module), 4)
 
 
@@ -352,7 +357,8 @@ def _assumed_bearing(gear: str, known: Mapping[str, Any]) -> dict[str, Any]:
     except (ValueError, TypeError, KeyError, ZeroDivisionError):  # the pair refuses it, in the user's words
         (kind, number, size), across, springs = assumed_bearing(1.0), 1.0, {}
     if springs:
-        along, off = springs.get(STIFFNESSES[0]), springs.get(STIFFNESSES[1])
+        along = springs.get(STIFFNESSES[0])
+        off = springs.get(STIFFNESSES[1])
         other = {STIFFNESSES[0]: None if off is None else off / across}
         other |= {STIFFNESSES[1]: None if along is None else along * across}
         return {start + key: float(f"{other[key]:.3g}") for key in STIFFNESSES if key not in own}

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 
 #: Relative differences up to which numbers agree: of exact geometry, of stiffness and what follows from it,
 #: where variants of the method differ by some per cent, and of frequencies, square roots of stiffness.
-_GEOMETRY, _STIFFNESS, _FREQUENCY = 1e-6, 0.05, 0.025
+_GEOMETRY = 1e-6
+_STIFFNESS = 0.05
+_FREQUENCY = 0.025
 #: Name, unit, their value, ours, limit.
 Row = tuple[str, str, float, float, float]
 
@@ -54,10 +56,12 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
     ParameterError : no such mesh, helical gears, or a pair that cannot exist
     """
     pair = _pair(mesh, speed, torque)
-    g, gears = pair.geometry, (mesh.driving_gear, mesh.driven_gear)
+    g = pair.geometry
+    gears = (mesh.driving_gear, mesh.driven_gear)
     # The last point of a mesh cycle is the first of the next one.
     theirs = np.asarray(mesh.stiffness_range, dtype=float)[:-1]
-    phase, cycle = np.arange(theirs.size) / theirs.size, lumped.mesh_cycle(pair)
+    phase = np.arange(theirs.size) / theirs.size
+    cycle = lumped.mesh_cycle(pair)
     ours = cycle.sample(phase * cycle.period).stiffness.sum(axis=0)
     with_theirs = pair.with_(stiffness={"phase": phase, "stiffness [N/m]": theirs})
     motions = [lumped.steady_state(one)["dte"].to_numpy() for one in (with_theirs, pair)]
@@ -100,13 +104,15 @@ def compare_matrices(
     ParameterError : matrices of other shapes, or a singular M
     """
     pair = load_gear_pair(pair).with_(law="none")
-    mass, stiffness = real_array("M", M), np.atleast_3d(real_array("K", K).T).T
+    mass = real_array("M", M)
+    stiffness = np.atleast_3d(real_array("K", K).T).T
     n = stiffness.shape[-1]
     if mass.shape != (n, n) or stiffness.shape[-2] != n or np.linalg.matrix_rank(mass) < n:
         shapes = f"M {mass.shape}, K {np.shape(K)}"
         raise refuse("M, K", shapes, "M (n, n), regular, and K (n, n) or (m, n, n)", "Correct the shapes.")
     system = periodic_system(pair, "elastic", supports=supports)
-    m, count = len(system.coordinates), len(stiffness) if len(stiffness) > 1 else 512
+    m = len(system.coordinates)
+    count = len(stiffness) if len(stiffness) > 1 else 512
     ours = -system.matrices(np.arange(count) * (system.period / count))[:, m:, :m]
     theirs = np.linalg.solve(mass, stiffness)
     modes = [_frequencies(one.mean(axis=0)) for one in (theirs, ours)]

@@ -59,7 +59,8 @@ def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
             work = Path(tempfile.mkdtemp(prefix=".spurcheck-", dir=target.parent))
         except OSError as error:
             raise not_writable(target, error) from None
-        new, old = work / "new", work / "old"
+        new = work / "new"
+        old = work / "old"
         new.mkdir()
         try:
             yield new

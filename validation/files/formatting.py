@@ -50,7 +50,8 @@ def quantity(
         return number(value, digits, measured=measured)
     if unit in _PREFIXED and math.isfinite(value):
         exponent = prefix_exponent(value, digits) if exponent is None else exponent
-        value, unit = value / 10.0**exponent, f"{_PREFIXES[exponent]}{unit}"
+        value = value / 10.0**exponent
+        unit = f"{_PREFIXES[exponent]}{unit}"
     return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
 
 
@@ -106,7 +107,8 @@ def side_by_side(
     factor = 1.0
     if unit in _PREFIXED and largest > 0.0:
         exponent = prefix_exponent(largest, digits)
-        factor, name = 10.0**exponent, f"{_SPACE}{_PREFIXES[exponent]}{unit}"
+        factor = 10.0**exponent
+        name = f"{_SPACE}{_PREFIXES[exponent]}{unit}"
     scaled = [value / factor for value in values]
     size = max(map(abs, scaled), default=0.0)
     first = digits - 1 - math.floor(math.log10(size)) if size > 0.0 else 0
@@ -123,7 +125,8 @@ def prose(text: str) -> str:
 
 
 def _plain(match: re.Match[str]) -> str:
-    mantissa, exponent = match[1], int(match[2])
+    mantissa = match[1]
+    exponent = int(match[2])
     if -3 <= exponent <= 4:
         places = max(len(mantissa.partition(".")[2]) - exponent, 0)
         return f"{float(match[0]):.{places}f}"

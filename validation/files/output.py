@@ -136,9 +136,11 @@ def _write_netcdf4(result: xr.Dataset, content: IO[bytes]) -> None:
 
 
 def _dataset(file: h5py.File, name: str, variable: xr.Variable) -> h5py.Dataset:
-    values, options = variable.to_numpy(), dict[str, Any]()
+    values = variable.to_numpy()
+    options = dict[str, Any]()
     if values.dtype.kind in "OU":
-        values, options["dtype"] = values.astype(object), h5py.string_dtype()
+        values = values.astype(object)
+        options["dtype"] = h5py.string_dtype()
     real = values.dtype.kind == "f"
     if real:
         options["fillvalue"] = np.nan

@@ -17,7 +17,8 @@ from validation.plots.stability import pretty
 from validation.validity.flags import REVERSAL_LIMITS, STATES
 
 #: Decimals of a largest multiplier, and significant digits of everything else.
-DECIMALS, DIGITS = 6, 6
+DECIMALS = 6
+DIGITS = 6
 
 
 def payload(results: PageResults) -> dict[str, Any]:
@@ -43,7 +44,8 @@ def script_json(data: Any) -> str:
 
 
 def _slices(slices: Slices) -> dict[str, Any]:
-    chart, key = slices.chart, slices.key
+    chart = slices.chart
+    key = slices.key
     radius = np.round(chart["spectral_radius"].to_numpy(), DECIMALS).astype("<f4")
     return {
         "key": key,

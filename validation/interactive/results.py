@@ -143,7 +143,8 @@ def _law_sweeps(
 ) -> tuple[dict[str, xr.Dataset], dict[str, str]]:
     """Response of every law that this pair admits, at the speeds of its own; why others are missing."""
     speeds = own["speed"].to_numpy()
-    sweeps, missing = {pair.friction.law: _response(pair, own)}, {}
+    sweeps = {pair.friction.law: _response(pair, own)}
+    missing = {}
     laws = [*LAWS, *([TABLE] if pair.friction.table is not None else [])]
     for done, law in enumerate(laws):
         if law not in sweeps:
@@ -160,8 +161,10 @@ def _response(pair: GearPair, found: xr.Dataset) -> xr.Dataset:
     """What the page shows of a sweep of this pair."""
     g = pair.geometry
     static = pair.operating.pinion_torque / g.base_radius_pinion
-    lowest, reversal = found["normal_load_min"].to_numpy(), found["sliding_reversal"].to_numpy()
-    lowest, reversal = lowest / static, reversal / g.base_pitch
+    lowest = found["normal_load_min"].to_numpy()
+    reversal = found["sliding_reversal"].to_numpy()
+    lowest = lowest / static
+    reversal = reversal / g.base_pitch
     own = {"lowest_load": lowest, "reversal": reversal, "validity": validity_state(lowest, reversal)}
     values = {name: own[name] if name in own else found[name].to_numpy() for name in _LABELS}
     return labelled_dataset(

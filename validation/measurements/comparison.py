@@ -78,7 +78,8 @@ class Prediction:
 
     def since(self, cycles: ArrayLike, label: str) -> FloatArray:
         """``age``, negative before A where a pair can touch there."""
-        age, first = self.age(cycles, label), self.life[0]
+        age = self.age(cycles, label)
+        first = self.life[0]
         return np.asarray(np.where(age >= self.recurrence + first, age - self.recurrence, age))
 
     def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
@@ -228,7 +229,8 @@ def overlay(
     Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0. Metrics of
     all samples are over ``channel``; the relative one is NaN where the prediction is constant.
     """
-    rows, metrics = [], []
+    rows = []
+    metrics = []
     one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
     for channel in measurement.spec.channel:
         age, y, p = _samples(measurement, prediction, alignment, channel)
@@ -242,11 +244,13 @@ def overlay(
         rows.append((measured, predicted, scatter, (np.arange(bins) + 0.5) * reach / bins, count))
         # A constant prediction, such as no friction, has no scale.
         span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair))) or np.nan
-        one, vary = float(np.sqrt(np.mean((y - p) ** 2))), bool(np.ptp(y) and np.ptp(p))
+        one = float(np.sqrt(np.mean((y - p) ** 2)))
+        vary = bool(np.ptp(y) and np.ptp(p))
         metrics.append((float(np.mean(y - p)), one, one / span, np.corrcoef(y, p)[0, 1] if vary else 0.0))
     measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
     bias, rms, relative, correlation = map(list, zip(*metrics, strict=True))
-    dims, own = ("channel", "bin"), "SI, by channel"
+    dims = ("channel", "bin")
+    own = "SI, by channel"
     units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
     return labelled_dataset(
         {
@@ -274,9 +278,11 @@ def _samples(
     """Phase since A, measured and predicted of a channel's samples (pairs: in contact only)."""
     u, y = alignment.cycles, measurement.channels[channel.name]
     if channel.pair is None:
-        age, inside = np.mod(u, 1.0), np.ones(u.shape, dtype=bool)
+        age = np.mod(u, 1.0)
+        inside = np.ones(u.shape, dtype=bool)
     else:
-        age, inside = prediction.age(u, channel.pair), prediction.contact(u, channel.pair)
+        age = prediction.age(u, channel.pair)
+        inside = prediction.contact(u, channel.pair)
     if not inside.any():
         raise NumericalError(
             f"No sample of {channel.name} is in contact; check the abscissae, the shift and the pair labels."

@@ -40,7 +40,8 @@ from validation.measurements.record import PAIR_LABELS, Measurement
 LEVEL = 0.95
 #: What may be identified besides a scale on a friction law.
 CONSTANT = "mu"
-_FEWEST, _FEWEST_BLOCKS = 20, 8
+_FEWEST = 20
+_FEWEST_BLOCKS = 8
 
 
 @dataclass(frozen=True)
@@ -205,7 +206,8 @@ def _collected(
         load = measurement.channels[loads[label]] if loads else prediction.value("normal_load", u, label)
         of_friction = noises[name] if known else 1.0
         of_load = noises[loads[label]] if known and loads else 0.0
-        xi, full = xi[inside], np.ones(np.count_nonzero(inside))
+        xi = xi[inside]
+        full = np.ones(np.count_nonzero(inside))
         shape = np.sign(xi - g.L_XP) if law_shape is None else law_shape(xi)
         engagement = np.floor((u[inside] - PAIR_LABELS.index(label)) / prediction.recurrence)
         own = (of_friction * full, of_load * full, engagement + 1e9 * number)

@@ -33,7 +33,8 @@ QUANTITIES: dict[str, tuple[str, bool]] = {
 }
 PAIR_LABELS = "ABCDEFGH"
 #: Largest description and record read: a bound against a wrong path.
-_MAX_FILE_BYTES, _MAX_BYTES = 1_000_000, 2_000_000_000
+_MAX_FILE_BYTES = 1_000_000
+_MAX_BYTES = 2_000_000_000
 #: Values whose squares can be summed.
 _LARGEST = 1e100
 
@@ -156,13 +157,16 @@ def load_measurement(source: str | Path | Mapping[str, Any]) -> Measurement:
     ParameterError : the description or the data file cannot be used; the text names field, row or column
     """
     if isinstance(source, Mapping):
-        data, folder, name = dict(source), Path(), "mapping"
+        data = dict(source)
+        folder = Path()
+        name = "mapping"
     else:
         path = file_path("measurement", source)
         if path.suffix.lower() == ".csv":
             action = "Describe the table in a TOML file, whose field 'data' names it."
             raise refuse("measurement", path, "the description of a record, a .toml file", action)
-        folder, name = path.parent, str(path)
+        folder = path.parent
+        name = str(path)
         data = parse_toml(read_text(path, _MAX_FILE_BYTES, kind="TOML file"), name)
     spec = made_of(MeasurementSpec, data, name)
     if not spec.data:

@@ -443,7 +443,8 @@ class RecordComparison:
             for one in self.channels
         ]
         measured, predicted = np.stack(curves, axis=1)
-        dims, unit = ("channel", "phase"), "SI, by channel"
+        dims = ("channel", "phase")
+        unit = "SI, by channel"
         return labelled_dataset(
             {
                 "measured_motion": (dims, measured, unit, "measured"),
@@ -486,7 +487,8 @@ def compare_record(
     spec = measurement.spec
     channels = sorted(spec.channel, key=lambda one: one.quantity != "dte")  # the first leads
     curves = mean_mesh_cycle(prediction, spec.recurrence)
-    cycles, samples = cycles_in_step(measurement, prediction.pair), measurement.channels
+    cycles = cycles_in_step(measurement, prediction.pair)
+    samples = measurement.channels
     at = coarse_shift(measurement, cycles, curves, channels) if shift is None else shift
     every = [measured_orders(samples[one.name], cycles, curves, one, at) for one in channels]
     expected = [predicted_orders(curves, own, one) for own, one in zip(channels, every, strict=True)]
@@ -505,7 +507,9 @@ def compare_record(
     moved = _moved(varied, channels, every, seen, scales, spec.recurrence)
     found = []
     for j, own in enumerate(channels):
-        here, scale, swing = predicted[j].shifted(at), scales[j], measured[j].peak_to_peak
+        here = predicted[j].shifted(at)
+        scale = scales[j]
+        swing = measured[j].peak_to_peak
         size = PeakToPeak(
             swing,
             here.peak_to_peak,

@@ -24,7 +24,9 @@ from validation.signals.complex_orders import ComplexOrders, complex_orders, ord
 
 #: Most mesh orders of a record, most per different phase of its samples, and how many phases of a mesh cycle
 #: are different.
-_ORDERS, _PER_PHASE, _DIFFERENT = 40, 0.3, 1000
+_ORDERS = 40
+_PER_PHASE = 0.3
+_DIFFERENT = 1000
 #: Samples for each number that is fitted.
 _PER_NUMBER = 4
 #: Speed and torque of the record may be this share off those of the pair.
@@ -33,7 +35,10 @@ _SAME = 0.01
 _SAMPLES = 512
 #: The mesh frequency of a record may be this share off that of its stated speed. So many orders find it, with
 #: so many trials in a wave of the last of them, over so many mesh cycles at first and then over more.
-_OFF, _FIRST, _TRIALS, _SHORT = 0.005, 6, 4.0, 64.0
+_OFF = 0.005
+_FIRST = 6
+_TRIALS = 4.0
+_SHORT = 64.0
 #: Share of the stated speed within which another one is looked for.
 _FAR = 0.05
 #: Share by which the orders must carry more at another frequency than at the stated one.
@@ -47,7 +52,8 @@ def check_record(measurement: Measurement, pair: GearPair) -> None:
 
     Another speed is one that is stated, or one at which the mesh orders of the samples are.
     """
-    spec, own = measurement.spec, pair.operating
+    spec = measurement.spec
+    own = pair.operating
     for name, there in (("pinion_speed", spec.pinion_speed), ("pinion_torque", spec.pinion_torque)):
         here = float(getattr(own, name))
         if abs(there / here - 1.0) > _SAME:
@@ -70,7 +76,9 @@ def cycles_in_step(measurement: Measurement, pair: GearPair) -> FloatArray:
     cycles = mesh_cycles(measurement, pair)
     if carried is None or carried.reach * _OFF * _TRIALS < 0.5:
         return cycles
-    factor, width, length = 1.0, _OFF, min(_SHORT, carried.reach)
+    factor = 1.0
+    width = _OFF
+    length = min(_SHORT, carried.reach)
     while True:
         factor, width = carried.strongest(factor, width, length)
         if length >= carried.reach:
@@ -142,7 +150,8 @@ class _Carried:
 
 def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Curves:
     """The motion averaged over the mesh cycles of its period, readable at any mesh cycle."""
-    count, cycle = prediction.mesh_cycles, prediction.cycle
+    count = prediction.mesh_cycles
+    cycle = prediction.cycle
     size = cycle.sizes["time"] // count
     names = [name for name in QUANTITIES if name in cycle]
     first = cycle[[*names, "position"]].isel(time=slice(0, size))
@@ -166,7 +175,8 @@ def measured_orders(
     """Orders of a channel; of one tooth pair over as many mesh cycles as pairs are in contact at once."""
     if own.pair is None:
         return complex_orders(cycles, values, np.arange(1, _resolved(cycles) + 1))
-    period, first = curves.ahead.size, int(curves.ahead.min())
+    period = curves.ahead.size
+    first = int(curves.ahead.min())
     if curves.recurrence < period:
         action = "Count the mesh cycles until the same labelled pair is in contact again."
         raise refuse("measurement.recurrence", curves.recurrence, f">= {period}", action)
@@ -204,7 +214,8 @@ def coarse_shift(
     index = np.floor(np.mod(cycles, curves.recurrence) / BIN)
     index = index.astype(np.int64) % count
     filled = np.maximum(np.bincount(index, minlength=count), 1)
-    total, middles = np.zeros(count), (np.arange(count) + 0.5) * BIN
+    total = np.zeros(count)
+    middles = (np.arange(count) + 0.5) * BIN
     for one in channels:
         values = measurement.channels[one.name]
         mean = np.bincount(index, weights=values - values.mean(), minlength=count) / filled

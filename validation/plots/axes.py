@@ -13,7 +13,8 @@ from lumped.typing import FloatArray
 from validation.plots.style import GREY, WIDTH, legend_above, look, new_figure, one_panel, scaled
 
 #: Characters that fit in a row of a legend as wide as a page, and those that a curve's sample takes.
-_ROW, _HANDLE = 100, 9
+_ROW = 100
+_HANDLE = 9
 #: Units that take no prefix.
 _AS_IS = frozenset({"rpm", "%", "1/rev", "mesh cycles"})
 
@@ -46,7 +47,8 @@ def draw_curves(ax: Axes, data: xr.Dataset, names: list[str], text: str = "", **
     """Draw variables of one unit over their coordinate, labelled by themselves; ``text`` names several."""
     curves = [data[name] for name in names]
     x = data[str(curves[0].dims[0])]
-    across, up = label_axis(ax, "x", x), label_axis(ax, "y", *curves, text=text)
+    across = label_axis(ax, "x", x)
+    up = label_axis(ax, "y", *curves, text=text)
     for number, curve in enumerate(curves):
         ax.plot(
             x.to_numpy() / across,

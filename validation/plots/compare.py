@@ -13,11 +13,13 @@ from validation.plots.style import BLACK, BLUE, GREY, IN_Y, RED, new_figure, wri
 from validation.prediction.compare import LARGER, differences, of_hundred
 
 #: Most machines that are drawn in a row, and half the height over which they are spread.
-_DOTS, _HALF = 256, 0.28
+_DOTS = 256
+_HALF = 0.28
 #: Longest line above the panels.
 _LINE = 100
 #: Height of a row and of what a panel needs besides [inch].
-_ROW, _FRAME = 0.38, 0.55
+_ROW = 0.38
+_FRAME = 0.55
 
 
 def compare_figure(found: xr.Dataset) -> Figure:

@@ -54,11 +54,13 @@ def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> F
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]
-    rms, cycles = branches["dte_rms"].to_numpy(), branches["n"].to_numpy()
+    rms = branches["dte_rms"].to_numpy()
+    cycles = branches["n"].to_numpy()
     roams = branches["attractor_dte_rms"].to_numpy()
     factor = scale_y(top, "transmission error,\nroot mean square", "m", np.append(rms, roams))
     radius = branches["spectral_radius"].to_numpy() ** (1.0 / cycles)
-    speed, stable = branches["speed_rpm"].to_numpy(), branches["stable"].to_numpy().astype(bool)
+    speed = branches["speed_rpm"].to_numpy()
+    stable = branches["stable"].to_numpy().astype(bool)
     for branch in np.unique(branches["branch"]):
         here = branches["branch"].to_numpy() == branch
         colour = _COLOURS.get(int(cycles[here][0]), SKY)
@@ -116,8 +118,10 @@ def jump_map_figure(data: xr.Dataset) -> Figure:
     data = data.transpose(name, "speed_rpm", ...).sortby([name, "speed_rpm"])
     figure, axes = new_figure(1, 2, height=3.7, sharey=True)
     left, right = axes[0]
-    speed, values = data["speed_rpm"].to_numpy(), data[name].to_numpy()
-    motions, no_loss = data["motions"].to_numpy(), data["contact_kept"].to_numpy().astype(bool)
+    speed = data["speed_rpm"].to_numpy()
+    values = data[name].to_numpy()
+    motions = data["motions"].to_numpy()
+    no_loss = data["contact_kept"].to_numpy().astype(bool)
     state = np.select([motions == 0, motions > 1, ~no_loss], [3, 2, 1], 0)
     norm = BoundaryNorm(np.arange(-0.5, 4.5), 4)
     shading: Any = {"shading": "nearest", "rasterized": True}

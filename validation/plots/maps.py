@@ -35,7 +35,8 @@ def map_figure(
     norm: Any = Normalize(finite.min(), finite.max())
     if log:
         norm = LogNorm(max(finite.max() * 1e-3, 1e-30), finite.max(), clip=True)
-    across, up = label_axis(ax, "x", values[x]), label_axis(ax, "y", values[y])
+    across = label_axis(ax, "x", values[x])
+    up = label_axis(ax, "y", values[y])
     drawn = ax.pcolormesh(
         values[x].to_numpy() / across,
         values[y].to_numpy() / up,
@@ -80,7 +81,8 @@ def waterfall_figure(data: xr.Dataset, frequencies: Iterable[float] = ()) -> Fig
     figure, ax = one_panel(4.2)
     factor, unit = scale_of(data["amplitude"])
     shown = data["amplitude"].to_numpy()[:, 1:] / factor
-    hertz, speed = data["frequency"].to_numpy(), data["speed_rpm"].to_numpy()
+    hertz = data["frequency"].to_numpy()
+    speed = data["speed_rpm"].to_numpy()
     grid = np.broadcast_to(speed[:, None], shown.shape)
     norm = LogNorm(shown.max() * 1e-3, shown.max(), clip=True)
     drawn = ax.pcolormesh(hertz[:, 1:] / 1e3, grid, shown, cmap=COLOURS, norm=norm, shading="nearest")
@@ -96,7 +98,8 @@ def waterfall_figure(data: xr.Dataset, frequencies: Iterable[float] = ()) -> Fig
     for frequency in frequencies:
         if frequency / 1e3 < end:
             ax.axvline(frequency / 1e3, color=RED, linewidth=0.8, linestyle="--")
-    across, up = data["frequency"].attrs["long_name"], data["speed_rpm"].attrs["long_name"]
+    across = data["frequency"].attrs["long_name"]
+    up = data["speed_rpm"].attrs["long_name"]
     ax.set(
         xlim=(0.0, end),
         ylim=(speed.min(), speed.max()) if speed.size > 1 else None,

@@ -40,7 +40,8 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     """
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     top, bottom = axes[:, 0]
-    x, dte = mesh_cycles(result, g), result["dte"].to_numpy()
+    x = mesh_cycles(result, g)
+    dte = result["dte"].to_numpy()
     top.plot(x, dte / scale_y(top, "transmission error", "m", dte), color=BLUE, linewidth=1.0)
     load = np.where(result["contact"].to_numpy() > 0, result["normal_load"].to_numpy(), np.nan)
     factor = scale_y(bottom, "normal load", "N", load)
@@ -60,7 +61,8 @@ def sweep_figure(sweep: xr.Dataset, operating_rpm: float, static_load: float) ->
     """
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     top, bottom = axes[:, 0]
-    speed, values = sweep["speed"].to_numpy(), sweep["dte_peak_to_peak"].to_numpy()
+    speed = sweep["speed"].to_numpy()
+    values = sweep["dte_peak_to_peak"].to_numpy()
     factor = scale_y(top, "transmission error,\npeak to peak", "m", values)
     top.plot(speed, values / factor, color=BLUE)
     unstable = sweep["spectral_radius"].to_numpy() > UNSTABLE
@@ -121,10 +123,12 @@ def cross_check_figure(
     top, bottom = axes[:, 0]
     time = reference["time"].to_numpy()
     shown = time >= time[-1] - (_SHOWN_CYCLES + 1e-9) * g.mesh_period
-    x, base = (time[shown] - time[shown][0]) / g.mesh_period, reference["dte"].to_numpy()[shown]
+    x = (time[shown] - time[shown][0]) / g.mesh_period
+    base = reference["dte"].to_numpy()[shown]
     factor = scale_y(top, "transmission error", "m", base)
     top.plot(x, base / factor, color=BLACK, linewidth=2.6, alpha=0.35, label="lumped")
-    colours, dashes = {"linear": BLUE, "exact": RED}, {"linear": DASHES[2], "exact": DASHES[0]}
+    colours = {"linear": BLUE, "exact": RED}
+    dashes = {"linear": DASHES[2], "exact": DASHES[0]}
     for name, result in others.items():
         look_of: dict[str, Any] = {"color": colours[name], "linestyle": dashes[name], "linewidth": 1.2}
         top.plot(x, result["dte"].to_numpy()[shown] / factor, **look_of, label=f"multibody {name}")

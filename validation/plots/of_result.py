@@ -71,10 +71,8 @@ def _spectrum(result: xr.Dataset) -> Figure:
     within = result["frequency"] < (_MESH_ORDERS + 0.5) * _pair(result).geometry.mesh_frequency
     shown = result.sel(order=within & (result["order"] > 0.0))  # the mean would dwarf the rest
     figure, ax = one_panel(2.7)
-    across, up = (
-        label_axis(ax, "x", shown["order"]),
-        label_axis(ax, "y", shown["amplitude"], text="amplitude"),
-    )
+    across = label_axis(ax, "x", shown["order"])
+    up = label_axis(ax, "y", shown["amplitude"], text="amplitude")
     ax.vlines(shown["order"] / across, 0.0, shown["amplitude"] / up, color=BLUE)
     ax.set(xlim=(0.0, None), ylim=(0.0, None))
     return figure

@@ -40,7 +40,8 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     height and width [inch].
     """
     figure, ax = one_panel(*size)
-    speed, linear = data["speed_rpm"], data["linear"]
+    speed = data["speed_rpm"]
+    linear = data["linear"]
     shared = [linear, *(data[name] for name in ("low", "high", "motion") if name in data)]
     label_axis(ax, "x", speed)
     factor = label_axis(ax, "y", *shared, text="transmission error, p-p")
@@ -57,7 +58,8 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     if "motion" in data:
         stable = data["motion_stable"].to_numpy() > 0
         seen.append(data["motion"][stable])
-        place, sizes = data["motion_speed_rpm"].to_numpy(), data["motion"].to_numpy() / factor
+        place = data["motion_speed_rpm"].to_numpy()
+        sizes = data["motion"].to_numpy() / factor
         look: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": 3.5}
         ax.plot(place[stable], sizes[stable], color=RED, label="unilateral contact", gid="motion", **look)
         if not stable.all():
@@ -90,7 +92,8 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
 def orders_figure(data: xr.Dataset) -> Figure:
     """Amplitudes of a force by mesh order; ``low`` and ``high`` where the inputs were varied."""
     figure, ax = one_panel(*SMALL)
-    order, amplitude = data["order"], data["amplitude"]
+    order = data["order"]
+    amplitude = data["amplitude"]
     ends = [data[name] for name in ("low", "high") if name in data]
     factor = label_axis(ax, "y", amplitude, *ends)
     ax.set_xlabel(f"mesh order [-]; 1 is {data.attrs['mesh_frequency']:.4g} Hz")
@@ -127,7 +130,8 @@ def budget_figure(data: xr.Dataset) -> Figure:
     share = data["share"]
     figure, ax = one_panel(0.6 + 0.32 * share.size)
     label_axis(ax, "x", share)
-    place, values = np.arange(share.size)[::-1], share.to_numpy()
+    place = np.arange(share.size)[::-1]
+    values = share.to_numpy()
     known = np.isfinite(values) & (values > 0.0)
     floor = 10.0 ** np.floor(np.log10(values[known].min(initial=1e-3)) - 0.5)
     largest = list(data["row"].to_numpy()).index(data.attrs["largest"])

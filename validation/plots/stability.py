@@ -78,7 +78,9 @@ def stability_figure(
     chart = chart.sortby([x, y])
     growth, unit = _growth(chart)
     undecided = (chart["verdict"] == 0).transpose(y, x).to_numpy()
-    xs, ys, values = chart[x].to_numpy(), chart[y].to_numpy(), growth.transpose(y, x).to_numpy()
+    xs = chart[x].to_numpy()
+    ys = chart[y].to_numpy()
+    values = growth.transpose(y, x).to_numpy()
     norm = Normalize(min(float(values.min()), -1e-3), 0.0)
     bar = figure.colorbar(_field(ax, xs, ys, values.clip(max=0.0), norm), ax=ax, pad=0.01)
     bar.set_label(f"growth of a disturbance [{unit}]")
@@ -139,7 +141,8 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
     """Spectral radius along the one axis of a chart."""
     figure, ax = one_panel(2.9)
     radius = chart["spectral_radius"].sortby(x)
-    xs, values = radius[x].to_numpy(), radius.to_numpy()
+    xs = radius[x].to_numpy()
+    values = radius.to_numpy()
     ax.plot(xs, values, color="#08519c", linewidth=1.2)
     undecided = (chart["verdict"].sortby(x) == 0).to_numpy()
     if undecided.any():
@@ -204,12 +207,16 @@ def _name_regions(
         if isinstance(region, TongueMargin):
             if region.critical_damping <= bottom:
                 continue  # closed below the figure
-            name, place, weight = region.label, region.tip_speed, region.critical_damping
+            name = region.label
+            place = region.tip_speed
+            weight = region.critical_damping
             inside = region.damping <= top
             edges = (region.damping[inside], region.left[inside], region.right[inside])
             ax.fill_betweenx(*edges, facecolor=UNSTABLE, edgecolor=BLACK, linewidth=0.8, zorder=0.9)
         else:
-            name, place, weight = str(region.label), region.point["speed_rpm"], float(region.nodes)
+            name = str(region.label)
+            place = region.point["speed_rpm"]
+            weight = float(region.nodes)
         if low <= place <= high and weight > largest.get(name, (0.0, 0.0))[1]:
             largest[name] = (place, weight)
     places, weights = zip(*largest.values(), strict=True) if largest else ((), ())
@@ -260,7 +267,8 @@ def campbell_figure(diagram: xr.Dataset, operating_rpm: float | None = None) -> 
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]
-    speed, decay = diagram["speed_rpm"].to_numpy(), diagram["decay"].to_numpy()
+    speed = diagram["speed_rpm"].to_numpy()
+    decay = diagram["decay"].to_numpy()
     frequency = diagram["frequency"].to_numpy() / 1e3
     ceiling = 1.12 * float(frequency.max())
     for index, mode in enumerate(diagram["mode"].to_numpy()):
@@ -308,7 +316,8 @@ def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
     height = (point[1] - bottom) / (top - bottom)
     north = height < 0.5
     shift = 7 if north else -7
-    aside, va = (8, "left") if east else (-8, "right"), "bottom" if north else "top"
+    aside = (8, "left") if east else (-8, "right")
+    va = "bottom" if north else "top"
     write_beside(
         ax, "operating point", point, (aside[0], shift), ha=aside[1], va=va, fontsize=8.5, bbox=WHITE_BOX
     )

@@ -64,7 +64,8 @@ def new_figure(
         figure = Figure(figsize=(width, height), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, **options)
     for ax in axes.flat:
-        wide, tall = width * ax.get_position().width, height * ax.get_position().height
+        wide = width * ax.get_position().width
+        tall = height * ax.get_position().height
         ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * wide), 9)), steps=(1, 2, 5, 10))
         ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * tall), 6)), steps=(1, 2, 5, 10))
         ax.tick_params(width=0.6, length=3, grid_color="#d9d9d9", grid_linewidth=0.5)

@@ -56,8 +56,10 @@ def sidebands_figure(data: xr.Dataset) -> Figure:
     """
     figure, axes = new_figure(1, 1, height=2.3)
     ax = axes[0, 0]
-    teeth, order = int(data.attrs["teeth"]), data["order"].to_numpy()
-    values, healthy = data["amplitude"].to_numpy(), data["healthy"].to_numpy()
+    teeth = int(data.attrs["teeth"])
+    order = data["order"].to_numpy()
+    values = data["amplitude"].to_numpy()
+    healthy = data["healthy"].to_numpy()
     shown = (np.abs(order - np.round(order)) < 1e-6) & (order > 0.5) & (order < 2.5 * teeth)
     least = max(float(values[shown].max()) * 1e-5, 1e-14)
     factor = scale_y(ax, "amplitude", "m", values)

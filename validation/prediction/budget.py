@@ -124,7 +124,8 @@ def _apart(one: Prediction, other: Prediction | Absent) -> Sizes:
     """Differences of ``COLUMNS``, not known where there is no other motion."""
     if isinstance(other, Absent):
         return _UNKNOWN
-    first, second = one.numbers, other.numbers
+    first = one.numbers
+    second = other.numbers
     return tuple(abs(first[name] - second[name]) for name in COLUMNS)  # type: ignore[return-value]
 
 
@@ -145,8 +146,12 @@ def _predicted(vary: Callable[[GearPair], GearPair], pair: GearPair) -> Predicti
 
 def _rows(known: Known) -> Iterator[Row]:
     """The errors in their order."""
-    own, pair, linear, found = known.like, known.pair, known.linear, known.uncertainty
-    share, same = np.nan, known.same_equations
+    own = known.like
+    pair = known.pair
+    linear = known.linear
+    found = known.uncertainty
+    share = np.nan
+    same = known.same_equations
     poorer: Prediction | Absent = (
         linear if isinstance(linear, Absent) else measured(pair, linear, Motion.LINEAR)
     )
@@ -205,9 +210,12 @@ def _rows(known: Known) -> Iterator[Row]:
         half = tuple(0.5 * np.ptp(ends, axis=1))
     note = "not computed" if isinstance(found, Absent) else "half the range of the samples"
     yield Row("inputs", "inputs, 5 to 95 %", "inputs", half, note)
-    record, size, note = known.measured_error, np.nan, "no measurement is given"
+    record = known.measured_error
+    size = np.nan
+    note = "no measurement is given"
     if record is not None:
-        size, note = abs(record.dte_error), record.words
+        size = abs(record.dte_error)
+        note = record.words
     yield Row("measurement", "measurement", "measurement", (size, np.nan, np.nan), note)
 
 

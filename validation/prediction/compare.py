@@ -224,7 +224,8 @@ def _told(pair: GearPair, before: GearPair) -> str:
     """The name of a pair, and where it differs from an earlier one of the same name."""
     if pair is before:
         return pair.name
-    ours, theirs = leaf_paths(pair), leaf_paths(before)
+    ours = leaf_paths(pair)
+    theirs = leaf_paths(before)
     fields = [one for one in ours | theirs if ours.get(one) != theirs.get(one)]
     return f"{pair.name}, other {_listed(fields)}"
 
@@ -329,7 +330,8 @@ def _dataset(
     for column, name in enumerate(results):
         unit, text = (QUANTITIES | TEETH)[name]
         values = table[..., column]
-        relation, as_given = _relation(values, name), _relation(given[:, column], name)
+        relation = _relation(values, name)
+        as_given = _relation(given[:, column], name)
         holding = int((relation == as_given[..., None]).all(axis=(0, 1)).sum())
         interval = binomtest(holding, machines).proportion_ci(SURE, "exact")
         shares["holds"].append(holding / machines)
@@ -429,7 +431,8 @@ def _sentence(
     better, equal, best, place = (shares[key][-1] for key in ("better", "equal", "best", "place"))
     numbers, unit = as_read(name, given)
     words = [f"{number}{unit}" for number in numbers]
-    first, machines = int(np.argmax(best)), "of 100 possible machines"
+    first = int(np.argmax(best))
+    machines = "of 100 possible machines"
     alike = [k for k in range(len(letters)) if k == first or equal[first, k] >= CLEAR]
     text = (RESULTS | OF_TEETH)[name]
     values = f"{text} " + ", ".join(f"{a} {b}" for a, b in zip(letters, words, strict=True))
@@ -438,7 +441,8 @@ def _sentence(
         return f"{_all(letters)} are equal in {of_hundred(share)} {machines}: {values}."
     clear = float(best[first])
     if len(letters) == 2:
-        share, tied = float(better[first, 1 - first]), float(equal[0, 1])
+        share = float(better[first, 1 - first])
+        tied = float(equal[0, 1])
         clear = share / (1.0 - tied)  # of the machines in which they differ
         values = f"{text} {words[first]} against {words[1 - first]}"
         said = f"{letters[first]} is better than {letters[1 - first]} in {of_hundred(share)} {machines}"

@@ -300,7 +300,8 @@ def source_of(pair: GearPair, field: str) -> str | None:
 
     It is the source of the field, of the section that it is in, or of a field inside it.
     """
-    sources, parts = dict(pair.sources), field.split(".")
+    sources = dict(pair.sources)
+    parts = field.split(".")
     paths = [".".join(parts[: len(parts) - n]) for n in range(len(parts))]
     inside = [text for path, text in sources.items() if path.startswith(f"{field}.")]
     return next((sources[path] for path in paths if path in sources), inside[0] if inside else None)
@@ -401,7 +402,8 @@ def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, floa
         ]
         ends = value * factors[0], value * factors[1]
     elif match := _OFFSET.fullmatch(text):
-        size, of = float(match[1]), match[2].strip()
+        size = float(match[1])
+        of = match[2].strip()
         if of == "%":
             off = abs(value) * size / 100.0
         elif unit == "degC":

@@ -28,9 +28,11 @@ NEAR = 0.05
 #: An order matters whose force is at least this share of the static mesh force, ...
 _MATTERS = 0.05
 #: ... and that is amplified: beside the resonance, by this share of the speed, it is smaller by this factor.
-_BESIDE, _AMPLIFIED = 0.1, 1.2
+_BESIDE = 0.1
+_AMPLIFIED = 1.2
 #: Crossings that are judged, the nearest first, and times in a mesh cycle of a motion.
-_MOST, _TIMES = 24, 128
+_MOST = 24
+_TIMES = 128
 #: Speeds at which a resonance may be left, over the operating speed.
 _LEAVING = 0.025 * np.arange(1, 13)
 #: A resonance is left where at most this share of the force that it amplifies remains, rms.
@@ -121,7 +123,8 @@ def _resonance(
         factor = math.nan
     apart = own / speed - 1.0
     ends = _ways_out(pair, speed, place) if abs(apart) <= NEAR else (math.nan, math.nan)
-    name, frequency = mode_name(mode), mode.natural_frequency
+    name = mode_name(mode)
+    frequency = mode.natural_frequency
     return Resonance(order, name, frequency, speed, apart, factor, _PLACES[place], force, *ends)
 
 

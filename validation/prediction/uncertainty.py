@@ -52,7 +52,9 @@ ALONE = 1.0 / 3.0
 #: Times in a mesh cycle, and largest angle of a step [rad], of motions over speed. Twice the step of other
 #: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range. With
 #: ``LONG_STEP`` it errs by 4e-4 where a cycle has hundreds of vibrations: 21/23 and 16/32 from 12 to 240 rpm.
-_TIMES, STEP, LONG_STEP = 32, 1.0, 2.0
+_TIMES = 32
+STEP = 1.0
+LONG_STEP = 2.0
 #: Further quantities of teeth that differ: unit and words; in the linear form, with so many samples a cycle.
 TEETH = {
     "revolution_dte_peak_to_peak": ("m", "transmission error over the period of the teeth, peak to peak"),
@@ -60,7 +62,9 @@ TEETH = {
 }
 TEETH_SAMPLES = 32
 #: Samples of them beside those of like teeth, and mesh cycles of all together.
-_LEAST_DRAWN, _MOST_DRAWN, _ALL_CYCLES = LEAST_BAND, 32, 30_000
+_LEAST_DRAWN = LEAST_BAND
+_MOST_DRAWN = 32
+_ALL_CYCLES = 30_000
 #: What may be of a sample, in the last columns of the table.
 FLAGS = ("contact_lost", "unstable", "linear")
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
@@ -155,7 +159,8 @@ def uncertainty(
     given = row(())
     if given is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
-    first, alone = deadline.share(ALONE), 0
+    first = deadline.share(ALONE)
+    alone = 0
     of: list[int] = []
     found_alone: list[FloatArray | None] = []
     for j, one in enumerate(inputs):
@@ -166,7 +171,8 @@ def uncertainty(
             found_alone.append(row([(one, share)]))
         alone += 1
     ends = _ends(inputs, of, found_alone, given.size)
-    points, rows = sobol_points(importance_of(ends), samples, seed), list[FloatArray | None]()
+    points = sobol_points(importance_of(ends), samples, seed)
+    rows = list[FloatArray | None]()
     for point in points:
         if deadline.passed:
             break
@@ -282,7 +288,8 @@ def _each_sample(
     moved = np.ptp(np.nan_to_num(known["dte_peak_to_peak_swing"].to_numpy()), axis=1)
     by_name = dict(zip(known["input"].to_numpy().tolist(), moved, strict=True))
     importance = np.array([by_name.get(one.field, moved.max()) for one in inputs])
-    found, taken = list[T](), 0
+    found = list[T]()
+    taken = 0
     for point in sobol_points(importance, samples, int(known.attrs["seed"])):
         if deadline.passed:
             break
@@ -380,7 +387,8 @@ def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArr
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             sampled = varied(pair, changes)
-            found, own = predicted(sampled.healthy), of_teeth(sampled)
+            found = predicted(sampled.healthy)
+            own = of_teeth(sampled)
     except SpurcheckError:
         return None
     orders = np.zeros(ORDERS)
@@ -468,7 +476,8 @@ def _number(one: Input, share: float) -> float:
 def _rank_correlation(ranks: FloatArray, values: FloatArray) -> FloatArray:
     """Spearman's coefficient of each input's ranks (samples, inputs) with a result; 0 for a constant."""
     own = rankdata(values)
-    own, ranks = own - own.mean(), ranks - ranks.mean(axis=0)
+    own = own - own.mean()
+    ranks = ranks - ranks.mean(axis=0)
     size = np.sqrt((own @ own) * (ranks**2).sum(axis=0))
     found = np.divide(own @ ranks, size, out=np.zeros(ranks.shape[1]), where=size > 0.0)
     return np.asarray(found, dtype=np.float64)

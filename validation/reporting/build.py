@@ -124,7 +124,8 @@ def report(
             tell(0.0, "motion")
             early(title(results), first_numbers(results.prediction))
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
-        first, pictures = page_one(results), first_figures(results)
+        first = page_one(results)
+        pictures = first_figures(results)
         blocks = [block for _, content in chapters for block in content.blocks]
         every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
         images = _draw(every, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
@@ -154,7 +155,9 @@ def findings(results: Results) -> frozenset[str]:
 
     "record": a measured record does not confirm the prediction.
     """
-    lost, unstable, record = results.contact_lost, not results.prediction.stable, results.measured_error
+    lost = results.contact_lost
+    unstable = not results.prediction.stable
+    record = results.measured_error
     found = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
     found["record"] = record is not None and record.verdict is not Record.CONFIRMS
     return frozenset(name for name, there in found.items() if there)

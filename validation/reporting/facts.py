@@ -156,7 +156,8 @@ def _instability(results: Results) -> Fact:
 
 def _jumps(results: Results) -> Fact:
     """What the search beyond contact loss says over the widest range that it went through."""
-    search, searched = results.jump_search, results.searched
+    search = results.jump_search
+    searched = results.searched
     motion = "motions with unilateral contact"
     if searched is None:
         own = results.operating_rpm
@@ -214,7 +215,9 @@ def amplified_words(found: Resonance) -> str:
 def samples_words(found: xr.Dataset) -> str:
     """From how many possible machines a range is, and what the time left open: a clause."""
     taken, asked, used = (found.attrs[name] for name in ("taken", "asked", "seconds"))
-    kept, refused, linear = int(found.sizes["sample"]), found.attrs["refused"], found.attrs["linear"]
+    kept = int(found.sizes["sample"])
+    refused = found.attrs["refused"]
+    linear = found.attrs["linear"]
     of = f"{taken} of {asked}" if taken < asked else f"{taken}"
     parts = [f"the range is from {of} possible machines"]
     if kept < least_samples(asked):
@@ -225,7 +228,8 @@ def samples_words(found: xr.Dataset) -> str:
     parts += [f"in {linear} of {kept} the linear motion stands in"] if linear else []
     if taken < asked:
         parts += [f"the time of {number(used, 3)} s was used up"]
-        inputs, alone = int(found.sizes["input"]), found.attrs["alone"]
+        inputs = int(found.sizes["input"])
+        alone = found.attrs["alone"]
         parts += [f"{alone} of {inputs} inputs were moved alone"] if alone < inputs else []
     return "; ".join(parts)
 
@@ -291,7 +295,8 @@ def _range_beside_a_record(results: Results) -> Fact | None:
     if varied is None:
         return None
     counts = {"samples": len(varied.samples), "taken": varied.taken, "asked": varied.asked}
-    scope, what = _scope(results, teeth="alike"), "range beside the record"
+    scope = _scope(results, teeth="alike")
+    what = "range beside the record"
     return _cut("range_beside_record", what, counts, scope, results, "sampled_predictions")
 
 
@@ -300,7 +305,8 @@ def _trouble(results: Results) -> Fact | None:
     found = results.uncertainty
     if not isinstance(found, xr.Dataset) or not found.sizes["sample"]:
         return None
-    count, lost = int(found.sizes["sample"]), int(found.attrs["contact_lost"])
+    count = int(found.sizes["sample"])
+    lost = int(found.attrs["contact_lost"])
     unstable, either = (int(found.attrs[name]) for name in ("unstable", "lost_or_unstable"))
     parts = [f"{lost} of {count} possible machines lose contact"] if lost else []
     parts += [f"{unstable} of {count} are unstable"] if unstable else []

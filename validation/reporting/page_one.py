@@ -167,7 +167,8 @@ _ROWS = {
 
 def rows(results: Results, known: dict[str, Fact]) -> tuple[Number, ...]:
     """The rows of the table: result, range of the samples, second program."""
-    prediction, second = results.prediction, results.second
+    prediction = results.prediction
+    second = results.second
     notes = {"bearing_rms": _orders(results) if prediction.bearing_rms else ""} | _as_given(results)
     found = [_row(results, key, known["contact"], notes.get(key, "")) for key in _ROWS]
     if prediction.contact_lost:  # the bearing force gives way
@@ -181,13 +182,15 @@ def rows(results: Results, known: dict[str, Fact]) -> tuple[Number, ...]:
     trouble = known.get("trouble")
     if trouble is not None and trouble.value > 0.0:
         label = "Possible machines that lose contact or are unstable"
-        note, scope = trouble.claim, trouble.scope.words
+        note = trouble.claim
+        scope = trouble.scope.words
         found.append(Number("trouble", label, trouble.value, "%", note=note, scope=scope))
     return tuple(found)
 
 
 def _resonance_row(results: Results, fact: Fact) -> Number:
-    found, note = results.resonance, fact.claim
+    found = results.resonance
+    note = fact.claim
     if found is not None:
         out = way_out(found)
         parts = note, amplified_words(found), f"half as strong {out}" if out else ""
@@ -197,10 +200,14 @@ def _resonance_row(results: Results, fact: Fact) -> Number:
 
 
 def _hazard_row(results: Results, fact: Fact) -> Number:
-    hazard, own, searched = results.nearest_hazard, results.operating_rpm, results.searched
-    far, label = math.nan, "Distance to the nearest unstable speed, jump or chaos"
+    hazard = results.nearest_hazard
+    own = results.operating_rpm
+    searched = results.searched
+    far = math.nan
+    label = "Distance to the nearest unstable speed, jump or chaos"
     if hazard is not None:
-        far, note = hazard.speed_rpm - own, f"{hazard.words} at {rpm(hazard.speed_rpm)}"
+        far = hazard.speed_rpm - own
+        note = f"{hazard.words} at {rpm(hazard.speed_rpm)}"
     else:
         note = "jumps were not searched to the end" if searched is None else f"none found {fact.scope.speeds}"
     return Number("hazard", label, far, "rpm", note=note + results.on_springs, scope=fact.scope.words)
@@ -216,7 +223,8 @@ def _unit(key: str) -> str:
 
 
 def _row(results: Results, key: str, fact: Fact, note: str) -> Number:
-    value, second = results.prediction.numbers[key], results.second
+    value = results.prediction.numbers[key]
+    second = results.second
     of_second = math.nan
     if results.teeth is None and not isinstance(second, Absent):  # it has like teeth
         of_second = second.numbers[key]
@@ -225,7 +233,8 @@ def _row(results: Results, key: str, fact: Fact, note: str) -> Number:
     if spread is None:
         return row
     low, high = (value * (1.0 + end) for end in spread)
-    rank, median = results.rank(key), math.nan
+    rank = results.rank(key)
+    median = math.nan
     if math.isfinite(rank) and not _MIDDLE[0] <= rank <= _MIDDLE[1]:
         median = float(results.uncertainty[f"{key}_percentile"][1])  # type: ignore[index]
     return replace(row, low=low, high=high, median=median)
@@ -244,7 +253,8 @@ def _orders(results: Results) -> str:
 
 def _as_given(results: Results) -> dict[str, str]:
     """Of teeth that differ: over how many mesh cycles the numbers are, and what like teeth would have."""
-    teeth, like = results.teeth, results.like.numbers
+    teeth = results.teeth
+    like = results.like.numbers
     if teeth is None:
         return {}
     notes = {
@@ -326,7 +336,8 @@ def advice_on_inputs(results: Results) -> list[Action]:
 
 
 def _sure(results: Results, known: dict[str, Fact]) -> tuple[str, ...]:
-    record, inputs = known.get("record"), known["inputs"].claim
+    record = known.get("record")
+    inputs = known["inputs"].claim
     claims = [known["samples"].claim] if samples_matter(results) else []
     claims += [known[key].claim for key in RANGES if key in known]
     ranges = "".join(f" {claim[0].upper()}{claim[1:]}." for claim in claims)
@@ -338,7 +349,8 @@ def _sure(results: Results, known: dict[str, Fact]) -> tuple[str, ...]:
 
 
 def _remark(results: Results) -> str:
-    prediction, linear = results.prediction, results.linear
+    prediction = results.prediction
+    linear = results.linear
     if prediction.contact_lost and not isinstance(linear, Absent):
         size = quantity(float(linear.attrs["dte_peak_to_peak"]), "m", 3)
         return f"The linear model would give {size}. It lets teeth pull, so it is not used here."

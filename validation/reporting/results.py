@@ -140,7 +140,8 @@ class Results:
         progress: Progress | None = None,
         record: Measurement | None = None,
     ) -> None:
-        self.given, self.pair = pair, pair.healthy
+        self.given = pair
+        self.pair = pair.healthy
         self.pair_on_springs = without_shafts(self.pair)
         self.record = record
         self.effort = effort
@@ -250,7 +251,8 @@ class Results:
     @cached_property
     def sweep(self) -> xr.Dataset:
         """Linear motion on springs over speed."""
-        stage, most = self.stage("response over speed"), self.effort.sweep_speeds
+        stage = self.stage("response over speed")
+        most = self.effort.sweep_speeds
         return resolved_sweep(self.pair_on_springs, self.speeds, most=most, progress=stage)
 
     @cached_property
@@ -261,10 +263,12 @@ class Results:
         self.stage("range over speed")
         # Resonances are wider the faster the pair runs.
         low, high = self.speeds
-        slow, count = self.vibrations > _MANY, self.effort.band_speeds
+        slow = self.vibrations > _MANY
+        count = self.effort.band_speeds
         speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
         step = LONG_STEP if slow else STEP
-        samples, seconds = self.effort.band_samples, self.effort.band_seconds
+        samples = self.effort.band_samples
+        seconds = self.effort.band_seconds
         return speed_band(self.pair_on_springs, speeds, self.uncertainty, samples, step, seconds)
 
     @cached_property
@@ -453,7 +457,8 @@ class Results:
 
     @property
     def _second_words(self) -> str:
-        check, second = self.check, self.second
+        check = self.check
+        second = self.second
         if isinstance(check, Absent) or isinstance(second, Absent):
             return "Not checked: the second program does not run here; its chapter says why."
         if check.verdict is Verdict.NOT_CHECKED:
@@ -501,7 +506,8 @@ class Results:
         found = self.uncertainty
         if self.teeth is not None or isinstance(found, Absent) or self.spread(name) is None:
             return math.nan
-        values, result = found[name].to_numpy(), self.prediction.numbers[name]
+        values = found[name].to_numpy()
+        result = self.prediction.numbers[name]
         slack = _SLACK * abs(result)
         return float(0.5 * (np.mean(values < result - slack) + np.mean(values <= result + slack)))
 
@@ -514,7 +520,8 @@ class Results:
     @cached_property
     def roaming(self) -> tuple[Hazard, ...]:
         """Beats and chaos: what runs settle to, and what a pair does where a motion loses its stability."""
-        own, search = self.operating_rpm, self.jump_search
+        own = self.operating_rpm
+        search = self.jump_search
         settled = [
             Hazard(min(max(own, one.low_rpm), one.high_rpm), str(one.kind), "possible")
             for one in search.attractors
@@ -529,7 +536,8 @@ class Results:
     @property
     def nearest_hazard(self) -> Hazard | None:
         """The unstable speed, jump, beats or chaos nearest to the operating speed."""
-        edge, own = float(self.chart.attrs["nearest_edge_speed_rpm"]), self.operating_rpm
+        edge = float(self.chart.attrs["nearest_edge_speed_rpm"])
+        own = self.operating_rpm
         found = [] if math.isnan(edge) else [Hazard(edge, "unstable speed")]
         if self.multipliers.verdict == "unstable":
             found = [Hazard(own, "unstable speed")]
@@ -597,10 +605,12 @@ def _broken(results: Results) -> Iterator[str]:
     if not prediction.reason and not 0.0 < numbers["efficiency"] <= 1.0 + _SLACK:
         yield f"the efficiency is {numbers['efficiency']:.4g}"
     dte = prediction.cycle["dte"].to_numpy()
-    sampled, rounding = float(np.ptp(dte)), NOTHING * float(np.abs(dte).max())
+    sampled = float(np.ptp(dte))
+    rounding = NOTHING * float(np.abs(dte).max())
     if not sampled * (1.0 - _SLACK) - rounding <= prediction.peak_to_peak <= 1.05 * sampled + 1e-12:
         yield "the peak to peak is not that of the motion"
-    rms, orders = numbers["bearing_rms"], prediction.bearing_orders
+    rms = numbers["bearing_rms"]
+    orders = prediction.bearing_orders
     if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6) + (NOTHING * prediction.static_force) ** 2:
         yield "the orders of the bearing force carry more than its rms"
     linear = results.linear

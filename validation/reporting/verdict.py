@@ -70,7 +70,8 @@ def _doubt(results: Results, facts: Mapping[str, Fact]) -> str | None:
     """Why absolute levels are uncertain; None where they are not."""
     spreads = {name: results.spread(name) for name in RANGED}
     known = {name: spread for name, spread in spreads.items() if spread is not None}
-    record, assumed = results.measured_error, results.inputs[1]
+    record = results.measured_error
+    assumed = results.inputs[1]
     if not known and "samples" in facts:
         return facts["samples"].claim
     if not known and results.varies:
@@ -117,7 +118,8 @@ def searched_words(results: Results, facts: Mapping[str, Fact]) -> str:
     rest = "" if left is None else f" {left.claim[0].upper()}{left.claim[1:]}."
     if results.nearest_hazard is not None:
         return rest.strip()
-    unstable, jumps = facts["unstable_speeds"], facts["jumps"]
+    unstable = facts["unstable_speeds"]
+    jumps = facts["jumps"]
     if unstable.scope.speeds == jumps.scope.speeds:
         where = unstable.scope.speeds
         return f"{where[0].upper()}{where[1:]} {unstable.claim}, and {jumps.claim}{results.on_springs}.{rest}"
@@ -127,7 +129,9 @@ def searched_words(results: Results, facts: Mapping[str, Fact]) -> str:
 
 def _hazard(results: Results, facts: Mapping[str, Fact]) -> tuple[str, str] | None:
     """Why the pair must not run here, and what happens; None where it may."""
-    prediction, hazard, own = results.prediction, results.nearest_hazard, results.operating_rpm
+    prediction = results.prediction
+    hazard = results.nearest_hazard
+    own = results.operating_rpm
     near = hazard if hazard is not None and abs(hazard.speed_rpm / own - 1.0) <= NEAR else None
     if results.teeth_apart:
         return facts["contact"].claim, f"{_rises(prediction)} {_like_teeth(results)}"

@@ -69,7 +69,8 @@ def _turn(count: int) -> FloatArray:
 
 
 def _average(found: Harmonics, shaft: Gear) -> FloatArray:
-    orders, count = found.orders(shaft), _count(found, shaft)
+    orders = found.orders(shaft)
+    count = _count(found, shaft)
     whole = (np.abs(orders - np.round(orders)) < _WHOLE) & (orders < count / 2 - 0.5)
     spectrum = np.zeros(count // 2 + 1, dtype=np.complex128)
     spectrum[np.round(orders[whole]).astype(int)] = 0.5 * count * found.values[whole]

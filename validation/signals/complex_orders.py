@@ -24,7 +24,8 @@ _CHUNK = 20_000
 #: Cycles from which on their scatter says how noise is correlated; fewer leave it white.
 _FEWEST_CYCLES = 8
 #: Phases of a cycle at which a waveform is read, and trial shifts in the period of the highest order.
-_PHASES, _TRIALS = 2048, 16
+_PHASES = 2048
+_TRIALS = 16
 #: Share of the static value below which an amplitude is no scale: the difference of two such amplitudes is
 #: nothing that loads a tooth or a bearing.
 LEAST = 1e-3
@@ -140,7 +141,8 @@ def complex_orders(
     if y.size < 2 * count:
         raise refuse("data", f"{y.size} samples", f"at least {2 * count}", "Sample faster, or longer.")
     parts = [slice(first, first + _CHUNK) for first in range(0, y.size, _CHUNK)]
-    normal, moment = np.zeros((count, count)), np.zeros(count)
+    normal = np.zeros((count, count))
+    moment = np.zeros(count)
     for part in parts:
         columns = _columns(u[part], m)
         normal += columns.T @ columns
@@ -151,7 +153,8 @@ def complex_orders(
     inverse = np.linalg.inv(normal)
     found = inverse @ moment
     number = np.unique(np.floor(u) if blocks is None else blocks, return_inverse=True)[1]
-    scores, square = np.zeros((int(number.max()) + 1, count)), 0.0
+    scores = np.zeros((int(number.max()) + 1, count))
+    square = 0.0
     for part in parts:
         columns = _columns(u[part], m)
         rest = y[part] - columns @ found
@@ -161,7 +164,8 @@ def complex_orders(
     if len(scores) >= _FEWEST_CYCLES:
         inner = scores.T @ scores * (len(scores) / (len(scores) - 1) * y.size / (y.size - count))
         covariance = inverse @ inner @ inverse
-    real, imaginary = found[1 : m.size + 1], found[m.size + 1 :]
+    real = found[1 : m.size + 1]
+    imaginary = found[m.size + 1 :]
     spread = np.asarray(covariance[1:, 1:], dtype=np.float64)
     return ComplexOrders(m, real + 1j * imaginary, float(found[0]), spread, period)
 

@@ -45,7 +45,8 @@ class TeethFindings:
                 "Give [pinion.deviations], [pinion.mounting] or [[pinion.faults]]: spurcheck teeth --help."
             )
             raise refuse("pinion", "teeth that are alike", "teeth that differ", action)
-        self.pair, self.supports = pair, supports_of(pair, supports)
+        self.pair = pair
+        self.supports = supports_of(pair, supports)
         if motion is None:
             motion = lumped.steady_state(pair, contact="unilateral", supports=self.supports)
         self.motion = motion
@@ -121,7 +122,8 @@ class TeethFindings:
             ratio = sidebands(self.motion, gear)["ratio"].sel(mesh_order=1)
             ratio = ratio.where(ratio["sideband"] != 0, 0.0)
             at = int(ratio["sideband"][int(np.argmax(ratio.to_numpy()))])
-            share, hertz = float(ratio.max()), self.pair.geometry.mesh_frequency / z
+            share = float(ratio.max())
+            hertz = self.pair.geometry.mesh_frequency / z
             size = f"{100 * share:.2g} % of it at order {z + at}" if share >= _SEEN else "below 1 % of it"
             rms = self.indicators(gear)["value"].sel(indicator="RMS_residual")
             times = float(rms.sel(record="pair") / rms.sel(record="healthy twin"))

@@ -63,7 +63,8 @@ def harmonics(result: xr.Dataset, variable: str, derivative: int) -> Harmonics:
     if "parameters" not in result.attrs:
         raise refuse("result", "no attribute 'parameters'", "a result of spurcheck", "Give it as computed.")
     pair = load_gear_pair(parse_toml(result.attrs["parameters"], "parameters of the result"))
-    time, signal = result["time"].to_numpy(), result[variable].to_numpy()
+    time = result["time"].to_numpy()
+    signal = result[variable].to_numpy()
     if "pinion_turns" in result:  # a record whose speed changes: over the angle, not over time
         even = np.arange(time.size) * (float(result.attrs["turns"]) / time.size)
         signal = CubicSpline(result["pinion_turns"].to_numpy(), signal)(even)
@@ -158,7 +159,8 @@ def waterfall(
     one_of("variable", variable, scalars, "Choose a variable that depends on time alone.")
     pair = load_gear_pair(parse_toml(result.attrs["parameters"], "parameters of the result"))
     size = round(whole_number("turns", turns, 1, 10_000) / float(result["pinion_turns"][1]))
-    speed, signal = result["running_speed"].to_numpy(), result[variable].to_numpy()
+    speed = result["running_speed"].to_numpy()
+    signal = result[variable].to_numpy()
     if signal.size < size:
         allowed = f"at most {signal.size * turns / size:.3g} turns, the length of the run"
         raise refuse("turns", turns, allowed, "Give fewer turns, or a longer run.")

@@ -57,7 +57,8 @@ def synthetic_record(
     level = real_number("noise", noise, 0.0, action="Give a root mean square.")
     draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
     samples = result.sizes["time"]
-    teeth, rate = found.pair.pinion.teeth, found.pair.operating.pinion_speed / (2.0 * np.pi)
+    teeth = found.pair.pinion.teeth
+    rate = found.pair.operating.pinion_speed / (2.0 * np.pi)
     repeats = max(count * teeth // found.cycles, 1)
     if repeats * samples > _MOST:
         raise refuse("turns", turns, f"records of at most {_MOST} samples", "Ask for fewer turns.")

@@ -168,7 +168,8 @@ def _motion(pair: GearPair, run: xr.Dataset) -> Values:
     values: Values = {}
     for name in _MOTIONS:
         values[f"{name}_rms"] = float(np.std(run[name].to_numpy()))
-    load, contact = run["normal_load"].to_numpy(), run["contact"].to_numpy()
+    load = run["normal_load"].to_numpy()
+    contact = run["contact"].to_numpy()
     values["normal_load_max"], values["normal_load_min"] = load_range(pair, load, contact)
     values["friction_force_peak_to_peak"] = float(np.ptp(run["friction_force"].to_numpy().sum(axis=0)))
     values["friction_power_mean"] = float(run["friction_power"].to_numpy().sum(axis=0).mean())

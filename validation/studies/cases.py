@@ -46,7 +46,8 @@ class CaseList:
         """Samples (n, d) of the unit cube, without the sensitivity blocks AB; (n, 2 d) with them."""
         from scipy.stats import qmc  # takes a third of a second, and a grid has no use for it
 
-        design, d = self.study.design, len(self.study.axes)
+        design = self.study.design
+        d = len(self.study.axes)
         columns = 2 * d if design.sensitivity else d
         kind: Any = qmc.LatinHypercube if design.method == "latin_hypercube" else qmc.Sobol
         arguments: dict[str, Any] = {"rng": np.random.default_rng(design.seed)}

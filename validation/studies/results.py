@@ -49,7 +49,8 @@ def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     them; the axes in the fields' stated units; sensitivity indices where the design asks for them.
     """
     study = cases.study
-    dims, shape = cases.dims, cases.shape
+    dims = cases.dims
+    shape = cases.shape
     result = xr.Dataset(attrs=_attributes(cases, table))
     for label, coordinate in _coordinates(cases).items():
         result = result.assign_coords({label: coordinate})
@@ -125,7 +126,8 @@ def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.D
     if failed or missing:
         text = f"no indices: {failed} of {cases.count} cases failed, {missing} are not computed yet"
         return result.assign_attrs(sensitivity=text)
-    axes, values = [axis.label for axis in cases.study.axes], table.values.T
+    axes = [axis.label for axis in cases.study.axes]
+    values = table.values.T
     result = result.assign_coords(
         output=("output", np.array(cases.study.outputs, dtype=object)),
         axis=("axis", np.array(axes, dtype=object)),

@@ -103,7 +103,10 @@ def run_sweep(
     ):
         status = store.table().status
         todo = np.flatnonzero((status == Status.MISSING) | (retry_failed & (status >= Status.REFUSED)))
-        number, evaluator, done, failed = todo.size, StudyEvaluator.of(study), 0, 0
+        number = todo.size
+        evaluator = StudyEvaluator.of(study)
+        done = 0
+        failed = 0
         numbers: Iterator[int] = iter(todo.tolist())
         for chunk in chunks_of(evaluator, cases.values, numbers, number, submit, slots, case_seconds):
             store.add(chunk)

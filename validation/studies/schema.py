@@ -52,8 +52,11 @@ class Design(Section):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        grid, sobol, samples = self.method == "grid", self.method == "sobol", self.samples
-        near, given = 1 << ((samples or 1).bit_length() - 1), str(samples)
+        grid = self.method == "grid"
+        sobol = self.method == "sobol"
+        samples = self.samples
+        near = 1 << ((samples or 1).bit_length() - 1)
+        given = str(samples)
         power = "a power of two (the balance of a Sobol sequence)"
         cases = (
             (grid and samples is not None, "samples", given, "none for a grid", "Remove it, or sample."),
@@ -151,21 +154,25 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
     labels = [axis.label for axis in study.axes]
     paths = [path for axis in study.axes for path in axis.field]
     taken = {*study.outputs, *NAMES}
-    grid, floquet = study.design.method == "grid", study.analysis == "floquet"
+    grid = study.design.method == "grid"
+    floquet = study.analysis == "floquet"
     on_shafts = supports_of(study.gear_pair, study.settings.supports) == "shafts"
     springs = 'Give settings.supports = "springs", or vary a field of shafts.'
     vary = "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead."
     problems: list[FieldProblem] = []
     for j, axis in enumerate(study.axes):
-        listed, name = axis.values is not None or axis.count is not None, axis.label
-        own, needed = "a name that no other axis or result has", "values, or low, high and count, for a grid"
+        listed = axis.values is not None or axis.count is not None
+        name = axis.label
+        own = "a name that no other axis or result has"
+        needed = "values, or low, high and count, for a grid"
         cases = [
             (labels.count(name) > 1 or name in taken, "name", repr(name), own, "Give the axis a name."),
             (grid and not listed, "count", "missing", needed, "Add it."),
             (listed and not grid, "values", "given", "low and high, for samples", "Give the range only."),
         ]
         for path in axis.field:
-            twice, charted = paths.count(path) > 1, target_of(path).floquet_only
+            twice = paths.count(path) > 1
+            charted = target_of(path).floquet_only
             cases += [
                 (twice, "field", repr(path), "a field that no other axis changes", "Remove one."),
                 (charted and not floquet, "field", repr(path), "an axis of analysis = 'floquet'", vary),

@@ -151,7 +151,9 @@ def chunks_of(
     A chunk that took longer than a case may (``limit`` [s]), or on which a worker died, is divided into
     single cases. ``submit`` and ``slots`` are those of ``workers_of``.
     """
-    left, seconds = count, 0.0  # seconds: mean time of a case, 0 where it is not known yet
+    # seconds: mean time of a case, 0 where it is not known yet
+    left = count
+    seconds = 0.0
     singles: deque[int] = deque()
     running: dict[Future[Chunk], list[int]] = {}
     most_seconds = CHUNK_SECONDS if limit is None else min(CHUNK_SECONDS, limit / 4.0)
@@ -201,7 +203,8 @@ def _outcome(future: Future[Chunk], cases: list[int], limit: float | None) -> Ch
         status = Status.TIME_LIMIT if late else Status.WORKER_DIED
         text = f"longer than {limit:g} s" if late else "the worker process died on this case"
         return Chunk([(cases[0], status, None, text)], 0.0, provenance())
-    theirs, ours = chunk.provenance, provenance()
+    theirs = chunk.provenance
+    ours = provenance()
     if theirs[:2] != ours[:2]:
         raise SweepStopped(
             f"A worker runs {theirs.versions}, code {theirs.code[:12]}, but this process {ours.versions}"

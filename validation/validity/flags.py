@@ -229,7 +229,8 @@ def film_regime(pair: GearPair) -> Flag:
 
 def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
     """The torques hold the mean speed, so that a periodic motion exists."""
-    needed, given = float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque
+    needed = float(motion.attrs["pinion_torque"])
+    given = pair.operating.pinion_torque
     excess = abs(needed - given) / given
     state = _state(excess, (1e-9, 0.05))
     brake = float(motion.attrs["brake_torque"])
@@ -245,7 +246,8 @@ def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
 
 def speed_drift(g: Geometry, motion: xr.Dataset) -> Flag:
     """The mean speed does not drift over the run."""
-    time, rate = motion["time"].to_numpy(), motion["theta_p_dot"].to_numpy()
+    time = motion["time"].to_numpy()
+    rate = motion["theta_p_dot"].to_numpy()
     last = time >= time[-1] - g.mesh_period
     first = time <= time[0] + g.mesh_period
     drift = abs(float(rate[last].mean() - rate[first].mean())) / g.omega_pinion
@@ -274,7 +276,8 @@ def solution_error(motion: xr.Dataset) -> Flag:
 
 def stability(multipliers: GearPairMultipliers) -> Flag:
     """The periodic motion is stable: all Floquet multipliers inside the unit circle."""
-    radius, error = multipliers.spectral_radius, multipliers.error
+    radius = multipliers.spectral_radius
+    error = multipliers.error
     states: dict[str, State] = {"stable": "ok", "undecided": "warning", "unstable": "violated"}
     state = states[multipliers.verdict]
     return flag(

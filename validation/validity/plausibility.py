@@ -26,9 +26,13 @@ _ROUNDING = 1e-9
 _OSCILLATIONS = 1000.0
 #: Speed below which a point that parts thousands is likelier than the speed [rpm], and one below which turns
 #: a second may be meant [rpm]; speeds of the pitch line below and above those of gears in use [m/s].
-_SLOW, _SLOWLY, _CREEPING, _FASTEST = 5.0, 120.0, 0.5, 200.0
+_SLOW = 5.0
+_SLOWLY = 120.0
+_CREEPING = 0.5
+_FASTEST = 200.0
 #: Face width in modules, narrower and wider than that of any gear in use.
-_NARROW, _WIDE = 0.5, 100.0
+_NARROW = 0.5
+_WIDE = 100.0
 #: Springs and shafts are not of one machine where their stiffness differs by more than this factor.
 _FAR = 2.0
 _SOFT = ("N/m", 1.0, 2e6, math.inf, "is softer than any gear shaft. Given in N/um? Then write '{:g} N/um'.")
@@ -86,7 +90,8 @@ def _shafts(pair: GearPair) -> Iterator[str]:
     """Springs of the 6-DOF model that the shafts contradict, in one sentence about the worst."""
     if pair.shafts is None:
         return
-    condensed, found = condensed_bearings(pair), []
+    condensed = condensed_bearings(pair)
+    found = []
     for name in ("pinion", "gear"):
         for field in ("loa_stiffness", "oloa_stiffness"):
             given, static = (getattr(getattr(one.bearings, name), field) for one in (pair, condensed))
@@ -121,7 +126,8 @@ def _widths(pair: GearPair) -> Iterator[str]:
 
 
 def _load(pair: GearPair) -> Iterator[str]:
-    g, at = pair.geometry, pair.operating
+    g = pair.geometry
+    at = pair.operating
     force = at.pinion_torque / g.base_radius_pinion
     path = contact_path(pair)
     pressure = float(path.hertz_pressure(path.L_XP))  # type: ignore[arg-type]
@@ -143,7 +149,8 @@ def _load(pair: GearPair) -> Iterator[str]:
 
 def _cause(pair: GearPair) -> str:
     """Swapped speed and torque, where exchanging them makes sense of both; else the units."""
-    rpm, torque = pair.operating.pinion_speed * 30.0 / math.pi, float(pair.operating.pinion_torque)
+    rpm = pair.operating.pinion_speed * 30.0 / math.pi
+    torque = float(pair.operating.pinion_torque)
     try:
         swapped = pair.with_({"operating.pinion_speed": torque, "operating.pinion_torque": rpm})
         path = contact_path(swapped)

@@ -83,7 +83,8 @@ class ExplicitRungeKutta(Propagator):
     """
 
     def __init__(self, name: str, order: int, a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> None:
-        self.name, self.order = name, order
+        self.name = name
+        self.order = order
         self._a, self._b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
         self.nodes = np.asarray(c, dtype=float)
 

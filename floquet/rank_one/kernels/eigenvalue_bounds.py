@@ -41,11 +41,13 @@ def _vectors_of(
         LU[i, i] -= shift
     tiny = _EPS * scale + 1e-300
     for k in range(n):
-        p, most = k, -1.0
+        p = k
+        most = -1.0
         for i in range(k, n):
             size = abs(LU[i, k].real) + abs(LU[i, k].imag)
             if size > most:
-                p, most = i, size
+                p = i
+                most = size
         pivots[k] = p
         if p != k:
             for j in range(n):
@@ -126,7 +128,8 @@ def _partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
             and values[p].imag != 0.0
             and values[p] == values[p - 1].conjugate()
         ):
-            partner[p], partner[p - 1] = p - 1, p
+            partner[p] = p - 1
+            partner[p - 1] = p
 
 
 @compiled(_nrt=False, forceinline=True)
@@ -188,7 +191,8 @@ def _entries(
                 work[j, i] = work[j - 1, i].conjugate()
             continue
         for i in range(n):
-            real, imaginary = 0.0, 0.0
+            real = 0.0
+            imaginary = 0.0
             for k in range(n):
                 real += A[i, k] * X[j, k].real
                 imaginary += A[i, k] * X[j, k].imag
@@ -202,9 +206,11 @@ def _entries(
             continue
         row = 0.0
         for j in range(n):
-            gain, rest = 0.0 + 0.0j, 0.0 + 0.0j
+            gain = 0.0 + 0.0j
+            rest = 0.0 + 0.0j
             if i == j:
-                gain, rest = -values[i], -1.0 + 0.0j
+                gain = -values[i]
+                rest = -1.0 + 0.0j
             for k in range(n):
                 gain += Y[i, k] * work[j, k]
                 rest += Y[i, k] * X[j, k]
@@ -261,7 +267,8 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
     for i in range(n):
         for j in range(i):
             if group[i] != group[j] and _modulus(values[i] - values[j]) <= radii[i] + radii[j]:
-                old, new = group[i], group[j]
+                old = group[i]
+                new = group[j]
                 for k in range(n):
                     if group[k] == old:
                         group[k] = new
@@ -282,10 +289,16 @@ def spectra(
     reaches around all of those that hang together.
     """
     n = M.shape[1]
-    A, f, sizes = np.empty((n, n)), np.empty((n, n)), np.empty((3, n))
-    vectors, pivots = np.empty((3, n, n), np.complex128), np.empty(n, np.int64)
-    X, Y, LU = vectors[0], vectors[1], vectors[2]
-    partner, group = np.empty(n, np.int64), np.empty(n, np.int64)
+    A = np.empty((n, n))
+    f = np.empty((n, n))
+    sizes = np.empty((3, n))
+    vectors = np.empty((3, n, n), np.complex128)
+    pivots = np.empty(n, np.int64)
+    X = vectors[0]
+    Y = vectors[1]
+    LU = vectors[2]
+    partner = np.empty(n, np.int64)
+    group = np.empty(n, np.int64)
     for point in range(M.shape[0]):
         for i in range(n):
             for j in range(n):

@@ -110,7 +110,8 @@ def eigenvalues(A: FloatArray, values: ComplexArray, scratch: FloatArray) -> boo
     for i in range(n):
         for j in range(n):
             scale += abs(A[i, j])
-    hi, sweeps = n - 1, 0
+    hi = n - 1
+    sweeps = 0
     while hi >= 0:
         lo = hi
         while lo > 0:
@@ -123,11 +124,16 @@ def eigenvalues(A: FloatArray, values: ComplexArray, scratch: FloatArray) -> boo
             lo -= 1
         if lo == hi:
             values[hi] = A[hi, hi]
-            hi, sweeps = hi - 1, 0
+            hi = hi - 1
+            sweeps = 0
             continue
-        a, b, c, d = A[hi - 1, hi - 1], A[hi - 1, hi], A[hi, hi - 1], A[hi, hi]
+        a = A[hi - 1, hi - 1]
+        b = A[hi - 1, hi]
+        c = A[hi, hi - 1]
+        d = A[hi, hi]
         if lo == hi - 1:
-            half, product = 0.5 * (a - d), b * c
+            half = 0.5 * (a - d)
+            product = b * c
             root = half * half + product
             if root >= 0.0:
                 # The larger root without cancellation, the other from the determinant.
@@ -138,14 +144,17 @@ def eigenvalues(A: FloatArray, values: ComplexArray, scratch: FloatArray) -> boo
                 middle = 0.5 * (a + d)
                 values[hi - 1] = complex(middle, math.sqrt(-root))
                 values[hi] = complex(middle, -math.sqrt(-root))
-            hi, sweeps = hi - 2, 0
+            hi = hi - 2
+            sweeps = 0
             continue
         sweeps += 1
         if sweeps > _MAX_SWEEPS:
             return False
-        sum_, product = a + d, a * d - b * c
+        sum_ = a + d
+        product = a * d - b * c
         if sweeps % 11 == 10:  # an exceptional shift breaks the rare cycle
             size = abs(A[hi, hi - 1]) + abs(A[hi - 1, hi - 2])
-            sum_, product = 1.5 * size, size * size
+            sum_ = 1.5 * size
+            product = size * size
         _francis(A, lo, hi, sum_, product)
     return True

@@ -139,7 +139,9 @@ def powers_of_radii(count: int) -> FloatArray:
     """
     powers = np.empty((2, count + 2, LANES))
     for i in range(2 * LANES):
-        R, row, lane = RADII[i], i // LANES, i % LANES
+        R = RADII[i]
+        row = i // LANES
+        lane = i % LANES
         for j in range(count):
             powers[row, j, lane] = R ** (j + 1) / (j + 1) / math.log(R)
         powers[row, count, lane] = 1.0 / math.log(R)
@@ -156,14 +158,21 @@ def most_steps(n: int) -> int:
 @compiled()
 def scratch_for(problem: Problem) -> Piece:
     """Allocate the scratch of one thread."""
-    m, dw, dd = problem.v.size, problem.w.shape[2], problem.wd.shape[2]
-    slots, lanes, wide = max(m, 3), problem.w.shape[3], -(-2 * m // LANES) * LANES
-    v, lean = np.zeros(slots), np.zeros(m)
+    m = problem.v.size
+    dw = problem.w.shape[2]
+    dd = problem.wd.shape[2]
+    slots = max(m, 3)
+    lanes = problem.w.shape[3]
+    wide = -(-2 * m // LANES) * LANES
+    v = np.zeros(slots)
+    lean = np.zeros(m)
     for q in range(m):  # loops, for each array expression takes the compiler half a second
         v[q] = problem.v[q]
         lean[q] = problem.v[q] / problem.omega[q]
-    sizes, unit = np.zeros(6), np.zeros((wide, wide))
-    sizes[0], sizes[1] = norm(lean), norm(problem.v)
+    sizes = np.zeros(6)
+    unit = np.zeros((wide, wide))
+    sizes[0] = norm(lean)
+    sizes[1] = norm(problem.v)
     sizes[3] = norm(problem.reference) * sizes[0]
     for i in range(wide):
         unit[i, i] = 1.0
@@ -186,7 +195,9 @@ def scratch_for(problem: Problem) -> Piece:
 def load_point(problem: Problem, T: float, piece: Piece) -> None:
     """Write what of the constant part goes with the period: gyroscopic terms grow with speed."""
     m = problem.v.size
-    omega, still, moving = 0.0, 0.0, 0.0
+    omega = 0.0
+    still = 0.0
+    moving = 0.0
     for q in range(m):
         omega = max(omega, problem.omega[q])
         for p in range(m):
@@ -249,13 +260,20 @@ def load_piece(
     Returns a bound on |A| per unit time, one on its error, the ratio wd/w where it is the same for all powers
     and coordinates, else nan, and bounds on the integrals of further errors of A at the start and at the end.
     """
-    nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
-    rho, fit = problem.ratios[i], problem.fit_error
-    piece.degrees[0], piece.degrees[1] = problem.degrees[i, 0], problem.degrees[i, 1]
+    nu = piece.sizes[0]
+    nu_rate = piece.sizes[1]
+    calm = piece.sizes[2]
+    rho = problem.ratios[i]
+    fit = problem.fit_error
+    piece.degrees[0] = problem.degrees[i, 0]
+    piece.degrees[1] = problem.degrees[i, 1]
     _summed(problem.w, i, piece.degrees[0], gains, 1.0, piece.w)
     if math.isnan(rho):
         _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
-    rate, error, first, last = calm, piece.sizes[5], 0.0, 0.0
+    rate = calm
+    error = piece.sizes[5]
+    first = 0.0
+    last = 0.0
     edge = problem.edge_error
     for q in range(gains.size):
         g = abs(gains[q])
@@ -272,7 +290,9 @@ def load_piece(
 def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, ratio: float) -> int:
     """Write the gains over a step of length 2 h and their majorant a; return the degree of a."""
     m = problem.v.size
-    nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
+    nu = piece.sizes[0]
+    nu_rate = piece.sizes[1]
+    calm = piece.sizes[2]
     merged = not math.isnan(ratio)
     dw, dd = piece.degrees[0], piece.degrees[1]
     change = 0.0
@@ -311,9 +331,11 @@ def enough_terms(a: FloatArray, degree: int, log_tolerance: float, powers: Float
     second = plus(-log_tolerance, load(powers, (1, last - 1)), load(powers, (1, last)))
     exponent = 0.0
     for j in range(degree + 1):
-        first, second = plus(a[j], load(powers, (0, j)), first), plus(a[j], load(powers, (1, j)), second)
+        first = plus(a[j], load(powers, (0, j)), first)
+        second = plus(a[j], load(powers, (1, j)), second)
         exponent += a[j] / (j + 1.0)
-    best, size = least(first, second), math.exp(exponent)
+    best = least(first, second)
+    size = math.exp(exponent)
     if not best <= MAX_TERMS:
         return -1, size
     return max(1, math.ceil(best)), size

@@ -55,7 +55,8 @@ def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -
     Not finite where A is singular. ``unit`` has the rows of the unit matrix, ``work`` is scratch like A. The
     diagonal is taken as it is where it is not small: over a short step A is next to the unit matrix.
     """
-    n, lanes = A.shape[0], A.shape[1]
+    n = A.shape[0]
+    lanes = A.shape[1]
     copy(A, work)
     copy(unit, out)
     small = _PIVOT * frobenius(A)
@@ -65,7 +66,8 @@ def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -
             for i in range(k + 1, n):
                 if abs(work[i, k]) > abs(work[p, k]):
                     p = i
-        factor, own = 1.0 / work[p, k], k - k % LANES
+        factor = 1.0 / work[p, k]
+        own = k - k % LANES
         if p != k:
             for c in range(0, lanes, LANES):
                 left, right = load(work, (p, c)), load(out, (p, c))
@@ -94,14 +96,16 @@ def divide(
     Returns |P| and a bound on |P S - E|, Frobenius norms. ``scratch`` is (2, n, lanes).
     """
     n = end.shape[0]
-    inverse, back = scratch[0], scratch[1]
+    inverse = scratch[0]
+    back = scratch[1]
     invert(start, unit, back, inverse)
     multiply(end, inverse, step)
     multiply(step, start, back)
     for c in range(0, n, LANES):
         for i in range(n):
             store(back, (i, c), plus(-1.0, load(end, (i, c)), load(back, (i, c))))
-    residual, size = frobenius(back), frobenius(step)
+    residual = frobenius(back)
+    size = frobenius(step)
     residual += (n + 1.0) * _EPS * size * frobenius(start)
     return size, residual
 
@@ -112,7 +116,8 @@ def spectral(A: FloatArray, square: FloatArray) -> float:
 
     |A|_F where the fourth powers in that would be lost to underflow.
     """
-    size, n = frobenius(A), A.shape[0]
+    size = frobenius(A)
+    n = A.shape[0]
     if size < 1e-60:
         return size * _SLACK
     for c in range(0, n, LANES):
@@ -153,18 +158,25 @@ def carry(
         before[k] = frobenius(flow)
         multiply(steps[k], flow, product)
         copy(product, flow)
-    top, bound = 0, 0.0
+    top = 0
+    bound = 0.0
     for k in range(count - 1, -1, -1):
         after = table[3, top - 1] + table[4, top - 1] if top > 0 else 1.0
         # n eps |P| is the rounding of multiplying by this step.
         bound += after * (local[k] + n * _EPS * sizes[k]) * before[k]
         copy(steps[k], work[1 + top])
         rank = 0
-        table[0, top], table[1, top], table[2, top] = sizes[k], local[k], 0.0
+        table[0, top] = sizes[k]
+        table[1, top] = local[k]
+        table[2, top] = 0.0
         top += 1
         while top > 1 and table[2, top - 2] == rank:
-            one, two = top - 2, top - 1
-            a, b, da, db = table[0, one], table[0, two], table[1, one], table[1, two]
+            one = top - 2
+            two = top - 1
+            a = table[0, one]
+            b = table[0, two]
+            da = table[1, one]
+            db = table[1, two]
             multiply(work[1 + one], work[1 + two], product)
             copy(product, work[1 + one])
             rank += 1
@@ -173,13 +185,17 @@ def carry(
             table[2, one] = rank
             top = one + 1
         # The product of all blocks, which is the flow from here to the end, and its error.
-        last, base = top - 1, 1 + BLOCKS
+        last = top - 1
+        base = 1 + BLOCKS
         if last == 0:
             copy(work[1], work[base])
             table[4, 0] = table[1, 0]
         else:
             multiply(work[base + last - 1], work[1 + last], work[base + last])
-            a, da, b, db = table[3, last - 1], table[4, last - 1], table[0, last], table[1, last]
+            a = table[3, last - 1]
+            da = table[4, last - 1]
+            b = table[0, last]
+            db = table[1, last]
             table[4, last] = a * db + da * (b + db) + n * n * _EPS * a * b
         table[3, last] = spectral(work[base + last], product)
     return bound * _SLACK

@@ -116,7 +116,8 @@ def plus_square(typing: Any, x: Any, total: Any) -> Any:
 
 def _folded(builder: Any, value: Any, join: Any) -> Any:
     """All eight joined into one, in a tree of three."""
-    blank, kind = ir.Constant(_VECTOR, ir.Undefined), ir.VectorType(ir.IntType(32), LANES)
+    blank = ir.Constant(_VECTOR, ir.Undefined)
+    kind = ir.VectorType(ir.IntType(32), LANES)
     for width in (4, 2, 1):
         across = ir.Constant(kind, [(lane + width) % LANES for lane in range(LANES)])
         value = join(value, builder.shuffle_vector(value, blank, across))

@@ -41,57 +41,99 @@ def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
     With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'. All three coordinates side by
     side in registers, and the newest values last in every sum: what is older need not wait for them.
     """
-    v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
-    Z, s, sd, w, wd = piece.Z, piece.s, piece.sd, piece.ws, piece.wds
+    v = piece.v
+    C = piece.hC
+    o = piece.h2_omega2
+    ref = piece.h2_reference
+    Z = piece.Z
+    s = piece.s
+    sd = piece.sd
+    w = piece.ws
+    wd = piece.wds
     merged = not math.isnan(ratio)
     lag = ratio / h if merged else 0.0
     dw, dd = piece.degrees[0], piece.degrees[1]
-    x0, x1, x2 = load(Z, (0, 0)), load(Z, (0, 1)), load(Z, (0, 2))
-    y0, y1, y2 = load(Z, (1, 0)), load(Z, (1, 1)), load(Z, (1, 2))
+    x0 = load(Z, (0, 0))
+    x1 = load(Z, (0, 1))
+    x2 = load(Z, (0, 2))
+    y0 = load(Z, (1, 0))
+    y1 = load(Z, (1, 1))
+    y2 = load(Z, (1, 2))
     here = plus(v[2], x2, plus(v[1], x1, scaled(v[0], x0)))
     there = plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
     for k in range(terms):
         c = k + 1.0
         rate = scaled(c, there)
-        t0, t1, t2 = scaled(o[0], x0), scaled(o[1], x1), scaled(o[2], x2)
-        t0, t1, t2 = plus(ref[0], here, t0), plus(ref[1], here, t1), plus(ref[2], here, t2)
+        t0 = scaled(o[0], x0)
+        t1 = scaled(o[1], x1)
+        t2 = scaled(o[2], x2)
+        t0 = plus(ref[0], here, t0)
+        t1 = plus(ref[1], here, t1)
+        t2 = plus(ref[2], here, t2)
         if merged:
             for i in range(min(dw, k), 0, -1):
                 old = load(sd, (k - i,))
-                t0, t1, t2 = plus(w[i, 0], old, t0), plus(w[i, 1], old, t1), plus(w[i, 2], old, t2)
+                t0 = plus(w[i, 0], old, t0)
+                t1 = plus(w[i, 1], old, t1)
+                t2 = plus(w[i, 2], old, t2)
             rate = plus(lag * c, there, here)
-            t0, t1, t2 = plus(w[0, 0], rate, t0), plus(w[0, 1], rate, t1), plus(w[0, 2], rate, t2)
+            t0 = plus(w[0, 0], rate, t0)
+            t1 = plus(w[0, 1], rate, t1)
+            t2 = plus(w[0, 2], rate, t2)
         else:
             for i in range(min(dw, k), 0, -1):
                 old = load(s, (k - i,))
-                t0, t1, t2 = plus(w[i, 0], old, t0), plus(w[i, 1], old, t1), plus(w[i, 2], old, t2)
+                t0 = plus(w[i, 0], old, t0)
+                t1 = plus(w[i, 1], old, t1)
+                t2 = plus(w[i, 2], old, t2)
             for i in range(min(dd, k), 0, -1):
                 old = load(sd, (k - i,))
-                t0, t1, t2 = plus(wd[i, 0], old, t0), plus(wd[i, 1], old, t1), plus(wd[i, 2], old, t2)
-            t0, t1, t2 = plus(w[0, 0], here, t0), plus(w[0, 1], here, t1), plus(w[0, 2], here, t2)
-            t0, t1, t2 = plus(wd[0, 0], rate, t0), plus(wd[0, 1], rate, t1), plus(wd[0, 2], rate, t2)
+                t0 = plus(wd[i, 0], old, t0)
+                t1 = plus(wd[i, 1], old, t1)
+                t2 = plus(wd[i, 2], old, t2)
+            t0 = plus(w[0, 0], here, t0)
+            t1 = plus(w[0, 1], here, t1)
+            t2 = plus(w[0, 2], here, t2)
+            t0 = plus(wd[0, 0], rate, t0)
+            t1 = plus(wd[0, 1], rate, t1)
+            t2 = plus(wd[0, 2], rate, t2)
         store(s, (k,), here)
         store(sd, (k,), rate)
         t0 = plus(c * C[0, 0, 2], y2, plus(c * C[0, 0, 1], y1, plus(c * C[0, 0, 0], y0, t0)))
         t1 = plus(c * C[0, 1, 2], y2, plus(c * C[0, 1, 1], y1, plus(c * C[0, 1, 0], y0, t1)))
         t2 = plus(c * C[0, 2, 2], y2, plus(c * C[0, 2, 1], y1, plus(c * C[0, 2, 0], y0, t2)))
         factor = -1.0 / (c * (c + 1.0))
-        x0, x1, x2 = y0, y1, y2
-        y0, y1, y2 = scaled(factor, t0), scaled(factor, t1), scaled(factor, t2)
+        x0 = y0
+        x1 = y1
+        x2 = y2
+        y0 = scaled(factor, t0)
+        y1 = scaled(factor, t1)
+        y2 = scaled(factor, t2)
         store(Z, (k + 2, 0), y0)
         store(Z, (k + 2, 1), y1)
         store(Z, (k + 2, 2), y2)
-        here, there = there, plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
+        here = there
+        there = plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
 
 
 @compiled(fastmath={"contract"}, _nrt=False)
 def _series_of_many(piece: Piece, terms: int, h: float, ratio: float) -> None:
     """`_series` for any number of coordinates, eight columns after the other."""
-    v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
-    Z, s, sd, w, wd = piece.Z, piece.s, piece.sd, piece.ws, piece.wds
+    v = piece.v
+    C = piece.hC
+    o = piece.h2_omega2
+    ref = piece.h2_reference
+    Z = piece.Z
+    s = piece.s
+    sd = piece.sd
+    w = piece.ws
+    wd = piece.wds
     merged = not math.isnan(ratio)
     lag = ratio / h if merged else 0.0
-    dw, dd, m, rates = piece.degrees[0], piece.degrees[1], v.size, MAX_TERMS + 2
+    dw = piece.degrees[0]
+    dd = piece.degrees[1]
+    m = v.size
+    rates = MAX_TERMS + 2
     for column in range(0, 2 * m, LANES):
         here = zero()
         for q in range(m):
@@ -144,14 +186,19 @@ def _ends_of_step(
     top = terms + 1 - (terms + 1) % 2  # the largest even power
     for c in range(0, 2 * m, LANES):
         for q in range(m):
-            even, odd, even_rate, odd_rate = zero(), zero(), zero(), zero()
+            even = zero()
+            odd = zero()
+            even_rate = zero()
+            odd_rate = zero()
             if top == terms:
                 odd = load(Z, (terms + 1, q, c))
                 even_rate = scaled(terms + 1.0, odd)
             for k in range(top, 0, -2):
                 x, y = load(Z, (k, q, c)), load(Z, (k - 1, q, c))
-                even, odd_rate = plus(1.0, x, even), plus(float(k), x, odd_rate)
-                odd, even_rate = plus(1.0, y, odd), plus(float(k - 1), y, even_rate)
+                even = plus(1.0, x, even)
+                odd_rate = plus(float(k), x, odd_rate)
+                odd = plus(1.0, y, odd)
+                even_rate = plus(float(k - 1), y, even_rate)
             even = plus(1.0, load(Z, (0, q, c)), even)
             store(end, (q, c), scaled(problem.omega[q], plus(1.0, odd, even)))
             store(start, (q, c), scaled(problem.omega[q], plus(-1.0, odd, even)))
@@ -175,7 +222,8 @@ def steps_of_period(
 
     Returns the number of steps; -1 if there would be more than ``most`` or MAX_TERMS.
     """
-    m, most = problem.v.size, steps.shape[0]
+    m = problem.v.size
+    most = steps.shape[0]
     count = 0
     load_point(problem, T, piece)
     log_tolerance = math.log(limits.tolerance)
@@ -201,11 +249,14 @@ def steps_of_period(
                 _series(piece, terms, h, ratio)
             else:
                 _series_of_many(piece, terms, h, ratio)
-            end, start, scratch = piece.ends[0], piece.ends[1], piece.ends[2:]
+            end = piece.ends[0]
+            start = piece.ends[1]
+            scratch = piece.ends[2:]
             _ends_of_step(problem, piece, terms, h, end, start)
             size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
             # Neither the skew part of A nor damping lets the energy grow; what is left of a at most does.
-            turned, total = 2.0 * h * piece.sizes[3], 0.0
+            turned = 2.0 * h * piece.sizes[3]
+            total = 0.0
             for j in range(degree + 1):
                 total += piece.a[j]
                 turned += piece.a[j] / (j + 1.0)
@@ -247,11 +298,16 @@ def propagate_points(
     Gains are (N, Q). Returns the index of the first point that needs more than ``most_steps`` or MAX_TERMS.
     """
     piece = scratch_for(problem)
-    n, lanes = 2 * problem.v.size, piece.unit.shape[0]
+    n = 2 * problem.v.size
+    lanes = piece.unit.shape[0]
     most = most_steps(n)
     steps = np.empty((most, n, lanes))
-    local, sizes, before, table = np.empty(most), np.empty(most), np.empty(most), np.zeros((5, BLOCKS))
-    work, flow = np.zeros((2 * BLOCKS + 1, n, lanes)), np.zeros((n, lanes))
+    local = np.empty(most)
+    sizes = np.empty(most)
+    before = np.empty(most)
+    table = np.zeros((5, BLOCKS))
+    work = np.zeros((2 * BLOCKS + 1, n, lanes))
+    flow = np.zeros((n, lanes))
     for point in range(periods.size):
         count = steps_of_period(
             problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, sizes
@@ -274,14 +330,19 @@ def largest_flow(
     |A|^8 <= |(A^T A)^4|_F, too large by at most the 16th root of n. (nan, nan): too many steps.
     """
     piece = scratch_for(problem)
-    n, lanes = 2 * problem.v.size, piece.unit.shape[0]
+    n = 2 * problem.v.size
+    lanes = piece.unit.shape[0]
     most = most_steps(n)
-    steps, flows, work = np.empty((most, n, lanes)), np.empty((most, n, lanes)), np.zeros((3, n, lanes))
-    local, sizes = np.empty(most), np.empty(most)
+    steps = np.empty((most, n, lanes))
+    flows = np.empty((most, n, lanes))
+    work = np.zeros((3, n, lanes))
+    local = np.empty(most)
+    sizes = np.empty(most)
     count = steps_of_period(problem, gains, zeta, T, limits, piece, steps, local, sizes)
     if count < 0:
         return math.nan, math.nan
-    largest, errors = 1.0, 0.0
+    largest = 1.0
+    errors = 0.0
     for j in range(count):
         errors += local[j] + 2.0 * n * n * _U * sizes[j]
         copy(piece.unit[:n], flows[j])

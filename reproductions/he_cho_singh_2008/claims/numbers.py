@@ -145,7 +145,8 @@ def spread_by_order(cycles: xr.Dataset, name: str) -> tuple[FloatArray, FloatArr
     Orders whose mean amplitude is below 2 % of the largest have relative spread 0: they carry no motion.
     """
     amplitude = mesh_orders(cycles[name], _ORDERS).transpose("law", "order").to_numpy()
-    spread, mean = np.ptp(amplitude, axis=0), amplitude.mean(axis=0)
+    spread = np.ptp(amplitude, axis=0)
+    mean = amplitude.mean(axis=0)
     relative = np.where(mean > 0.02 * mean.max(), spread / mean, 0.0)
     return np.asarray(spread, dtype=np.float64), np.asarray(relative, dtype=np.float64)
 
@@ -184,7 +185,8 @@ def fig7_motion(pair: GearPair) -> dict[str, float]:
     slow, fast = (mean_of_law(point.of(pair), "xu_kahraman") for point in FIGURE_7)
     at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
     run = periodic_cycle(at, _SAMPLES)
-    normal, friction = run.values["normal_load"], run.values["friction_force"]
+    normal = run.values["normal_load"]
+    friction = run.values["friction_force"]
     static = at.operating.pinion_torque / at.geometry.base_radius_pinion
     return {
         "mean_iii_slow": slow,

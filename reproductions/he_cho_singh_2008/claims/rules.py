@@ -73,7 +73,8 @@ class ClaimRule(Statement):
         """Why the motion that the number is of does not count; "" where it does or none is needed."""
         if not self.figure:
             return ""
-        radius, load = stated[f"radius_{self.figure}"], stated[f"min_load_{self.figure}"]
+        radius = stated[f"radius_{self.figure}"]
+        load = stated[f"min_load_{self.figure}"]
         if radius > UNSTABLE:
             return (
                 f"The periodic motion of Fig. {self.figure} is unstable here (largest multiplier "

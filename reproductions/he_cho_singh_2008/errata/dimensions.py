@@ -81,7 +81,9 @@ def hertz_factor() -> float:
 def equation_19(printed: bool) -> str:
     """The two summands of law IV: arctan(Phi d) and d (...)/(1 + Phi^2 d^2)."""
     u = _registry()
-    d, phi, sigma = 0.1 * u.mm, 50.0 / u.mm, 1.64 * u.dimensionless
+    d = 0.1 * u.mm
+    phi = 50.0 / u.mm
+    sigma = 1.64 * u.dimensionless
     first = (phi * d).to("").magnitude * u.dimensionless  # arctan of it is a pure number
     second = d * (sigma if printed else phi) / (1.0 + (phi * d) ** 2)
     return _sum_check(first, second)

@@ -20,7 +20,8 @@ def erratum_3(pair: GearPair) -> Erratum:
     """Equation 3: a contact force without a potential."""
     smooth = pair.with_({"friction.law": "none"})
     printed, repaired = (_motion(smooth.with_({"mesh.contact": form})) for form in ("prescribed", "loaded"))
-    g, powers = pair.geometry, mean_powers(printed)
+    g = pair.geometry
+    powers = mean_powers(printed)
     brake = printed.brake_torque * g.omega_gear
     paid = mean_powers(repaired)
     return stated(

@@ -64,7 +64,8 @@ def _erratum_21(pair: GearPair) -> Erratum:
         float(film_thickness_printed(path, pitch, film=film, speed=speed)) * 1e6
         for film, speed in ((True, True), (True, False), (False, True))
     )
-    width, rough = float(path.half_width(pitch)) * 1e3, path.composite_roughness * 1e6
+    width = float(path.half_width(pitch)) * 1e3
+    rough = path.composite_roughness * 1e6
     length = path.film_length * 1e3
 
     def parameter(film: float) -> float:

@@ -31,7 +31,8 @@ def law_errata(pair: GearPair) -> tuple[Erratum, ...]:
 def law_effects(pair: GearPair, printed: PathFunction, law: str) -> list[Evidence]:
     """Mean coefficient, motions, efficiency and multipliers with a law as printed and as repaired."""
     own = pair.with_({"friction.law": law})
-    right, wrong = response(own), response(own, friction=printed)
+    right = response(own)
+    wrong = response(own, friction=printed)
     mean = "mean of |mu| over the path of contact"
     return [
         Evidence(mean, "1", mean_coefficient(printed), mean_of_law(pair, law)),
@@ -95,7 +96,8 @@ def derivative_residual(pair: GearPair, function: PathFunction, mu: float) -> fl
     function : law IV, signed
     mu : its average coefficient
     """
-    g, phi = pair.geometry, pair.friction.sharpness
+    g = pair.geometry
+    phi = pair.friction.sharpness
     xi = np.linspace(g.L_XA, g.L_XD, 4001)[1:-1]
     d = xi - g.L_XP
     step = 1e-30
@@ -107,7 +109,8 @@ def derivative_residual(pair: GearPair, function: PathFunction, mu: float) -> fl
 def _erratum_19(pair: GearPair) -> Erratum:
     own = pair.with_({"friction.law": "smoothed_coulomb"})
     mu = average_coefficient(own)
-    printed, right = law_iv_printed(own), friction_path_function(own)
+    printed = law_iv_printed(own)
+    right = friction_path_function(own)
     effects = law_effects(own, printed, "smoothed_coulomb")
     residual = [derivative_residual(own, f, mu) for f in (printed, right)]
     numbers = {"residual": 100 * residual[0], "residual_repaired": 100 * residual[1]}

@@ -20,7 +20,8 @@ Law = Callable[[FloatArray], FloatArray]
 #: Far below every number that the errata state.
 _TOLERANCE = 1e-8
 #: Powers of ten of equation 21 as printed: of the film in um (a) and of the speed parameter U (d).
-PRINTED_FILM_EXPONENT, PRINTED_SPEED_EXPONENT = 8, -16
+PRINTED_FILM_EXPONENT = 8
+PRINTED_SPEED_EXPONENT = -16
 
 
 def average_coefficient(pair: GearPair) -> float:
@@ -38,7 +39,8 @@ def law_ii_level(path: ContactPath, xi: FloatArray) -> FloatArray:
 
 def law_ii_printed(pair: GearPair) -> PathFunction:
     """Law II as printed, with the bounds of the repaired law (0 and ``friction.maximum``)."""
-    path, settings = contact_path(pair), pair.friction
+    path = contact_path(pair)
+    settings = pair.friction
     bounds = [
         xi
         for level in (0.0, settings.maximum)
@@ -80,8 +82,10 @@ def law_iii_printed(pair: GearPair, *, sliding_speed: bool = True, millimetres: 
 
 def law_iv_printed(pair: GearPair) -> PathFunction:
     """Law IV with the contact ratio sigma in the second numerator (equation 19 as printed), lengths in mm."""
-    path, mu = contact_path(pair), average_coefficient(pair)
-    sigma, phi = pair.geometry.contact_ratio, pair.friction.sharpness * 1e-3
+    path = contact_path(pair)
+    mu = average_coefficient(pair)
+    sigma = pair.geometry.contact_ratio
+    phi = pair.friction.sharpness * 1e-3
 
     def law(xi: FloatArray) -> FloatArray:
         d = 1e3 * (xi - path.L_XP)

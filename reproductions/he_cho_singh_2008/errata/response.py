@@ -89,7 +89,8 @@ def response(
         rtol=1e-9,
     )
     g, s = cycle.geometry, absolute.structure
-    normal, sliding = data["normal_load"].to_numpy(), data["friction_force"].to_numpy()
+    normal = data["normal_load"].to_numpy()
+    sliding = data["friction_force"].to_numpy()
     driving = solution.pinion_torque * g.omega_pinion
     return Response(
         cycle=data,
@@ -122,7 +123,8 @@ def created_power(pair: GearPair, data: xr.Dataset, as_printed: Collection[int] 
     rates = np.stack([data[f"{name}_dot"].to_numpy() for name in names], axis=-1)
     rates[:, 0] += g.omega_pinion
     rates[:, 1] += g.omega_gear
-    normal, friction = data["normal_load"].to_numpy(), data["friction_force"].to_numpy()
+    normal = data["normal_load"].to_numpy()
+    friction = data["friction_force"].to_numpy()
     on_bodies = normal.sum(0) * (rates @ s.normal)
     on_bodies += (friction * np.einsum("pkc,kc->pk", s.friction(data["position"].to_numpy()), rates)).sum(0)
     contact = -normal.sum(0) * data["dte_dot"].to_numpy()

@@ -26,7 +26,8 @@ def normalised_laws(pair: GearPair) -> xr.Dataset:
     cycles = np.unique(
         np.concatenate([np.linspace(0.0, g.contact_ratio, _POINTS)[:-1], pitch - offsets, pitch + offsets])
     )
-    rows, means = [], []
+    rows = []
+    means = []
     for law in LAWS:
         mu = friction_path_function(pair, law=law)
         means.append(mean_coefficient(mu))

@@ -105,7 +105,8 @@ def figure7(
     }
     numbers: dict[str, Number] = {}
     for part in data.values():
-        speed, lumped = f"{part.attrs['speed_rpm']:g} rpm", part.sel(model="lumped")
+        speed = f"{part.attrs['speed_rpm']:g} rpm"
+        lumped = part.sel(model="lumped")
         for name, text in _FORCES.items():
             largest = float(np.abs(lumped[name]).max())
             numbers[f"{speed}: largest {text} of a pair"] = Number(largest, "N")

@@ -28,7 +28,8 @@ class Fault:
 
 def _read(group: str) -> tuple[Fault, ...]:
     file = Path(__file__).with_name("catalogue") / f"{group.replace(' ', '_')}.toml"
-    found, rows = [], tomllib.loads(file.read_text(encoding="utf-8"))
+    found = []
+    rows = tomllib.loads(file.read_text(encoding="utf-8"))
     common = rows.pop("on", {})
     for key, row in rows.items():
         on = common | row.pop("on", {}) | dict.fromkeys(row.pop("without", ()))

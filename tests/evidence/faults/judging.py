@@ -24,7 +24,8 @@ from tests.evidence.refinement import refinements
 from validation.cross_check.comparison import crosscheck
 from validation.reporting.results import QUICK, Results, broken_relations
 
-_CYCLES, _SAMPLES = 6, 64
+_CYCLES = 6
+_SAMPLES = 64
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
             warnings.simplefilter("ignore", kind)
         sound = _sound(tuple(pair.to_toml() for pair in pairs(fault)))
         started = time.perf_counter()
-        size, quantity = 0.0, ""
+        size = 0.0
+        quantity = ""
         caught: dict[str, tuple[str, ...]] = {}
         stopped: list[tuple[Callable[[GearPair], list[str]], GearPair]] = []
         with applied(fault):
@@ -63,7 +65,8 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
                 try:
                     size, quantity = max((size, quantity), change(old, quantities(pair)))
                 except Exception as error:  # noqa: BLE001  (whatever stops a program with a fault is seen)
-                    size, caught["refused"] = float("inf"), (_line(error),)
+                    size = float("inf")
+                    caught["refused"] = (_line(error),)
             for part, checks in _CHECKS.items():
                 if not thorough and any(caught.values()):
                     break

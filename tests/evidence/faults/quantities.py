@@ -92,7 +92,8 @@ def _path(pair: GearPair) -> dict[str, FloatArray]:
     found: dict[str, FloatArray] = {}
     for record in (pair.geometry, lumped.bodies(pair)):
         found |= {name: np.array([value]) for name, value in dataclasses.asdict(record).items()}
-    elements, g = mesh_elements(pair), pair.geometry
+    elements = mesh_elements(pair)
+    g = pair.geometry
     places = np.linspace(g.L_XA, g.L_XD, 201)[1:-1]
     for name in ("stiffness", "damping", "friction", "error"):
         found[f"tooth pair {name}"] = getattr(elements, name)(places)

@@ -76,7 +76,8 @@ def sound(name: str) -> Written:
 
 
 def _failing(name: str, fault: Fault | None) -> Iterator[str]:
-    results, same = copy.copy(known(name)), sound(name)
+    results = copy.copy(known(name))
+    same = sound(name)
     if fault is not None and ":Results." in fault.target:
         same = None
         for one in (*_QUICK, fault.target.partition(":Results.")[2]):

@@ -28,7 +28,8 @@ _STIFFNESS = (
 def drawn(count: int, seed: str, *, relief: bool = False, loaded: bool = False) -> Iterator[GearPair]:
     """Random variations of the presets that exist: gears, bearings, teeth, law, relief, speed and load."""
     rng = random.Random(seed)
-    names, found = sorted(preset_names()), 0
+    names = sorted(preset_names())
+    found = 0
     if relief:
         names = [name for name in names if load_gear_pair(name).pinion.tip_relief is not None]
     while found < count:

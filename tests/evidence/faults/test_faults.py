@@ -137,7 +137,8 @@ def test_the_stored_table_is_of_these_faults_and_misses_none():
 def test_every_conservation_law_sees_a_fault_on_every_model_that_it_judges():
     """A limit that no fault ever crosses might as well not be there."""
     seen = laws_that_act(stored())
-    every, springs = {"lumped", "linear", "exact"}, {"lumped", "linear"}
+    every = {"lumped", "linear", "exact"}
+    springs = {"lumped", "linear"}
     laws = {"friction takes power": every, "action and reaction": every, "first law": every}
     for law, models in (laws | {"mean bearing load": springs, "efficiency": {"lumped"}}).items():
         assert {model for found, model in seen if found == law} >= models, law

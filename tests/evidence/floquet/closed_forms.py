@@ -109,7 +109,9 @@ def symplectic_defect(method: str, seed: int = 0) -> float:
 
 def check_invariants() -> Iterator[Check]:
     """Symplecticity, similarity, start of the period, Liouville; five random systems each."""
-    similar, shifted, liouville = 0.0, 0.0, 0.0
+    similar = 0.0
+    shifted = 0.0
+    liouville = 0.0
     for seed in range(5):
         system = _smooth(np.random.default_rng(seed).normal(size=(3, 4, 4)))
         rng = np.random.default_rng(100 + seed)
@@ -146,7 +148,8 @@ def check_orders() -> Iterator[Check]:
 
 
 #: Gear pairs of the stress test and its seed.
-COUNT, SEED = 100, 1
+COUNT = 100
+SEED = 1
 
 
 def check_random_gears() -> Iterator[Check]:
@@ -178,7 +181,8 @@ def _hsu_orders(system: HsuSystem, i: int, j: int, sign: int) -> tuple[float, fl
 
 def check_hsu() -> Iterator[Check]:
     """Ends of sum and difference tongues against first-order theory, and where there is none."""
-    still, damped = np.zeros(2), np.array([4e-3, 1.6e-2])
+    still = np.zeros(2)
+    damped = np.array([4e-3, 1.6e-2])
     cases = (
         ("sum, symmetric", _SYMMETRIC, still, 0, 1, 1),
         ("difference, skew", _SKEW, still, 0, 1, -1),
@@ -223,14 +227,16 @@ def check_gear_chain() -> Iterator[Check]:
     for sigma, expected in ((1.4, 1.0), (1.5, 2.0)):
         growth = []
         for epsilon in (0.04, 0.02):
-            middle, one = 0.5 * (omega[1] + omega[2]), _chain(sigma)
+            middle = 0.5 * (omega[1] + omega[2])
+            one = _chain(sigma)
 
             def fall(x: float, one: GearChain = one, epsilon: float = epsilon) -> float:
                 return -monodromy(one.at(x, epsilon), 1e-11).spectral_radius
 
             def fall_by_pieces(x: float, one: GearChain = one, epsilon: float = epsilon) -> float:
                 system = one.at(x, epsilon)
-                lengths, flow = np.diff(system.edges), np.eye(system.dimension)
+                lengths = np.diff(system.edges)
+                flow = np.eye(system.dimension)
                 for A, length in zip(
                     system.evaluate(system.edges[:-1] + 0.5 * lengths), lengths, strict=True
                 ):

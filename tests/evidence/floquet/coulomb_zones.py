@@ -66,7 +66,9 @@ class CoulombGearPair:
     def system(self, speed_ratio: float) -> PeriodicSystem:
         """Return the pair for the general engine, states (delta, delta') with time in 1/omega."""
         period = 2.0 * np.pi / speed_ratio
-        phases, gains, zeta = self.phases, self.gains, self.damping_ratio
+        phases = self.phases
+        gains = self.gains
+        zeta = self.damping_ratio
 
         def A(t: FloatArray) -> FloatArray:
             g = gains[np.clip(np.searchsorted(phases, t / period, side="right") - 1, 0, 2), None, None]
@@ -120,7 +122,8 @@ def check_coulomb_gear_pair() -> Iterator[Check]:
     yield order("rigid bearings: in the mesh stiffness over that of the bearings", observed, 1.0, 0.1)
     exact = "|multiplier| of the frictionless pair at speed/√f, damping ζ√f, f = 1 + μ tan α"
     yield Check("friction of one sign", exact, _rescaled(), 1e-9)
-    wet, dry = CoulombGearPair(friction=MU), CoulombGearPair()
+    wet = CoulombGearPair(friction=MU)
+    dry = CoulombGearPair()
     decay = np.linalg.det(wet.monodromy_matrix(_RATIOS)) / np.linalg.det(dry.monodromy_matrix(_RATIOS))
     worst = np.abs(decay - 1.0).max()
     yield Check("friction that reverses: decay", "det M without friction", worst, 1e-12)
@@ -151,7 +154,8 @@ def _gear() -> GearPair:
 def _factor() -> float:
     """Deviation of the q row of the gear's equations from sum k_i (1 + s_i mu tan alpha)/m_e."""
     gear = _gear()
-    system, g = periodic_system(gear, "mesh"), gear.geometry
+    system = periodic_system(gear, "mesh")
+    g = gear.geometry
     times = np.concatenate([np.linspace(a, b, 9)[1:-1] for a, b in pairwise(system.cycle.edges)])
     pairs = system.cycle.sample(times)
     sign = np.where(pairs.position < g.L_XP, -1.0, 1.0)
@@ -163,7 +167,8 @@ def _factor() -> float:
 def _on_bearings(factor: float) -> float:
     """Distance of the closed form from the multipliers of the gear on bearings this much stiffer than k."""
     gear = _gear()
-    system, g = periodic_system(gear, "mesh"), gear.geometry
+    system = periodic_system(gear, "mesh")
+    g = gear.geometry
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
     omega = np.sqrt(k * g.contact_ratio / bodies(gear).effective_mass)
     exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)

@@ -32,7 +32,8 @@ _LD = np.longdouble
 
 def as_periodic_system(system: RankOneSystem) -> PeriodicSystem:
     """The same system for the general engine, which checks the kernel independently."""
-    gains, G = system.total, 0.0 if system.gyroscopic is None else system.gyroscopic
+    gains = system.total
+    G = 0.0 if system.gyroscopic is None else system.gyroscopic
 
     def A(t: FloatArray) -> FloatArray:
         phase = t / system.period
@@ -61,11 +62,13 @@ def extended_transitions(
     """Transition matrices (S, 2m, 2m) of z'' + D z' + L z + w (v . z) + wd (v . z') = 0 over steps h (S,)."""
     m = v.size
     z = np.zeros((h.size, _TERMS + 2, m, 2 * m), dtype=_LD)
-    z[:, 0, :, :m], z[:, 1, :, m:] = np.eye(m), rate * np.eye(m)
+    z[:, 0, :, :m] = np.eye(m)
+    z[:, 1, :, m:] = rate * np.eye(m)
     s, sd = np.zeros((2, h.size, _TERMS + 1, 2 * m), dtype=_LD)
     for k in range(_TERMS):
         speed = (k + 1) * z[:, k + 1]
-        s[:, k], sd[:, k] = v @ z[:, k], v @ speed
+        s[:, k] = v @ z[:, k]
+        sd[:, k] = v @ speed
         n = min(k + 1, w.shape[1])
         total = L @ z[:, k] + D @ speed
         for gain, signal in ((w, s), (wd, sd)):
@@ -79,10 +82,15 @@ def extended_transitions(
 
 def extended_matrix(system: RankOneSystem) -> LongArray:
     """Monodromy matrix (2m, 2m) in the energy coordinates of ``system.modal()``."""
-    form, total, T, m = system.modal(), system.total, _LD(system.period), system.v.size
+    form = system.modal()
+    total = system.total
+    T = _LD(system.period)
+    m = system.v.size
     rate = float(form.omega.max())
     count = max(total.w.shape[2], total.wd.shape[2])
-    lengths, starts, gains = [], [], []
+    lengths = []
+    starts = []
+    gains = []
     for i, (low, high) in enumerate(zip(system.phases[:-1], system.phases[1:], strict=True)):
         parts = int(np.ceil(1.5 * rate * system.period * (high - low))) + 1
         both = np.zeros((2, count, m), dtype=_LD)
@@ -138,7 +146,8 @@ def stress_test(count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArr
 
     Each computed multiplier is matched with one of the reference so that the sum of the distances is least.
     """
-    rng, found = np.random.default_rng(seed), []
+    rng = np.random.default_rng(seed)
+    found = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # random pairs leave the ranges of the laws
         for _ in range(count):

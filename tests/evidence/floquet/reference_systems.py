@@ -60,14 +60,16 @@ def mathieu_many(a: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def mathieu_system(depth: float | None = None, damping: float = 0.0) -> RankOneSystem:
     """z'' + damping z' + (1 - 2 depth cos) z = 0; without a depth it is the factor of a varied gain."""
-    pieces, degree = 24, 8
+    pieces = 24
+    degree = 8
     phases = np.linspace(0.0, 1.0, pieces + 1)
     u = np.polynomial.chebyshev.chebpts1(degree + 1)
     waves = np.zeros((pieces, 1, degree + 1))
     for k, (low, high) in enumerate(itertools.pairwise(phases)):
         values = -2.0 * np.cos(2.0 * np.pi * (0.5 * (low + high) + 0.5 * (high - low) * u))
         waves[k, 0] = np.polynomial.polynomial.polyfit(u, values, degree)
-    one, none = np.zeros_like(waves), np.zeros((pieces, 1, 1))
+    one = np.zeros_like(waves)
+    none = np.zeros((pieces, 1, 1))
     one[:, :, 0] = 1.0
     errors = np.tile([1e-12, 0.0], (pieces, 1))  # (2 pi/48)^9 2^-7/9! and rounding
     calm = Gains(one + (0.0 if depth is None else depth * waves), damping * one, (depth or 0.0) * errors)
@@ -148,7 +150,8 @@ class GearChain:
     def at(self, excitation: float, epsilon: float) -> PeriodicSystem:
         """Return the chain at mesh frequency Omega; mesh stiffness jumps by epsilon times its mean."""
         period = 2.0 * np.pi / excitation
-        starts, ends = self.phase % 1.0, (self.phase + self.contact_ratio - 1.0) % 1.0
+        starts = self.phase % 1.0
+        ends = (self.phase + self.contact_ratio - 1.0) % 1.0
 
         def A(t: FloatArray) -> FloatArray:
             since = (t[:, None] / period - starts) % 1.0
@@ -192,7 +195,8 @@ def tongue_ends(
     """Ends of the tongue around a predicted one, by root finding on the computed spectral radius."""
     damped = isinstance(system, HsuSystem) and bool((system.damping > 0.0).any())
     limit = 1.0 if damped else 1.0 + np.sqrt(rtol)
-    middle, width = 0.5 * (predicted[0] + predicted[1]), predicted[1] - predicted[0]
+    middle = 0.5 * (predicted[0] + predicted[1])
+    width = predicted[1] - predicted[0]
 
     def excess(excitation: float) -> float:
         return monodromy(system.at(excitation, epsilon), rtol).spectral_radius - limit

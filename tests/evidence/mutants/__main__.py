@@ -41,7 +41,8 @@ def main(given: list[str] | None = None) -> int:
         "-o", "--output", type=Path, help="rows as .json; a run that was stopped goes on from .json.part"
     )
     options = parser.parse_args(given)
-    tree, limits = options.tree.resolve(), Limits()
+    tree = options.tree.resolve()
+    limits = Limits()
     mutants = draw(tree, options.count, options.seed, options.only)
     if options.list:
         for one in mutants:

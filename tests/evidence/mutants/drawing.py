@@ -82,7 +82,8 @@ def _first(root: Path, among: list[str], count: int, seed: int) -> list[Mutant]:
 
 def _lines(file: str, source: str) -> Iterator[tuple[str, int, list[Mutation]]]:
     """Key and number of every line that can change, and its changes."""
-    content, texts = source.encode(), source.split("\n")
+    content = source.encode()
+    texts = source.split("\n")
     of_line = defaultdict(list)
     for change in mutations(source):
         of_line[content.count(b"\n", 0, change.start)].append(change)
@@ -109,7 +110,8 @@ def _mutant(key: str, file: str, line: int, changes: list[Mutation], source: str
 
 def _shown(source: str, changed: str, line: int) -> tuple[str, str]:
     """The lines that a change touches, before and after, each as one line."""
-    old, new = source.split("\n")[line - 1 :], changed.split("\n")[line - 1 :]
+    old = source.split("\n")[line - 1 :]
+    new = changed.split("\n")[line - 1 :]
     while len(old) > 1 and len(new) > 1 and old[-1] == new[-1]:
         old.pop(), new.pop()
     return " ".join(" ".join(old).split()), " ".join(" ".join(new).split())

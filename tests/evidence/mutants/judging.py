@@ -72,7 +72,8 @@ class _Run:
     @cached_property
     def at(self) -> str:
         """The test that was running when the process ended; empty: none."""
-        started, ended = self.of("start"), self.of("end")
+        started = self.of("start")
+        ended = self.of("end")
         return started[-1] if started and started[-1:] != ended[-1:] else ""
 
     @cached_property
@@ -101,7 +102,9 @@ class Court:
         """Run tests on a mutant until one fails: those of its folder, then others in the time left."""
         before = _spent()
         own, others = self.nearest.files(mutant.file)
-        verdict, by, tests = "survived", "", 0
+        verdict = "survived"
+        by = ""
+        tests = 0
         for files in (own, others[: self.limits.others]):
             left = self.limits.total - (_spent() - before)
             if files and verdict == "survived" and left > 0.0:
@@ -110,7 +113,8 @@ class Court:
                 tests += len(run.of("start"))
                 unrun = len(run.items) - len(run.of("start"))
                 if verdict == "survived" and files is own and unrun:
-                    verdict, by = "undecided", f"{unrun} tests of the folder left out"
+                    verdict = "undecided"
+                    by = f"{unrun} tests of the folder left out"
         return Verdict(verdict, by, tests, round(_spent() - before, 1))
 
     def _run_changed(self, mutant: Mutant, tests: list[str], most: float) -> _Run:

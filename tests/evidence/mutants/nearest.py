@@ -35,7 +35,8 @@ class Nearest:
 
     def files(self, file: str) -> tuple[list[str], list[str]]:
         """Return the tests of the folder of a library's file and the other tests, both nearest first."""
-        steps, reached = 0, {_module(Path(file))}
+        steps = 0
+        reached = {_module(Path(file))}
         distance = dict.fromkeys(reached, 0)
         while reached:
             steps += 1

@@ -187,7 +187,8 @@ class _Finder(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Constant(self, node: ast.Constant) -> None:
-        value, span = node.value, (self.start(node), self.end(node))
+        value = node.value
+        span = (self.start(node), self.end(node))
         if isinstance(value, float) and _ROUNDING < abs(value) < float("inf"):
             self.add("constant changed", *span, repr(float(f"{0.95 * value:.12g}")))
         elif isinstance(value, int) and not isinstance(value, bool):

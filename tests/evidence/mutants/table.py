@@ -61,7 +61,8 @@ class Stored:
     """
 
     def __init__(self, target: Path | None, head: Mapping[str, Any]) -> None:
-        self.target, self.head = target, dict(head)
+        self.target = target
+        self.head = dict(head)
         self.rows: dict[str, Row] = {}
         self.part = target.with_name(f"{target.name}.part") if target else None
         if self.part and self.part.exists():

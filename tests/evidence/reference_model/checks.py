@@ -58,7 +58,8 @@ def reference_model() -> Iterator[Check]:
     yield rows("mass of all presets by the outline", exact, 0.03, mass)
     yield rows("inertia of all presets by the outline", exact, 0.1, inertia)
     found = frozen_modes(PAIR)
-    frozen, linear = found["lumped frozen"], found["exudyn linear"]
+    frozen = found["lumped frozen"]
+    linear = found["exudyn linear"]
     # exudyn differentiates numerically.
     both = np.stack([linear.ravel(), frozen.ravel()], axis=1)
     yield rows("natural frequencies and damping ratios by exudyn, mesh frozen", "those of A(t)", 1e-6, both)
@@ -94,7 +95,8 @@ def blanks(pair: GearPair) -> tuple[Blank, Blank]:
         left = (fine - coarse) / 3.0
         area, polar = 2.0 * gear.teeth * (fine + left)
         hole = math.pi * (0.5 * gear.bore) ** 2
-        area, polar = area - hole, polar - 0.5 * hole * (0.5 * gear.bore) ** 2
+        area = area - hole
+        polar = polar - 0.5 * hole * (0.5 * gear.bore) ** 2
         weight = gear.density * gear.face_width
         error = float(np.abs(left / fine).max())
         result.append(
@@ -105,14 +107,17 @@ def blanks(pair: GearPair) -> tuple[Blank, Blank]:
 
 def half_tooth(pair: GearPair, which: int, base: float, tip: float, points: int) -> FloatArray:
     """Outline of half a tooth and half a space from the gear's centre, closed, (k, 2) [m]."""
-    gear, profile = (pair.pinion, pair.gear)[which], pair.wheels[which].tooth
+    gear = (pair.pinion, pair.gear)[which]
+    profile = pair.wheels[which].tooth
     half = 0.5 * base_tooth_angle(pair, which, base)
     thinned = profile.base_half_angle - half
     length = np.linspace(math.sqrt(tip**2 - base**2), profile.form_length, points)
-    flank_angle, flank_radius = half - length / base + np.arctan(length / base), np.hypot(base, length)
+    flank_angle = half - length / base + np.arctan(length / base)
+    flank_radius = np.hypot(base, length)
     bottom, joint = profile.fillet_range
     u, h, _ = profile.fillet_points(np.linspace(joint, bottom, points))
-    fillet_angle, fillet_radius = np.arctan2(h, u) - thinned, np.hypot(u, h)
+    fillet_angle = np.arctan2(h, u) - thinned
+    fillet_radius = np.hypot(u, h)
     top = np.linspace(0.0, float(flank_angle[0]), points)
     root = np.linspace(float(fillet_angle[-1]), math.pi / gear.teeth, points)
     angle = np.concatenate([top, flank_angle, fillet_angle, root])
@@ -134,7 +139,9 @@ def _integrals(polygon: FloatArray) -> FloatArray:
 #: Bodies of this many times their mass do not move in a few swings of the teeth.
 _HEAVY = 1e12
 #: Initial amplitude [m]; the system is linear. Samples per run, and length of the run over a period.
-_AMPLITUDE, _SAMPLES, _PERIODS = 1e-6, 64, 2.0
+_AMPLITUDE = 1e-6
+_SAMPLES = 64
+_PERIODS = 2.0
 _RTOL = 1e-11
 
 
@@ -163,14 +170,17 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
     k = np.array([max(stiffness_at(numbers.table, xi), 0.0) for xi in places])
     share = float(np.sum(np.sqrt(k)) / np.sqrt(np.sum(k)))  # of pairs side by side, each with its own ratio
     mobility = p[kn.RADIUS_P] ** 2 / numbers.inertia[0] + p[kn.RADIUS_G] ** 2 / numbers.inertia[1]
-    omega, ratio = np.sqrt(k.sum() * mobility), pair.mesh.damping_ratio * share
+    omega = np.sqrt(k.sum() * mobility)
+    ratio = pair.mesh.damping_ratio * share
     found = [_decay("mesh", fixed, q, omega, ratio, numbers.overlap)]
     free = replace(numbers, table=np.column_stack([numbers.table[:, :2], 0.0 * numbers.table[:, 2:]]))
     for i, (name, bearing) in enumerate((("pinion", pair.bearings.pinion), ("gear", pair.bearings.gear))):
         ratios = (bearing.loa_damping_ratio, bearing.oloa_damping_ratio)
         for j, axis in enumerate("xy"):
-            q, read = np.zeros(6), np.zeros(6)
-            q[3 * i + j], read[3 * i + j] = _AMPLITUDE, 1.0
+            q = np.zeros(6)
+            read = np.zeros(6)
+            q[3 * i + j] = _AMPLITUDE
+            read[3 * i + j] = 1.0
             omega = np.sqrt(free.bearing_stiffness[i, j] / free.mass[i])
             found.append(_decay(f"{name} {axis}", free, q, omega, ratios[j], read))
     return tuple(found)
@@ -210,7 +220,8 @@ def _decay(
     x = seen[0]
     step = times[1] - times[0]
     # x(n + 2) = s x(n + 1) - p x(n) for every damped oscillator; p is the decrement over one step, squared.
-    rows, right = np.column_stack([x[1:-1], -x[:-2]]), x[2:]
+    rows = np.column_stack([x[1:-1], -x[:-2]])
+    right = x[2:]
     trace, product = np.linalg.lstsq(rows, right, rcond=None)[0]
     roots = np.log(np.roots([1.0, -trace, product]).astype(complex)) / step
     size = float(np.sqrt(np.real(roots[0] * roots[1])))
@@ -225,7 +236,8 @@ def frozen_modes(pair: GearPair, phase: float = 0.3) -> dict[str, FloatArray]:
     """Natural frequencies [Hz] and damping ratios with the mesh frozen at a phase: source -> (2, modes)."""
     linear, exact = (prepare(pair, fidelity) for fidelity in ("linear", "exact"))
     time = phase * linear.machine.period
-    straight, moving = held(linear, time), held(exact, time)
+    straight = held(linear, time)
+    moving = held(exact, time)
     q = _at_rest(moving, time, exact.q, exact.deflection)
     _, contacts, counts = contact_state(moving, np.array([time]), q[None], np.zeros((1, 6)))
     load = float(contacts[0, : counts[0], kn.LOAD].sum())
@@ -251,7 +263,8 @@ def held(setup: Setup, time: float) -> ExudynModel:
 
 def _at_rest(model: ExudynModel, time: float, q: FloatArray, scale: float) -> FloatArray:
     """Loaded position near q; the free rotation of the train is held, and its acceleration is left out."""
-    p, inertia = model.parameters, model.machine.inertia
+    p = model.parameters
+    inertia = model.machine.inertia
     rigid = np.array([1.0 / p[kn.RADIUS_P], -1.0 / p[kn.RADIUS_G]])  # leaves the overlap as it is
     size = model.machine.torque_pinion / float(p[kn.RADIUS_P]) / float(model.machine.mass.min())
     lengths = np.array([1.0, 1.0, p[kn.RADIUS_P], 1.0, 1.0, p[kn.RADIUS_G]])

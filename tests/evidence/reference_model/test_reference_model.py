@@ -29,7 +29,8 @@ def test_every_number_keeps_its_limit():
 
 
 def test_a_bore_takes_its_disc_out_of_the_outline():
-    solid, bored = blanks(PAIR)[0], blanks(PAIR.with_(pinion__bore=40.0))[0]
+    solid = blanks(PAIR)[0]
+    bored = blanks(PAIR.with_(pinion__bore=40.0))[0]
     hole = PAIR.pinion.density * PAIR.pinion.face_width * np.pi * 0.02**2
     assert solid.mass - bored.mass == pytest.approx(hole, rel=1e-12)
     assert solid.inertia - bored.inertia == pytest.approx(0.5 * hole * 0.02**2, rel=1e-12)
@@ -60,10 +61,12 @@ def test_modes_on_shafts_are_those_of_the_matrices():
     m = setup.machine
     roots = linearised(held(setup, 0.3 * m.period), np.zeros(m.size))
     by_overlap, by_rate, _ = mesh_wrench(m, np.array([0.3 * m.period]), 0.0, m.period)
-    stiffness, damping = m.train.stiffness.copy(), m.train.damping.copy()
+    stiffness = m.train.stiffness.copy()
+    damping = m.train.damping.copy()
     stiffness[:6, :6] -= np.outer(by_overlap[0], m.overlap)
     damping[:6, :6] -= np.outer(by_rate[0], m.overlap)
-    n, inverse = m.size, np.linalg.inv(m.train.mass)
+    n = m.size
+    inverse = np.linalg.inv(m.train.mass)
     expected = np.linalg.eigvals(
         np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
     )

@@ -41,7 +41,8 @@ def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
         [0.0, 0.3, 1.0], [[0.0, 1.0, 2.0], [1.0, 2.0, 3.0]]
     ) * FourierSeries(1.0, 1.0, [], [0.3, 0.2])
     system = PeriodicSystem(oscillator(entry, 0.04), 1.0)
-    proven, sampled = monodromy(system), monodromy(system, method="gauss")
+    proven = monodromy(system)
+    sampled = monodromy(system, method="gauss")
     assert (proven.certificate, sampled.certificate) == ("proven", "estimate")
     assert (proven.resolution, proven.method) == (0.0, "taylor")
     assert system.edges.tolist() == [0.0, 0.3, 1.0]  # the break of the polynomial

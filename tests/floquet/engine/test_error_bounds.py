@@ -56,7 +56,8 @@ def lyapunov_system(
     def A(t: np.ndarray) -> np.ndarray:
         if shape == "sine":
             w = 2 * np.pi / period
-            g, slope = np.sin(w * t), w * np.cos(w * t)
+            g = np.sin(w * t)
+            slope = w * np.cos(w * t)
         else:
             g, slope = triangle(t, period)
         gN = g[:, None, None] * N
@@ -173,7 +174,8 @@ def test_multipliers_too_small_to_be_told_apart_share_a_bound() -> None:
 
 
 def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
-    ends, inside = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)], [(0.5, 0.25), (1.5, 0.25)]
+    ends = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)]
+    inside = [(0.5, 0.25), (1.5, 0.25)]
     each = [Spectrum(np.array([radius + 0j]), np.array([error]), 1.0) for radius, error in ends + inside]
     assert [one.verdict for one in each] == ["undecided"] * 3 + ["stable", "unstable"]
     assert verdicts(*np.array(ends + inside).T).tolist() == [0, 0, 0, 1, -1]
@@ -182,7 +184,8 @@ def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
 @pytest.mark.parametrize("size", [2, 3])
 def test_a_defective_multiplier_alone_has_elsners_bound(size: int) -> None:
     # Of a Jordan block with g beside the diagonal |B - mean| = g and the projector is 1.
-    g, delta = 4.0, 1e-8
+    g = 4.0
+    delta = 1e-8
     _, bounds = multipliers_with_bounds(0.5 * np.eye(size) + g * np.eye(size, k=1), delta)
     # Rounding adds some hundred eps |M| to delta, 2e-5 of it.
     assert bounds == pytest.approx((2.0 * g + delta) ** (1 - 1 / size) * delta ** (1 / size), rel=2e-5)
@@ -197,7 +200,8 @@ def test_the_order_of_equal_moduli_is_fixed() -> None:
 
 
 def test_the_radius_may_be_that_of_another_multiplier_within_its_bound() -> None:
-    values, bounds = np.array([1.0, -0.875]), np.array([0.0625, 0.25])
+    values = np.array([1.0, -0.875])
+    bounds = np.array([0.0625, 0.25])
     one = Spectrum(values, bounds, 1.0)
     assert (one.spectral_radius, one.error) == (1.0, 0.125)
     radii, errors = radii_with_bounds(np.array([values, [0.25, 0.5]]), np.array([bounds, bounds]))
@@ -240,7 +244,8 @@ def test_a_step_is_exact_on_all_products_of_powers_up_to_its_order(method) -> No
             if sum(e) + m > min(method.order, 8):
                 continue
             A = np.stack([np.diag(t ** np.array(e, dtype=float), 1) for t in method.nodes])
-            exact, power = 1.0, 0
+            exact = 1.0
+            power = 0
             for one in reversed(e):
                 power += one + 1
                 exact /= power

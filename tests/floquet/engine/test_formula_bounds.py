@@ -57,8 +57,10 @@ def ratios(function, exact, start, length, degree) -> np.ndarray:
 
 
 def test_polynomials_with_terms_of_one_sign_attain_their_bound() -> None:
-    ends, rows = [0.0, 1.0, 2.5], [[1.0, 2.0, 3.0, 0.5, 4.0], [-1.0, -2.0, -0.1, -3.0, -0.7]]
-    function, exact = PiecewisePolynomial(ends, rows), exact_polynomial(ends, rows)
+    ends = [0.0, 1.0, 2.5]
+    rows = [[1.0, 2.0, 3.0, 0.5, 4.0], [-1.0, -2.0, -0.1, -3.0, -0.7]]
+    function = PiecewisePolynomial(ends, rows)
+    exact = exact_polynomial(ends, rows)
     for degree in (0, 1, 3):
         found = ratios(function, exact, [0.0, 1.0, 0.5, 2.0], [1.0, 1.5, 0.5, 0.5], degree)
         assert (found <= 1.0).all()
@@ -79,7 +81,8 @@ def test_signed_coefficients_are_inside_their_bounds(degree: int) -> None:
     a, b = rng.normal(size=3), rng.normal(size=3)
     ends = [0.0, 1.0, 2.0]
     formula = FourierSeries(2.0, 0.3, a.tolist(), b.tolist()) * PiecewisePolynomial(ends, rows) - 0.7
-    wave, poly = exact_series(2.0, 0.3, a, b), exact_polynomial(ends, rows)
+    wave = exact_series(2.0, 0.3, a, b)
+    poly = exact_polynomial(ends, rows)
     before = float(np.nextafter(1.0, 0.0))
     start = [0.1, 0.75, 1.0, 0.0, before, 1.0, 0.999]
     length = [0.3, 0.25, 1.0, 1.0, 1.0 - before, 2.0**-52, before - 0.999]
@@ -92,7 +95,8 @@ def test_signed_coefficients_are_inside_their_bounds(degree: int) -> None:
 def test_a_harmonic_nearly_attains_lagranges_remainder() -> None:
     """Its next derivative is largest at a place of the step, but for what the one after it takes off."""
     for cosine, sine in ((1.0, 0.0), (0.0, -1.0)):
-        function, exact = FourierSeries(1.0, 5.0, [cosine], [sine]), exact_series(1.0, 5.0, [cosine], [sine])
+        function = FourierSeries(1.0, 5.0, [cosine], [sine])
+        exact = exact_series(1.0, 5.0, [cosine], [sine])
         start = 0.25 if cosine else 0.5  # odd terms alone of the cosine, and of the sine
         for degree in (4, 8):
             found = ratios(function, exact, [start, start + 0.01], [0.05, 0.05], degree)
@@ -111,10 +115,8 @@ def test_errors_of_second_order_of_a_product_and_of_a_sum_are_attained() -> None
 
 def test_moduli_count_where_coefficients_cancel() -> None:
     """1 - s, whose coefficients sum to 0, times s^2, which is beyond degree 1, and times a matrix."""
-    falling, square = (
-        PiecewisePolynomial([0.0, 1.0], [[1.0, -1.0]]),
-        PiecewisePolynomial([0.0, 1.0], [[0.0, 0.0, 1.0]]),
-    )
+    falling = PiecewisePolynomial([0.0, 1.0], [[1.0, -1.0]])
+    square = PiecewisePolynomial([0.0, 1.0], [[0.0, 0.0, 1.0]])
     for function in (falling * square, square * falling):
         series, bounds = function.taylor(np.zeros(1), np.ones(1), 1)
         assert not series.any()
@@ -138,7 +140,8 @@ def test_rounding_of_a_shifted_origin_and_of_a_large_angle_is_inside() -> None:
         PiecewisePolynomial([0.0, 2e3], rows), exact_polynomial([0.0, 2e3], rows), [1e3 - 0.7], [0.3], 6
     )
     assert 1e-4 < found[0] <= 1.0  # of 4 m + 8 roundings of all moduli at the largest time
-    wave, exact = FourierSeries(0.3, 0.0, [1.0], [0.5]), exact_series(0.3, 0.0, [1.0], [0.5])
+    wave = FourierSeries(0.3, 0.0, [1.0], [0.5])
+    exact = exact_series(0.3, 0.0, [1.0], [0.5])
     found = ratios(wave, exact, np.array([1.1e5, 2.3e5, 3.1e5]), np.full(3, 1e-3), 14)
     assert (found <= 1.0).all()
     assert found.max() > 0.05  # of 4 roundings of the angle, three products' and that of pi

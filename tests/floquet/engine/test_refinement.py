@@ -88,7 +88,8 @@ def test_a_radius_next_to_one_is_looked_at_more_closely(radius):
 
 def test_a_plateau_at_one_is_one_leaf_and_keeps_its_verdict():
     """Undamped bearings have multipliers of modulus one: nothing there is decided, and nothing is cut."""
-    radius, verdict = np.ones((257, 33)), np.zeros((257, 33), dtype=int)
+    radius = np.ones((257, 33))
+    verdict = np.zeros((257, 33), dtype=int)
     got, asked = refined(radius.shape, np.linspace(1.0, 2.0, 257), radius, verdict)
     assert (got.verdict == 0).all()
     assert len(asked) < 257 + 9 * 8

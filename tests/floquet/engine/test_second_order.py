@@ -24,7 +24,9 @@ def matrices(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray,
     rng = np.random.default_rng(seed)
     L, S, *rest = rng.normal(size=(5, 4, 4))
     M = np.tril(L) @ np.tril(L).T + np.eye(4)
-    C, C1, K1 = 0.3 * np.eye(4) + 0.1 * rest[0], 0.05 * rest[1], rest[2]
+    C = 0.3 * np.eye(4) + 0.1 * rest[0]
+    C1 = 0.05 * rest[1]
+    K1 = rest[2]
     return tuple(UNITS @ B @ UNITS for B in (M, C, C1, 20.0 * np.eye(4) + S + S.T, K1))
 
 
@@ -38,7 +40,8 @@ def test_meissners_trace_is_exact_within_a_proven_bound():
 
 def test_matrices_in_all_forms_give_the_same_multipliers():
     M, C, C1, K, K1 = matrices(1)
-    wave, jump = FourierSeries(PERIOD, 0.0, [1.0]), PiecewisePolynomial([0.0, 1.0, PERIOD], [[0.0], [1.0]])
+    wave = FourierSeries(PERIOD, 0.0, [1.0])
+    jump = PiecewisePolynomial([0.0, 1.0, PERIOD], [[0.0], [1.0]])
     C_of, K_of = PeriodicMatrix(C, (jump, C1)), PeriodicMatrix(K, (wave, K1))
 
     def C_at(t: float) -> np.ndarray:

@@ -53,7 +53,8 @@ def test_beats_beside_a_stable_motion_are_found_and_told(found):
         there = at(found.pair, point.speed_rpm)
         state, torque = start_of(there, None)
         state[0] += 30e-6
-        system, T = unilateral_system(there), there.geometry.mesh_period
+        system = unilateral_system(there)
+        T = there.geometry.mesh_period
         run = system.run(system.run(state, T, 1500, torque).end, T, 1500, torque)
         assert point.dte_rms == pytest.approx(run.rms, rel=0.02)
         assert point.dte_peak_to_peak == pytest.approx(run.most - run.least, rel=0.05)
@@ -95,7 +96,8 @@ def test_chaos_ends_in_a_jump_down(pair):
 def test_a_run_is_followed_until_it_repeats_even_after_many_cycles(pair, settle_cycles):
     """At 18,400 rpm the motion of three cycles is stable: looked for with one, it is no beats."""
     there = at(pair, 18400.0)
-    system, T = unilateral_system(there), there.geometry.mesh_period
+    system = unilateral_system(there)
+    T = there.geometry.mesh_period
     state, torque = start_of(there, None)
     run = long_run(system, state + 20e-6 * np.eye(6)[0], T, torque, settle=settle_cycles, most_cycles=1)
     assert run.kind == "periodic"
@@ -128,7 +130,8 @@ def test_shares_of_starts_are_those_of_plain_runs(found):
     rate = 26000.0 / (found.pair.geometry.mesh_period * 26000.0)
     places = np.random.default_rng(1).uniform(size=(256, 2))
     starts = found.member.apart(rate, places)[:24]
-    states, torques = np.array([s for _, s, _ in starts]), np.array([p for _, _, p in starts])
+    states = np.array([s for _, s, _ in starts])
+    torques = np.array([p for _, _, p in starts])
     periods = np.full(24, 1.0 / rate)
     settled = settle(found.member.family, found.member.limits, states, periods, torques)
     system = found.member.family.at(1.0 / rate)
@@ -154,7 +157,8 @@ def bouncing(pair):
 def test_sizes_of_a_motion_are_those_of_its_samples(bouncing):
     """Extremes between samples by parabolas: at 4096 samples a cycle they differ by 1e-6 of the range."""
     motion = bouncing.sampled(4096)
-    dte, load = motion["dte"].to_numpy(), motion["normal_load"].to_numpy()
+    dte = motion["dte"].to_numpy()
+    load = motion["normal_load"].to_numpy()
     assert np.ptp(bouncing.dte_range) == pytest.approx(np.ptp(dte), rel=1e-5)
     assert bouncing.dte_rms == pytest.approx(np.std(dte), rel=1e-5)
     assert bouncing.largest_load == pytest.approx(load.max(), rel=1e-2)

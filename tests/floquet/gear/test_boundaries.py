@@ -16,7 +16,8 @@ from tests.unlike_pairs import unlike_pair
 
 def nodes_beside(found: xr.Dataset, chart: xr.Dataset) -> tuple[int, int, int]:
     """Unstable nodes of a chart; those outside every interval; and stable nodes inside of one."""
-    speed, verdict = chart["speed_rpm"], chart["verdict"]
+    speed = chart["speed_rpm"]
+    verdict = chart["verdict"]
     inside = (speed >= found["interval_lower"]) & (speed <= found["interval_upper"])
     inside = inside.any(("tongue", "interval"))
     counts = (verdict == -1, (verdict == -1) & ~inside, (verdict == 1) & inside)
@@ -51,7 +52,8 @@ def test_mathieu_tongues_end_on_the_characteristic_values() -> None:
 def test_a_thin_tongue_near_its_line_is_not_lost() -> None:
     # Far narrower than the even grid, and displaced from its line by damping.
     line = 3141.0
-    centre, half = line * 0.99997, 1.4e-5 * line
+    centre = line * 0.99997
+    half = 1.4e-5 * line
 
     def radius(x: np.ndarray) -> np.ndarray:
         return 0.999 + 0.01 * np.sqrt(np.clip(1 - ((x - centre) / half) ** 2, 0, None))

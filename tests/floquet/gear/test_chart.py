@@ -119,9 +119,11 @@ def test_cells_are_proven_and_others_evaluated() -> None:
     pair = load_gear_pair("nasa_art_25_31").with_(COULOMB)
     axes = {"damping_ratio": np.linspace(0.02, 0.0, 21), "speed_rpm": np.linspace(12000.0, 20000.0, 81)}
     for changes in ({}, {"friction.law": "xu_kahraman"}, UNDAMPED):
-        here, rng = pair.with_(changes), np.random.default_rng(5)
+        here = pair.with_(changes)
+        rng = np.random.default_rng(5)
         chart = stability_chart(here, axes, rtol=1e-8, prove=True)
-        cells, share = chart.cell_verdict.to_numpy(), chart.proven_share
+        cells = chart.cell_verdict.to_numpy()
+        share = chart.proven_share
         assert share == pytest.approx((cells != 0).mean())
         assert (cells < 0).any()
         assert (share < 0.5 and not (cells > 0).any()) if changes is UNDAMPED else share > 0.94
@@ -158,7 +160,8 @@ def test_regions_are_named_measured_and_found_nearest(pair) -> None:
         assert at.known
         assert at.spectral_radius == region.radius
     # Single speeds on either side: stable from the pair's own speed up to the edge, unstable beyond.
-    edge, step = float(chart.nearest_edge_speed_rpm), 0.5 * float(np.median(np.diff(chart.speed_rpm)))
+    edge = float(chart.nearest_edge_speed_rpm)
+    step = 0.5 * float(np.median(np.diff(chart.speed_rpm)))
     beyond = edge - step if edge < 15000.0 else edge + step
     calm = np.linspace(15000.0, edge + np.sign(15000.0 - edge) * step, 50)
     assert (stability_chart(here, {"speed_rpm": calm}).verdict > 0).all()
@@ -194,7 +197,8 @@ def of_trace(trace: float) -> Spectrum:
 @pytest.mark.parametrize("shape", [(401, 201), (201, 401)])
 def test_a_refined_scan_finds_the_boundaries_of_meissner(shape) -> None:
     """|trace| = 2 (Meissner 1918); the stable regions have modulus 1, which is undecided."""
-    delta, epsilon = np.linspace(0.5, 9.0, shape[0]), np.linspace(0.0, 0.45, shape[1])
+    delta = np.linspace(0.5, 9.0, shape[0])
+    epsilon = np.linspace(0.0, 0.45, shape[1])
     got = scan(
         lambda at: of_trace(meissner_trace(at["delta"], at["epsilon"])),
         {"delta": delta, "epsilon": epsilon},

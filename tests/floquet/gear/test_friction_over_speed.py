@@ -112,7 +112,8 @@ def test_charts_over_speed_rest_on_formulas_and_are_proven(law) -> None:
     """Factor or shift of a law are those of mu at any position where no bound is in force."""
     pair = load_gear_pair("fzg_c").with_(friction__law=law)
     assert stability_chart(pair, {"speed_rpm": [2000.0, 2100.0]}).certificate == "proven"
-    path, record = contact_path(pair), LAWS[law]
+    path = contact_path(pair)
+    record = LAWS[law]
     xi = np.linspace(path.L_XA, path.L_XD, 40)
     slow, fast = (path.at_speed(omega) for omega in (30.0, 60.0))
     mu, before = (record.signed(xi, at, pair.friction) for at in (fast, slow))

@@ -49,7 +49,8 @@ def whole_segments(mesh: MeshGains) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 def test_an_error_of_friction_is_in_the_bound(name: str, levels: tuple[float, ...]) -> None:
     """mu of each tooth pair off by e, with the signs that add up: sum of k e |arm| in the metric."""
     e = 1e-3
-    mesh, sure = mesh_of(name, error=e, levels=levels), mesh_of(name, levels=levels)
+    mesh = mesh_of(name, error=e, levels=levels)
+    sure = mesh_of(name, levels=levels)
     centre, half, segment = whole_segments(mesh)
     told = mesh(centre, half, segment, NODES)[2] - sure(centre, half, segment, NODES)[2]
     part = 2 if levels else 0  # of the gains by mu

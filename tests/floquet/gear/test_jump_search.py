@@ -24,8 +24,11 @@ def sweep(speeds, least, radius=None):
 
 def test_windows_are_where_the_linear_motion_pulls_or_grows():
     speeds = np.arange(1000.0, 2000.0, 100.0)
-    least, radius = np.full(10, 50.0), np.full(10, 0.9)
-    least[3], least[4], radius[7] = -1.0, np.nan, 1.02
+    least = np.full(10, 50.0)
+    radius = np.full(10, 0.9)
+    least[3] = -1.0
+    least[4] = np.nan
+    radius[7] = 1.02
     windows = floquet.contact_loss_windows(sweep(speeds, least, radius), (1000.0, 1900.0))
     assert windows == ((1200.0, 1500.0), (1600.0, 1800.0))
     # Cut to the speeds asked for.
@@ -132,7 +135,8 @@ def test_what_is_found_in_a_time_is_right_and_the_rest_is_named(
     found = floquet.search_jumps(
         shifted, [window], seconds=seconds, seeds=0, speeds=LARGE_SHIFTS, first=24_000.0
     )
-    true, own = speeds_of(everywhere), speeds_of(found.jumps)
+    true = speeds_of(everywhere)
+    own = speeds_of(found.jumps)
     assert len(set(own)) == len(own)
     assert all(min(abs(one - other) for other in true) < 0.05 for one in own)
     for one in true:

@@ -26,7 +26,8 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
     # closed form: speed and damping of the tip of the tongue at twice the natural frequency follow from them
     # by root finding. There c_i = 2 zeta k_i/omega with omega^2 = sigma k/m_e; here c_i = 2 zeta sqrt(k m_e).
     base = with_friction(MU)
-    g, system = geometry(base), periodic_system(base, "mesh")
+    g = geometry(base)
+    system = periodic_system(base, "mesh")
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
     omega = np.sqrt(k * g.contact_ratio / bodies(base).effective_mass)
     exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)

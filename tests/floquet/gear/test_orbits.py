@@ -29,14 +29,16 @@ def at(pair, rpm):
 def test_where_contact_holds_it_is_the_linear_motion(name, brake):
     """With friction that depends on speed, and with either torque as the unknown."""
     pair = unlike_pair(name).with_(mesh__contact="prescribed", operating__brake_torque=brake)
-    orbit, linear = floquet.periodic_orbit(pair), lumped.steady_state(pair, samples_per_cycle=256)
+    orbit = floquet.periodic_orbit(pair)
+    linear = lumped.steady_state(pair, samples_per_cycle=256)
     assert not orbit.contact_lost
     span = float(np.ptp(linear.dte.values))
     # Rounding of the states, larger by the cycles in which a disturbance decays: 2e-11 with light damping.
     assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-10 * span)
     assert orbit.motion.attrs["dte_peak_to_peak"] == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=1e-6)
     for name in ("y_p", "y_g", "bearing_force_y_g", "friction_force"):
-        own, wanted = orbit.motion[name].values, linear[name].values[..., :256]
+        own = orbit.motion[name].values
+        wanted = linear[name].values[..., :256]
         assert own == pytest.approx(wanted, abs=1e-9 * np.ptp(wanted)), name
     assert orbit.motion.normal_load.sum("pair").values == pytest.approx(
         linear.normal_load.sum("pair").values[:256], rel=1e-9
@@ -150,9 +152,12 @@ def test_a_jump_leads_from_one_branch_to_another(branches):
 
 def test_back_sides_push_as_the_mirror_image_of_the_driving_flanks_in_the_line_of_centres(frictionless):
     pair = frictionless.with_(centre_distance=89.7)
-    angle, cycle, drive = pair.geometry.operating_pressure_angle, MeshCycle.of(pair), structure(pair)
+    angle = pair.geometry.operating_pressure_angle
+    cycle = MeshCycle.of(pair)
+    drive = structure(pair)
     centres = np.array([np.sin(angle), np.cos(angle)])
-    mirror, coast = 2.0 * np.outer(centres, centres) - np.eye(2), _coast_flank(pair, cycle, np.eye(6))
+    mirror = 2.0 * np.outer(centres, centres) - np.eye(2)
+    coast = _coast_flank(pair, cycle, np.eye(6))
     for own, image in ((drive.normal, coast.normal), (drive.apart, coast.apart)):
         for gear in ([2, 4], [3, 5]):
             assert image[gear] == pytest.approx(mirror @ own[gear], abs=1e-12)

@@ -88,7 +88,9 @@ def test_all_multipliers_have_the_product_of_the_determinants_of_gauss_steps():
     found = revolution_multipliers(pair)
     assert found.rates.size == 10
     # m y'' + c y' + K y = 0 of both gears: the product of its multipliers is exp(-c T/m).
-    body, bearings, apart = bodies(pair), pair.bearings, 0.0
+    body = bodies(pair)
+    bearings = pair.bearings
+    apart = 0.0
     for mass, bearing in ((body.mass_pinion, bearings.pinion), (body.mass_gear, bearings.gear)):
         apart -= 2.0 * bearing.oloa_damping_ratio * np.sqrt(bearing.oloa_stiffness / mass)
     expected = by_gauss_steps(pair, 8, found.rate)[1] + apart * pair.geometry.mesh_period
@@ -96,7 +98,9 @@ def test_all_multipliers_have_the_product_of_the_determinants_of_gauss_steps():
 
 
 def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
-    pair, off, maps = PAIR.with_(cracked(3)), 1e-6, multipliers.fast_monodromies
+    pair = PAIR.with_(cracked(3))
+    off = 1e-6
+    maps = multipliers.fast_monodromies
 
     def shrunk(*arguments, **named):
         found = maps(*arguments, **named)

@@ -25,7 +25,9 @@ OMEGA = np.array([1.0, 2.3, 7.9])
 )
 def test_each_resonance_is_named(i: int, j: int, sign: int) -> None:
     coupling = np.zeros((3, 3))
-    coupling[i - 1, j - 1], coupling[j - 1, i - 1] = 0.08, 0.08 * sign  # a difference needs a skew coupling
+    # a difference needs a skew coupling
+    coupling[i - 1, j - 1] = 0.08
+    coupling[j - 1, i - 1] = 0.08 * sign
     excitation = OMEGA[j - 1] + sign * OMEGA[i - 1]
     M = coupled(OMEGA, coupling, excitation)
     assert np.abs(np.linalg.eigvals(M)).max() > 1 + 1e-3
@@ -45,9 +47,11 @@ def test_shape_decides_where_two_lines_cross() -> None:
     # 2 omega_1 = omega_2 - omega_3' by construction: 2.0 is both 2 w1 and w2 - w1 with omega = (1, 3). The
     # frequencies cannot tell; the coupling, and with it the motion, can.
     omega = np.array([1.0, 3.0])
-    own, skew = np.zeros((2, 2)), np.zeros((2, 2))
+    own = np.zeros((2, 2))
+    skew = np.zeros((2, 2))
     own[0, 0] = 0.1
-    skew[0, 1], skew[1, 0] = 0.2, -0.2
+    skew[0, 1] = 0.2
+    skew[1, 0] = -0.2
     assert label_tongue(coupled(omega, own, 2.0), omega, 2.0) == Tongue(1, 1, 1, 1)
     assert label_tongue(coupled(omega, skew, 2.0), omega, 2.0) == Tongue(1, 2, -1, 1)
 

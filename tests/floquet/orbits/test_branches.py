@@ -132,13 +132,16 @@ def test_a_branch_followed_in_parts_is_the_branch_followed_at_once(rate):
         result.refine(away, limit)
         return result
 
-    whole, parts, turns = trace(10**9), trace(7), 0
+    whole = trace(10**9)
+    parts = trace(7)
+    turns = 0
     while parts.unfinished:
         parts.extend(Looks(9))
         parts.refine(away, Looks(1))
         turns += 1
     assert turns > 3
-    one, two = whole.branch(), parts.branch()
+    one = whole.branch()
+    two = parts.branch()
     assert parts.ends == whole.ends == ("range", "range")
     assert two.rates == pytest.approx(one.rates, rel=1e-9)
     folds = [b for b in one.bifurcations if b.kind == "fold"]
@@ -160,8 +163,11 @@ def test_a_long_run_in_parts_is_the_run_at_once():
 
 def test_parts_of_a_run_join_to_the_run():
     system = meissner(e=0.3, damping=0.1)
-    start, T = np.array([1.5, 0.2]), 2.0  # it decays: the extremes are of the first part
-    whole, parts = system.run(start, T, 100), _run(system, start, T, 100, 0.0, Deadline(1e9))
+    # it decays: the extremes are of the first part
+    start = np.array([1.5, 0.2])
+    T = 2.0
+    whole = system.run(start, T, 100)
+    parts = _run(system, start, T, 100, 0.0, Deadline(1e9))
     assert 0.0 < whole.least_load < 0.9 * system.run(whole.end, T, 10).least_load
     assert parts.end == pytest.approx(whole.end, rel=1e-9)
     for name in ("mean", "mean_square", "least", "most", "largest_load", "least_load"):

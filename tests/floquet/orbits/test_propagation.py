@@ -9,7 +9,8 @@ from floquet.orbits.polynomials import crossing
 from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 
-GRAVITY, STIFFNESS = 9.0, 400.0
+GRAVITY = 9.0
+STIFFNESS = 400.0
 #: A mass that gravity presses on an undamped spring without clearance: z'' = g - k z where z > 0.
 BOUNCER = ContactSystem(
     [[0.0]], [[0.0]], [GRAVITY], (Contact([1.0], [-1.0], STIFFNESS),), phases=[0.0, 1.0], output=[1.0]
@@ -64,7 +65,9 @@ def test_a_contact_that_opens_under_its_dampers_load_jumps_back():
     """Where the damper sees another rate than that of the gap, its load goes at once."""
     contact = Contact([1.0], [-1.0], 1.0, 1.0, clearance=[[0.0, 0.3]], clearance_rate=0.0)
     system = ContactSystem([[0.0]], [[0.0]], [0.0], (contact,), [0.0, 1.0], [1.0])
-    x, T, step = np.array([0.05, 0.1]), 1.0, 1e-6
+    x = np.array([0.05, 0.1])
+    T = 1.0
+    step = 1e-6
     run = system.run(x, T, 1, derivatives=True, logged=4)
     assert run.events[:, 2].tolist() == [GAP]
     columns = [
@@ -90,7 +93,8 @@ def by_solve_ivp(s, x, T, cycles, p):
         if piece == 1:
             contacts += [(0.05 - 0.2 * local, -0.2, 0.5 * stiffness, 0.1, np.array([-0.9, 0.7, -0.2]))]
         for e, slope, ki, ci, a in contacts:
-            d, rate = u @ z - e, (u @ v - slope) / T
+            d = u @ z - e
+            rate = (u @ v - slope) / T
             load = ki * d + ci * rate
             if d > 0.0 and load > 0.0:
                 acceleration = acceleration + T**2 * a * load
@@ -127,7 +131,8 @@ def test_means_and_samples_are_those_of_the_motion():
     T = flight + contact
     run = BOUNCER.run(np.array([0.0, -2.0 * T]), T, 1, samples=np.linspace(0.0, 1.0, 2000, endpoint=False))
     t = run.phases * T
-    omega, rest = np.sqrt(STIFFNESS), GRAVITY / STIFFNESS
+    omega = np.sqrt(STIFFNESS)
+    rest = GRAVITY / STIFFNESS
     inside = t - flight
     closed = rest * (1.0 - np.cos(omega * inside)) + 2.0 / omega * np.sin(omega * inside)
     motion = np.where(t < flight, -2.0 * t + 0.5 * GRAVITY * t**2, closed)

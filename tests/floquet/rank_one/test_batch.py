@@ -27,7 +27,9 @@ from tests.floquet.engine.judge.enclosures import energy_monodromy, least_norm, 
 
 def random_system(rng: np.random.Generator) -> RankOneSystem:
     """Random rank-one feedback with jumps: m coordinates, P pieces, polynomials of degree up to 4."""
-    m, pieces, degree = int(rng.integers(1, 4)), int(rng.integers(1, 5)), int(rng.integers(0, 5))
+    m = int(rng.integers(1, 4))
+    pieces = int(rng.integers(1, 5))
+    degree = int(rng.integers(0, 5))
     phases = np.concatenate([[0.0], np.sort(rng.uniform(0.05, 0.95, pieces - 1)), [1.0]])
     metric = rng.uniform(0.5, 2.0, m)
     v = rng.normal(size=m)
@@ -84,7 +86,8 @@ def test_multipliers_do_not_feel_with_which_others_they_are_computed() -> None:
     with pytest.raises(np.linalg.LinAlgError):
         np.linalg.inv(np.linalg.eig(M[3])[1])
     errors = np.full(4, 1e-14)
-    alone, together = multipliers_of(M[:3], errors[:3]), multipliers_of(M, errors)
+    alone = multipliers_of(M[:3], errors[:3])
+    together = multipliers_of(M, errors)
     assert np.array_equal(together.multipliers[:3], alone.multipliers)
     assert np.array_equal(together.errors[:3], alone.errors)
 

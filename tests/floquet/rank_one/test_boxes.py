@@ -27,7 +27,8 @@ def no_factors(T):
 
 def meissner():
     """z'' + 2 zeta z' + (1 +- depth) z = 0: z = exp(-zeta t) y, and y obeys Meissner's equation."""
-    w, wd = np.array([[[1.0 + DEPTH]], [[1.0 - DEPTH]]]), np.full((2, 1, 1), 2.0)
+    w = np.array([[[1.0 + DEPTH]], [[1.0 - DEPTH]]])
+    wd = np.full((2, 1, 1), 2.0)
     system = RankOneSystem(
         np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), np.array([0.0, 0.5, 1.0]),
         Gains(w, wd, np.zeros((2, 2))), 1.0, np.ones(1),
@@ -59,7 +60,8 @@ def inside(rng, edges, count):
 @pytest.mark.parametrize("case", [meissner, mathieu])
 def test_proven_cells_are_those_of_the_closed_form(case) -> None:
     system, radius = case()
-    T, zeta = np.linspace(1.5, 20.0, 201), np.linspace(0.002, 0.12, 61)
+    T = np.linspace(1.5, 20.0, 201)
+    zeta = np.linspace(0.002, 0.12, 61)
     verdict = proven_cells(system, T, zeta, no_factors)
     # 95 % and 98 % measured: edges pass through the others, or they lie at next to no damping.
     assert np.mean(verdict != 0) > 0.94
@@ -97,7 +99,8 @@ def test_bounds_of_the_polynomial_hold_where_it_is_bad() -> None:
     system, _ = meissner()
     one = np.ones((1, 1, 1))
     constant = replace(system, phases=np.array([0.0, 1.0]), gains=Gains(one, 0.0 * one, np.zeros((1, 2))))
-    damping, u = np.array([0.0, 1.0]), np.linspace(0.0, 1.0, 101)
+    damping = np.array([0.0, 1.0])
+    u = np.linspace(0.0, 1.0, 101)
     for given, width, z, loose in ((system, 1e-3, u, np.inf), (constant, 24.0, 0.0 * u, 3e3)):
         patch = FlowPolynomial.of(given, packed(given), 60.0 + width * damping, damping * z[-1], no_factors)
         M = fast_monodromies(given, 60.0 + width * u, z).matrices
@@ -124,7 +127,8 @@ def test_bounds_hold_everywhere_in_boxes(terms, monkeypatch) -> None:
     def factors(T):
         return (T[:, None] / block.period) ** 0.1
 
-    periods, damping = block.period * np.array([0.35, 0.55]), np.array([0.01, 0.03])
+    periods = block.period * np.array([0.35, 0.55])
+    damping = np.array([0.01, 0.03])
     patch = FlowPolynomial.of(block, packed(block), periods, damping, factors)
     rng = np.random.default_rng(2)
     ends = np.sort(rng.uniform(-1.0, 1.0, (2, 2, 60)), axis=1)
@@ -203,10 +207,13 @@ def test_bounds_belong_to_the_motion_not_to_how_its_signs_are_written(law, gyros
 
     Over so wide a patch that the error of its polynomial is not that of its nodes.
     """
-    T, zeta, some = np.array([2.0, 6.0]), np.array([0.5, 0.8]), np.array([2.2, 2.4])
+    T = np.array([2.0, 6.0])
+    zeta = np.array([0.5, 0.8])
+    some = np.array([2.2, 2.4])
 
     def bounds(signs, damping=1.0, **written):
-        system, factors = signed_system(signs, gyroscopic=gyroscopic, **written), law(signs)
+        system = signed_system(signs, gyroscopic=gyroscopic, **written)
+        factors = law(signs)
         if damping < 0.0:
             parts = [replace(part, wd=-part.wd) for part in system.parts]
             system = replace(system, gains=parts[0], varied=tuple(parts[1:]))
@@ -244,7 +251,8 @@ def energy_rates(form, phases, phase, T, zeta, gains):
 @pytest.mark.parametrize("signs", [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)])
 def test_the_change_of_factors_is_bounded_on_ellipses_of_the_period(law, signs) -> None:
     """Powers and logarithms of complex periods, on the boundary, where an analytic function is largest."""
-    T, middle = np.linspace(2.0, 2.6, 9), 2.3
+    T = np.linspace(2.0, 2.6, 9)
+    middle = 2.3
     factors = law(signs)
     at = factors(np.append(T, middle))
     bound = boxes._moved(np.append(T, middle) / middle, at)
@@ -261,8 +269,10 @@ def test_the_change_of_factors_is_bounded_on_ellipses_of_the_period(law, signs) 
 
 def test_factors_of_no_law_prove_nothing() -> None:
     """Neither a power of the period nor a line in its logarithm: above the line, and below it."""
-    system, problem = signed_system(), packed(signed_system())
-    T, zeta = np.array([2.0, 2.5]), np.array([0.5, 0.8])
+    system = signed_system()
+    problem = packed(signed_system())
+    T = np.array([2.0, 2.5])
+    zeta = np.array([0.5, 0.8])
     for bend in (0.01, -0.01):
 
         def bent(T, bend=bend):
@@ -281,12 +291,15 @@ def change_over(system, factors, T, zeta):
     at = factors(np.append(np.linspace(*T, 9), middle))
     moved = boxes._moved(np.append(np.linspace(*T, 9), middle) / middle, at)
     size = boxes._Size(packed(system), 1.7, np.append(1.0, at[-1]))
-    semi, one = 0.5 * (boxes._RADII + 1.0 / boxes._RADII), np.ones_like(boxes._RADII)
+    semi = 0.5 * (boxes._RADII + 1.0 / boxes._RADII)
+    one = np.ones_like(boxes._RADII)
     along = size.change(T, zeta, semi, one, moved)
     up = size.change(T, zeta, one, semi, np.repeat(moved[:, :1], semi.size, axis=1))
     nodes, weights = np.polynomial.legendre.leggauss(12)
-    low, width = system.phases[:-1, None], np.diff(system.phases)[:, None]
-    phases, weights = (low + 0.5 * width * (nodes + 1.0)).ravel(), (0.5 * width * weights).ravel()
+    low = system.phases[:-1, None]
+    width = np.diff(system.phases)[:, None]
+    phases = (low + 0.5 * width * (nodes + 1.0)).ravel()
+    weights = (0.5 * width * weights).ravel()
     form = system.modal()
 
     def rates(T_, z, gains):
@@ -304,7 +317,8 @@ def change_over(system, factors, T, zeta):
 
 @pytest.mark.parametrize("law", [powers_of_the_period, lines_in_its_logarithm])
 def test_the_change_over_a_patch_is_bounded_on_its_ellipses(law) -> None:
-    T, zeta = np.array([2.0, 5.0]), np.array([0.1, 1.1])
+    T = np.array([2.0, 5.0])
+    zeta = np.array([0.1, 1.1])
     along, up, change = change_over(signed_system((-1.0, 1.0)), law((-1.0, 1.0)), T, zeta)
     for k in (0, 4, 8):  # radii 1.5, 2.5, 4.1; beyond, the ellipse of the period reaches 0
         w = boxes._RADII[k] * np.exp(0.25j * np.pi * np.arange(8))
@@ -323,7 +337,8 @@ def test_the_change_over_a_patch_is_no_more_than_that_of_one_large_gain(kind) ->
     A factor on it moves it as much where the period grows as where it shrinks, but for the 9 % by which this
     patch is wide.
     """
-    one, small = np.ones((1, 1, 1)), np.zeros((1, 2))
+    one = np.ones((1, 1, 1))
+    small = np.zeros((1, 2))
     gain = {name: 1e4 * one if name == kind else one for name in ("w", "wd", "varied w", "varied wd")}
     system = RankOneSystem(
         stiffness=np.ones((1, 1)), damping=np.ones((1, 1)), v=np.ones(1), phases=np.array([0.0, 1.0]),
@@ -331,7 +346,8 @@ def test_the_change_over_a_patch_is_no_more_than_that_of_one_large_gain(kind) ->
         varied=(Gains(gain["varied w"], gain["varied wd"], small),), period=1.0,
         metric=np.ones(1), mean=np.ones(1),
     )  # fmt: skip
-    T, zeta = np.array([3.4, 3.6]) if "varied" in kind else np.array([2.0, 5.0]), np.array([0.1, 1.1])
+    T = np.array([3.4, 3.6]) if "varied" in kind else np.array([2.0, 5.0])
+    zeta = np.array([0.1, 1.1])
     along, up, change = change_over(system, lambda T: T[:, None] ** 0.7, T, zeta)
     semi = 0.5 * (1.5 + 1.0 / 1.5)  # of the smallest ellipse, along the axis
     longest = change(3.5 + 0.5 * np.ptp(T) * semi, zeta[1])
@@ -345,8 +361,10 @@ def test_the_error_of_a_patch_is_that_of_the_theorem() -> None:
 
     The second polynomial goes through values of the first, whose Lebesgue constant is 1 + 2/pi log 24.
     """
-    system, kappa = signed_system(), 1.7
-    T, zeta = np.array([2.0, 6.0]), np.array([0.1, 0.8])
+    system = signed_system()
+    kappa = 1.7
+    T = np.array([2.0, 6.0])
+    zeta = np.array([0.1, 0.8])
     size = boxes._Size(packed(system), kappa)
     total = 0.0
     for axis, (nodes, lebesgue) in enumerate(((24, 1.0), (16, 1.0 + 2.0 / np.pi * np.log(24)))):
@@ -372,7 +390,9 @@ def test_the_slow_period_is_that_of_its_formula() -> None:
         phases=np.array([0.0, 0.2, 0.7, 1.0]), gains=Gains(w, 0.3 * w, np.zeros((3, 2))),
         varied=(Gains(extra, 0.5 * extra, np.zeros((3, 2))),), metric=np.ones(2), mean=np.array([2.0, -1.4]),
     )  # fmt: skip
-    form, zeta, factors = system.modal(), np.array([0.5, 0.8]), np.array([[-0.7], [1.1]])
+    form = system.modal()
+    zeta = np.array([0.5, 0.8])
+    factors = np.array([[-0.7], [1.1]])
     places = (system.phases[1:] + system.phases[:-1]) / 2
 
     def frozen(z, g):
@@ -411,7 +431,10 @@ def test_errors_of_the_gains_make_slow_variation_slower() -> None:
     17^1/2, where the gain is ln(5/3), all that the bound allows for.
     """
     system, _ = meissner()
-    w, zeta, e, width = np.array([25.0, 9.0])[:, None, None] / 17.0, np.full(2, 0.0396), 0.05, 1e-3
+    w = np.array([25.0, 9.0])[:, None, None] / 17.0
+    zeta = np.full(2, 0.0396)
+    e = 0.05
+    width = 1e-3
     gains = replace(system.gains, w=w)
 
     def slow(given):
@@ -438,7 +461,9 @@ def test_errors_of_the_gains_make_slow_variation_slower() -> None:
 def test_errors_of_the_nodes_are_in_that_of_the_polynomial() -> None:
     """All gains are off by what is declared, so all of the polynomial is off by what its nodes are."""
     system, _ = meissner()
-    T, zeta, e = np.array([3.0, 3.2]), np.array([0.01, 0.05]), 1e-6
+    T = np.array([3.0, 3.2])
+    zeta = np.array([0.01, 0.05])
+    e = 1e-6
     declared = replace(system, gains=replace(system.gains, fit_errors=np.full((2, 2), e)))
     off = replace(system, gains=replace(system.gains, w=system.gains.w + e, wd=system.gains.wd - e))
     patch = FlowPolynomial.of(declared, packed(declared), T, zeta, no_factors)

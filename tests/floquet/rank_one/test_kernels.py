@@ -61,7 +61,8 @@ def test_step_from_its_halves(n: int) -> None:
 def test_supports_that_feed_energy_in_enter_the_bound() -> None:
     # x'' - 4 x' + (0.25 + e) x = 0 over T = 1, with e declared as the misfit of the gain. The state grows by
     # e^4 within the one step that this takes.
-    e, zero = 1e-6, np.zeros((1, 1, 1))
+    e = 1e-6
+    zero = np.zeros((1, 1, 1))
     declared = Gains(np.array([[[0.25]]]), zero, np.array([[e, 0.0]]))
     system = RankOneSystem(
         stiffness=np.array([[1e-3]]), damping=np.array([[-4.0]]), v=np.array([1.0]),
@@ -79,8 +80,10 @@ def test_supports_that_feed_energy_in_enter_the_bound() -> None:
 
 def test_a_break_that_is_off_enters_the_bound() -> None:
     # The gain jumps at 0.7 + e of the period and is given as if it did at 0.7.
-    e, zero = 1e-6, np.zeros((2, 1, 1))
-    w, jump = np.array([[[30.0]], [[2000.0]]]), np.array([[0.0, 0.0], [2000.0 * e, 0.0], [0.0, 0.0]])
+    e = 1e-6
+    zero = np.zeros((2, 1, 1))
+    w = np.array([[[30.0]], [[2000.0]]])
+    jump = np.array([[0.0, 0.0], [2000.0 * e, 0.0], [0.0, 0.0]])
 
     def system(place: float, edge_errors: np.ndarray | None) -> RankOneSystem:
         return RankOneSystem(
@@ -89,7 +92,9 @@ def test_a_break_that_is_off_enters_the_bound() -> None:
             gains=Gains(w, zero, np.zeros((2, 2)), edge_errors),
         )  # fmt: skip
 
-    exact, given, silent = system(0.7 + e, None), system(0.7, jump), system(0.7, None)
+    exact = system(0.7 + e, None)
+    given = system(0.7, jump)
+    silent = system(0.7, None)
     S = np.linalg.solve(state_matrix(given.modal()), state_matrix(exact.modal()))
     moved = S @ fast_monodromies(exact).matrices[0] @ np.linalg.inv(S)
     found = fast_monodromies(given)
@@ -118,7 +123,8 @@ def test_cyclic_permutations_do_not_stall_the_iteration(n: int) -> None:
 def test_rounding_of_the_eigenvalues_is_inside_their_disks() -> None:
     # L D L^-1 with whole numbers, L of unit diagonal: no rounding in the matrix, eigenvalues 1 to 6.
     rng = np.random.default_rng(21)
-    D, worst = np.diag(np.arange(1.0, 7.0)), 0.0
+    D = np.diag(np.arange(1.0, 7.0))
+    worst = 0.0
     for _ in range(40):
         L = np.eye(6) + np.tril(rng.integers(-3, 4, (6, 6)), -1)
         M = L @ D @ np.round(np.linalg.inv(L))
@@ -155,7 +161,8 @@ def test_disks_hold_the_worst_errors_until_they_are_called_unsafe() -> None:
     Above 1e6 they are called unsafe. Disks that overlap are widened around all that hang together, so that
     each holds as many as it says.
     """
-    whole, overlapping = {}, 0
+    whole = {}
+    overlapping = 0
     for power in (2, 4, 6, 8, 12):
         for delta in (1e-14, 1e-9, 1e-7, 1e-5):
             whole[power, delta], safe, overlap = ratios(nearly_defective(power), delta)
@@ -171,7 +178,9 @@ def test_disks_hold_the_worst_errors_until_they_are_called_unsafe() -> None:
 @pytest.mark.parametrize("coupling", [-1.0, 1.0])
 def test_a_scaled_disk_holds_what_its_coupling_moves(own: float, coupling: float) -> None:
     """Of 2 x 2 with entries of modulus f the first moves by f_11 + f_12 f_21/gap, more if both attract."""
-    values, rows, radii = np.array([0.5 + 0j, 0.75]), np.empty(2), np.empty(2)
+    values = np.array([0.5 + 0j, 0.75])
+    rows = np.empty(2)
+    radii = np.empty(2)
     f = np.array([[1e-6, 1e-2], [2e-2, 1e-6]])
     _gershgorin(values, f, rows, radii)
     F = f * [[own, 1.0], [coupling, own]]
@@ -183,10 +192,12 @@ def test_a_scaled_disk_holds_what_its_coupling_moves(own: float, coupling: float
 
 def test_disks_that_hang_together_are_widened_around_all_of_them() -> None:
     """A union of k disks holds k eigenvalues, each anywhere in it: here a chain of three."""
-    values, radii = np.array([0.0, 1.0 + 0j, 1.9, 5.0, 3.4j]), np.array([0.6, 0.7, 0.4, 0.5, 0.1])
+    values = np.array([0.0, 1.0 + 0j, 1.9, 5.0, 3.4j])
+    radii = np.array([0.6, 0.7, 0.4, 0.5, 0.1])
     given = radii.copy()
     _join(values, radii, np.empty(5), np.empty(5, dtype=np.int64))
-    chain, apart = np.abs(values[:3, None] - values[:3]) + given[:3], np.array([3, 4])
+    chain = np.abs(values[:3, None] - values[:3]) + given[:3]
+    apart = np.array([3, 4])
     assert radii[:3] == pytest.approx(chain.max(axis=1), rel=1e-10)
     assert (radii[:3] >= chain.max(axis=1)).all()
     assert (radii[apart] == given[apart]).all()
@@ -203,8 +214,10 @@ def test_the_product_keeps_terms_of_second_order_and_of_blocks() -> None:
         count = sizes.size
         steps = np.zeros((count, 1, LANES))
         steps[:, 0, 0] = sizes
-        flow, work = np.zeros((1, LANES)), np.zeros((2 * BLOCKS + 1, 1, LANES))
-        before, table = np.empty(count), np.zeros((5, BLOCKS))
+        flow = np.zeros((1, LANES))
+        work = np.zeros((2 * BLOCKS + 1, 1, LANES))
+        before = np.empty(count)
+        table = np.zeros((5, BLOCKS))
         bound = carry(steps, np.full(count, e), np.abs(sizes), count, flow, before, work, table)
         exact = np.prod(np.abs(sizes) + e) - np.prod(np.abs(sizes))
         assert flow[0, 0] == pytest.approx(np.prod(sizes), rel=1e-14)
@@ -271,13 +284,17 @@ def test_errors_of_a_gain_of_either_sign_are_in_the_bound_and_hardly_more(sign: 
 @pytest.mark.parametrize("end", [0, 1, 2, 3])
 def test_errors_at_an_end_count_on_each_side_that_it_has(end: int) -> None:
     """Of four ends of three pieces: pulses of damping, a thousandth of the period wide, before and behind."""
-    e, width, zero = 1e-6, 1e-3, np.zeros((3, 1, 1))
-    ends, declared = np.array([0.0, 0.3, 0.6, 1.0]), np.zeros((4, 2))
+    e = 1e-6
+    width = 1e-3
+    zero = np.zeros((3, 1, 1))
+    ends = np.array([0.0, 0.3, 0.6, 1.0])
+    declared = np.zeros((4, 2))
     declared[end, 1] = e
     given = replace(driven(4.0), phases=ends, gains=Gains(zero, zero, np.zeros((3, 2)), declared))
     phases = np.unique(np.clip([*ends, ends[end] - width, ends[end] + width], 0.0, 1.0))
     pulse = np.abs(0.5 * (phases[1:] + phases[:-1]) - ends[end]) < width
-    wd, none = np.where(pulse, e / width, 0.0)[:, None, None], np.zeros((pulse.size, 1, 1))
+    wd = np.where(pulse, e / width, 0.0)[:, None, None]
+    none = np.zeros((pulse.size, 1, 1))
     moved = replace(driven(4.0), phases=phases, gains=Gains(none, wd, np.zeros((pulse.size, 2))))
     error, bound = error_of(given, exact_matrix(moved))
     assert error <= bound < 1.5 * error
@@ -314,7 +331,8 @@ def test_a_pulse_of_one_ulp_is_in_the_bound(phases: list[float], impulse: float)
     """In the stiffness and in the damping, between pieces of other gains: its ends are exact."""
     phases = np.array(phases)
     pulse = int(np.argmin(np.diff(phases)))
-    w, wd = np.array([1.0, 2.0, 3.0])[:, None, None], np.array([0.2, 0.3, -0.1])[:, None, None]
+    w = np.array([1.0, 2.0, 3.0])[:, None, None]
+    wd = np.array([0.2, 0.3, -0.1])[:, None, None]
     w[pulse], wd[pulse] = np.array([1.0, 0.25]) * impulse / np.diff(phases)[pulse]
     system = RankOneSystem(
         stiffness=np.array([[5.0]]), damping=np.array([[0.1]]), v=np.ones(1), phases=phases, period=1.3,

@@ -47,7 +47,8 @@ def test_errors_are_below_bounds_that_allow_a_verdict(m: int) -> None:
 
 def test_general_engine_and_other_speeds_agree() -> None:
     # One call over periods: the gyroscopic part goes with speed, that of the general engine too.
-    system, periods = shafts(4), np.array([3e-4, 8e-4])
+    system = shafts(4)
+    periods = np.array([3e-4, 8e-4])
     found = fast_multipliers(system, periods)
     for T, values, errors in zip(periods, found.multipliers, found.errors, strict=True):
         slow = monodromy(as_periodic_system(replace(system, period=float(T))), rtol=1e-9)
@@ -59,7 +60,8 @@ def test_general_engine_and_other_speeds_agree() -> None:
 
 def test_a_matrix_that_is_not_skew_drives_and_enters_the_bound() -> None:
     # Taken as skew, G = -4 would let no energy grow, and the bound would be e^4 too small.
-    e, zero = 1e-6, np.zeros((1, 1, 1))
+    e = 1e-6
+    zero = np.zeros((1, 1, 1))
     system = RankOneSystem(
         stiffness=np.array([[1e-3]]), damping=np.zeros((1, 1)), v=np.array([1.0]),
         phases=np.array([0.0, 1.0]), gains=Gains(np.array([[[0.25]]]), zero, np.array([[e, 0.0]])),
@@ -75,7 +77,8 @@ def test_equal_shafts_have_double_multipliers_within_small_bounds() -> None:
     v, w = system.v.copy(), system.gains.w.copy()
     v[4:] = w[:, 4:] = 0.0
     L, C = np.diag(system.stiffness).copy(), np.diag(np.diag(system.damping)).copy()
-    L[5], C[5, 5] = L[4], C[4, 4]
+    L[5] = L[4]
+    C[5, 5] = C[4, 4]
     gains = replace(system.gains, w=w, wd=1e-6 * w)
     equal = replace(system, v=v, gains=gains, stiffness=np.diag(L), damping=C, gyroscopic=None)
     found = fast_multipliers(equal)

@@ -46,7 +46,8 @@ def ratios(gains: Series, rtol: float) -> tuple[np.ndarray, np.ndarray, np.ndarr
     """Phases; largest error in the metric, and bound on it, of every piece and gain (P, G)."""
     phases, polynomials, bounds, at = fit_pieces(gains, gains.edges, METRIC, rtol=rtol)
     assert (phases[at] == gains.edges).all()
-    ctx.prec, errors = 256, np.zeros_like(bounds)
+    ctx.prec = 256
+    errors = np.zeros_like(bounds)
     for g, rows in enumerate(polynomials):
         for p, row in enumerate(rows):
             j = int(np.searchsorted(at, p, side="right")) - 1
@@ -70,7 +71,8 @@ def ratios(gains: Series, rtol: float) -> tuple[np.ndarray, np.ndarray, np.ndarr
 def test_what_is_dropped_is_the_bound_where_all_of_it_is_largest(signs) -> None:
     """T_9 and T_10 at both ends or at one: the sum of their moduli. What else is known to be off is added."""
     series = np.zeros((2, 1, 11, 2))
-    series[:, 0, 0], series[:, 0, 8] = [1.0, -2.0], [-0.1, 0.3]
+    series[:, 0, 0] = [1.0, -2.0]
+    series[:, 0, 8] = [-0.1, 0.3]
     series[0, 0, 9:] = 1e-3 * np.outer(signs, [0.7, -0.4])
     series[1, 0, 10] = [0.0, 1e-3]
     for errors, fixed in ((0.0, 0.0), (1e-4, 0.0), (0.0, 1e-4)):
@@ -84,7 +86,8 @@ def test_what_is_dropped_is_the_bound_where_all_of_it_is_largest(signs) -> None:
 def test_powers_within_the_tolerance_are_dropped_and_counted() -> None:
     """3 % of the tolerance may go: T_3 to T_5 together, not T_2, with what is beyond degree 8."""
     series = np.zeros((1, 1, 10, 2))
-    series[0, 0, :3], series[0, 0, 3:6] = [1.0, 0.5], [1e-5, 2e-5]
+    series[0, 0, :3] = [1.0, 0.5]
+    series[0, 0, 3:6] = [1e-5, 2e-5]
     series[0, 0, 9] = [3e-4, 0.0]
     gains = Series(np.array([0.0, 1.0]), series)
     _, polynomials, _, _ = fit_pieces(gains, gains.edges, METRIC, rtol=1e-2)
@@ -116,7 +119,8 @@ def test_values_at_nodes_give_their_series_to_the_rounding_that_is_said() -> Non
     for count in (2, 9, 25):
         nodes, matrix = to_series(count)
         values = rng.choice([-1.0, 1.0], count)
-        found, off = matrix @ values, 0.0
+        found = matrix @ values
+        off = 0.0
         for k in range(count):
             exact = sum(
                 (arb(v) * (arb(k) * arb(2 * j + 1) / (2 * count)).cos_pi() for j, v in enumerate(values)),

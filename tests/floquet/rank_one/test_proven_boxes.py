@@ -42,7 +42,8 @@ def exact_entries(
     terms: dict[tuple[int, int], np.ndarray], V: np.ndarray, box: np.ndarray
 ) -> tuple[list[np.ndarray], np.ndarray]:
     """Moduli of V^-1 M(x, y) V at places of a box, from below, and |row i of V^-1| |column j of V|."""
-    inverse, vectors = balls(V).inv(), balls(V)
+    inverse = balls(V).inv()
+    vectors = balls(V)
     parts = arb_mat([real_balls(M).entries() for M in terms.values()])
     found = []
     for x, y in box[:, 0] + SHARES * (box[:, 1] - box[:, 0]):

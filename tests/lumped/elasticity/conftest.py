@@ -7,7 +7,8 @@ import pytest
 from lumped.elasticity.sector import sector, stations
 from lumped.gear_geometry.tooth_profile import ToothProfile
 
-TEETH, NU = 9, 0.3
+TEETH = 9
+NU = 0.3
 
 
 def meshed(profile, shift, bore, size):

@@ -108,7 +108,8 @@ def threads():
 
 def test_blas_has_one_thread_while_it_solves_and_its_own_number_afterwards(monkeypatch):
     # Two threads take 3 to 30 times as long: the products of a factorization are small.
-    libraries, during = blas.libraries(), []
+    libraries = blas.libraries()
+    during = []
     assert len(libraries) == 2  # of numpy and of scipy
 
     def solve(*arguments):

@@ -32,7 +32,8 @@ def test_edge_crack_beside_finite_elements(nasa, depth):
 @pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
 def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, which, gear):
     """24/(E b t^2) S(x) l^2: strip of thickness t under the moment of the load, x = depth sin(angle)/t."""
-    own, flank = getattr(unlike, gear), unlike.flank(which)
+    own = getattr(unlike, gear)
+    flank = unlike.flank(which)
     u, half = root_section(flank.wheel.tooth)
     place = np.array([0.9 * flank.tip])
     at_u, at_h, _, angle = flank.wheel.tooth.involute_points(place)
@@ -48,7 +49,8 @@ def test_a_crack_is_in_the_material_and_width_of_its_gear(unlike, which, gear):
 @pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
 def test_a_pit_narrows_the_contact_of_both_materials(unlike, which, gear):
     """2/pi sum((1 - nu^2)/E) over the width b - w in the place of b, between its roll angles."""
-    flank, hand = unlike.flank(which), ByHand(unlike, gear)
+    flank = unlike.flank(which)
+    hand = ByHand(unlike, gear)
     width = min(unlike.pinion.face_width, unlike.gear.face_width)
     low, high = hand.roll(0.3 * hand.tip_length), hand.roll(0.6 * hand.tip_length)
     pit = Spall(tooth=1, start_roll_angle=low, end_roll_angle=high, width=250.0 * width)  # mm: a quarter

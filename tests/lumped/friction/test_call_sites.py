@@ -23,7 +23,8 @@ FIT = 1e-9  # fits are asked for 1e-10; between its probes the error may be a fe
 
 
 def test_conditions_over_the_path(unlike):
-    path, by_hand = contact_path(unlike), Contact(unlike)
+    path = contact_path(unlike)
+    by_hand = Contact(unlike)
     expected = {
         "hertz_pressure": by_hand.pressure,
         "half_width": by_hand.half_width,
@@ -43,7 +44,8 @@ def test_conditions_over_the_path(unlike):
 
 
 def test_what_laws_read_of_the_pair(unlike):
-    path, by_hand = contact_path(unlike), Contact(unlike)
+    path = contact_path(unlike)
+    by_hand = Contact(unlike)
     assert path.unit_load == pytest.approx(by_hand.unit_load, rel=ROUNDING)
     assert path.effective_modulus == pytest.approx(by_hand.modulus, rel=ROUNDING)
     assert path.roughness == pytest.approx(0.5 * (unlike.pinion.roughness + unlike.gear.roughness), rel=1e-14)
@@ -58,11 +60,13 @@ def test_the_film_of_an_oil_that_is_not_the_default():
     """k = 0.009 and s = 0.17 at 33 mPa s: alpha = 0.009 * 33^0.17 = 0.0163 mm^2/N; exchanged, 0.1754."""
     pair = unlike_pair("rack_25_degrees_always_pushing")
     pitch = np.array([Contact(pair).pitch])
-    alpha, film = 0.009 * 33.0**0.17 * 1e-6, float(contact_path(pair).film_thickness(pitch)[0])
+    alpha = 0.009 * 33.0**0.17 * 1e-6
+    film = float(contact_path(pair).film_thickness(pitch)[0])
     # Two flanks of 206 GPa, 0.3 and 172 GPa, 0.26; 240 N m on r_b = 1.5 * 23 cos(25 deg) mm, 18 mm wide.
     modulus = 2e9 / ((1 - 0.3**2) / 206.0 + (1 - 0.26**2) / 172.0)
     load = 240.0 / (1.5e-3 * 23 * math.cos(math.radians(25.0))) / 18e-3
-    rho, rolling = Contact(pair, pitch).radius[0], Contact(pair, pitch).entraining[0]
+    rho = Contact(pair, pitch).radius[0]
+    rolling = Contact(pair, pitch).entraining[0]
     speed = 33e-3 * rolling / (2.0 * modulus * rho)
     expected = 3.06 * (alpha * modulus) ** 0.56 * speed**0.69 * (load / modulus / rho) ** -0.1 * rho
     assert film == pytest.approx(expected, rel=ROUNDING)

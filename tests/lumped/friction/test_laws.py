@@ -55,7 +55,8 @@ def test_coulomb_changes_sign_at_the_pitch_point():
 
 
 def test_smoothed_coulomb_is_the_derivative_it_claims_to_be():
-    mu, phi = 0.06, 50.0
+    mu = 0.06
+    phi = 50.0
     d = np.linspace(-0.3, 0.3, 41)
     step = 1e-30  # complex step: the derivative without subtraction, exact to rounding
     potential = 2 * mu / np.pi * (d + 1j * step) * np.arctan(phi * (d + 1j * step))
@@ -116,7 +117,8 @@ def operating_points(draw):
 @settings(max_examples=25)
 @given(pair=operating_points(), where=st.lists(st.floats(-8.0, -2.2), min_size=5, max_size=30))
 def test_any_operating_point(law, pair, where):
-    path, parameters = contact_path(pair), pair.friction
+    path = contact_path(pair)
+    parameters = pair.friction
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # the law is followed outside its range as well
         try:

@@ -37,9 +37,11 @@ def exact_errors(function, law, path, settings, side):
         log10=lambda x: arb(x).log() / arb(10).log(), exp=lambda x: arb(x).exp(),
         sqrt=lambda x: arb(x).sqrt(), arctan=lambda x: arb(x).atan(),
     )  # fmt: skip
-    ctx.prec, found = 256, []
+    ctx.prec = 256
+    found = []
     for j, low in enumerate(function.breaks[:-1]):
-        width, fit = arb(function.breaks[j + 1]) - arb(low), arb_poly(function.coefficients[::-1, j].tolist())
+        width = arb(function.breaks[j + 1]) - arb(low)
+        fit = arb_poly(function.coefficients[::-1, j].tolist())
         errors = [
             abs(
                 law_of(law, width * share + low, path, settings, side, arithmetic) - fit(width * share)
@@ -54,7 +56,9 @@ def exact_errors(function, law, path, settings, side):
 def test_the_bound_holds_everywhere_and_is_small_over_the_path(unlike, law):
     for speed in (500.0, 4000.0, 20000.0):
         pair = unlike.with_(operating__pinion_speed=speed)
-        path, settings, record = pair.nominal_contact, pair.friction, LAWS[law]
+        path = pair.nominal_contact
+        settings = pair.friction
+        record = LAWS[law]
         fit = fit_signed(record, path, settings)
         bound = fit_misfit(fit, record, path, settings)
         assert (sampled(fit, record, path, settings) <= bound).all()
@@ -71,7 +75,8 @@ _PLACES = np.unique([*(0.5 - 0.5 * np.cos(np.pi * np.arange(10) / 9)), 1e-9, 0.0
 @pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "smoothed_coulomb"])
 def test_the_bound_of_a_coarse_fit_is_close_to_its_error(unlike, law, side):
     """Pieces that end near the pitch point, where laws are steep; law IV varies within 1/sharpness of it."""
-    path, record = unlike.nominal_contact, LAWS[law]
+    path = unlike.nominal_contact
+    record = LAWS[law]
     reach = path.L_XD - path.L_XP if side > 0.0 else path.L_XP - path.L_XA
     pair = unlike.with_(friction__sharpness=0.02 / reach, friction__maximum=1.0)  # [1/mm]
     settings = pair.friction
@@ -99,7 +104,8 @@ def test_an_error_at_the_ends_of_a_piece_is_all_of_its_bound(steep):
 
     All its Chebyshev coefficients are positive, so that their sum is 1, its value at the end.
     """
-    half, centre = 0.002, 0.0305
+    half = 0.002
+    centre = 0.0305
     law = law_with(
         lambda xi: ((xi - centre) / half) ** steep,
         lambda low, high, path, settings: (np.full(1, 2.5), np.full(1, 1.45**steep)),  # (2.5 + 1/2.5)/2
@@ -112,7 +118,8 @@ def test_an_error_at_the_ends_of_a_piece_is_all_of_its_bound(steep):
 
 def test_an_error_between_the_nodes_of_a_fit_is_all_of_its_bound():
     """T_9 is 0 at the nodes of a fit of degree 8, and 1 between them and at the ends."""
-    breaks, size = np.array([0.0285, 0.0325]), 1e-4
+    breaks = np.array([0.0285, 0.0325])
+    size = 1e-4
     law = law_with(
         lambda xi: size * chebyshev_of(9, xi, breaks),
         lambda low, high, path, settings: (np.full(1, 2.5), np.full(1, size * 2.5**9)),
@@ -183,7 +190,8 @@ def test_the_law_is_at_most_its_bound_in_the_ellipse(unlike, law, side):
     Also of thick oil under high load, where the exponential of law III falls with its shear. The bound counts
     4 times 2.3^-64 = 3e-23 of it: it may be rough, so that a term of it more or less is not always seen here.
     """
-    settings, record = unlike.friction, LAWS[law]
+    settings = unlike.friction
+    record = LAWS[law]
     for path in (unlike.nominal_contact, replace(unlike.nominal_contact, viscosity=0.5, unit_load=2e6)):
         reach = path.L_XD - path.L_XP if side > 0.0 else path.L_XP - path.L_XA
         ends = np.sort(path.L_XP + side * reach * np.geomspace(0.02, 0.9, 8))
@@ -202,18 +210,22 @@ def test_the_law_is_at_most_its_bound_in_the_ellipse(unlike, law, side):
 
 def law_of(law, z, path, settings, side=1.0, functions=np):
     """A law without its bounds on one side of the pitch point, at complex places or in other arithmetic."""
-    d, v_e = side * (z - path.L_XP), path.omega_pinion * z + path.omega_gear * (path.L_XY - z)
-    v_s, S = (path.omega_pinion + path.omega_gear) * d, path.roughness * 1e6
+    d = side * (z - path.L_XP)
+    v_e = path.omega_pinion * z + path.omega_gear * (path.L_XY - z)
+    v_s = (path.omega_pinion + path.omega_gear) * d
+    S = path.roughness * 1e6
     if law == "benedict_kelley":
         number = 29.7 * path.unit_load / (path.viscosity * 1e3 * v_s * v_e**2)
         return side * 0.0127 * 1.13 / (1.13 - S) * functions.log10(number)
     if law == "smoothed_coulomb":
-        x, mean = settings.sharpness * d, 2.0 / np.pi * LAWS["coulomb"].factor(path, settings)
+        x = settings.sharpness * d
+        mean = 2.0 / np.pi * LAWS["coulomb"].factor(path, settings)
         return side * mean * (functions.arctan(x) + x / (1.0 + x**2))
     b1, b2, b3, b4, b5, b6, b7, b8, b9 = (
         -8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305
     )  # fmt: skip
-    radius, eta = z * (path.L_XY - z) / path.L_XY, path.viscosity * 1e3
+    radius = z * (path.L_XY - z) / path.L_XY
+    eta = path.viscosity * 1e3
     p_h = 1e-9 * functions.sqrt(path.unit_load * path.effective_modulus / (2.0 * np.pi * radius))
     slide = 2.0 * v_s / v_e
     shear = slide * p_h * np.log10(eta)

@@ -36,7 +36,8 @@ def slow():
 ])  # fmt: skip
 def test_a_slow_small_pair_is_outside_and_the_warning_says_how_far(slow, law, quantity):
     (found,) = (v for v in law_range_violations(slow, law) if v.range.quantity == quantity)
-    function, path = friction_path_function(slow, law), contact_path(slow)
+    function = friction_path_function(slow, law)
+    path = contact_path(slow)
     xi = np.linspace(path.L_XA, path.L_XD, 203)[1:-1]
     assert found.largest == pytest.approx(np.abs(function(xi)).max(), abs=1e-9)
     assert found.share == 1.0

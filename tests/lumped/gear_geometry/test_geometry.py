@@ -33,7 +33,9 @@ def test_28_28_is_the_table_of_the_model_page(nasa):
 def by_construction(pair):
     """The points A, P, D and Y measured from X, by intersecting circles with a line instead of by formula."""
     g = geometry(pair)
-    a, r_bp, r_bg = g.centre_distance, g.base_radius_pinion, g.base_radius_gear
+    a = g.centre_distance
+    r_bp = g.base_radius_pinion
+    r_bg = g.base_radius_gear
     pinion, gear = np.array([0.0, 0.0]), np.array([0.0, a])
 
     # The internal common tangent of the base circles: its normal makes an angle with the centre line such
@@ -62,7 +64,8 @@ def by_construction(pair):
     length = float((y - x) @ along)
     assert np.linalg.norm(y - x) == pytest.approx(length, rel=1e-12)
     # A rack that undercuts ends the flank of the mate before its tip; drawn once more by the other model.
-    rack, edges = pair.basic_rack, []
+    rack = pair.basic_rack
+    edges = []
     for one in (pair.pinion, pair.gear):
         edges.append(undercut_edge(rack, one.teeth, one.profile_shift))
     return {

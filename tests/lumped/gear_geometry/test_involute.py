@@ -43,7 +43,9 @@ def rack_depth(x, y, alpha, pitch_half_width, depth, radius):
 
 def cut_depth(radius, z, alpha, shift, dedendum, fillet):
     """Largest depth that the rolling rack reaches below each involute point; 0 where it cuts the involute."""
-    r, r_b = 0.5 * z, 0.5 * z * math.cos(alpha)  # module 1
+    # module 1
+    r = 0.5 * z
+    r_b = 0.5 * z * math.cos(alpha)
     profile = np.arccos(r_b / radius)
     thickness = 0.5 * math.pi + 2 * shift * math.tan(alpha)
     half_tooth = thickness / (2 * r) + involute(alpha) - (np.tan(profile) - profile)
@@ -86,7 +88,8 @@ RACKS = [
 @pytest.mark.parametrize(("z", "degrees", "shift", "dedendum", "fillet", "undercut"), RACKS)
 def test_form_circle_against_cutting(z, degrees, shift, dedendum, fillet, undercut):
     alpha = math.radians(degrees)
-    r, r_b = 0.5 * z, 0.5 * z * math.cos(alpha)
+    r = 0.5 * z
+    r_b = 0.5 * z * math.cos(alpha)
     length = ToothProfile(z, 1.0, alpha, shift, dedendum, fillet).form_length
     form = math.hypot(r_b, length)
     closed = r * math.sin(alpha) - (dedendum - fillet * (1 - math.sin(alpha)) - shift) / math.sin(alpha)

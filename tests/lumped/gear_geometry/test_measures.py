@@ -203,7 +203,8 @@ def test_the_text_has_a_line_for_every_row():
 
 def test_a_row_knows_which_field_decides_it():
     # The tips of this pair are given; those of a pair without them are assumed, and change with their field.
-    given, free = load_gear_pair("fzg_c"), load_gear_pair("nasa_28_28")
+    given = load_gear_pair("fzg_c")
+    free = load_gear_pair("nasa_28_28")
     for row in gear_table(given).rows():
         assert len(row.decided_by) in (0, len(row.values)), row.label
         for path in row.decided_by:

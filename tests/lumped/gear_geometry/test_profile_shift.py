@@ -33,7 +33,8 @@ def test_a_sum_becomes_a_centre_distance_and_the_sum_again():
     random = np.random.default_rng(48)
     for _ in range(500):
         teeth = int(random.integers(20, 400))
-        module, alpha = 10.0 ** random.uniform(-4.0, -2.0), math.radians(random.uniform(14.5, 30.0))
+        module = 10.0 ** random.uniform(-4.0, -2.0)
+        alpha = math.radians(random.uniform(14.5, 30.0))
         # From nearly overlapping base circles to teeth that stand on their tips.
         least = -0.5 * teeth * (math.tan(alpha) - alpha) / math.tan(alpha)
         total = random.uniform(max(0.9 * least, -3.0), 4.0)
@@ -81,7 +82,8 @@ def test_the_worked_example_has_its_printed_tips_and_contact_ratio():
 @pytest.mark.parametrize("name", WITHOUT_TIPS)
 def test_the_clearance_is_that_of_the_rack(name):
     pair = unlike_pair(name)
-    rack, g = pair.basic_rack, pair.geometry
+    rack = pair.basic_rack
+    g = pair.geometry
     clearance = rack.module * (rack.dedendum_coefficient - rack.addendum_coefficient)
     assert g.centre_distance - g.tip_radius_pinion - g.root_radius_gear == pytest.approx(clearance, rel=1e-9)
     assert g.centre_distance - g.tip_radius_gear - g.root_radius_pinion == pytest.approx(clearance, rel=1e-9)

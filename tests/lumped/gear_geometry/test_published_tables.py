@@ -71,7 +71,9 @@ def of_pair(pair, table):
 
 def of_gear(pair, table, which):
     """Printed quantities of one gear that the table does not name, in mm."""
-    g, one, tooth = pair.geometry, (table.pinion, table.gear)[which], pair.wheels[which].tooth
+    g = pair.geometry
+    one = (table.pinion, table.gear)[which]
+    tooth = pair.wheels[which].tooth
     contact = (g.L_XA, g.L_XY - g.L_XD)[which]
     shifted = tooth.reference_radius + tooth.profile_shift * tooth.module
     radii = {
@@ -112,7 +114,8 @@ def test_every_printed_number_is_met_to_its_last_digit(name):
 
 @pytest.mark.parametrize("name", [name for name, one in TABLES.items() if "made" in one])
 def test_teeth_with_allowances_measure_as_printed(name):
-    printed, with_ = TABLES[name], TABLES[name]["measured_with"]
+    printed = TABLES[name]
+    with_ = TABLES[name]["measured_with"]
     nominal = loaded(printed["inputs"])
     alpha = nominal.basic_rack.pressure_angle
     for made in printed["made"]:
@@ -160,7 +163,8 @@ def test_shifts_follow_from_spans():
 
 def test_backlash_of_gears_made_with_other_shifts():
     given = TABLES["stplus_51_52"]
-    pair, generated = loaded(given["inputs"]), given["generated"]
+    pair = loaded(given["inputs"])
+    generated = given["generated"]
     pinion, gear = (
         replace(wheel, tooth=replace(wheel.tooth, profile_shift=shift))
         for wheel, shift in zip(pair.wheels, generated["shifts"], strict=True)

@@ -38,12 +38,14 @@ def test_a_stock_pair_15_40_by_hand():
     tooth by pi/4 - 0.87 tan 20 - 0.38/cos 20 = 0.06436. At the roll phi the cut lies on the line from the
     pitch point through that centre, 0.38 behind it.
     """
-    r, base = 7.5, 7.5 * math.cos(ANGLE)
+    r = 7.5
+    base = 7.5 * math.cos(ANGLE)
     off = math.pi / 4 - 0.87 * math.tan(ANGLE) - 0.38 / math.cos(ANGLE)
 
     def apart(unknown):
         roll, length = unknown
-        along, down = off - r * roll, 0.87
+        along = off - r * roll
+        down = 0.87
         stretch = 1.0 + 0.38 / math.hypot(along, down)
         x, y = along * stretch, r - down * stretch
         # Half the space: pi/(2 z), wider towards the tip by inv(angle there) - inv(20 degrees).
@@ -51,7 +53,8 @@ def test_a_stock_pair_15_40_by_hand():
         return math.hypot(x, y) - math.hypot(base, length), math.atan2(x, y) + roll - space
 
     _, edge = fsolve(apart, (-0.3, 0.2), xtol=1e-13)
-    line, tip_pinion = 27.5 * math.sin(ANGLE), math.sqrt(8.5**2 - base**2)
+    line = 27.5 * math.sin(ANGLE)
+    tip_pinion = math.sqrt(8.5**2 - base**2)
     tip_gear = math.sqrt(21.0**2 - (20.0 * math.cos(ANGLE)) ** 2)
     assert edge == pytest.approx(0.171309, abs=1e-6)
     # Contact down to a diameter of 14.1 mm: undercut costs 4 um of it.
@@ -69,7 +72,8 @@ def test_a_stock_pair_15_40_by_hand():
 
 
 def test_the_driven_gear_may_be_the_undercut_one():
-    g, turned = stock("15/40").geometry, stock("40/15").geometry
+    g = stock("15/40").geometry
+    turned = stock("40/15").geometry
     assert pytest.approx(turned.L_XY - g.L_XA, rel=1e-12) == turned.L_XD
     assert turned.contact_ratio == pytest.approx(g.contact_ratio, rel=1e-12)
     assert "at its end" in turned.notes[0]
@@ -106,11 +110,14 @@ class Cut:
         straight = np.linspace(y[-1], 2.0, 2000)
         x = np.append(x, x[-1] + (straight - y[-1]) * math.tan(ANGLE))
         y = np.append(y, straight)
-        radius, self.z, self.tip = 0.5 * z, z, tip
+        radius = 0.5 * z
+        self.z = z
+        self.tip = tip
         self.root = radius - dedendum + shift
         self.half = np.zeros(int((tip - self.root) / self.STEP) + 2)
         for roll in np.linspace(-12.0, 12.0, 5001) / z:
-            along, out = x - radius * roll, radius + shift + y
+            along = x - radius * roll
+            out = radius + shift + y
             far = np.hypot(along, out)
             place = ((far - self.root) / self.STEP).astype(int)
             inside = (place >= 0) & (place < self.half.size)
@@ -133,7 +140,8 @@ def clearance(gear, mate, centre):
     """
     turn = np.linspace(-9.0, 9.0, 20001) / mate.z
     seen = centre - mate.tip * np.exp(1j * (turn + mate.land))
-    radius, met = np.abs(seen), np.abs(seen) < gear.tip
+    radius = np.abs(seen)
+    met = np.abs(seen) < gear.tip
     beside = np.abs(np.angle(seen) + turn * mate.z / gear.z)
     return float((radius * (gear.space(radius) - beside))[met].min())
 
@@ -141,11 +149,13 @@ def clearance(gear, mate, centre):
 def test_interference_is_found_as_by_brute_force():
     """20 random small pairs, as many of each kind, whose clearance is not too near 0 for polygons to call."""
     seed = 20261128
-    rng, left = np.random.default_rng(seed), {False: 10, True: 10}
+    rng = np.random.default_rng(seed)
+    left = {False: 10, True: 10}
     while any(left.values()):
         z = int(rng.integers(7, 20)), int(rng.integers(12, 60))
         shift = float(rng.uniform(-0.3, 0.25)), float(rng.uniform(-0.2, 0.3))
-        dedendum, fillet = float(rng.uniform(1.05, 1.4)), float(rng.uniform(0.1, 0.3))
+        dedendum = float(rng.uniform(1.05, 1.4))
+        fillet = float(rng.uniform(0.1, 0.3))
         teeth = [ToothProfile(n, 1.0, ANGLE, x, dedendum, fillet) for n, x in zip(z, shift, strict=True)]
         # Without backlash: inv(alpha_w) = inv(alpha) + 2 sum(x) tan(alpha)/sum(z).
         inv = math.tan(ANGLE) - ANGLE + 2.0 * sum(shift) * math.tan(ANGLE) / sum(z)
@@ -166,7 +176,8 @@ def test_interference_is_found_as_by_brute_force():
 
 # ---- what is refused, and what would do --------------------------------------------------------------------
 
-FIXED, ROUNDED = {"centre_distance": 25.0}, {"basic_rack__fillet_radius_coefficient": 0.3}
+FIXED = {"centre_distance": 25.0}
+ROUNDED = {"basic_rack__fillet_radius_coefficient": 0.3}
 REFUSED = [
     ("8/60", {}, "contact_ratio"),
     ("6/60", {}, "contact_ratio"),
@@ -241,7 +252,8 @@ def outline(tooth, tip):
 def gap_of_outlines(pair, xi):
     """Way of the flanks along the line of action until both outlines touch, the pair at xi [m]."""
     g, (pinion, gear) = pair.geometry, pair.wheels
-    own, mate = outline(pinion.tooth, pinion.tip_radius), outline(gear.tooth, gear.tip_radius)
+    own = outline(pinion.tooth, pinion.tip_radius)
+    mate = outline(gear.tooth, gear.tip_radius)
     inverse = math.tan(g.operating_pressure_angle) - g.operating_pressure_angle
     back = g.L_XP - xi
     # Half a tooth on the operating pitch circle, behind the pinion's flank and ahead of the gear's.
@@ -253,7 +265,8 @@ def gap_of_outlines(pair, xi):
         (own, mate, at, mate_at, -1.0, g.base_radius_gear),
     ):
         angle = turn + sense * half
-        across, along = radius * np.sin(angle), g.centre_distance - radius * np.cos(angle)
+        across = radius * np.sin(angle)
+        along = g.centre_distance - radius * np.cos(angle)
         far = np.hypot(across, along)
         met = (far > other[0]) & (far < other[-1])
         apart = sense * (other_turn - np.arctan2(across, along)) - np.interp(far, other, other_half)
@@ -277,7 +290,8 @@ def test_a_tip_relief_ends_at_the_tip_and_a_flank_at_the_edge():
     """The gear's tip is beyond A of an undercut pair: there its relief is not yet whole."""
     pair = stock("12/60")
     g = pair.geometry
-    tip, start = 1e-3 * math.sqrt(31.0**2 - (30.0 * math.cos(ANGLE)) ** 2), g.L_XY - g.L_XP
+    tip = 1e-3 * math.sqrt(31.0**2 - (30.0 * math.cos(ANGLE)) ** 2)
+    start = g.L_XY - g.L_XP
     degrees = math.degrees(start / g.base_radius_gear)
     relief = {"amount": 10.0, "start_roll_angle": degrees, "shape": "linear"}
     relieved = pair.with_({"gear.tip_relief": relief})
@@ -293,10 +307,12 @@ def test_a_tip_relief_ends_at_the_tip_and_a_flank_at_the_edge():
 def test_edges_of_both_models_have_one_gap(teeth):
     """Gap and slopes of the multibody model's ends of flanks against the lumped gap, and differences."""
     pair = stock(teeth)
-    g, own = pair.geometry, circles(pair)
+    g = pair.geometry
+    own = circles(pair)
     assert (own.start, own.end) == pytest.approx((g.L_XA, g.L_XD), rel=1e-9)
     line = kn.Line(1.0, 0.0, g.L_XY, kn.DRIVE, g.base_radius_pinion, g.base_radius_gear)
-    tips, edges = (own.reach_pinion, own.reach_gear), (own.edge_pinion, own.edge_gear)
+    tips = (own.reach_pinion, own.reach_gear)
+    edges = (own.edge_pinion, own.edge_gear)
 
     def corners(rho_p, rho_g, longer=0.0):
         return kn.corners_at(line._replace(length=g.L_XY + longer), rho_p, rho_g, tips, edges)
@@ -318,7 +334,8 @@ def test_edges_of_both_models_have_one_gap(teeth):
 def test_loaded_contact_reaches_beyond_the_edge(teeth):
     """A load closes the gap of the edge: at its first touch the static approach is that gap."""
     pair = stock(teeth, mesh__stiffness={"model": "energy"})
-    g, contact = pair.geometry, loaded_contact(at_rest(pair))
+    g = pair.geometry
+    contact = loaded_contact(at_rest(pair))
     low, high = contact.contact[0, 0], contact.contact[-1, 1]
     assert low < g.L_XA
     assert high > g.L_XD
@@ -327,7 +344,8 @@ def test_loaded_contact_reaches_beyond_the_edge(teeth):
     # What neighbours take off the approach there, the gap leaves: nothing is left to press.
     assert first.compression == pytest.approx([0.0, 0.0], abs=1e-11)
     # Where the edge begins to touch, and gives way to the tip, the pieces of the fit end; it follows to 5e-9.
-    at_start, breaks = g.undercut_pinion == g.L_XA, contact.gap.breaks
+    at_start = g.undercut_pinion == g.L_XA
+    breaks = contact.gap.breaks
     for number in (mesh.back, mesh.exchange):
         assert np.abs(number(at_start, breaks)).min() < 1e-11
     xi = np.linspace(low, high, 2001)[1:-1]

@@ -38,7 +38,8 @@ def efficiency_of_constant_friction(pair, mu):
     integrals over B..P and P..C are elementary.
     """
     g = geometry(pair)
-    r, pitch = g.base_radius_pinion, g.base_pitch
+    r = g.base_radius_pinion
+    pitch = g.base_pitch
     double = 0.5 * pitch / (r + 0.5 * mu * pitch) * (g.L_XB - g.L_XA)
     y_b, y_p = r - mu * g.L_XB, r - mu * g.L_XP
     approach = ((y_b - y_p) - y_p * np.log(y_b / y_p)) / mu**2
@@ -52,7 +53,8 @@ def efficiency_of_constant_friction(pair, mu):
 @pytest.mark.parametrize("mu", [0.02, 0.1])
 def test_efficiency_of_constant_friction_in_closed_form(name, mu):
     pair = coulomb(name, mu)
-    result, exact = quasi_static_losses(pair, sharing="uniform"), efficiency_of_constant_friction(pair, mu)
+    result = quasi_static_losses(pair, sharing="uniform")
+    exact = efficiency_of_constant_friction(pair, mu)
     # rounding of the closed form, differences of 1e-16 over mu^2 and the loss: below 1e-10
     assert 1 - result.mesh_efficiency == pytest.approx(1 - exact, rel=1e-10)
 
@@ -72,7 +74,8 @@ def test_slow_dynamic_solution_is_quasi_static(name):
     differences = []
     for mu in (0.02, 0.01):
         pair = coulomb(name, mu, operating__pinion_speed=25)
-        found, g = steady_state(pair, samples_per_cycle=8).attrs, geometry(pair)
+        found = steady_state(pair, samples_per_cycle=8).attrs
+        g = geometry(pair)
         # The torques balance sliding alone: dampers are no losses of quasi-statics.
         dynamic = 1 - found["brake_torque"] * g.omega_gear / (found["pinion_torque"] * g.omega_pinion)
         static = quasi_static_losses(pair).mesh_efficiency
@@ -140,7 +143,8 @@ def test_loss_factor_is_its_definition_also_above_a_contact_ratio_of_two(publish
 @pytest.mark.parametrize("name", ["contact_ratio_1_1_large_shifts", "contact_ratio_2_3_on_shafts"])
 def test_sharing_by_stiffness(name):
     pair = coulomb(name, 0.05, mesh__stiffness={"model": "parabolic"})
-    curve, end = pair_stiffness(pair), math.nextafter(geometry(pair).L_XD, 0.0)
+    curve = pair_stiffness(pair)
+    end = math.nextafter(geometry(pair).L_XD, 0.0)
     expected = brute_force(pair, lambda xi: float(curve(min(xi, end))))
     # the load share is a ratio of polynomials: eight Gauss nodes a stretch leave about 1e-10
     assert loss_factor(pair, "elements") == pytest.approx(expected, rel=1e-8)

@@ -72,7 +72,8 @@ class Mesh:
     def __init__(self, position, coupling=None, **numbers):
         position = np.atleast_1d(np.asarray(position, dtype=float))
         self.law = self.LAW._replace(**{name: numbers[name] for name in self.LAW._fields if name in numbers})
-        self.line, self.pairs = np.zeros(1, LINE), np.zeros(position.size, PAIR)
+        self.line = np.zeros(1, LINE)
+        self.pairs = np.zeros(position.size, PAIR)
         self.line["length"] = self.ENDS[2]
         self.pairs["stiffness"] = 3e8
         for name in LINE.names:
@@ -82,7 +83,8 @@ class Mesh:
         for name in PAIR.names:
             self.pairs[name] = numbers.get(name, self.pairs[name])
         self.coupling = np.zeros((position.size,) * 2) if coupling is None else np.asarray(coupling)
-        self.contacts, self.normal = np.zeros(position.size, CONTACT), np.zeros(position.size)
+        self.contacts = np.zeros(position.size, CONTACT)
+        self.normal = np.zeros(position.size)
 
     def loads(self, approach):
         """Elastic loads (pairs,) [N]; ``contacts`` are those then."""
@@ -102,7 +104,8 @@ class Mesh:
     def linear(self):
         """FORCE (3,), STATE and PAIR_LOAD (pairs,) about the static approach."""
         static = self.static()
-        forces, states = np.zeros(3, element.FORCE), np.zeros(1, linear.STATE)
+        forces = np.zeros(3, element.FORCE)
+        states = np.zeros(1, linear.STATE)
         loads = np.zeros(self.pairs.size, linear.PAIR_LOAD)
         linear_about(static, self.pairs, self.line, self.law, self.contacts, forces, states, loads)
         return forces, states[0], loads

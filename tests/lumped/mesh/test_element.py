@@ -21,7 +21,8 @@ def coupled(position=WITH_CORNERS, **more):
 
 def complementary_energy(mesh, loads):
     """Sum of the integrals of N c(N), and of w_ij N_i N_j over pairs of neighbours."""
-    law, total = mesh.law, 0.5 * loads @ mesh.coupling @ loads
+    law = mesh.law
+    total = 0.5 * loads @ mesh.coupling @ loads
     for load, stiffness in zip(loads, mesh.pairs["stiffness"], strict=True):
         total += quad(
             lambda n, k=stiffness: n / k
@@ -42,7 +43,8 @@ def energy(mesh, approach):
 @pytest.mark.parametrize("approach", [4e-6, 9e-6, 2e-5])
 def test_loads_are_the_slope_of_an_energy(approach):
     """dU/ddelta = sum N_i dp_i/ddelta, with the corners' share of the compressions."""
-    mesh, h = coupled(), 1e-4 * approach
+    mesh = coupled()
+    h = 1e-4 * approach
     slope = (energy(mesh, approach + h) - energy(mesh, approach - h)) / (2.0 * h)
     loads = mesh.loads(approach)
     assert (loads > 0.0).all()
@@ -54,7 +56,8 @@ def test_loads_are_the_slope_of_an_energy(approach):
 
 def test_a_pair_moves_its_neighbour_as_this_one_moves_it():
     """dN_i/dp_j = dN_j/dp_i, and a common compression moves each pair by the sum of its row."""
-    approach, h = 1.2e-5, 1e-9
+    approach = 1.2e-5
+    h = 1e-9
     matrix = np.empty((3, 3))
     for j in range(3):
         moved = []
@@ -75,7 +78,8 @@ def test_a_pair_moves_its_neighbour_as_this_one_moves_it():
 def test_corner_gap_is_the_distance_of_two_involutes(beyond, radii):
     """The corner of the mate against the nearest point of the flank, both drawn in the plane."""
     flank, tip = radii
-    length, corner = 0.042, 0.034
+    length = 0.042
+    corner = 0.034
     # Axes from the flank's centre: n away from it through the tangent point, t along the line of action.
     mate = np.array([length, flank + tip])
     # The mate's flank crosses the line corner + beyond from its tangent point; its corner has turned on.
@@ -150,9 +154,16 @@ def test_forces_do_no_work_when_both_gears_move_as_one(unlike):
 class TestDampers:
     def test_what_they_take_is_what_a_bouncing_pair_loses(self):
         """m delta'' = F - N without rolling, so fast that the teeth part: N = 0 while they still expand."""
-        mass, k, c, force, speed = 2.0, 3e8, 6e3, 3000.0, 1.0
+        mass = 2.0
+        k = 3e8
+        c = 6e3
+        force = 3000.0
+        speed = 1.0
         mesh = Mesh([0.015], stiffness=k, damping=c, full_damper=200.0, rolling_speed=0.0, force=force)
-        state, h, lost, clipped = np.array([force / k, speed]), 1e-7, 0.0, 0
+        state = np.array([force / k, speed])
+        h = 1e-7
+        lost = 0.0
+        clipped = 0
 
         def rates(x):
             found = mesh.force(*x)
@@ -163,14 +174,16 @@ class TestDampers:
 
         start = stored(state)
         for _ in range(6000):
-            stages, powers = [], []
+            stages = []
+            powers = []
             for part in (0.0, 0.5, 0.5, 1.0):
                 rate, power = rates(state + part * h * (stages[-1] if stages else 0.0))
                 stages.append(rate)
                 powers.append(power)
             clipped += mesh.contacts["load"][0] > 0.0 and mesh.normal[0] == 0.0
             weights = np.array([1.0, 2.0, 2.0, 1.0]) * h / 6.0
-            state, lost = state + weights @ np.array(stages), lost + weights @ np.array(powers)
+            state = state + weights @ np.array(stages)
+            lost = lost + weights @ np.array(powers)
         assert clipped > 20
         # Kinks inside steps leave some 1e-5 of the loss.
         assert start - stored(state) == pytest.approx(lost, rel=1e-4)
@@ -187,7 +200,10 @@ class TestDampers:
 
     def test_they_act_on_the_rate_of_the_compression(self):
         """p' = d(delta - gap)/dt by differences of the gap, with approach and contact both moving."""
-        rolling, closing, approach, h = 6.0, 0.4, 2e-5, 1e-9
+        rolling = 6.0
+        closing = 0.4
+        approach = 2e-5
+        h = 1e-9
         gaps = []
         for s in (h, -h):
             mesh = coupled(np.array(WITH_CORNERS) + rolling * s)
@@ -195,7 +211,8 @@ class TestDampers:
             gaps.append(mesh.contacts["gap"].copy())
         rate = closing - (gaps[0] - gaps[1]) / (2.0 * h)
         mesh = coupled(damping=[3e3, 5e3, 2e3], rolling_speed=rolling)
-        elastic, found = mesh.loads(approach), mesh.force(approach, closing)
+        elastic = mesh.loads(approach)
+        found = mesh.force(approach, closing)
         assert mesh.normal - elastic == pytest.approx(mesh.pairs["damping"] * rate, rel=1e-5)
         assert found.damper_power == pytest.approx(mesh.pairs["damping"] @ rate**2, rel=1e-5)
         assert np.abs(rate / closing - 1.0).max() > 0.04
@@ -259,7 +276,8 @@ class TestLinearForm:
         assert loads["static"].sum() == pytest.approx(mesh.law.force, rel=1e-12)
 
     def test_its_stiffness_is_the_slope_of_the_loads_over_a_common_compression(self):
-        mesh, h = coupled(friction=[-0.05, 0.02, 0.07]), 1e-9
+        mesh = coupled(friction=[-0.05, 0.02, 0.07])
+        h = 1e-9
         forces, state, _ = mesh.linear()
         ends = []
         for sign in (1.0, -1.0):

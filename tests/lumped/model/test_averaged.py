@@ -21,9 +21,11 @@ def symmetric():
 
 def closed_form(pair):
     """For equal gears x_p + x_g sees the bearing only; (q, d = x_p - x_g) is a 2x2 eigenproblem."""
-    body, g = lumped.bodies(pair), lumped.geometry(pair)
+    body = lumped.bodies(pair)
+    g = lumped.geometry(pair)
     k = lumped.mesh_elements(pair).stiffness.mean() * g.contact_ratio
-    bearing, m = pair.bearings.pinion.loa_stiffness, body.mass_pinion
+    bearing = pair.bearings.pinion.loa_stiffness
+    m = body.mass_pinion
     # q'' = -k/m_e (q + d);  d'' = -2k/m (q + d) - K/m d
     reduced = np.array(
         [[k / body.effective_mass, k / body.effective_mass], [2 * k / m, 2 * k / m + bearing / m]]
@@ -53,7 +55,8 @@ def test_static_receptance_is_the_mesh_deflection(symmetric):
     plant = averaged_state_space(symmetric, "mesh")
     static = -plant.C @ np.linalg.solve(plant.A, plant.B)
     k = lumped.mesh_elements(symmetric).stiffness.mean() * lumped.geometry(symmetric).contact_ratio
-    body, g = lumped.bodies(symmetric), lumped.geometry(symmetric)
+    body = lumped.bodies(symmetric)
+    g = lumped.geometry(symmetric)
     # q'' = 0: r_bp T_p / J_p = k delta / m_e
     assert static[0, 0] == pytest.approx(
         g.base_radius_pinion / body.inertia_pinion * body.effective_mass / k, rel=1e-9
@@ -118,10 +121,12 @@ def test_it_is_one_at_rest_and_continuous_between_the_zones():
 
 
 def test_a_coarser_class_raises_it():
-    fine, coarse = iso_dynamic_factor(PAIR, 4).factor, iso_dynamic_factor(PAIR, 8).factor
+    fine = iso_dynamic_factor(PAIR, 4).factor
+    coarse = iso_dynamic_factor(PAIR, 8).factor
     # Pitch and profile tolerances grow by sqrt(2) a class: B_p and B_f by 4 from class 4 to 8.
     relief = max((r.amount for r in (PAIR.pinion.tip_relief, PAIR.gear.tip_relief) if r), default=0.0)
     assert coarse > fine
     if relief == 0.0:
-        n, c3 = iso_dynamic_factor(PAIR).resonance_ratio, 0.23
+        n = iso_dynamic_factor(PAIR).resonance_ratio
+        c3 = 0.23
         assert (coarse - 1.0 - n * c3) / (fine - 1.0 - n * c3) == pytest.approx(4.0, rel=1e-6)

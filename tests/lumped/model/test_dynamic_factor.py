@@ -13,11 +13,13 @@ from tests.unlike_pairs import unlike_pair
 def by_hand(pair):
     """N = n/n_E and B_p, B_f, B_k of clause 6.5, in N, mm, um; tolerances of ISO 1328-1:2013, class 6."""
     pinion, gear = ByHand(pair, "pinion"), ByHand(pair, "gear")
-    width, ratio = 1e3 * Contact(pair).width, (pinion.tip_length - pinion.start_length) / pinion.base_pitch
+    width = 1e3 * Contact(pair).width
+    ratio = (pinion.tip_length - pinion.start_length) / pinion.base_pitch
     single = pair_single_stiffness(pair)  # tests/lumped/stiffness/test_call_sites
     inertia = []
     for hand in (pinion, gear):
-        own, radius = getattr(pair, hand.gear), 1e-3 * hand.r
+        own = getattr(pair, hand.gear)
+        radius = 1e-3 * hand.r
         mass = own.density * math.pi * (radius**2 - 0.25 * own.bore**2) * own.face_width
         inertia.append(0.5 * mass * (radius**2 + 0.25 * own.bore**2) / (1e-3 * hand.r_b) ** 2)
     reduced = inertia[0] * inertia[1] / sum(inertia) / width  # kg/mm

@@ -43,7 +43,8 @@ def random_times(cycle, count):
 def test_matrix_form_and_the_page_agree(case, written_out):
     b = bodies(case.pair)
     masses = (b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear)
-    torque, brake = case.pair.operating.pinion_torque, 61.0
+    torque = case.pair.operating.pinion_torque
+    brake = 61.0
     for t, state in zip(random_times(case.cycle, 60), random_states(60), strict=True):
         expected = written_out(case.pair, case.g, masses, t, state, case.cycle.elements, torque, brake)
         matrix = case.system.A(t) @ state + case.system.b(t, brake)
@@ -91,7 +92,8 @@ def test_rigid_rotation_is_a_jordan_chain(case):
 
 def test_static_deflection_is_an_equilibrium(published):
     """Without friction and with the mean stiffness for all times, every acceleration vanishes."""
-    g, system = geometry(published), periodic_system(published, "full")
+    g = geometry(published)
+    system = periodic_system(published, "full")
     k, s = system.cycle.mean_stiffness, system.structure
     state = static_deflection(system)
     load = k * (s.deflection @ state[:6])
@@ -137,7 +139,8 @@ def test_printed_signs_change_only_their_own_rows(published):
 @pytest.mark.parametrize("name", ["pinion", "gear"])
 def test_disc_by_integration(unlike, name):
     """Discs of the reference circles, each with its own bore, width and density."""
-    b, gear = bodies(unlike), getattr(unlike, name)
+    b = bodies(unlike)
+    gear = getattr(unlike, name)
     radius = 0.5 * unlike.basic_rack.module * gear.teeth
     per_radius = gear.density * 2 * math.pi * gear.face_width
     mass, _ = quad(lambda r: per_radius * r, 0.5 * gear.bore, radius)

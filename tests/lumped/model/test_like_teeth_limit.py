@@ -48,10 +48,8 @@ def test_without_deviation_every_quantity_is_that_of_like_teeth(name, contact, s
     options = {"samples_per_cycle": SAMPLES, "supports": supports}
     like = lumped.steady_state(pair, **options)
     own = lumped.steady_state(with_deviation(pair, 0.0), **options)
-    swing, force = (
-        like.attrs["dte_peak_to_peak"],
-        pair.operating.pinion_torque / pair.geometry.base_radius_pinion,
-    )
+    swing = like.attrs["dte_peak_to_peak"]
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
 
     def moved(variable):
         found = own[variable].values.reshape(-1, SAMPLES)
@@ -93,7 +91,8 @@ def test_a_femtometre_moves_no_result_by_a_millionth(name, contact, supports, fi
     given = pair.with_({"pinion.deviations": {"index": index, "first_order": first_order}})
     for touch in ("linear", "unilateral"):
         options = {"contact": touch, "samples_per_cycle": SAMPLES, "supports": supports}
-        like, own = lumped.steady_state(pair, **options), lumped.steady_state(given, **options)
+        like = lumped.steady_state(pair, **options)
+        own = lumped.steady_state(given, **options)
         cycles = own.sizes["time"] // like.sizes["time"]
         for variable, values in like.data_vars.items():
             expected = np.concatenate([values.values] * cycles, axis=-1)
@@ -136,8 +135,10 @@ def test_first_law_of_the_steps_holds_to_rounding_with_eccentric_gears(name, con
     changes = {"mesh.contact": contact, "pinion.mounting": {"eccentricity": 3, "phase": 30}}
     changes |= {"gear.deviations": {"tolerance_class": 5, "seed": 3}}
     pair = unlike_pair(name).healthy.with_(changes)
-    system, g = LTVSystem.of(pair.healthy, "full", supports="springs"), pair.geometry
+    system = LTVSystem.of(pair.healthy, "full", supports="springs")
+    g = pair.geometry
     found = stepped_motion(CycleSteps(pair, system, 1, linear_steps(system)))
-    torque, brake = system.pinion_torque + found.weights[1], found.weights[2]
+    torque = system.pinion_torque + found.weights[1]
+    brake = found.weights[2]
     lost = sum(found.powers.values()) - 2.0 * found.powers["rolling"]
     assert torque * g.omega_pinion - brake * g.omega_gear == pytest.approx(lost, rel=1e-9)

@@ -28,7 +28,8 @@ def test_number_of_pairs_in_contact(cycle):
 
 def test_the_pitch_point_is_a_switch_also_without_friction(published):
     """Sliding reverses there whatever the law: results are one-sided at it."""
-    cycle, g = mesh_cycle(published.with_(friction__law="none")), published.geometry
+    cycle = mesh_cycle(published.with_(friction__law="none"))
+    g = published.geometry
     at_pitch_point = (g.L_XP - g.L_XA) / g.base_pitch % 1.0
     assert np.abs(cycle.switch_times / cycle.period - at_pitch_point).min() < 1e-12
 
@@ -41,7 +42,8 @@ def test_ends_of_a_segment_are_its_one_sided_limits(cycle):
         for name in ("stiffness", "damping", "friction"):
             a, b = getattr(at, name), getattr(near, name)
             # The slope of the law over that way: law II is steep beside its bound at the pitch point.
-            law, g = getattr(cycle.elements, name), cycle.geometry
+            law = getattr(cycle.elements, name)
+            g = cycle.geometry
             way = g.base_radius_pinion * g.omega_pinion * nudge
             change = np.where(near.contact, np.abs(law.slope(near.position)) * way, 0.0)
             assert (np.abs(a - b) <= 1.1 * change + 1e-9 * np.abs(a).max()).all(), name
@@ -50,7 +52,8 @@ def test_ends_of_a_segment_are_its_one_sided_limits(cycle):
 class TestManyCycles:
     def test_right_continuous_at_the_start_of_every_cycle(self, cycle):
         """A multiple of the period rounds to either side of itself: it counts as the next cycle's start."""
-        starts, first = cycle.sample(np.arange(1, 60) * cycle.period), cycle.sample([0.0])
+        starts = cycle.sample(np.arange(1, 60) * cycle.period)
+        first = cycle.sample([0.0])
         assert (starts.contact == first.contact).all()
         assert np.abs(starts.position - first.position).max() < 1e-12 * first.position.max()
         assert np.abs(starts.stiffness - first.stiffness).max() < 1e-9 * first.stiffness.max()
@@ -102,12 +105,15 @@ def test_the_least_contact_ratio(nasa, off):
 @pytest.mark.parametrize("cycles", [0, 1, 1000, 100_000])
 def test_no_more_than_rounding_counts_as_at_a_switch(cycle, cycles):
     """Behind it where a switch is hit but for the rounding of the time; the law before it just before."""
-    places, segments = cycle.edges[1:-1], np.arange(cycle.edges.size - 2)
+    places = cycle.edges[1:-1]
+    segments = np.arange(cycle.edges.size - 2)
     jumps = []
     for time, segment in ((places * (1.0 - 2e-12), segments), (places + cycles * cycle.period, segments + 1)):
-        found, expected = cycle.sample(time), cycle.sample(places, segment=segment)
+        found = cycle.sample(time)
+        expected = cycle.sample(places, segment=segment)
         for name in ("stiffness", "damping", "friction", "error"):
-            of, at = getattr(found, name), getattr(expected, name)
+            of = getattr(found, name)
+            at = getattr(expected, name)
             # A law has no slope that would show over the rounding of 1e5 periods, 1e-11 of one.
             np.testing.assert_allclose(of, at, rtol=0.0, atol=1e-6 * np.abs(at).max(), err_msg=name)
         jumps.append(expected.stiffness)

@@ -54,7 +54,8 @@ def dte(loaded):
 
 
 FORMS = ["prescribed linear", "prescribed unilateral", "loaded unilateral", "loaded linear"]
-LIST, NONE = tuple(ERRORS), (0.0,) * 28
+LIST = tuple(ERRORS)
+NONE = (0.0,) * 28
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -78,7 +79,8 @@ class TestFixedContacts:
     FORM = "prescribed linear"
 
     def test_a_common_error_is_a_shift_of_delta_and_parts_of_both_gears_add_up(self, dte):
-        more, mirrored = dte(self.FORM, tuple(ERRORS + 3.0)), tuple(ERRORS[::-1])
+        more = dte(self.FORM, tuple(ERRORS + 3.0))
+        mirrored = tuple(ERRORS[::-1])
         assert more - dte(self.FORM, LIST) == pytest.approx(3.0 * COS, abs=1e-9)
         parts = dte(self.FORM, LIST) + dte(self.FORM, None, mirrored) - dte(self.FORM, NONE)
         assert dte(self.FORM, LIST, mirrored) == pytest.approx(parts, abs=1e-9)
@@ -154,8 +156,10 @@ OWN = {
 def test_first_law_holds_over_the_period_with_the_moment_of_eccentric_gears(name):
     pair = unlike_pair(name).with_(OWN[name])
     pushed = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
-    g, found = pair.geometry, pushed.attrs
-    driving, braking = pair.operating.pinion_torque * g.omega_pinion, found["brake_torque"] * g.omega_gear
+    g = pair.geometry
+    found = pushed.attrs
+    driving = pair.operating.pinion_torque * g.omega_pinion
+    braking = found["brake_torque"] * g.omega_gear
     lost = found["power_sliding"] + found["power_tooth_dampers"] + found["power_bearings"]
     # Steps of the default length leave 2e-5 of the loss where tips jump in and out under heavy relief.
     assert driving - braking == pytest.approx(lost, rel=1e-4)
@@ -181,8 +185,10 @@ def test_power_without_friction_goes_into_dampers_and_bearings(eccentric):
     pair = unlike_pair("larger_gear_drives_contact_lost").with_(
         {"friction.law": "none", "operating.pinion_speed": 900, **mounted}
     )
-    found, g = lumped.steady_state(pair, samples_per_cycle=8).attrs, pair.geometry
-    driving, braking = pair.operating.pinion_torque * g.omega_pinion, found["brake_torque"] * g.omega_gear
+    found = lumped.steady_state(pair, samples_per_cycle=8).attrs
+    g = pair.geometry
+    driving = pair.operating.pinion_torque * g.omega_pinion
+    braking = found["brake_torque"] * g.omega_gear
     lost = found["power_tooth_dampers"] + found["power_bearings"]
     # Steps leave 2e-3 of the losses where pairs touch inside them.
     assert driving - braking == pytest.approx(lost, rel=0.01)
@@ -192,9 +198,11 @@ def test_power_without_friction_goes_into_dampers_and_bearings(eccentric):
 def test_a_transient_settles_to_the_periodic_motion_and_stays_on_it(name):
     first = {} if "mounting" in str(OWN[name]) else {"mesh.first_teeth": [3, 1]}
     pair = unlike_pair(name).with_(OWN[name] | first)
-    period, cycles = lumped.revolution(pair), 150
+    period = lumped.revolution(pair)
+    cycles = 150
     steady = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=8)
-    size, force = np.ptp(steady.dte.values), pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    size = np.ptp(steady.dte.values)
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     for initial, left in (("periodic", 0), ("static", 100)):
         run = lumped.simulate(pair, cycles, contact="unilateral", samples_per_cycle=8, initial=initial)
         assert (run.sizes["time"], run.attrs["teeth"]) == (cycles * 8 + 1, "as given")
@@ -211,11 +219,14 @@ class TestEccentricGears:
     def test_line_of_action_of_base_circles_off_their_axes(self, unequal):
         # Exact: both base circles and their inner tangent, from the distance of the centres.
         g = unequal.geometry
-        radius, eps, turn = g.base_radius_pinion + g.base_radius_gear, 2e-9, 0.83
+        radius = g.base_radius_pinion + g.base_radius_gear
+        eps = 2e-9
+        turn = 0.83
 
         def line(u):
             """Length of the line of action [m] and its angle [rad]; u along and off it."""
-            along, off = g.L_XY - u[0], radius - u[1]
+            along = g.L_XY - u[0]
+            off = radius - u[1]
             length = np.sqrt(along**2 + off**2 - radius**2)
             return length, np.arctan2(off, along) - np.arctan2(radius, length)
 
@@ -224,10 +235,12 @@ class TestEccentricGears:
         ):
             turning = np.zeros(2, TURNING)
             turning["cycles"] = 25, 31
-            turning["amplitude"][which], turning["start"][which] = eps, turn - 0.5
+            turning["amplitude"][which] = eps
+            turning["start"][which] = turn - 0.5
             own = mesh_tables(ToothLaws(unequal), 1.0, 1)
             own.turned[0, 0, which] = np.cos(0.5), np.sin(0.5)
-            own, moved = own._replace(turning=turning, lengthening=0.0), np.zeros(1, LINE)
+            own = own._replace(turning=turning, lengthening=0.0)
+            moved = np.zeros(1, LINE)
             starts = np.zeros((2, 2))
             starts[which] = eps * np.cos(turn - 0.5), eps * np.sin(turn - 0.5)
             gap, _ = line_at(0, 0, own, starts, moved)
@@ -238,7 +251,8 @@ class TestEccentricGears:
 
     def test_an_eccentric_gear_makes_small_sidebands_where_a_list_of_steps_makes_large_ones(self, loaded):
         staircase = 20.0 / COS * np.cos(2.0 * np.pi * np.arange(28) / 28)
-        turning, listed = {"pinion.mounting": {"eccentricity": 20}}, {"pinion.deviations": steps(staircase)}
+        turning = {"pinion.mounting": {"eccentricity": 20}}
+        listed = {"pinion.deviations": steps(staircase)}
         side = {}
         for name, change in (("turning", turning), ("steps", listed)):
             run = settled_motion(loaded.with_(change), SAMPLES, steps=160)
@@ -252,7 +266,8 @@ class TestEccentricGears:
 
 def inside(pair, found):
     """Gap of each pair at each output, whether it carries away from the tips, and k of a rectangular pair."""
-    g, teeth = pair.geometry, (found.pinion_tooth.values - 1, found.gear_tooth.values - 1)
+    g = pair.geometry
+    teeth = (found.pinion_tooth.values - 1, found.gear_tooth.values - 1)
     phase = found.phase.values if "phase" in found.coords else found.time.values / g.mesh_period
     ahead = found.sizes["pair"] - 2 - np.arange(found.sizes["pair"])  # the last one is behind A
     position = g.L_XA + ((phase + 1e-12) % 1.0 + ahead[:, None]) * g.base_pitch
@@ -293,7 +308,8 @@ class TestOfEveryPair:
     def test_a_sloping_profile_is_read_where_the_swing_of_the_free_train_has_moved_the_contact(self, loaded):
         slopes = {"profile_slope": [8.0] * 28, "first_order": "steps"}
         mounted = {"eccentricity": 20, "phase": 50}
-        pair, way = loaded.with_({"pinion.deviations": slopes, "pinion.mounting": mounted}), 3.0
+        pair = loaded.with_({"pinion.deviations": slopes, "pinion.mounting": mounted})
+        way = 3.0
         own = mesh_tables(ToothLaws(pair), 1.0 / 32, 1)
         own.turning["swing"][0] = way
         moved, loads = static_loads(own, 0, 28)
@@ -308,7 +324,8 @@ class TestOfEveryPair:
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
         laws = ToothLaws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
-        own, x = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2]), (np.arange(2000) + 0.5) / 2000
+        own = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2])
+        x = (np.arange(2000) + 0.5) / 2000
         shape = (28, *own.position.shape[:2])
         form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
         fill_linear_form(own, 0, form)

@@ -70,7 +70,8 @@ def reference():
 )
 def test_order_is_twice_the_stages(stages, angles):
     exact = reference()
-    steps, errors = [], []
+    steps = []
+    errors = []
     for angle in angles:
         maps = step_maps(SMOOTH, EXTRA, step_angle=angle, stages=stages)
         steps.append(maps.edges.size - 1)
@@ -115,7 +116,8 @@ class TestSteps:
         assert off.max() < 1e-12 * system.period
         assert set(system.cycle.edges) <= set(edges)  # bit for bit: a step must not straddle a switch
         assert np.all(np.diff(edges) > 0)
-        pieces, breaks = np.diff(system.cycle.breaks), system.cycle.breaks[1:-1]
+        pieces = np.diff(system.cycle.breaks)
+        breaks = system.cycle.breaks[1:-1]
         passed = np.abs(edges[:, None] - breaks).min(axis=0) > 1e-12 * system.period
         step = np.diff(edges)[np.searchsorted(edges, breaks) - 1]
         assert passed.any()

@@ -29,14 +29,17 @@ def difference(seconds: float) -> float:
     run = run_up(PAIR, (2000, 4000), seconds)
     system = periodic_system(PAIR.with_(speed=2000), "full")
     brake = spurcheck.steady_state(PAIR.with_(speed=2000)).attrs["brake_torque"]
-    first, count, inner = 2000 * 28 / 60, run.sizes["time"], 6
+    first = 2000 * 28 / 60
+    count = run.sizes["time"]
+    inner = 6
     phase = np.arange(2 * inner * (count - 1) + 1) / (2 * inner * 32)  # two places a step, 6 steps an output
     duration = 1.0 / np.sqrt(first**2 + 2 * first / seconds * phase)
     at = phase % 1.0 * system.period
     a = system.matrices(at) * duration[:, None, None]
     b = (system.forcing(at) + brake * system.torque_gear) * duration[:, None]
     state = np.array([float(run[name][0]) for name in system.state_names])
-    states, h = [state], 1.0 / (inner * 32)
+    states = [state]
+    h = 1.0 / (inner * 32)
     for j in range(0, phase.size - 2, 2):
         k1 = a[j] @ state + b[j]
         k2 = a[j + 1] @ (state + h / 2 * k1) + b[j + 1]
@@ -49,7 +52,8 @@ def difference(seconds: float) -> float:
 
 
 def test_coefficients_that_stay_for_a_cycle_err_by_the_speed_of_the_ramp():
-    fast, slow = difference(0.025), difference(0.05)
+    fast = difference(0.025)
+    slow = difference(0.05)
     assert slow < 0.02
     assert slow == pytest.approx(fast / 2, rel=0.15)  # first order in the change of speed per mesh cycle
 

@@ -32,7 +32,8 @@ def test_the_period_closes(published, speed):
     ahead = simulate(pair, 2, samples_per_cycle=32, initial=start)
     scale = float(np.abs(run["dte"]).max())
     for variable in MOTION:
-        again, once = ahead[variable].to_numpy()[32:64], run[variable].to_numpy()
+        again = ahead[variable].to_numpy()[32:64]
+        once = run[variable].to_numpy()
         # The transient errs by 1e-10 of the largest deflection a step, some hundred steps a cycle.
         assert np.abs(again - once).max() <= 1e-8 * scale, variable
 
@@ -121,7 +122,8 @@ def test_a_stability_boundary_is_refused(published):
     )
     # y is a plain oscillator: its multiplier is at +1 where a whole number of periods fits the mesh cycle.
     mass = periodic_system(stiff, "full").structure.mass[4]
-    stiffness, teeth = published.bearings.pinion.oloa_stiffness, published.pinion.teeth
+    stiffness = published.bearings.pinion.oloa_stiffness
+    teeth = published.pinion.teeth
     speed = math.sqrt(stiffness / mass) * 60 / (2 * math.pi * teeth) / 3
     with pytest.raises(NumericalError, match="Change the speed slightly or add damping"):
         steady_state(stiff.with_(operating__pinion_speed=speed), samples_per_cycle=8)

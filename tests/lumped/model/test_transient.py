@@ -68,7 +68,8 @@ def test_an_adaptive_method_between_the_switches_finds_the_same(name):
     pair = unlike_pair(name).with_(shafts=None)  # where a pair touches follows from the load
     run = simulate(pair, 2, samples_per_cycle=16)
     system = periodic_system(pair, "full")
-    state, scale = states(run)[0], np.abs(states(run)).max(axis=0)
+    state = states(run)[0]
+    scale = np.abs(states(run)).max(axis=0)
     brake = periodic_cycle(pair, 8).brake_torque  # by moments, as the equations have it
     for _ in range(2):
         for low, high in itertools.pairwise(system.cycle.edges):

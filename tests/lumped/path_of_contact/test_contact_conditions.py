@@ -9,7 +9,8 @@ ROUNDING = 1e-9  # positions cancel some digits of lengths
 
 
 def test_a_profile_shows_the_contact_under_its_names(unlike):
-    found, path = friction_profile(unlike, 9), contact_path(unlike)
+    found = friction_profile(unlike, 9)
+    path = contact_path(unlike)
     names = ("hertz_pressure", "half_width", "sliding_velocity", "entraining_velocity", "film_thickness",
              "film_parameter", "slide_to_roll")  # fmt: skip
     for name in names:
@@ -19,7 +20,8 @@ def test_a_profile_shows_the_contact_under_its_names(unlike):
 def test_ranges_see_every_quantity_in_its_unit(unlike):
     """A pair that leaves all ranges at once: the numbers in the violations are those of the contact."""
     away = unlike.with_(speed=3.0, torque=0.02, viscosity=0.5)
-    by_hand, expected = Contact(away), {}
+    by_hand = Contact(away)
+    expected = {}
     expected["viscosity"] = (0.5, 0.5)
     expected["pressure"] = tuple(1e-9 * value for value in (by_hand.pressure.min(), by_hand.pressure.max()))
     expected["mean_rolling_velocity"] = tuple(

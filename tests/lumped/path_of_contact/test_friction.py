@@ -35,13 +35,15 @@ def free(unlike):
 
 
 def direct(pair, law, xi):
-    path, settings = contact_path(pair), pair.friction
+    path = contact_path(pair)
+    settings = pair.friction
     return LAWS[law].signed(xi, path, settings)
 
 
 def test_average_of_coulomb_is_benedict_kelleys(free):
     # the paper's mu_avg; quadrature of the law itself, with the pitch point and the bounds as end points
-    path, g = contact_path(free), geometry(free)
+    path = contact_path(free)
+    g = geometry(free)
 
     def law(xi):
         return abs(float(direct(free, "benedict_kelley", np.array(xi))))

@@ -8,7 +8,9 @@ from lumped.quasi_static import static_transmission_error
 from lumped.quasi_static.loaded import StaticMesh
 from lumped.stiffness.finite_elements import elastic_teeth, self_compliance
 
-NEAR, FAR = 0.003, 0.008  # of a mesh with half as many freedoms, between few loads; of other end positions
+# of a mesh with half as many freedoms, between few loads; of other end positions
+NEAR = 0.003
+FAR = 0.008
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +28,8 @@ def test_stiffness_is_that_of_another_program(nasa, free):
 
 
 def test_the_matrix_is_symmetric_and_makes_the_mesh_stiffness(nasa, free):
-    matrix, both = free.compliance.values, free.compliance.values[:, 1, 1] > 0.0
+    matrix = free.compliance.values
+    both = free.compliance.values[:, 1, 1] > 0.0
     assert np.array_equal(matrix, matrix.transpose(0, 2, 1))
     (a, w), (_, d) = np.moveaxis(matrix[both], 0, -1)
     assert free.mesh_stiffness.values[both] == pytest.approx((a + d - 2.0 * w) / (a * d - w * w), rel=1e-12)
@@ -53,7 +56,8 @@ def test_the_transmission_error_takes_the_whole_matrix(nasa, free):
     assert force / apart.transmission_error.values[0, 1::2] == pytest.approx(alone, rel=1e-9)
     # Loaded contact, where no tip corner touches: one pair is the same; of two that share evenly each
     # contact is softer by D ln 2, as it is taken at half the load.
-    mesh, one = StaticMesh(pair), free.compliance.values[:, 1, 1] == 0.0
+    mesh = StaticMesh(pair)
+    one = free.compliance.values[:, 1, 1] == 0.0
     alone, evenly = (int(np.flatnonzero(row)[row.sum() // 2]) for row in (one, ~one))
     approach = mesh.approach(free.position.values[[alone, evenly], 0])
     softer = np.log(2.0) * mesh.law.softening / free.compliance.values[evenly, 0].sum()

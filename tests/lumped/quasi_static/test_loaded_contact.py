@@ -32,7 +32,9 @@ def solution(pair):
 @pytest.mark.parametrize("name", FORMS)
 def test_the_loads_of_the_fitted_laws_make_the_mean_load(name):
     pair = FORMS[name]
-    mesh, cycle, g = StaticMesh(pair), mesh_cycle(pair), lumped.geometry(pair)
+    mesh = StaticMesh(pair)
+    cycle = mesh_cycle(pair)
+    g = lumped.geometry(pair)
     times = (np.arange(997) + 0.5) / 997 * cycle.period
     state = cycle.sample(times)
     delta = mesh.approach(g.L_XA + g.omega_pinion * g.base_radius_pinion * times)
@@ -43,12 +45,14 @@ def test_the_loads_of_the_fitted_laws_make_the_mean_load(name):
 
 def test_pairs_two_pitches_apart_move_each_other_too():
     pair = FORMS["contact_ratio_2_3_on_shafts"].with_(mesh__stiffness={"model": "energy", "hertz": "linear"})
-    mesh, g = StaticMesh(pair), lumped.geometry(pair)
+    mesh = StaticMesh(pair)
+    g = lumped.geometry(pair)
     last = 0.5 * (g.L_XA + g.L_XD) - g.base_pitch
     xi = last + np.arange(3) * g.base_pitch
     three = mesh.static(xi)
     assert three.load.min() > 0.0
-    w, far = mesh.neighbours[0](xi[:2]), float(mesh.neighbours[1](xi[0]))
+    w = mesh.neighbours[0](xi[:2])
+    far = float(mesh.neighbours[1](xi[0]))
     compliance = np.diag(1.0 / mesh.stiffness.extended(xi))
     compliance += np.array([[0.0, w[0], far], [w[0], 0.0, w[1]], [far, w[1], 0.0]])
     assert compliance @ three.load == pytest.approx(three.approach - three.gap, rel=1e-10)
@@ -111,9 +115,11 @@ def test_losses_by_place_are_those_of_an_independent_program(rpm, sliding, dampe
 def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
     """T_g = T_g(moments) + r_bg <sum H>: path forces by quadrature, losses by the power balance."""
     pair = FORMS[name].with_(mesh__stiffness={"model": "energy", "hertz": "linear"})
-    g, powers = lumped.geometry(pair), mean_powers(solution(pair))
+    g = lumped.geometry(pair)
+    powers = mean_powers(solution(pair))
     motion = lumped.steady_state(pair, samples_per_cycle=65536)
-    e, contact = mesh_elements(pair), loaded_contact(at_rest(pair))
+    e = mesh_elements(pair)
+    contact = loaded_contact(at_rest(pair))
     xi = motion["position"].to_numpy()
     pressed = motion["dte"].to_numpy() - contact.error(xi)
     touching = motion["contact"].to_numpy() > 0
@@ -121,7 +127,8 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
     elastic = e.stiffness(xi) * pressed
     path = elastic * contact.error.slope(xi) - 0.5 * e.stiffness.slope(xi) * pressed**2
     # Of what a damper does on the approach, it takes its load times the rate of the compression.
-    speed, rate = g.base_radius_pinion * g.omega_pinion, motion["dte_dot"].to_numpy()
+    speed = g.base_radius_pinion * g.omega_pinion
+    rate = motion["dte_dot"].to_numpy()
     compressing = e.closing(xi) * (rate - e.error_slope(xi) * speed)
     path += (motion["normal_load"].to_numpy() - elastic) * (rate - compressing) / speed
     by_path = np.where(touching, path, 0.0).sum(axis=0).mean() * g.base_radius_pinion * g.omega_pinion
@@ -142,7 +149,8 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
 
 @pytest.mark.parametrize("name", UNLIKE)
 def test_the_brake_of_unequal_gears_takes_what_no_loss_takes(name):
-    pair, powers = FORMS[name], mean_powers(solution(FORMS[name]))
+    pair = FORMS[name]
+    powers = mean_powers(solution(FORMS[name]))
     found = lumped.steady_state(pair, samples_per_cycle=16).attrs
     taken = found["brake_torque"] * lumped.geometry(pair).omega_gear
     assert found["power_energy_residual"] == 0.0
@@ -151,9 +159,12 @@ def test_the_brake_of_unequal_gears_takes_what_no_loss_takes(name):
 
 def test_the_damper_follows_the_gap_and_not_the_error_of_the_tangent():
     """Relief grows linearly over the roll angle, 23 um from 24 deg to the tip of the pinion."""
-    pair, g = FORMS["relief"], lumped.geometry(FORMS["relief"])
-    e, start = mesh_elements(pair), np.radians(24.0) * g.base_radius_pinion
-    xi, slope = start + 0.3 * (g.L_XD - start), 23e-6 / (g.L_XD - start)
+    pair = FORMS["relief"]
+    g = lumped.geometry(FORMS["relief"])
+    e = mesh_elements(pair)
+    start = np.radians(24.0) * g.base_radius_pinion
+    xi = start + 0.3 * (g.L_XD - start)
+    slope = 23e-6 / (g.L_XD - start)
     assert e.error_slope(xi) == pytest.approx(slope, rel=1e-7)
     # Hertz's contact: the tangent's error falls with the load.
     assert abs(e.error.slope(xi) / slope - 1.0) > 0.01

@@ -71,7 +71,10 @@ def test_the_gap_is_the_turn_that_brings_the_corner_onto_the_flank(end, beyond):
     _, g = relieved(**UNEQUAL)
     distance = beyond * g.base_pitch
     if end == "A":
-        r_flank, r_tip, start, xi = g.base_radius_pinion, g.base_radius_gear, g.L_XA, g.L_XA - distance
+        r_flank = g.base_radius_pinion
+        r_tip = g.base_radius_gear
+        start = g.L_XA
+        xi = g.L_XA - distance
     else:
         r_flank, r_tip, start, xi = (
             g.base_radius_gear, g.base_radius_pinion, g.L_XY - g.L_XD, g.L_XD + distance,
@@ -104,7 +107,8 @@ def test_the_reliefs_of_both_gears_over_their_own_roll_angles(name):
     xi = Contact(pair).xi
     expected = np.zeros(xi.size)
     for gear in ("pinion", "gear"):
-        own, hand = getattr(pair, gear).tip_relief, ByHand(pair, gear)
+        own = getattr(pair, gear).tip_relief
+        hand = ByHand(pair, gear)
         length = 1e3 * xi if gear == "pinion" else hand.line - 1e3 * xi
         start, end = math.degrees(own.start_roll_angle), hand.roll(hand.tip_length)
         share = np.maximum((np.degrees(length / hand.r_b) - start) / (end - start), 0.0)

@@ -74,7 +74,8 @@ def test_ideal_linear_relief_makes_the_error_constant_at_its_torque():
     # Amount F/k over the whole double contact: the reliefs add to F/k everywhere, so (F + k F/k)/2k = F/k.
     pair = plain()
     g = geometry(pair)
-    single, length = deflection(pair, 56.5), (g.contact_ratio - 1) * g.base_pitch
+    single = deflection(pair, 56.5)
+    length = (g.contact_ratio - 1) * g.base_pitch
     roll = np.rad2deg((g.L_XD - length) / g.base_radius_pinion)
     ideal = {"shape": "linear", "amount": single * 1e6, "start_roll_angle": roll}
     relieved = pair.with_(pinion__tip_relief=ideal, gear__tip_relief=ideal)

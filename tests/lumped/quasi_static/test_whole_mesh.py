@@ -43,7 +43,8 @@ def force(pair):
 @pytest.mark.parametrize("name", UNLIKE)
 def test_static_transmission_error_is_load_over_stiffness(name):
     """Contact ratios 1.1 to 2.3, with reliefs, with bores, at three torques: in proportion to the load."""
-    constant, curve = whole(name, 2.3e8), whole(name, lambda phase: wave(phase))
+    constant = whole(name, 2.3e8)
+    curve = whole(name, lambda phase: wave(phase))
     for pair, stiffness in ((constant, 2.3e8), (curve, wave(PHASES))):
         torques = pair.operating.pinion_torque * np.array([0.01, 1.0, 3.0])
         found = static_transmission_error(pair, torques, phases=64)["transmission_error"].to_numpy()
@@ -107,7 +108,9 @@ def test_errors_of_single_teeth_are_in_series_with_the_curve():
     index[4] = 3.0
     own = pair.with_({"pinion.deviations": {"index": index, "first_order": "steps"}})
     found, like = (lumped.static_sharing(one, samples_per_cycle=32) for one in (own, pair))
-    load, total, still = found["normal_load"].to_numpy(), force(own), force(own) / 2.3e8
+    load = found["normal_load"].to_numpy()
+    total = force(own)
+    still = force(own) / 2.3e8
     assert load.sum(axis=0) == pytest.approx(np.full(load.shape[1], total), rel=1e-9)
     # The share of a pair is the load without errors over that of the mesh, and repeats with every cycle.
     share = np.tile(like["normal_load"].to_numpy(), load.shape[1] // like.sizes["phase"]) / total

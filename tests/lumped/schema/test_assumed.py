@@ -25,10 +25,8 @@ def edited(name: str, old: str, new: str):
 
 def test_a_value_changed_in_the_file_is_known():
     """29/47 has four unlike bearings, all assumed; the line in [assumed] is left as it was."""
-    pair, other = (
-        load_gear_pair("high_contact_ratio_29_47"),
-        edited("high_contact_ratio_29_47", "loa_stiffness = 2.3e8 ", "loa_stiffness = 2.4e8 "),
-    )
+    pair = load_gear_pair("high_contact_ratio_29_47")
+    other = edited("high_contact_ratio_29_47", "loa_stiffness = 2.3e8 ", "loa_stiffness = 2.4e8 ")
     assert pair.state(FIELD) is State.ASSUMED
     assert other.state(FIELD) is State.KNOWN
     assert {**pair.assumed} == {**other.assumed, FIELD: 2.3e8}

@@ -10,7 +10,8 @@ from tests.guards.by_hand import ByHand
 
 def disc(pair, gear):
     """Ring from bore to reference circle: rho pi (r^2 - r_i^2) b and m (r^2 + r_i^2)/2."""
-    own, radius = getattr(pair, gear), 1e-3 * ByHand(pair, gear).r
+    own = getattr(pair, gear)
+    radius = 1e-3 * ByHand(pair, gear).r
     inner = 0.5 * own.bore
     mass = own.density * math.pi * (radius**2 - inner**2) * own.face_width
     return mass, 0.5 * mass * (radius**2 + inner**2)
@@ -37,7 +38,8 @@ def test_a_given_mass_or_inertia_is_that_of_its_gear_alone(unlike, gear, mate):
 
 @pytest.mark.parametrize(("which", "gear"), [(0, "pinion"), (1, "gear")])
 def test_a_flank_is_that_of_its_gear(unlike, which, gear):
-    found, hand = unlike.flank(which), ByHand(unlike, gear)
+    found = unlike.flank(which)
+    hand = ByHand(unlike, gear)
     assert found.tip == pytest.approx(1e-3 * hand.tip_length, rel=1e-9)
     assert found.start == pytest.approx(1e-3 * hand.start_length, rel=1e-9)
     assert found.youngs_modulus == getattr(unlike, gear).youngs_modulus

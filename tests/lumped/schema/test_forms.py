@@ -25,7 +25,8 @@ DRAWING = {"module": 2.5, "face_width": 20, "speed": 1450, "torque": 80}
 
 def ends(pair, gear):
     """Base radius, and roll lengths of the tip and of the mate's tip, from radii alone [mm]."""
-    g, mate = pair.geometry, {"pinion": "gear", "gear": "pinion"}[gear]
+    g = pair.geometry
+    mate = {"pinion": "gear", "gear": "pinion"}[gear]
     base, tip = (1e3 * getattr(g, f"{what}_radius_{gear}") for what in ("base", "tip"))
     mate_base, mate_tip = (1e3 * getattr(g, f"{what}_radius_{mate}") for what in ("base", "tip"))
     line = math.sqrt((1e3 * g.centre_distance) ** 2 - (base + mate_base) ** 2)
@@ -245,7 +246,8 @@ def test_a_kinematic_viscosity_is_no_dynamic_one(nasa):
         nasa.with_(viscosity="32 cSt")
     (problem,) = error.value.problems
     assert problem.field == "lubricant.viscosity"
-    inlet, law = re.findall(r"'([\d.]+ mPa\*s)'", problem.action), "iso_vg = '32 cSt', temperature = 70"
+    inlet = re.findall(r"'([\d.]+ mPa\*s)'", problem.action)
+    law = "iso_vg = '32 cSt', temperature = 70"
     assert law in problem.action
     assert nasa.with_(viscosity=inlet[0]).lubricant.dynamic_viscosity == pytest.approx(32e-6 * 870, rel=1e-4)
     grade = {"iso_vg": "32 cSt", "temperature": 40}
@@ -329,7 +331,8 @@ _KEYS = [
 
 @pytest.mark.parametrize(("key", "which"), _KEYS)
 def test_a_key_of_what_is_not_computed_has_its_sentence(key, which):
-    sentence, base = re.escape(LIMITS[which].sentence), unlike_pair("contact_ratio_2_3_on_shafts")
+    sentence = re.escape(LIMITS[which].sentence)
+    base = unlike_pair("contact_ratio_2_3_on_shafts")
     with pytest.raises(ParameterError, match=sentence):
         base.with_({key: 5})
     with pytest.raises(ParameterError, match=sentence):

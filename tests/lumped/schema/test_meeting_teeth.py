@@ -41,7 +41,8 @@ def test_every_pair_of_coprime_teeth_meets_and_28_of_784_of_like_numbers(nasa, u
 
 
 def test_a_flank_further_along_the_count_comes_late_on_the_pinion_and_early_on_the_gear(unequal):
-    along, behind = LIST[:23], [round(2.0 * math.cos(1.3 * j), 3) for j in range(38)]
+    along = LIST[:23]
+    behind = [round(2.0 * math.cos(1.3 * j), 3) for j in range(38)]
     # Numbered against the count the list is reversed with its sign.
     against = steps([-along[-j % 23] for j in range(23)], counted="against")
     found = tooth_gaps(unequal.with_({"pinion.deviations": against, "gear.deviations": steps(behind)}))
@@ -59,7 +60,8 @@ def test_first_harmonic_of_a_list_turns_as_an_eccentric_gear(nasa, which):
     turn = 2.0 * np.pi * np.arange(28) / 28
     index = 12.0 / np.cos(np.radians(20.0)) * np.cos(turn + 0.7)
     pair = nasa.with_({f"{which}.deviations": {"index": list(index)}})
-    found, g = tooth_gaps(pair), pair.geometry
+    found = tooth_gaps(pair)
+    g = pair.geometry
     assert found[f"{which}_error"].values == pytest.approx(0.0, abs=1e-20)
     assert found.attrs[f"{which}_eccentricity"] == pytest.approx(12e-6, rel=1e-12)
     at_pitch_point = found.attrs[f"{which}_phase"] + (g.L_XP - g.L_XA) / g.base_radius_pinion

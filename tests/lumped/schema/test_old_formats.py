@@ -22,7 +22,8 @@ def saved(tmp_path: Path, text: str) -> Path:
 @pytest.mark.parametrize("head", ["format = 1\n", ""])
 @pytest.mark.parametrize("name", ["rack_25_degrees_always_pushing", "unlike_teeth_finite_elements"])
 def test_tips_of_an_old_file_are_full_and_it_says_what_they_are_today(tmp_path, name, head):
-    today, text = unlike_pair(name), TEXTS[name].replace("format = 1\n", head, 1)
+    today = unlike_pair(name)
+    text = TEXTS[name].replace("format = 1\n", head, 1)
     with pytest.warns(OldFormatWarning, match="tips are not altered") as caught:
         old = load_gear_pair(saved(tmp_path, text))
     assert f"{1e3 * today.tip_alteration:.4g} mm" in str(caught[0].message)

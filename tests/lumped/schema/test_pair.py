@@ -79,7 +79,8 @@ class TestVariations:
     def test_only_the_named_field_changes(self, nasa):
         varied = nasa.with_(bearings__gear__loa_stiffness=2e8)
         assert varied.bearings.gear.loa_stiffness == 2e8
-        data, expected = varied.to_mapping(), nasa.to_mapping()
+        data = varied.to_mapping()
+        expected = nasa.to_mapping()
         del data["sources"], expected["sources"]
         expected["bearings"]["gear"]["loa_stiffness"] = 2e8
         del expected["assumed"]["bearings.gear.loa_stiffness"]
@@ -237,7 +238,8 @@ def _violations(value, node, root):
     node = root["$defs"][node["$ref"].rsplit("/", 1)[1]] if "$ref" in node else node
     unions = node.get("anyOf") or node.get("oneOf") or ()
     wrong = ["no alternative"] if unions and all(_violations(value, one, root) for one in unions) else []
-    numbers, kind = (int, float), node.get("type")
+    numbers = (int, float)
+    kind = node.get("type")
     types = {"object": dict, "array": (list, tuple), "string": str, "null": type(None), None: object}
     if not isinstance(value, types.get(kind, numbers)) or (kind == "integer" and value % 1):
         return [f"{value!r} is no {kind}"]

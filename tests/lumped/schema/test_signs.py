@@ -27,7 +27,8 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
         deviations = {f"{gear}.deviations": {"index": index, "first_order": "steps"}}
         return lumped.static_sharing(pair.with_(deviations), samples_per_cycle=32)
 
-    plain, found = error(0.0), error(1.0)
+    plain = error(0.0)
+    found = error(1.0)
     change = (found["transmission_error"] - plain["transmission_error"]).to_numpy().ravel()
     # Tooth 3 comes to A after two mesh cycles. It carries alone in the last third of the cycle that follows.
     carrying = (plain["normal_load"].to_numpy() > 0.0).sum(axis=plain["normal_load"].dims.index("pair"))

@@ -23,14 +23,18 @@ def shafted(unequal, shaft_tables):
 
 def _on_short_shafts(pair):
     """Short, light and stiff shafts, each in one bearing under its gear with its springs and dampers."""
-    b, changes = bodies(pair), {"shafts": {"damping_ratio": 0}}
+    b = bodies(pair)
+    changes = {"shafts": {"damping_ratio": 0}}
     own = 10 * math.pi * 0.01**2 * 0.02  # of the shaft, which is taken off the gear
     for name in GEARS:
-        mass, inertia = getattr(b, f"mass_{name}"), getattr(b, f"inertia_{name}")
+        mass = getattr(b, f"mass_{name}")
+        inertia = getattr(b, f"inertia_{name}")
         changes |= {f"{name}.mass": mass - own, f"{name}.inertia": inertia - 0.5 * own * 0.01**2}
-        springs, bearing = getattr(pair.bearings, name), {"position": 10, "tilt_stiffness": 1e9}
+        springs = getattr(pair.bearings, name)
+        bearing = {"position": 10, "tilt_stiffness": 1e9}
         for d in ("loa", "oloa"):
-            stiffness, ratio = getattr(springs, f"{d}_stiffness"), getattr(springs, f"{d}_damping_ratio")
+            stiffness = getattr(springs, f"{d}_stiffness")
+            ratio = getattr(springs, f"{d}_damping_ratio")
             bearing |= {f"{d}_stiffness": stiffness, f"{d}_damping": 2 * ratio * math.sqrt(stiffness * mass)}
         changes["shafts"][name] = {
             "segments": [{"length": 20, "diameter": 20}], "gear_position": 10, "bearings": [bearing],

@@ -26,11 +26,9 @@ def frequencies(mass, stiffness, held):
 def timoshenko(omega):
     """Wave numbers a (of cosh), b (of cos), and slope over deflection of each (Huang 1961)."""
     flexural = HOLLOW.youngs_modulus * HOLLOW.second_moment
-    line, rotary, shear = (
-        HOLLOW.density * HOLLOW.area,
-        HOLLOW.density * HOLLOW.second_moment,
-        HOLLOW.shear_rigidity,
-    )
+    line = HOLLOW.density * HOLLOW.area
+    rotary = HOLLOW.density * HOLLOW.second_moment
+    shear = HOLLOW.shear_rigidity
     half = 0.5 * omega**2 * (line / shear + rotary / flexural)
     root = math.sqrt(0.25 * omega**4 * (line / shear - rotary / flexural) ** 2 + omega**2 * line / flexural)
     a, b = math.sqrt(root - half), math.sqrt(root + half)
@@ -43,8 +41,12 @@ def determinant(omega, ends):
     a, b, p, q = timoshenko(omega)
 
     def rows(z, end):
-        ch, sh, co, si = math.cosh(a * z), math.sinh(a * z), math.cos(b * z), math.sin(b * z)
-        w, psi = [ch, sh, co, si], [p * sh, p * ch, -q * si, q * co]
+        ch = math.cosh(a * z)
+        sh = math.sinh(a * z)
+        co = math.cos(b * z)
+        si = math.sin(b * z)
+        w = [ch, sh, co, si]
+        psi = [p * sh, p * ch, -q * si, q * co]
         bent = [p * a * ch, p * a * sh, -q * b * co, -q * b * si]
         sheared = [(a - p) * sh, (a - p) * ch, -(b - q) * si, (b - q) * co]
         return {"clamped": [w, psi], "free": [bent, sheared], "supported": [w, bent]}[end]
@@ -70,7 +72,8 @@ def test_frequencies_solve_the_exact_equation(ends):
 
 def test_statics_is_exact_and_steps_are_where_they_are():
     # Two sections, clamped at z = 0, a force at the end: sum of bending and shear of both.
-    thick, thin = Piece(0.05, 0.05, 0.0, 206e9, 0.3, 7850.0), Piece(0.03, 0.03, 0.01, 206e9, 0.3, 7850.0)
+    thick = Piece(0.05, 0.05, 0.0, 206e9, 0.3, 7850.0)
+    thin = Piece(0.03, 0.03, 0.01, 206e9, 0.3, 7850.0)
     mesh = beam([thick, thin], [], HIGHEST, 0.4)
     end = 2 * mesh.stations.size - 2
     force = np.zeros(mesh.mass.shape[0])
@@ -87,7 +90,8 @@ def test_statics_is_exact_and_steps_are_where_they_are():
     assert tube.shear_rigidity / (tube.shear_modulus * tube.area) == pytest.approx(2.6 / 4.9, rel=1e-8)
     # Mass and rotary inertia of the whole as of a rigid body.
     rigid = np.zeros(mesh.mass.shape[0])
-    rigid[: end + 2 : 2], rigid[1 : end + 2 : 2] = mesh.stations, 1.0
+    rigid[: end + 2 : 2] = mesh.stations
+    rigid[1 : end + 2 : 2] = 1.0
     masses = [piece.density * piece.area * piece.length for piece in (thick, thin)]
     about = sum(
         m * (place**2 + piece.length**2 / 12 + (piece.diameter**2 + piece.bore**2) / 16)
@@ -113,7 +117,8 @@ def shaft(**more):
 
 
 def test_torsion_of_two_and_three_inertias():
-    rod, disc = shaft(), Disc(1.0, 0.01, 0.005)
+    rod = shaft()
+    disc = Disc(1.0, 0.01, 0.005)
     piece = Piece(0.1, 0.02, 0.0, 206e9, 0.3, 10.0)
     spring = piece.shear_modulus * 2 * piece.second_moment / piece.length
     motor = CoupledInertia.model_validate({"position": 0, "inertia": 0.02, "coupling_stiffness": 1e4})
@@ -133,12 +138,16 @@ def test_torsion_of_two_and_three_inertias():
 
 def test_a_disc_whirls_at_the_frequencies_of_the_closed_form():
     # In the middle of a light rod the disc tilts by itself: Id w^2 - Jp Omega w - k = 0.
-    rod, disc, omega = shaft(), Disc(1.0, 0.01, 0.006), 3000.0
+    rod = shaft()
+    disc = Disc(1.0, 0.01, 0.006)
+    omega = 3000.0
     found = supported_shaft(rod, disc, None, 3e4)
     x, y = (modes.frequencies for modes in found.planes[:2])
     n = x.size
-    stiffness, gyroscopic = np.diag(np.append(x, y) ** 2), np.zeros((2 * n, 2 * n))
-    gyroscopic[:n, n:], gyroscopic[n:, :n] = omega * found.spin, -omega * found.spin.T
+    stiffness = np.diag(np.append(x, y) ** 2)
+    gyroscopic = np.zeros((2 * n, 2 * n))
+    gyroscopic[:n, n:] = omega * found.spin
+    gyroscopic[n:, :n] = -omega * found.spin.T
     state = np.block([[np.zeros((2 * n, 2 * n)), np.eye(2 * n)], [-stiffness, -gyroscopic]])
     values, vectors = np.linalg.eig(state)
     spring = 12 * 206e9 * math.pi * 0.02**4 / 64 / 0.2

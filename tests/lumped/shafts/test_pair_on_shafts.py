@@ -71,7 +71,9 @@ def test_every_form_is_the_same_system(shafted):
         np.testing.assert_array_equal(whole.A(time)[np.ix_(keep, keep)], other.A(time))
     assert not whole.A(time)[:, 0].any()  # the common rotation is felt by nobody
     # Opposite senses: the moments of the pinion's and the gear's shaft have opposite signs.
-    gyroscopic, owner, kind = whole.gyroscopic, whole.supports.modes.shaft, whole.supports.modes.kind
+    gyroscopic = whole.gyroscopic
+    owner = whole.supports.modes.shaft
+    kind = whole.supports.modes.kind
     np.testing.assert_array_equal(gyroscopic, -gyroscopic.T)
     signs = [
         np.trace(gyroscopic[np.ix_((owner == j) & (kind == 0), (owner == j) & (kind == 1))]) for j in (0, 1)
@@ -105,11 +107,15 @@ def resistance(pair, omega, direction="loa"):
 
     Damping is M Phi diag(2 zeta omega_i) Phi^T M, with all modes Phi of unit modal mass, and the dashpots.
     """
-    shaft, disc, motor = pair.shafts.pinion, discs(pair)[0], pair.shafts.motor
+    shaft = pair.shafts.pinion
+    disc = discs(pair)[0]
+    motor = pair.shafts.motor
     pieces = [Piece(s.length, s.diameter, s.bore, 206e9, 0.3, 7850.0) for s in shaft.segments]
     mesh = beam(pieces, [shaft.gear_position, *(b.position for b in shaft.bearings)], 1e5, 0.5)
-    gear, n = mesh.node(shaft.gear_position), mesh.twist_mass.shape[0]
-    stiffness, mass = mesh.stiffness.copy(), mesh.mass.copy()
+    gear = mesh.node(shaft.gear_position)
+    n = mesh.twist_mass.shape[0]
+    stiffness = mesh.stiffness.copy()
+    mass = mesh.mass.copy()
     mass[[2 * gear, 2 * gear + 1], [2 * gear, 2 * gear + 1]] += disc.mass, disc.tilting
     at = [2 * mesh.node(b.position) for b in shaft.bearings]
     stiffness[at, at] += [getattr(b, f"{direction}_stiffness") for b in shaft.bearings]
@@ -129,7 +135,8 @@ def resistance(pair, omega, direction="loa"):
 @pytest.mark.parametrize("frequency", [0.0, 60.0, 2600.0])
 def test_condensed_gears_feel_their_shafts(shafted, frequency):
     shafted = shafted.with_({"shafts.max_frequency": 50_000})
-    pair, omega = condensed_bearings(shafted, frequency), 2 * math.pi * frequency
+    pair = condensed_bearings(shafted, frequency)
+    omega = 2 * math.pi * frequency
     at = omega or 10.0
     turning = resistance(shafted, at)[1]
     assert -(at**2) * pair.pinion.inertia == pytest.approx(turning, rel=2e-3)

@@ -49,7 +49,8 @@ def test_gear_one_of_the_standard_is_the_smaller_where_it_is_driven():
 
 def test_the_contact_between_unlike_materials(unlike):
     """Linear: 2/pi sum((1 - nu^2)/E)/b. Weber and Banaschek: each gear with its own depth and material."""
-    by_hand, gears = Contact(unlike), (unlike.pinion, unlike.gear)
+    by_hand = Contact(unlike)
+    gears = (unlike.pinion, unlike.gear)
     xi = by_hand.xi[::40]
     plane = [(1.0 - one.poisson_ratio**2) / one.youngs_modulus for one in gears]
     linear = pair_compliance(unlike, xi, hertz="linear").hertz
@@ -74,7 +75,8 @@ def test_the_contact_between_unlike_materials(unlike):
 def test_each_body_twists_with_its_own_bore_width_and_material(unlike):
     """4 pi G b/(1/r_i^2 - 1/r_f^2), Lame."""
     for found, gear in zip(body_twist(unlike), ("pinion", "gear"), strict=True):
-        own, hand = getattr(unlike, gear), ByHand(unlike, gear)
+        own = getattr(unlike, gear)
+        hand = ByHand(unlike, gear)
         shear = own.youngs_modulus / (2.0 * (1.0 + own.poisson_ratio))
         radii = (0.5 * own.bore) ** -2 - (1e-3 * hand.r_f) ** -2
         assert found == pytest.approx(4.0 * math.pi * shear * own.face_width / radii, rel=1e-9)
@@ -86,7 +88,8 @@ def test_plane_strain_is_plane_stress_of_another_material():
     strained = elastic_teeth(pair.with_(pinion__poisson_ratio=0.3), "strain")[0]
     stressed = elastic_teeth(pair.with_(pinion__poisson_ratio=0.3 / 0.7), "stress")[0]
     length = np.linspace(strained.wheel.tooth.form_length, 22e-3, 5)[1:-1] / strained.wheel.tooth.module
-    found, expected = strained.flank.deflection(length), stressed.flank.deflection(length)
+    found = strained.flank.deflection(length)
+    expected = stressed.flank.deflection(length)
     assert found == pytest.approx(expected, rel=1e-12)
 
 

@@ -44,7 +44,8 @@ def test_the_foundation_is_the_published_formula_without_its_twist():
 @pytest.mark.parametrize("bore", [1.0, 15.0, 30.0])
 def test_a_bore_leaves_the_tooth_stiffness(bore):
     # With the twist of the body in it, 15 mm took 41 % off the mean and 1 mm 99.4 %.
-    solid, bored = energy_pair(), energy_pair(**{"pinion.bore": bore, "gear.bore": bore})
+    solid = energy_pair()
+    bored = energy_pair(**{"pinion.bore": bore, "gear.bore": bore})
     xi = np.linspace(solid.geometry.L_XA, solid.geometry.L_XD, 9)[1:-1]
     assert pair_stiffness(bored)(xi) == pytest.approx(pair_stiffness(solid)(xi), rel=1e-14)
 
@@ -52,7 +53,8 @@ def test_a_bore_leaves_the_tooth_stiffness(bore):
 def test_the_body_twists_as_a_round_bar_between_two_circles():
     # Shear stress T/(2 pi r^2 b) over the radius: the angle is the integral of T/(2 pi G b r^3).
     pair = energy_pair(**{"gear.bore": 15.0, "gear.face_width": 9.0})
-    root, shear_modulus = pair.wheels[1].tooth.root_radius, 206e9 / 2.6
+    root = pair.wheels[1].tooth.root_radius
+    shear_modulus = 206e9 / 2.6
     angle = quad(lambda r: 1 / (2 * math.pi * shear_modulus * 9e-3 * r**3), 7.5e-3, root, epsabs=0.0)[0]
     pinion, gear = body_twist(pair)
     assert pinion == math.inf
@@ -62,7 +64,8 @@ def test_the_body_twists_as_a_round_bar_between_two_circles():
 def test_scaling_to_iso():
     pair = energy_pair()
     scaled = pair.with_(mesh__stiffness={"model": "energy", "hertz": "linear", "scale": "iso6336"})
-    found, k = lumped.mesh_stiffness(scaled).attrs, pair_stiffness(pair)
+    found = lumped.mesh_stiffness(scaled).attrs
+    k = pair_stiffness(pair)
     assert found["mean"] == pytest.approx(found["iso_mean"], rel=1e-12)
     xi = np.linspace(*k.interval, 50)[1:-1]
     assert np.ptp(pair_stiffness(scaled)(xi) / k(xi)) < 1e-12
@@ -100,7 +103,8 @@ def test_every_pair_that_can_mesh_has_a_stiffness(teeth, pressure_angle, fillet,
     assert np.all((k > 0.5) & (k < 21.2 * 1.1 * 4 / 3))
 
 
-E, NU = 206e9, 0.3
+E = 206e9
+NU = 0.3
 
 
 class BaseCircleTooth(ToothProfile):
@@ -119,7 +123,9 @@ def test_deflection_of_a_published_gear_pair():
     # modification, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10: 27/35 teeth, m 3 mm, b 25 mm, E 206 GPa, 80 kW
     # at 2000 rpm; the authors' program gives F/min(k) = 43.881 um in single contact. Their tooth stands on
     # the base circle, their body has h_f = 5, theta_f of the base circle, and S_f = theta_f m (z - 2.334).
-    teeth, module, width = (27, 35), 3e-3, 25e-3
+    teeth = (27, 35)
+    module = 3e-3
+    width = 25e-3
     profiles = [tooth(z, module) for z in teeth]
     tangents = [
         math.sqrt((0.5 * module * (z + 2)) ** 2 - p.base_radius**2)
@@ -131,7 +137,8 @@ def test_deflection_of_a_published_gear_pair():
     compliance = np.full(xi.shape, linear_hertz_compliance((E, E), (NU, NU)))
     for z, profile, length in zip(teeth, profiles, (xi, between - xi), strict=True):
         beam = beam_compliance(profile, length, E, NU)
-        angle, theta = profile.involute_points(length)[3], profile.base_half_angle
+        angle = profile.involute_points(length)[3]
+        theta = profile.base_half_angle
         l_, m_, p_, q_ = coefficients(5.0, theta)
         lever = profile.base_radius * (1 / np.cos(angle) - math.cos(theta)) / (theta * module * (z - 2.334))
         body = np.cos(angle) ** 2 / E * (l_ * lever**2 + m_ * lever + p_ * (1 + q_ * np.tan(angle) ** 2))
@@ -175,7 +182,8 @@ def test_tooth_and_body_deflect_as_in_finite_elements(teeth, ratio):
     changes = {"pinion.teeth": teeth, "gear.teeth": teeth, "centre_distance": None, "basic_rack.module": 1.0}
     pair = load_gear_pair("nasa_28_28").with_({**changes, "pinion.tip_relief": None, "gear.tip_relief": None})
     tooth, _ = elastic_teeth(pair, "stress", "untwisted", ratio)
-    profile, e = tooth.wheel.tooth, tooth.material.youngs_modulus
+    profile = tooth.wheel.tooth
+    e = tooth.material.youngs_modulus
     tip = math.sqrt(tooth.wheel.tip_radius**2 - profile.base_radius**2)
     length = np.linspace(profile.form_length, tip, 9)[1:-1]
     _, h, _, angle = profile.involute_points(length)

@@ -15,7 +15,9 @@ from tests.unlike_pairs import unlike_pair
 
 #: On whose path of contact the tables are.
 BASE = unlike_pair("larger_gear_drives_contact_lost")
-LOW, HIGH, PEAK = 7.5e-3, 22.9e-3, 8e7
+LOW = 7.5e-3
+HIGH = 22.9e-3
+PEAK = 8e7
 ROUNDING = 1e-12  # of polynomials of degree 8 at arguments of order one
 
 
@@ -44,7 +46,8 @@ def test_rectangular_takes_its_parameter_or_isos():
         0.04723 + 0.15551 / 23 + 0.25791 / 38 - 0.00635 * 0.34 - 0.11654 * 0.34 / 23 - 0.00193 * -0.17
         - 0.24188 * -0.17 / 38 + 0.00529 * 0.34**2 + 0.00182 * 0.17**2
     )  # fmt: skip
-    basic_rack, moduli = 1.0 + 0.02 * 5.0, 2 * 206 * 172 / (206 + 172) / 206
+    basic_rack = 1.0 + 0.02 * 5.0
+    moduli = 2 * 206 * 172 / (206 + 172) / 206
     by_hand = 0.8 * basic_rack * moduli / q * 18 * 1e6
     assert pair_stiffness(pair).mean() == pytest.approx(by_hand, rel=1e-12)
 
@@ -92,7 +95,8 @@ def test_the_shortest_ramp_is_all_but_a_jump(model):
         pair = with_model(model=model, ramp_length=ramp)
         return pair_stiffness(pair)
 
-    shortest, jump = stiffness(1.6e-3), stiffness(0.0)
+    shortest = stiffness(1.6e-3)
+    jump = stiffness(0.0)
     middle = np.linspace(LOW + 2e-6, HIGH - 2e-6, 50)
     np.testing.assert_allclose(shortest(middle), jump(middle), rtol=1e-10)
 
@@ -145,7 +149,8 @@ def test_worked_example_of_the_standard():
     # The ratio does not carry them: c'/c'_th = 0.8 * 0.9 * cos(15.8 deg), to the printed digits.
     assert single / theory == pytest.approx(12.37047 / 17.85584, rel=2e-6)
     # Transverse contact ratio of the example's gears with standard addendum m_n (1 + x).
-    beta, m = math.radians(15.8), 8.0
+    beta = math.radians(15.8)
+    m = 8.0
     alpha_t = math.atan(math.tan(math.radians(20.0)) / math.cos(beta))
     r = [0.5 * z * m / math.cos(beta) for z in (17, 103)]
     base = [value * math.cos(alpha_t) for value in r]

@@ -59,7 +59,8 @@ def contact(numbers, t, q, v=None, flags=ALL):
 
 def states(numbers, number, flank=kn.DRIVE):
     """Times and states with the flanks pressed by 5 to 30 um and the centres off by some um."""
-    rng, p = np.random.default_rng(4), numbers.parameters
+    rng = np.random.default_rng(4)
+    p = numbers.parameters
     turned = 0.0 if flank == kn.DRIVE else PAIRS["parabolic"].geometry.normal_backlash
     for _ in range(number):
         q = rng.uniform(-3e-6, 3e-6, 6)
@@ -72,7 +73,9 @@ def test_the_wrench_is_minus_the_gradient_of_the_energy(name, flank):
     numbers = machine(PAIRS[name], ALL)
     length = np.array([1.0, 1.0, numbers.parameters[kn.RADIUS_P]] * 2)
     length[5] = numbers.parameters[kn.RADIUS_G]
-    beyond, worst, pressing = 0, [], []
+    beyond = 0
+    worst = []
+    pressing = []
     for t, q in states(numbers, 150, flank):
         wrench, found = contact(numbers, t, q)
         pressing += np.unique(found[found[:, kn.LOAD] > 0.0, kn.FLANK]).tolist()
@@ -94,7 +97,8 @@ def test_the_wrench_is_minus_the_gradient_of_the_energy(name, flank):
 
 @pytest.mark.parametrize(("name", "flank"), FLANKS)
 def test_action_is_reaction_in_force_and_moment(name, flank):
-    numbers, p = machine(PAIRS[name], ALL), machine(PAIRS[name], ALL).parameters
+    numbers = machine(PAIRS[name], ALL)
+    p = machine(PAIRS[name], ALL).parameters
     p[kn.DAMPING] = 30.0
     for t, q in states(numbers, 40, flank):
         w, found = contact(numbers, t, q, np.random.default_rng(1).normal(size=6) * 0.01)
@@ -130,11 +134,14 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
 def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(which, beyond):
     """Whatever the corner does, the flank it touches has its normal on its own base circle."""
     p = machine(PAIRS["parabolic"]).parameters
-    radii, tips, length = p[[kn.RADIUS_P, kn.RADIUS_G]], p[[kn.TIP_P, kn.TIP_G]], p[kn.L_XY] + 1e-5
+    radii = p[[kn.RADIUS_P, kn.RADIUS_G]]
+    tips = p[[kn.TIP_P, kn.TIP_G]]
+    length = p[kn.L_XY] + 1e-5
     own = 0 if which == "pinion" else 1
     rho = np.full(2, length - tips[own] - beyond)
     rho[own] = tips[own] + beyond
-    line, wrench = kn.Line(1.0, 0.0, length, kn.DRIVE, *radii), np.zeros(6)
+    line = kn.Line(1.0, 0.0, length, kn.DRIVE, *radii)
+    wrench = np.zeros(6)
     found = kn.corners_at(line, *rho, tuple(tips), (0.0, 0.0))
     kn.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
     kn.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
@@ -151,16 +158,20 @@ def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(
 
 def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alone():
     """Also where it would pull: then the load is zero, and what the teeth store stays."""
-    numbers, seen = machine(PAIRS["relief"].with_(mesh__damping_ratio=0.1), ALL), set()
-    p, rng = numbers.parameters, np.random.default_rng(2)
+    numbers = machine(PAIRS["relief"].with_(mesh__damping_ratio=0.1), ALL)
+    seen = set()
+    p = numbers.parameters
+    rng = np.random.default_rng(2)
     full = GRADUAL * p[kn.NOMINAL_FORCE]
     for t, q in states(numbers, 200):
         q[2] *= rng.uniform(0.1, 1.0)
         v = rng.normal(size=6) * 0.3
         v[[2, 5]] /= p[kn.RADIUS_P]
-        still, found = contact(numbers, t, q)[1], contact(numbers, t, q, v)[1]
+        still = contact(numbers, t, q)[1]
+        found = contact(numbers, t, q, v)[1]
         assert np.array_equal(found[:, [kn.ELASTIC, kn.ENERGY]], still[:, [kn.ELASTIC, kn.ENERGY]])
-        by_damper, share = found[:, kn.LOAD] - found[:, kn.ELASTIC], found[:, kn.ELASTIC] / full
+        by_damper = found[:, kn.LOAD] - found[:, kn.ELASTIC]
+        share = found[:, kn.ELASTIC] / full
         assert np.all(by_damper * found[:, kn.OVERLAP_RATE] >= 0.0)
         assert found[:, kn.LOAD].min(initial=0.0) >= 0.0
         whole = p[kn.DAMPING] * np.sqrt(found[:, kn.K]) * np.abs(found[:, kn.OVERLAP_RATE])
@@ -177,7 +188,10 @@ def test_a_damper_takes_from_the_bodies_what_its_own_compression_does_on_it(name
     So its wrench times the velocities of the bodies, with their rotation, is minus the sum of N_d p'.
     """
     elastic, numbers = (machine(PAIRS[name].with_(mesh__damping_ratio=ratio), ALL) for ratio in (0.0, 0.1))
-    p, rng, h, beyond = numbers.parameters, np.random.default_rng(3), 1e-8, 0
+    p = numbers.parameters
+    rng = np.random.default_rng(3)
+    h = 1e-8
+    beyond = 0
     running = np.array([0.0, 0.0, -p[kn.OMEGA_P], 0.0, 0.0, p[kn.OMEGA_G]])
     for t, q in states(numbers, 150, flank):
         v = rng.normal(size=6) * ([2.0, 2.0, 0.03 / p[kn.RADIUS_P]] * 2)
@@ -196,13 +210,16 @@ def test_a_damper_takes_from_the_bodies_what_its_own_compression_does_on_it(name
 
 @pytest.mark.parametrize("share", [1e-4, 0.01, 0.3, 1.0, 5.0])
 def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
-    k, d, nominal = 8e7, 4.4e-10, 1353.0
+    k = 8e7
+    d = 4.4e-10
+    nominal = 1353.0
     pressed = share * nominal / k
 
     def energy(p, k):
         return stored_energy(elastic_load(p, k, d, nominal), k, 2e9, d, nominal)
 
-    load, slope = elastic_load(pressed, k, d, nominal), energy(pressed, k)[1]
+    load = elastic_load(pressed, k, d, nominal)
+    slope = energy(pressed, k)[1]
     h = 1e-6 * pressed
     up, down = (energy(pressed + s, k)[0] for s in (h, -h))
     assert (up - down) / (2 * h) == pytest.approx(load, rel=1e-7)
@@ -222,7 +239,8 @@ def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
 def test_the_stiffness_of_the_table_holds_at_the_mean_load():
     """The torque over the base radius of the pinion; the logarithm is cut off a thousandth below."""
     pair = PAIRS["Hertz"]
-    numbers, q = machine(pair, ALL), np.zeros(6)
+    numbers = machine(pair, ALL)
+    q = np.zeros(6)
     load = pair.operating.pinion_torque / numbers.parameters[kn.RADIUS_P]
     for _ in range(5):
         (record,) = contact(numbers, 0.85 * numbers.period, q)[1]
@@ -240,9 +258,12 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
     # The formula is of first order in dv/v, which is 0.7 % here; with four times the torque it is 3 % off.
     slow = {"operating.pinion_speed": 300.0, "operating.pinion_torque": 60.0, "mesh.damping_ratio": 0.2}
     pair = bare("rack_25_degrees_always_pushing", **ramp, **slow)
-    numbers, mesh = machine(pair), StaticMesh(pair)
-    p, radii = numbers.parameters, numbers.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
-    speed, mass = p[kn.OMEGA_P] * radii[0], (numbers.inertia / radii**2).sum()
+    numbers = machine(pair)
+    mesh = StaticMesh(pair)
+    p = numbers.parameters
+    radii = numbers.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+    speed = p[kn.OMEGA_P] * radii[0]
+    mass = (numbers.inertia / radii**2).sum()
     ripple = {}
     for acts in (False, True):  # the momentum stays in any motion, so the first one need not repeat
         move = multibody.steady_state if acts else partial(multibody.simulate, cycles=1)
@@ -258,10 +279,13 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
 @pytest.mark.parametrize("softening", [0.0, 4.4e-10])
 def test_neighbours_share_the_load_in_both_models(softening):
     """Each solves by its own means; and the conditions of contact themselves."""
-    rng, seen = np.random.default_rng(7), set()
+    rng = np.random.default_rng(7)
+    seen = set()
     for _ in range(2000):
-        n, nominal = int(rng.integers(1, 5)), 1353.0
-        k, pressed = rng.uniform(5e7, 1e8, n), rng.uniform(-5e-6, 2e-5, n)
+        n = int(rng.integers(1, 5))
+        nominal = 1353.0
+        k = rng.uniform(5e7, 1e8, n)
+        pressed = rng.uniform(-5e-6, 2e-5, n)
         w = rng.uniform(-1.5e-9, 4e-9, (n, n))
         w = np.tril(w, -1) + np.tril(w, -1).T
         loads = np.empty(n)
@@ -282,8 +306,10 @@ def test_neighbours_share_the_load_in_both_models(softening):
 
 
 def test_a_pair_that_cannot_lose_contact_pulls_and_still_moves_its_neighbour():
-    loads, w = np.empty(2), np.array([[0.0, 2e-9], [2e-9, 0.0]])
-    k, pressed = np.array([8e7, 6e7]), np.array([1e-5, -4e-6])
+    loads = np.empty(2)
+    w = np.array([[0.0, 2e-9], [2e-9, 0.0]])
+    k = np.array([8e7, 6e7])
+    pressed = np.array([1e-5, -4e-6])
     shared_loads(2, pressed, k, 0b11, w, 0.0, 1353.0, loads)
     assert loads == pytest.approx(np.linalg.solve(np.diag(1.0 / k) + w, pressed), rel=1e-12)
     assert loads[1] < 0.0

@@ -28,7 +28,8 @@ LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pai
 
 
 def forces(numbers, t, q, v, flags=ALL):
-    state, contacts = np.array([q, v, np.zeros(6)]), np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    state = np.array([q, v, np.zeros(6)])
+    contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
     count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
     assert count >= 0
     return state[2], contacts[:count]
@@ -100,7 +101,8 @@ def test_teeth_push_but_do_not_pull(rng):
 def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
     """Pressed flanks enter half an overlap later: the gear's flank ends at its tip, xi = L_XA + delta/2."""
     numbers = machine(prescribed("rack_25_degrees_always_pushing"))
-    p, delta = numbers.parameters, 2e-5
+    p = numbers.parameters
+    delta = 2e-5
     # Half the overlap from each gear, so that the contact point itself is not moved.
     q = np.array([0, 0, -delta / 2 / p[kn.RADIUS_P], 0, 0, -delta / 2 / p[kn.RADIUS_G]])
     t = np.linspace(0, 0.01, 2001) * numbers.period
@@ -121,11 +123,16 @@ def lumped_forces(setup, motion, pair):
 
     The friction coefficient is the law's own; the lumped model solves with a polynomial within 1e-10 of it.
     """
-    s, mesh, states = setup.system.structure, setup.system.cycle.sample(motion.time), motion.states
-    q, v, touch = states[:, :6], states[:, 6:], mesh.contact
+    s = setup.system.structure
+    mesh = setup.system.cycle.sample(motion.time)
+    states = motion.states
+    q = states[:, :6]
+    v = states[:, 6:]
+    touch = mesh.contact
     load = mesh.stiffness * (q @ s.deflection - mesh.error)
     load += mesh.damping * (v @ s.deflection - mesh.error_rate)
-    friction, law = np.zeros(load.shape), law_of(pair.friction)
+    friction = np.zeros(load.shape)
+    law = law_of(pair.friction)
     friction[touch] = load[touch] * law.signed(mesh.position[touch], contact_path(pair), pair.friction)
     force = np.outer(load.sum(0), s.normal) + (friction[..., None] * s.friction(mesh.position)).sum(0)
     force += np.outer((load * (0.0 if mesh.tilt is None else mesh.tilt)).sum(0), s.apart)
@@ -162,7 +169,8 @@ FIT = 1e-10
 def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
     changes = {"lubricant.viscosity_law": oil, "friction.law": "benedict_kelley"}
     pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed").with_(changes)
-    p, table = machine(pair).parameters, lumped.mesh_elements(pair).friction
+    p = machine(pair).parameters
+    table = lumped.mesh_elements(pair).friction
     xi = 0.3 * p[kn.L_XA] + 0.7 * p[kn.L_XP]
     assert nominal_friction(p, xi) == pytest.approx(float(table(xi)), abs=FIT)
 
@@ -176,7 +184,8 @@ def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
         ("contact_ratio_2_3_on_shafts", {}),
     ):
         at = prescribed(name).with_(**changes)
-        own, theirs = machine(at).switches, lumped.mesh_cycle(at).edges[:-1]
+        own = machine(at).switches
+        theirs = lumped.mesh_cycle(at).edges[:-1]
         np.testing.assert_allclose(own, theirs / lumped.geometry(at).mesh_period, rtol=0.0, atol=1e-9)
         found += own.size
     assert found > 10
@@ -188,7 +197,8 @@ def test_the_momentary_load_is_an_effect_of_its_own():
         pair = prescribed(name)
         p = machine(pair).parameters
         # The line load is that of the narrower face, which is the gear's in both.
-        xi, w = p[kn.L_XP] + 2e-3, p[kn.FRICTION + fr.NOMINAL_LOAD] * pair.gear.face_width
+        xi = p[kn.L_XP] + 2e-3
+        w = p[kn.FRICTION + fr.NOMINAL_LOAD] * pair.gear.face_width
 
         def mu(flags, normal, p=p, xi=xi):
             return signed_friction(p, flags, 1.0, xi, 1.0, 1.0, xi, p[kn.L_XY] - xi, normal)
@@ -202,9 +212,11 @@ def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     """Both gears turn by a half faster than nominal: in the contact core the law of that speed acts."""
     pair = prescribed("contact_ratio_2_3_on_shafts")
     faster = pair.with_(operating__pinion_speed=1.5 * pair.operating.pinion_speed * 30.0 / np.pi)
-    numbers, flags = machine(pair), effect_flags({"sliding_velocity"})
+    numbers = machine(pair)
+    flags = effect_flags({"sliding_velocity"})
     p = numbers.parameters
-    state, contacts = np.zeros((3, 6)), np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    state = np.zeros((3, 6))
+    contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
     state[0, 5] = -6e-5 / p[kn.RADIUS_G]  # presses the flanks
     state[1, [2, 5]] = -0.5 * p[kn.OMEGA_P], 0.5 * p[kn.OMEGA_G]
     count = contact_forces(0.3 * numbers.period, state, p, flags, numbers.table, contacts)

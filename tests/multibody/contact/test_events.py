@@ -32,14 +32,16 @@ def test_a_law_changes_at_a_break_by_the_jumps_of_value_slope_and_curvature():
     """x^2 on [0, 1], then 3 + x^2 + 2 (x - 1) on [1, 3], and on [3, 6] the same: nothing at 3."""
     powers = np.array([[1.0, 1.0, 1.0], [0.0, 4.0, 8.0], [0.0, 4.0, 16.0]])  # of the way since each break
     law = PathFunction(np.array([0.0, 1.0, 3.0, 6.0]), powers, np.array([1.0]))
-    step, largest = 0.1, 16.0
+    step = 0.1
+    largest = 16.0
     assert _change(law, 1, step) == pytest.approx((3.0 + 2.0 * step) / largest, rel=1e-12)
     assert _change(law, 2, step) == pytest.approx(0.0, abs=1e-15)
 
 
 def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
-    state, records = np.array([q, v, np.zeros(6)]), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    state = np.array([q, v, np.zeros(6)])
+    records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
     count = contact_forces(t, state, numbers.parameters, flags, numbers.table, records)
     return count, tuple(np.sign(records[:count, kn.MU]))
 
@@ -55,12 +57,16 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(name, effects, rng
     """Along the Taylor continuation of random vibrations, evaluated by the force core itself."""
     numbers = machine(jumps(name))
     flags = effect_flags(effects) & ~kn.BACK_SIDE
-    period, p = numbers.period, numbers.parameters
+    period = numbers.period
+    p = numbers.parameters
     seen = set()
     for t in rng.uniform(0.0, 3.0, size=120) * period:
-        q, v, a = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.02, rng.normal(size=6) * 200.0
+        q = rng.normal(size=6) * 1e-5
+        v = rng.normal(size=6) * 0.02
+        a = rng.normal(size=6) * 200.0
         q[[2, 5]] = -2e-5 / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])  # pressed by some 40 um
-        v[[2, 5]], a[[2, 5]] = v[[2, 5]] * 10, a[[2, 5]] * 10
+        v[[2, 5]] = v[[2, 5]] * 10
+        a[[2, 5]] = a[[2, 5]] * 10
         wait, _ = time_to_event(t, q, v, a, p, flags, numbers.table, numbers.events, 0.05 * period)
         assert 0.0 <= wait < period
         if wait > 0.04 * period:
@@ -88,7 +94,9 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(name, pairs):
     loaded = jumps(name)
     flags = effect_flags(None, "loaded")
     numbers = machine(loaded, flags)
-    p, table, period = numbers.parameters, numbers.table, numbers.period
+    p = numbers.parameters
+    table = numbers.table
+    period = numbers.period
     # The gears roll on each other, a little slower than nominal: their approach stays. It is so large that
     # the corner goes fast enough for its damper to let go.
     q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, p[kn.RADIUS_P] / p[kn.RADIUS_G]])

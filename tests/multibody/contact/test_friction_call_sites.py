@@ -19,7 +19,8 @@ def test_nominal_friction_is_the_lumped_models(unlike, law):
     """Law V reads the film thickness, and with it k and s of the oil; I and IV the mean of law II."""
     # Between A and D contact is the same in both forms; a constant stiffness is made at once.
     pair = unlike.with_(law=law, stiffness="rectangular", mesh__contact="prescribed", mesh__relief="ignored")
-    p, mu = machine(pair).parameters, friction_path_function(pair, warn=False)
+    p = machine(pair).parameters
+    mu = friction_path_function(pair, warn=False)
     xi = np.linspace(p[kn.L_XA], p[kn.L_XD], 23)[1:-1]
     found = [nominal_friction(p, float(one)) for one in xi]
     np.testing.assert_allclose(found, mu(xi), rtol=0.0, atol=FIT)

@@ -57,7 +57,8 @@ def contact(teeth, pose, flank):
 
 
 def wrench(teeth, pose, flank, normal, friction, pair=0):
-    arms, result = contact(teeth, pose, flank)[1], np.zeros(6)
+    arms = contact(teeth, pose, flank)[1]
+    result = np.zeros(6)
     kin.add_wrench(result, line_of(teeth, pose, flank), normal, friction, *arms[pair])
     return result
 
@@ -72,12 +73,16 @@ def contact_point(teeth, pose, flank, pair=0):
 @pytest.mark.parametrize("flank", FLANKS)
 def test_whole_machine_may_turn_and_shift(teeth, rng, flank):
     for _ in range(10):
-        pose, beta, shift = random_pose(teeth, rng, flank), rng.uniform(-3, 3), rng.uniform(-1, 1, 2)
+        pose = random_pose(teeth, rng, flank)
+        beta = rng.uniform(-3, 3)
+        shift = rng.uniform(-1, 1, 2)
         turn = np.array([[math.cos(beta), -math.sin(beta)], [math.sin(beta), math.cos(beta)]])
         moved = pose.copy()
-        moved[:2], moved[3:5] = turn @ pose[:2] + shift, turn @ pose[3:5] + shift
+        moved[:2] = turn @ pose[:2] + shift
+        moved[3:5] = turn @ pose[3:5] + shift
         moved[[2, 5]] += beta
-        w, w_moved = wrench(teeth, pose, flank, 100.0, 5.0), wrench(teeth, moved, flank, 100.0, 5.0)
+        w = wrench(teeth, pose, flank, 100.0, 5.0)
+        w_moved = wrench(teeth, moved, flank, 100.0, 5.0)
         # Angles of 20 rad carry rounding of 4e-15 rad, some 1e-16 m.
         assert overlap(teeth, moved, flank) == pytest.approx(overlap(teeth, pose, flank), abs=2e-15)
         np.testing.assert_allclose(turn @ w[:2], w_moved[:2], atol=1e-11)

@@ -42,7 +42,8 @@ def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples
     balance = multibody.power_balance(pair, cycles=4, initial=start)
     assert abs(balance.residual) < 1e-8 * balance.driving
     # A ripple at the actual angle of its shaft does the work A/n sin(n theta + phase).
-    given, rates = run.attrs, (pair.geometry.omega_pinion, pair.geometry.omega_gear)
+    given = run.attrs
+    rates = (pair.geometry.omega_pinion, pair.geometry.omega_gear)
     for name, torque, rate, work in (
         ("theta_p", given["pinion_torque"], rates[0], balance.driving),
         ("theta_g", given["brake_torque"], rates[1], balance.braking),
@@ -57,16 +58,19 @@ def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples
 def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which):
     # The lumped model has the arm from the point of contact on the tooth, this one from the line of action.
     pair = pair.with_({"mesh.backlash": 0, "mesh.first_teeth": [1, 5]})
-    g, flank = pair.geometry, pair.flank(which)
+    g = pair.geometry
+    flank = pair.flank(which)
     low, high, end = np.degrees(flank.start + np.array([2e-3, 4e-3, 6e-3])) / flank.wheel.tooth.base_radius
     tooth = (3, 7)[which]
     spall = {"kind": "spall", "tooth": tooth, "start_roll_angle": low, "end_roll_angle": high, "width": 3}
     pit = {**spall, "width": None, "pit_depth": 7}
-    crack, chip = {**CRACK, "tooth": tooth}, {"kind": "chip", "tooth": tooth, "roll_angle": end}
+    crack = {**CRACK, "tooth": tooth}
+    chip = {"kind": "chip", "tooth": tooth, "roll_angle": end}
     xi = np.linspace(g.L_XA, g.L_XD, 12)[1:-1]
     for fault in (crack, spall, pit, chip):
         own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
-        laws, p = ToothLaws(own), machine(own).parameters
+        laws = ToothLaws(own)
+        p = machine(own).parameters
         sound, faulty = (laws.of_kind(kind, xi) for kind in (0, 1))
         softer = 1.0 / faulty["stiffness"] - 1.0 / sound["stiffness"]
 
@@ -100,7 +104,8 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
     pinion turns on by the displacement before it pushes, and the gear lags. The gear is pushed at the back of
     its teeth. One that lies further along the count stands closer to the pinion, and the gear leads.
     """
-    pair, flags = unlike_pair("rack_25_degrees_always_pushing"), effect_flags(None, "loaded")
+    pair = unlike_pair("rack_25_degrees_always_pushing")
+    flags = effect_flags(None, "loaded")
 
     def approach(moved, cycle):
         """How far the pinion is turned against its running sense, at rest, until the teeth carry 5 kN [m]."""

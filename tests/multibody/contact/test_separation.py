@@ -45,7 +45,8 @@ def test_loads_never_pull_and_back_sides_strike():
     """Reversed torques drive the pair across its backlash, and torques as before drive it back."""
     pair = PAIR.with_(operating__pinion_speed=3000)
     setup = prepare(pair)
-    brake, static = setup.machine.torque_gear, 50 / lumped.geometry(pair).base_radius_pinion
+    brake = setup.machine.torque_gear
+    static = 50 / lumped.geometry(pair).base_radius_pinion
     _, q, v = record(setup, 5, 64)
     there, q, v = record(replace(setup, q=q, v=v).with_torques(-50.0, -brake), 10, 256)
     again, _, _ = record(replace(setup, q=q, v=v), 25, 256)

@@ -16,7 +16,8 @@ def drawings():
     random = np.random.default_rng(7)
     for number in range(50):
         teeth = tuple(int(n) for n in random.integers(22, 90, 2))
-        module, alpha = random.choice([1.25, 2.0, 4.0, 7.0]), random.choice([17.5, 20.0, 22.5])
+        module = random.choice([1.25, 2.0, 4.0, 7.0])
+        alpha = random.choice([17.5, 20.0, 22.5])
         reference = 0.5 * module * sum(teeth)
         changes = {"basic_rack.pressure_angle": alpha, "mesh.stiffness.model": "rectangular"}
         changes |= {"basic_rack.fillet_radius_coefficient": 0.2}
@@ -33,7 +34,8 @@ def drawings():
 def test_both_models_cut_the_same_gears(drawing):
     teeth, module, changes = drawing
     pair = new_pair(teeth, module, 20.0, 1000.0, 30.0, changes)
-    own, g = circles(pair), pair.geometry
+    own = circles(pair)
+    g = pair.geometry
     assert profile_shifts(pair) == pytest.approx(pair.profile_shifts, abs=1e-11)
     for found, expected in (
         (own.tip_pinion, g.tip_radius_pinion), (own.tip_gear, g.tip_radius_gear),

@@ -11,7 +11,8 @@ from tests.unlike_pairs import UNLIKE, unlike_pair
 def test_driving_less_braking_power_is_lost_at_the_places_that_are_named(name, supports):
     """First law over a period: nothing is stored, so T_p Omega_p - T_g Omega_g is what all places take."""
     pair = unlike_pair(name).healthy
-    g, about = pair.geometry, multibody.steady_state(pair, samples_per_cycle=16, supports=supports).attrs
+    g = pair.geometry
+    about = multibody.steady_state(pair, samples_per_cycle=16, supports=supports).attrs
     driving = pair.operating.pinion_torque * g.omega_pinion
     braking = about["brake_torque"] * g.omega_gear
     places = ["sliding", "tooth_dampers", "bearings", *(["shafts"] if supports == "shafts" else [])]

@@ -91,7 +91,8 @@ def test_a_run_goes_on_where_exudyn_allows_no_error():
 
 def test_a_repeated_state_is_evaluated_again_in_a_new_run():
     """The last stage of a step is the first of the next; a new run may have other parameters."""
-    setup, budget = prepare(PAIR, fidelity="linear"), CallBudget(100)
+    setup = prepare(PAIR, fidelity="linear")
+    budget = CallBudget(100)
     p, t = setup.model.parameters, 0.3 * setup.machine.period
     forces = _force_function(setup.machine, setup.model.flags, p, budget)
     state = setup.q.tolist(), [0.1] * 6
@@ -110,7 +111,8 @@ def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
     The run must stop at that force, and not when somebody looks at its states.
     """
     setup = prepare(PAIR.with_(friction__law="none"), fidelity=fidelity)
-    machine, p = setup.machine, setup.machine.parameters
+    machine = setup.machine
+    p = setup.machine.parameters
     assert len(machine.table) == 1  # constant: make three pieces of it
     pieces = np.repeat(machine.table, 3, axis=0)
     pieces[:-1, 1] = pieces[1:, 0] = p[kn.L_XA] + np.array([0.3, 0.5]) * p[kn.PITCH]
@@ -216,7 +218,8 @@ def test_an_interrupted_command_leaves_no_half_written_file(moment, tmp_path, mo
     from validation.cli import app
 
     if moment == "running":
-        integrate, count = multibody.run.integration._run, itertools.count()
+        integrate = multibody.run.integration._run
+        count = itertools.count()
 
         def run(*arguments):
             if next(count) > 10:

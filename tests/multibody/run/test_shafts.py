@@ -54,9 +54,11 @@ def run(setup):
 
 def test_exudyn_solves_the_equations_of_the_machine(setup, run):
     """scipy's DOP853 on M q'' + D q' + K q = f with the same tooth forces, from switch to switch."""
-    m, train = setup.machine, setup.machine.train
+    m = setup.machine
+    train = setup.machine.train
     n, p = m.size, m.parameters.copy()
-    gears, contacts = np.empty((3, 6)), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    gears = np.empty((3, 6))
+    contacts = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
     load = -np.array([m.torque_pinion, m.torque_gear]) @ train.torques
 
     def rates(t, state):
@@ -67,12 +69,15 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
         force[:6] += gears[2]
         return np.concatenate([v, np.linalg.solve(train.mass, force)])
 
-    state, edges = np.concatenate([setup.q, setup.v]), setup.edges(1)
+    state = np.concatenate([setup.q, setup.v])
+    edges = setup.edges(1)
     for start, stop in itertools.pairwise(edges):
-        p[kn.T_LOW], p[kn.T_HIGH] = start + 1e-12 * m.period, stop - 1e-12 * m.period
+        p[kn.T_LOW] = start + 1e-12 * m.period
+        p[kn.T_HIGH] = stop - 1e-12 * m.period
         state = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=1e-9, atol=1e-13).y[:, -1]
     found, q, v = run
-    span, units = float(np.ptp(found["dte"].to_numpy())), state_scale(m, 1.0)[:n]
+    span = float(np.ptp(found["dte"].to_numpy()))
+    units = state_scale(m, 1.0)[:n]
     # 9e-4 nm in a prototype; here both integrators stay below 1e-7 of the motion.
     assert np.abs(q - state[:n]).max() < 1e-6 * span
     assert np.abs((q - state[:n])[:6] / units[:6]).max() < 1e-7 * span
@@ -101,11 +106,13 @@ def test_gears_are_discs_on_shafts_that_turn_against_each_other(setup):
     """Overhung or not, a gear that moves out in x tilts as one that moves out in y: the gyroscopic moment
     between both has the sign of the rotation. The pinion turns clockwise.
     """
-    train, m = setup.machine.train, setup.machine
+    train = setup.machine.train
+    m = setup.machine
     turning = train.damping - train.damping.T
     assert turning[0, 1] < 0.0 < turning[3, 4]
     body = disc(PAIR, 1, m.mass[1], m.inertia[1])
-    width, radius = PAIR.gear.face_width, PAIR.geometry.reference_radius_gear
+    width = PAIR.gear.face_width
+    radius = PAIR.geometry.reference_radius_gear
     hole = PAIR.gear.bore / 2
     assert body.tilting == pytest.approx(m.mass[1] * (3 * (radius**2 + hole**2) + width**2) / 12, rel=1e-12)
     assert body.twist_stiffness == pytest.approx(body_twist(PAIR)[1], rel=1e-12)
@@ -132,7 +139,8 @@ def test_bearings_hold_what_teeth_push(run):
 def stiff(pair):
     """Shafts that neither bend nor twist, a half of ``pair.bearings`` on both sides; and a pair as heavy."""
     weight = 7850 * np.pi / 4 * 0.04**2 * 0.03
-    body, tables = lumped.bodies(pair), {}
+    body = lumped.bodies(pair)
+    tables = {}
     turning = weight * 0.02**2 / 2
     more = {"pinion.mass": body.mass_pinion + weight, "gear.mass": body.mass_gear + weight}
     more |= {"pinion.inertia": body.inertia_pinion + turning, "gear.inertia": body.inertia_gear + turning}
@@ -142,7 +150,8 @@ def stiff(pair):
     share = np.sqrt(body.effective_mass / heavier.effective_mass)
     springs = springs.with_(mesh__damping_ratio=pair.mesh.damping_ratio * share)
     for name in ("pinion", "gear"):
-        given, mass = getattr(pair.bearings, name), getattr(heavier, f"mass_{name}")
+        given = getattr(pair.bearings, name)
+        mass = getattr(heavier, f"mass_{name}")
         half = {}
         for axis in ("loa", "oloa"):
             k = getattr(given, f"{axis}_stiffness")

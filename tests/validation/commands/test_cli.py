@@ -53,7 +53,8 @@ def test_presets_are_listed_and_shown():
 
 
 def test_init_writes_a_file_that_loads_and_never_overwrites(tmp_path):
-    path, pair = tmp_path / "mine.toml", lumped.load_gear_pair("nasa_28_28")
+    path = tmp_path / "mine.toml"
+    pair = lumped.load_gear_pair("nasa_28_28")
     assert run("init", "-o", path).exit_code == 0
     assert lumped.load_gear_pair(path) == pair
     path.write_text("edited")
@@ -155,7 +156,8 @@ def asked(monkeypatch):
 
 
 def test_options_reach_the_report(asked, tmp_path, shafted_file):
-    out, old = tmp_path / "out", tmp_path / "old"
+    out = tmp_path / "out"
+    old = tmp_path / "old"
     options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--tolerance", "0.01")
     result = run("report", "fzg_c", "-o", out, *options, "--compare", old)
     assert result.exit_code == 0, result.stderr

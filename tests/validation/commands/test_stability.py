@@ -33,7 +33,8 @@ def opened(path) -> xr.Dataset:
     "stiffness_variation=0.5:1.5:3", "contact_ratio=1.3:1.8:3", "bearing_stiffness=5e7:2e8:3",
 ])  # fmt: skip
 def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
-    data, picture = tmp_path / "chart.nc", tmp_path / "chart.png"
+    data = tmp_path / "chart.nc"
+    picture = tmp_path / "chart.png"
     drawn = ("-o", picture) if axis.startswith("torque") else ()
     result = run("--law", "coulomb", *SPEEDS, "--axis", axis, "-o", data, *drawn)
     assert result.exit_code == 0, result.stderr
@@ -48,7 +49,8 @@ def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
 
 
 def test_chart_and_traced_boundaries_are_in_one_file(tmp_path):
-    path, picture = tmp_path / "chart.nc", tmp_path / "chart.pdf"
+    path = tmp_path / "chart.nc"
+    picture = tmp_path / "chart.pdf"
     axes = (*SPEEDS, "--axis", "damping_ratio=0:0.04:5")
     result = run(*TONGUE, *axes, "--tongues", "-o", path, "-o", picture)
     assert result.exit_code == 0, result.stderr
@@ -110,7 +112,8 @@ def test_nothing_is_written_where_a_view_fails(tmp_path):
 
 
 def test_stability_on_shafts(tmp_path, shafted_file):
-    data, on_shafts = tmp_path / "chart.nc", ("--supports", "shafts")
+    data = tmp_path / "chart.nc"
+    on_shafts = ("--supports", "shafts")
     axis = ("--axis", "speed_rpm=9000:10000:2")
     result = run(shafted_file, *on_shafts, *axis, "-o", data)
     assert result.exit_code == 0, result.stderr

@@ -6,7 +6,11 @@ from validation.studies import read_results, runner
 
 from .conftest import run as invoke
 
-OK, FAILED, REFUSED, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
+OK = 0
+FAILED = 1
+REFUSED = 2
+STOPPED = 3
+INTERRUPTED = 130
 
 STUDY = """
 name = "command [red]"

@@ -120,7 +120,8 @@ values = [1]
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Folder with the files that the mistakes name."""
-    made, pair = tmp_path_factory.mktemp("mistakes"), lumped.load_gear_pair("nasa_28_28").to_toml()
+    made = tmp_path_factory.mktemp("mistakes")
+    pair = lumped.load_gear_pair("nasa_28_28").to_toml()
     own = pair.replace("teeth = 28", "teeth = 19", 1).replace("teeth = 28", "teeth = 41", 1)
     for name, text in {
         "pair": pair,

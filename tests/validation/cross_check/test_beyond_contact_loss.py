@@ -87,7 +87,8 @@ def test_the_multibody_sweep_measures_the_mean_over_whole_cycles(pair_beyond):
 def test_back_sides_strike_as_in_the_multibody_model(name):
     """There the mirror image of the drive flanks, from body angles; here laws of the phase. With friction."""
     pair = unlike_pair(name).with_(mesh__contact="prescribed", mesh__damping_ratio=0.05)
-    backlash, period = pair.geometry.normal_backlash, pair.geometry.mesh_period
+    backlash = pair.geometry.normal_backlash
+    period = pair.geometry.mesh_period
     start = np.zeros(12)
     start[2] = 3.0 * backlash  # the pinion presses deep and is thrown onto the back side
     run = multibody.simulate(

@@ -52,7 +52,8 @@ def relief(amount, pinion, gear):
 
 
 ENERGY = stiffness("energy")
-RAMP, LOADED = stiffness("parabolic", ramp_length=0.5), {"mesh.contact": "loaded"}
+RAMP = stiffness("parabolic", ramp_length=0.5)
+LOADED = {"mesh.contact": "loaded"}
 #: What was wrong -> preset and changes.
 PAIRS = {
     "y a ten thousandth of x: its error of integration was judged by the size of x": (

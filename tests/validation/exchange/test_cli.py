@@ -147,7 +147,8 @@ def test_what_cannot_be_written_is_refused_and_nothing_is_left_behind(command, t
 
 
 def test_a_stage_becomes_a_parameter_file_with_units_and_marks(xml, save, tmp_path):
-    source, target = save(xml(), "gearbox.rexs"), tmp_path / "mine.toml"
+    source = save(xml(), "gearbox.rexs")
+    target = tmp_path / "mine.toml"
     result = run("init", "--from-rexs", source, "--stage", 1, "-o", target)
     assert result.exit_code == 0
     assert "note: the file does not say which gear drives" in result.stderr

@@ -17,8 +17,12 @@ from tests.validation.commands.conftest import run
 from validation.exchange import matrices, read_second_order
 
 T = 0.4
-M, K, C = np.diag([1.0, 2.0]), np.array([[300.0, -100.0], [-100.0, 400.0]]), np.diag([0.3, 0.2])
-G, WAVE, DRAG = np.array([[0.0, 0.2], [-0.2, 0.0]]), np.array([[40.0, 5.0], [0.0, 20.0]]), np.diag([0.0, 0.4])
+M = np.diag([1.0, 2.0])
+K = np.array([[300.0, -100.0], [-100.0, 400.0]])
+C = np.diag([0.3, 0.2])
+G = np.array([[0.0, 0.2], [-0.2, 0.0]])
+WAVE = np.array([[40.0, 5.0], [0.0, 20.0]])
+DRAG = np.diag([0.0, 0.4])
 STEPS = np.stack([np.diag([30.0, 0.0]), np.diag([0.0, 60.0]), np.zeros((2, 2))])
 FIELDS = {"M": M, "K": K, "C": C, "G": G, "K_cos_1": WAVE, "C_sin_2": DRAG, "period": T}
 FIELDS |= {"K_times": [0.0, 0.1, 0.3, T], "K_values": STEPS}

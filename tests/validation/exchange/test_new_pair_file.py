@@ -29,7 +29,8 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
     result = init("--set", "bearings.stiffness=300 N/um", "--oil", "vg220", "--law", "II", "-o", str(path))
     assert result.exit_code == 0, result.output
     pair = load_gear_pair(path)
-    found, sources = leaf_paths(pair), dict(pair.sources)
+    found = leaf_paths(pair)
+    sources = dict(pair.sources)
     expected = {
         "name": "mypair", "pinion.teeth": 19, "gear.teeth": 41, "basic_rack.module": 2.5,
         "pinion.face_width": 20.0, "gear.face_width": 20.0, "operating.pinion_speed": 1450.0,

@@ -25,7 +25,8 @@ def test_the_ending_says_the_form_and_every_form_is_read(tmp_path, suffix, first
 
 def test_everything_that_rexs_can_say_comes_back(preset, tmp_path):
     back = lumped.load_gear_pair(gear_pair_from_rexs(write_rexs(preset, tmp_path / "pair.rexs"))[0])
-    sent, got = leaf_paths(preset), leaf_paths(back)
+    sent = leaf_paths(preset)
+    got = leaf_paths(back)
     lost = {path for path in sent if got.get(path) != sent[path]} - {"description"}
     beyond = (
         "bearings.", "mesh.damping_ratio", "mesh.contact", "mesh.stiffness.", "lubricant.viscosity",

@@ -51,7 +51,8 @@ def test_a_hand_written_stage_is_read_value_by_value(xml, save, version):
 
 def test_every_value_has_its_place_in_the_file_or_is_marked_assumed(xml, save):
     mapping, notes = gear_pair_from_rexs(save(xml()))
-    sources, assumed = mapping["sources"], mapping["assumed"]
+    sources = mapping["sources"]
+    assumed = mapping["assumed"]
     pair = lumped.load_gear_pair(mapping)
     assert {*sources, *assumed} == set(leaf_paths(pair)) - {"name", "description"}
     assert not {*sources} & {*assumed}
@@ -185,7 +186,10 @@ def test_the_dedendum_comes_from_the_tool_or_else_the_root_diameter(xml, save):
 
 @pytest.mark.parametrize(("shape", "power"), [("linear", 1), ("parabolic", 2)])
 def test_tip_relief_becomes_a_roll_angle_and_an_amount_at_the_tip(xml, save, shape, power):
-    base, start, stated, tip = 40.0 * math.cos(math.radians(20.0)), 42.0, 43.5, 44.2
+    base = 40.0 * math.cos(math.radians(20.0))
+    start = 42.0
+    stated = 43.5
+    tip = 44.2
     parts = {"components": _relief("tip_relief", 0.02, start, stated, shape), "relations": _ON_BOTH_FLANKS}
     relief = gear_pair_from_rexs(save(xml(**parts)))[0]["pinion"]["tip_relief"]
 

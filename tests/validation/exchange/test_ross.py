@@ -22,7 +22,8 @@ CHANGES = {
 
 def gear(teeth: int) -> SimpleNamespace:
     """A gear as GearElementTVMS has it: m = rho pi (r^2 - r_i^2) b, I = m (r^2 + r_i^2)/2."""
-    radius, inner = 0.001 * teeth, 0.01
+    radius = 0.001 * teeth
+    inner = 0.01
     mass = 7850.0 * np.pi * (radius**2 - inner**2) * 0.02
     tooth = {"n_teeth": teeth, "module": 0.002, "width": 0.02, "bore_diameter": 2 * inner, "pr_angle": ANGLE}
     rack = {"addendum_coeff": 1.0, "tip_clearance_coeff": 0.25, "base_radius": radius * np.cos(ANGLE)}
@@ -78,7 +79,9 @@ SPRING = 2e8
 def test_matrices_are_compared_in_any_coordinates(change, differs):
     """M and K of the six displacements by hand: K(t) = k(t) v v^T and the bearings."""
     pair = spurcheck.new_pair("30/60", 2, 20, 1500, 50, CHANGES, bearings__stiffness=SPRING)
-    g, bodies, cycle = pair.geometry, spurcheck.bodies(pair), spurcheck.lumped.mesh_cycle(pair)
+    g = pair.geometry
+    bodies = spurcheck.bodies(pair)
+    cycle = spurcheck.lumped.mesh_cycle(pair)
     k = cycle.sample(np.arange(200) * (cycle.period / 200)).stiffness.sum(axis=0)
     v = np.array([g.base_radius_pinion, -g.base_radius_gear, 1.0, -1.0, 0.0, 0.0])
     masses = [bodies.mass_pinion, bodies.mass_gear]

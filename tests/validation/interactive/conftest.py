@@ -19,7 +19,8 @@ HOSTILE = (
     "<img src=x onerror=\"document.title='owned'\">{{ 7*7 }} \u2028 Zahnrad & Söhne <!--<script>",
 )
 SAMPLING = Sampling(speeds=31, dampings=6, slices=3, sweep_speeds=9)
-WIDE, PHONE = (1280, 900), (390, 844)
+WIDE = (1280, 900)
+PHONE = (390, 844)
 
 
 @pytest.fixture(scope="session")

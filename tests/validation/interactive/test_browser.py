@@ -48,7 +48,8 @@ def test_hover_over_the_chart_shows_the_data_file(page, data):
         page.choose("axis", AXES.index(key))
         page.choose("slice", k)
         page.drawn("stability-plot", "1")
-        speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
+        speed = float(data["speed_rpm"][j])
+        damping = float(data["damping_ratio"][i])
         # Half a step inside where the node lies on the edge of the axes.
         lines = page.hover(
             "stability-plot", float(np.clip(speed, *ends[0])), float(np.clip(damping, *ends[1]))

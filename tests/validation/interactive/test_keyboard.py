@@ -5,8 +5,14 @@ import pytest
 
 pytestmark = pytest.mark.slow
 
-RIGHT, LEFT, UP, DOWN = "\ue014", "\ue012", "\ue013", "\ue015"
-PAGE_UP, HOME, END, TAB = "\ue00e", "\ue011", "\ue010", "\ue004"
+RIGHT = "\ue014"
+LEFT = "\ue012"
+UP = "\ue013"
+DOWN = "\ue015"
+PAGE_UP = "\ue00e"
+HOME = "\ue011"
+END = "\ue010"
+TAB = "\ue004"
 ORDER = [
     "skip", "axis", "slice", "damping", "speed", "Zoom in", "Zoom out", "Show all", "Operating point",
     "stability", "law", "sweep-speed", "Zoom in", "Zoom out", "Show all", "Operating point", "sweep",
@@ -23,7 +29,8 @@ def six_digits(values):
 
 
 def sentence(data, k, i, j):
-    speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
+    speed = float(data["speed_rpm"][j])
+    damping = float(data["damping_ratio"][i])
     factor = float(data["bearing_factor"][k])
     radius = data["spectral_radius_over_bearing_factor"].to_numpy()[k, i, j]
     word = {1: "stable", -1: "unstable"}[int(data["verdict_over_bearing_factor"][k, i, j])]
@@ -47,7 +54,9 @@ def test_arrows_move_the_cursor_and_the_text_says_its_value(page, data):
         RIGHT: (0, 0, 1), DOWN: (0, -1, 0), LEFT: (0, 0, -1), UP: (0, 1, 0), PAGE_UP: (1, 0, 0),
     }.items():  # fmt: skip
         page.press(key)
-        k, i, j = k + dk, i + di, j + dj
+        k = k + dk
+        i = i + di
+        j = j + dj
         assert page.text("stability-text") == sentence(data, k, i, j)
     page.press(END)
     assert page.text("stability-text") == sentence(data, k, i, data.sizes["speed_rpm"] - 1)

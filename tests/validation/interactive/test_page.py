@@ -30,7 +30,9 @@ class _Page(HTMLParser):
 
     def __init__(self, text):
         super().__init__()
-        self.tags, self.scripts, self.inside = [], [], False
+        self.tags = []
+        self.scripts = []
+        self.inside = False
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
@@ -99,8 +101,10 @@ def test_the_responses_are_those_of_the_models(data, pair):
                 expected = motion.attrs[f"{name}_peak_to_peak"]
                 scale = float(np.abs(motion[name]).max())
                 assert float(one[variable]) == pytest.approx(expected, abs=1e-9 * scale)
-            g, torque = at.geometry, at.operating.pinion_torque
-            contact, sliding = contact_loss(at, g, motion), sliding_reversal(g, motion)
+            g = at.geometry
+            torque = at.operating.pinion_torque
+            contact = contact_loss(at, g, motion)
+            sliding = sliding_reversal(g, motion)
             lowest = contact.value * g.base_radius_pinion / torque
             assert float(one["lowest_load"]) == pytest.approx(lowest, rel=1e-8)
             assert float(one["reversal"]) == pytest.approx(sliding.value / g.base_pitch, rel=1e-8, abs=1e-12)

@@ -10,7 +10,8 @@ from validation.measurements.record import QUANTITIES, Measurement, MeasurementS
 
 def motion(prediction, quantity, cycles):
     """A quantity of the whole period of a prediction at mesh cycles; of tooth pair A where it has pairs."""
-    values, count = prediction.cycle[quantity].to_numpy(), prediction.mesh_cycles
+    values = prediction.cycle[quantity].to_numpy()
+    count = prediction.mesh_cycles
     if values.ndim == 1:
         grid = np.arange(values.size) * (count / values.size)
         return np.interp(cycles, grid, values, period=count)
@@ -41,7 +42,8 @@ def dynamic_record(
     """
     rng = np.random.default_rng(seed)
     u = np.arange(int(cycles * per_cycle)) / per_cycle + phase
-    channels, entries = {}, []
+    channels = {}
+    entries = []
     for quantity in quantities:
         values = motion(prediction, quantity, u)
         values = values if change is None else change(quantity, values, u)

@@ -18,10 +18,12 @@ def synthetic_measurement(
     correlation=0.0,  # of neighbouring samples of the noise, as an anti-aliasing filter makes
     start=0.0,  # mesh cycles since pair A was at A
 ):
-    rng, g = np.random.default_rng(seed), truth.geometry
+    rng = np.random.default_rng(seed)
+    g = truth.geometry
     u = np.arange(int(engagements * truth.recurrence * samples_per_cycle)) / samples_per_cycle
     load = truth.pair.operating.pinion_torque / g.base_radius_pinion
-    channels, entries = {}, []
+    channels = {}
+    entries = []
     for label in PAIR_LABELS[: g.pairs]:
         for quantity, share in (("normal_load", noise_normal), ("friction_force", noise_friction)):
             values = truth.value(quantity, start + u, label)

@@ -55,7 +55,8 @@ def test_prediction_follows_a_tooth_pair_through_a_transient(pair):
 
 
 def test_times_are_mesh_cycles_at_the_speed_of_the_record(truth):
-    other, expected = truth.pair.with_(speed=3 * 800), record(truth).abscissa / truth.geometry.mesh_period
+    other = truth.pair.with_(speed=3 * 800)
+    expected = record(truth).abscissa / truth.geometry.mesh_period
     np.testing.assert_allclose(mesh_cycles(record(truth), other), expected, rtol=1e-14)
 
 

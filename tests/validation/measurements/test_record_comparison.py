@@ -193,7 +193,8 @@ def test_without_varied_inputs_a_moderate_difference_is_no_verdict():
 
 def test_inputs_move_the_prediction_by_as_much_as_their_samples_do():
     name = "fzg_c"
-    given, samples = motion_of(name), varied(name)
+    given = motion_of(name)
+    samples = varied(name)
     found = compared(name, ("dte",), samples=samples).peak_to_peak
     moves = [one.peak_to_peak - given.peak_to_peak for one in samples.samples]
     assert found.inputs == pytest.approx(np.sqrt(np.mean(np.square(moves))), rel=5e-3)
@@ -214,7 +215,8 @@ def agreeing(noise=0.0, **sizes):
     values = np.exp(1j * np.arange(count)) / np.sqrt(count)
     spread = noise**2 / (2 * count) * np.eye(2 * count)
     measured = ComplexOrders(np.arange(1.0, count + 1.0), values, 0.0, spread)
-    predicted_, none = dataclasses.replace(measured, covariance=0.0 * spread), np.zeros((count, 2, 2))
+    predicted_ = dataclasses.replace(measured, covariance=0.0 * spread)
+    none = np.zeros((count, 2, 2))
     size = PeakToPeak(**({"measured": 2.0, "predicted": 2.0} | dict.fromkeys(UNKNOWNS, 0.0) | sizes))
     return ChannelComparison(
         "te", "dte", "m", "", measured, predicted_, none, 0.0, 1.0, size, count, varied=True,

@@ -16,7 +16,8 @@ from validation.prediction.motion import predicted
 @pytest.mark.parametrize("model", ["rectangular", "finite_elements"])
 def test_finite_elements_are_a_row_of_every_other_stiffness(model):
     pair = unlike_pair("rack_25_degrees_always_pushing").with_({"mesh.stiffness": {"model": model}})
-    own, none = predicted(pair), Absent(Outcome.NOT_ASKED)
+    own = predicted(pair)
+    none = Absent(Outcome.NOT_ASKED)
     known = SimpleNamespace(
         pair=pair, like=own, linear=none, second=none, same_equations=None, uncertainty=none,
         measured_error=None,
@@ -41,7 +42,8 @@ def test_finite_elements_are_a_row_of_every_other_stiffness(model):
     (unlike_pair("larger_gear_drives_contact_lost"), "teeth pull in the linear motion"),
 ], ids=["pushes", "pulls"])  # fmt: skip
 def test_it_says_that_teeth_pull_only_where_they_do(pair, note):
-    linear, none = lumped.steady_state(pair), Absent(Outcome.NOT_ASKED)
+    linear = lumped.steady_state(pair)
+    none = Absent(Outcome.NOT_ASKED)
     assert (float(linear["normal_load"].min()) < 0.0) == ("pull" in note)
     known = SimpleNamespace(
         pair=pair, like=predicted(pair), linear=linear, second=none, same_equations=None,

@@ -134,7 +134,8 @@ def test_shares_are_counted_as_said(three):
     n = found.sizes["sample"]
     for name, larger in RESULTS.items():
         sign = -1.0 if larger else 1.0
-        cost, given = sign * found[name].to_numpy(), sign * found[f"{name}_given"].to_numpy()
+        cost = sign * found[name].to_numpy()
+        given = sign * found[f"{name}_given"].to_numpy()
         of = found.sel(result=name)
         for i, j in itertools.permutations(range(3), 2):
             assert float(of["better"][i, j]) == np.mean([cost[i, k] < cost[j, k] for k in range(n)])

@@ -47,9 +47,11 @@ def unread(pair: lumped.GearPair) -> list[str]:
 
 def moved(pair: lumped.GearPair, fields: list[str]) -> lumped.GearPair:
     """The pair with other values of fields."""
-    values, changes = leaf_paths(pair), {}
+    values = leaf_paths(pair)
+    changes = {}
     for path in fields:
-        value, name = values[path], path.rpartition(".")[2]
+        value = values[path]
+        name = path.rpartition(".")[2]
         if isinstance(value, list):
             changes[path] = [1.02 * one for one in value]
         elif pair.mesh.stiffness.whole_mesh and path in ("mesh.contact", "mesh.relief"):

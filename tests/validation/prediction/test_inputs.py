@@ -96,7 +96,8 @@ NEW = {
 @pytest.mark.parametrize("name", NEW)
 def test_an_assumed_value_is_the_middle_of_its_range(name):
     """Half of the samples of an input lie below the value that is assumed, as far as it is a number."""
-    pair, values = NEW[name], leaf_paths(NEW[name])
+    pair = NEW[name]
+    values = leaf_paths(NEW[name])
     numbers = [one for one in uncertain_inputs(pair) if not one.choices]
     assert {"mesh.damping_ratio", "gears.roughness", "pinion.inertia"} < {one.field for one in numbers}
     for one in numbers:
@@ -128,7 +129,8 @@ def test_both_directions_of_a_bearing_and_both_gears_flanks_are_one_input():
         {"sources": {"bearings": "assumed", "pinion.roughness": "assumed", "gear.roughness": "assumed"}}
     )
     for gear in ("pinion", "gear"):
-        one, own = input_of(pair, f"bearings.{gear}.stiffness"), getattr(pair.bearings, gear)
+        one = input_of(pair, f"bearings.{gear}.stiffness")
+        own = getattr(pair.bearings, gear)
         for share in (0.0, 0.3, 1.0):
             moved = getattr(varied(pair, [(one, share)]).bearings, gear)
             factor = moved.loa_stiffness / own.loa_stiffness
@@ -149,7 +151,8 @@ def test_a_direction_whose_stiffness_is_known_does_not_move():
 
 def test_mass_and_inertia_of_an_assumed_blank_move_together_and_those_of_a_known_one_do_not():
     pair = NEW["large ratio"]
-    heavy, own = bodies(varied(pair, [(input_of(pair, "gear.inertia"), 1.0)])), bodies(pair)
+    heavy = bodies(varied(pair, [(input_of(pair, "gear.inertia"), 1.0)]))
+    own = bodies(pair)
     assert heavy.inertia_gear / own.inertia_gear == pytest.approx(1.25)
     assert heavy.mass_gear / own.mass_gear == pytest.approx(1.25)
     assert heavy.mass_pinion == own.mass_pinion

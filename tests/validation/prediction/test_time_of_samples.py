@@ -37,7 +37,8 @@ class Clock:
     """Processor time that runs by 7 s in each prediction, and in nothing else."""
 
     def __init__(self, monkeypatch, where, name="_numbers"):
-        self.now, own = 1000.0, getattr(where, name)
+        self.now = 1000.0
+        own = getattr(where, name)
 
         def slow(*arguments, **options):
             self.now += 7.0
@@ -110,7 +111,8 @@ def test_no_time_at_all_gives_the_result_as_given():
 
 def test_samples_without_a_motion_of_their_own_are_counted(monkeypatch):
     """Every third has no prediction, every second the linear one."""
-    count, own = [0], module.predicted
+    count = [0]
+    own = module.predicted
     given = uncertainty(LINEAR, 16)
     assert FLAGS[-1] == "linear"
     assert given.attrs["linear"] == given.attrs["refused"] == 0

@@ -136,7 +136,8 @@ def contact(parameters, xi):
 def films(parameters, xi):
     """Film of Dowson and Toyoda, of Hamrock and Dowson [m], and film parameter of the first, at xi."""
     modulus, radius, load, rolling = contact(parameters, xi)
-    oil, gears = parameters["lubricant"], (parameters["pinion"], parameters["gear"])
+    oil = parameters["lubricant"]
+    gears = (parameters["pinion"], parameters["gear"])
     eta = 1e-3 * oil["viscosity"]
     g = 1e-6 * oil["pressure_viscosity_k"] * (1e3 * eta) ** oil["pressure_viscosity_s"] * modulus
     u, w = eta * rolling / (2.0 * modulus * radius), load / (modulus * radius)

@@ -69,7 +69,8 @@ def test_contact_is_that_of_the_second_program(results):
 
 
 def test_no_speed_is_unstable_over_the_range_that_is_named(results):
-    claim, pair = facts(results)["unstable_speeds"], without_shafts(results.pair)
+    claim = facts(results)["unstable_speeds"]
+    pair = without_shafts(results.pair)
     low, high = claim.scope.speeds_rpm
     assert claim.scope.supports == "springs"
     assert claim.claim == "no speed is unstable", "these pairs have none"
@@ -80,11 +81,13 @@ def test_no_speed_is_unstable_over_the_range_that_is_named(results):
 
 def test_where_no_jump_was_looked_for_the_linear_motion_keeps_contact(results):
     """At speeds of its own, between those of the report."""
-    search, claim = results.jump_search, facts(results)["jumps"]
+    search = results.jump_search
+    claim = facts(results)["jumps"]
     if search.windows:
         assert claim.claim != "contact is kept, and no jump was found"
         return
-    pair, static = without_shafts(results.pair), results.like.static_force
+    pair = without_shafts(results.pair)
+    static = results.like.static_force
     for rpm in np.geomspace(*claim.scope.speeds_rpm, 23):
         motion = linear(pair, float(rpm))
         assert motion is not None
@@ -108,7 +111,8 @@ def test_all_jumps_of_the_range_are_found_in_a_quick_report(kind):
 
 
 def test_a_resonance_is_where_an_order_meets_a_natural_frequency(results):
-    found, pair = results.resonance, results.pair
+    found = results.resonance
+    pair = results.pair
     claim = plain(facts(results)["resonance"].claim)
     if found is None:
         assert claim == "no mesh order resonates"
@@ -140,7 +144,8 @@ def test_the_headline_is_smooth_only_off_a_resonance(results):
 def test_the_force_of_a_resonance_falls_where_the_page_says():
     """Root mean square of the bearing force over speed, by motions of its own: a peak, and half beside it."""
     results = results_of("resonance")
-    found, pair = results.resonance, results.pair
+    found = results.resonance
+    pair = results.pair
     assert found is not None
     assert found.near
 

@@ -68,7 +68,9 @@ def upright(ax):
 def curves_and_their_names(written, name):
     if name not in written.figures:
         return
-    data, seen, bottom = written.curves(name), set(), written.figures[name].axes[-1]
+    data = written.curves(name)
+    seen = set()
+    bottom = written.figures[name].axes[-1]
     x = data.iloc[:, 0].to_numpy()
     for ax in written.figures[name].axes:
         words, unit, factor = axis(ax.get_ylabel())
@@ -99,7 +101,8 @@ def test_every_curve_is_its_column(written):
 
 
 def test_csv_of_the_curves_over_a_cycle(written):
-    cycle, frequency = written.data("prediction"), own.mesh_frequency(written.parameters)
+    cycle = written.data("prediction")
+    frequency = own.mesh_frequency(written.parameters)
     for name in ("transmission_error", "tooth_forces", "bearing_forces"):
         close(written.curves(name)["cycles"], cycle["time"].to_numpy() * frequency)
     close(written.curves("transmission_error")["dte [m]"], cycle["dte"])
@@ -115,7 +118,8 @@ def test_csv_of_the_curves_over_a_cycle(written):
     for name in (c for c in bearings.columns if c != "cycles"):
         force = cycle[name.removesuffix(" [N]")].to_numpy()
         close(bearings[name], force - force.mean())
-    overlay, second = written.curves("overlay"), written.data("second_program")
+    overlay = written.curves("overlay")
+    second = written.data("second_program")
     dte = cycle[
         "dte"
     ].to_numpy()  # 512 samples of a cycle, of which every second is drawn, and the first again
@@ -133,8 +137,10 @@ def test_the_transmission_error_over_speed(written):
     names = [n for n in ("over_speed", "motions_over_speed") if n in written.figures]
     assert ("motions_over_speed" in names) == (written.document["gear_pair"] == "lost")
     for name in names:
-        data, ax = written.curves(name), written.figures[name].axes[0]
-        size, stable = sweep["dte_peak_to_peak"].to_numpy(), sweep["spectral_radius"].to_numpy() <= 1.0
+        data = written.curves(name)
+        ax = written.figures[name].axes[0]
+        size = sweep["dte_peak_to_peak"].to_numpy()
+        stable = sweep["spectral_radius"].to_numpy() <= 1.0
         pushes = sweep["normal_load_min"].to_numpy() > 0.0
         close(data["speed_rpm"], sweep["speed"])
         close(data["linear [m]"], np.where(stable & pushes, size, np.nan))
@@ -150,7 +156,9 @@ def test_the_transmission_error_over_speed(written):
         assert f"{operating:g} rpm" in [text.get_text() for text in ax.texts]
         if written.document["gear_pair"] != "lost":
             continue
-        motions, drawn, jumps = written.data("motions"), written.curves(name, 2), written.curves(name, 3)
+        motions = written.data("motions")
+        drawn = written.curves(name, 2)
+        jumps = written.curves(name, 3)
         close(np.sort(drawn["motion_speed_rpm"]), np.sort(motions["speed_rpm"]))
         close(np.sort(drawn["motion [m]"]), np.sort(motions["dte_peak_to_peak"]))
         assert drawn["motion_stable"].sum() == float(motions["stable"].sum())
@@ -183,9 +191,11 @@ def test_the_range_over_speed_is_about_the_curve(written):
 
 
 def test_the_orders_of_the_bearing_force(written):
-    cycle, samples = written.data("prediction"), written.data("uncertainty")
+    cycle = written.data("prediction")
+    samples = written.data("uncertainty")
     size = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))[:8]
-    data, ax = written.curves("bearing_orders"), written.figures["bearing_orders"].axes[0]
+    data = written.curves("bearing_orders")
+    ax = written.figures["bearing_orders"].axes[0]
     close(data["amplitude [N]"], size)
     assert list(data["order"]) == list(range(1, 9))
     for order in range(1, 9):
@@ -205,7 +215,8 @@ def test_the_orders_of_the_bearing_force(written):
 def test_the_swings(written):
     if "swings" not in written.figures:
         return
-    samples, ax = written.data("uncertainty"), written.figures["swings"].axes[0]
+    samples = written.data("uncertainty")
+    ax = written.figures["swings"].axes[0]
     swing = np.sort(samples["dte_peak_to_peak_swing"].to_numpy(), axis=1)
     largest = np.argsort(-(swing[:, 1] - swing[:, 0]), kind="stable")[:6]
     data = written.curves("swings")
@@ -229,7 +240,8 @@ def test_the_swings(written):
 
 
 def test_the_bars_of_the_error_budget(written):
-    table, ax = written.table("error_budget"), written.figures["error_budget"].axes[0]
+    table = written.table("error_budget")
+    ax = written.figures["error_budget"].axes[0]
     shares = np.array([np.nan if one["share"] is None else one["share"] for one in table])
     close(written.curves("error_budget")["share [%]"], shares)
     labels = dict(zip(ax.get_yticks(), (t.get_text() for t in ax.get_yticklabels()), strict=True))
@@ -249,7 +261,8 @@ def test_the_bars_of_the_error_budget(written):
 
 
 def test_the_losses_by_law(written):
-    pair, ax = pair_of(written), written.figures["losses_by_law"].axes[0]
+    pair = pair_of(written)
+    ax = written.figures["losses_by_law"].axes[0]
     laws = losses_of_laws(pair)
     expected = dict(zip(laws["law_title"].to_numpy(), 1.0 - laws["mesh_efficiency"].to_numpy(), strict=True))
     data = written.curves("losses_by_law")
@@ -265,7 +278,8 @@ def test_the_losses_by_law(written):
 
 
 def test_the_map_of_orders(written):
-    pair, data = pair_of(written), written.curves("orders_over_speed")
+    pair = pair_of(written)
+    data = written.curves("orders_over_speed")
     table = data.pivot(index="order", columns="speed_rpm", values="amplitude [N]")
     speed = table.columns[3]
     cycle = lumped.steady_state(pair.with_({"operating.pinion_speed": float(speed)}), samples_per_cycle=128)
@@ -293,9 +307,11 @@ def test_the_map_of_orders(written):
 
 def test_the_stability_chart(written):
     """Growth ln(rho) times the mesh frequency, at most 0, at its nodes; operating point; regions."""
-    chart, ax = written.data("stability"), written.figures["stability_chart"].axes[0]
+    chart = written.data("stability")
+    ax = written.figures["stability_chart"].axes[0]
     radius = chart["spectral_radius"].transpose("damping_ratio", "speed_rpm").to_numpy()
-    speed, damping = chart["speed_rpm"].to_numpy(), chart["damping_ratio"].to_numpy()
+    speed = chart["speed_rpm"].to_numpy()
+    damping = chart["damping_ratio"].to_numpy()
     rate = np.log(radius) * speed / 60.0 * written.parameters["pinion"]["teeth"]
     drawn = (*ax.images, *(one for one in ax.collections if hasattr(one, "get_coordinates")))[0]
     close(np.asarray(drawn.get_array()).reshape(radius.shape), np.minimum(rate, 0.0), 1e-6)

@@ -66,7 +66,8 @@ def assert_rows(written, name, expected):
 
 def of_motion(written, name):
     """The five numbers of a saved motion, but for the efficiency."""
-    cycle, force = written.data(name), own.static_force(written.parameters)
+    cycle = written.data(name)
+    force = own.static_force(written.parameters)
     total = cycle["normal_load"].sum("pair").to_numpy()
     x, y = (cycle[f"bearing_force_{line}_p"].to_numpy() for line in "xy")
     return {
@@ -98,7 +99,8 @@ def nearest_hazard(written):
 
 
 def test_numbers_of_page_1(written):
-    numbers, lost = written.document["numbers"], written.parameters["name"] == "lost"
+    numbers = written.document["numbers"]
+    lost = written.parameters["name"] == "lost"
     keys = ["dte_peak_to_peak", "dynamic_factor", "tooth_load", "least_force" if lost else "bearing_rms"]
     assert list(numbers) == [
         *keys,
@@ -107,7 +109,8 @@ def test_numbers_of_page_1(written):
         "hazard",
         *(["trouble"] if "trouble" in numbers else []),
     ]
-    first, second = of_motion(written, "prediction"), of_motion(written, "second_program")
+    first = of_motion(written, "prediction")
+    second = of_motion(written, "second_program")
     samples = written.data("uncertainty")
     for key in keys:
         # Peaks lie between samples: at most 1 % above them.
@@ -125,7 +128,8 @@ def test_numbers_of_page_1(written):
 
 def balanced_loss(written):
     """Driving power less braking power of the second program's saved motion [W]."""
-    attributes, parameters = written.data("second_program").attrs, written.parameters
+    attributes = written.data("second_program").attrs
+    parameters = written.parameters
     omega = parameters["operating"]["pinion_speed"] * math.pi / 30.0
     ratio = parameters["pinion"]["teeth"] / parameters["gear"]["teeth"]
     return omega * (attributes["pinion_torque"] - ratio * attributes["brake_torque"])
@@ -133,7 +137,8 @@ def balanced_loss(written):
 
 def test_the_efficiency_is_that_of_the_power_balance_of_the_second_program(written):
     """Finite motions, which the prediction leaves out, change the loss by less than 1 % on these pairs."""
-    number, samples = written.document["numbers"]["efficiency"], written.data("uncertainty")
+    number = written.document["numbers"]["efficiency"]
+    samples = written.data("uncertainty")
     assert number["unit"] == "%"  # a share, printed times 100
     loss = (1.0 - number["value"]) * own.power(written.parameters)
     assert loss == pytest.approx(balanced_loss(written), rel=0.01)
@@ -149,7 +154,8 @@ def test_the_efficiency_of_the_second_program_is_that_of_its_own_power_balance(w
 
 
 def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
-    number, found = written.document["numbers"]["hazard"], nearest_hazard(written)
+    number = written.document["numbers"]["hazard"]
+    found = nearest_hazard(written)
     speed = written.parameters["operating"]["pinion_speed"]
     assert number["unit"] == "rpm"
     if found is None:
@@ -170,7 +176,8 @@ def test_the_loudest_orders_of_page_1(written):
     number = written.document["numbers"].get("bearing_rms")
     if number is None:
         pytest.skip("where contact is lost another number takes its place")
-    cycle, frequency = written.data("prediction"), own.mesh_frequency(written.parameters)
+    cycle = written.data("prediction")
+    frequency = own.mesh_frequency(written.parameters)
     size = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
     one, two = sorted(np.argsort(size)[-2:] + 1)
     own.assert_says(
@@ -184,7 +191,8 @@ def test_the_loudest_orders_of_page_1(written):
 
 
 def test_the_table_of_the_motion(written):
-    cycle, iso = written.data("prediction"), iso_dynamic_factor(pair_of(written))
+    cycle = written.data("prediction")
+    iso = iso_dynamic_factor(pair_of(written))
     numbers = written.document["numbers"]
     note = f"{iso.zone}, N = {iso.resonance_ratio:.2f}, tolerances of class {iso.tolerance_class}"
     assert_rows(
@@ -201,7 +209,8 @@ def test_the_table_of_the_motion(written):
 
 
 def test_the_table_of_orders(written):
-    cycle, table = written.data("prediction"), written.table("orders")
+    cycle = written.data("prediction")
+    table = written.table("orders")
     dte = own.amplitudes(cycle["dte"].to_numpy())
     bearing = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
     assert [one["order"] for one in table] == list(range(1, 11))
@@ -223,9 +232,11 @@ def test_the_table_of_modes(written):
 
 
 def test_the_table_of_forces(written):
-    cycle, parameters = written.data("prediction"), written.parameters
+    cycle = written.data("prediction")
+    parameters = written.parameters
     total = cycle["normal_load"].sum("pair").to_numpy()
-    xi, load = cycle["position"].to_numpy(), cycle["normal_load"].to_numpy()
+    xi = cycle["position"].to_numpy()
+    load = cycle["normal_load"].to_numpy()
     start, _, end, _ = own.path_of_contact(parameters)
     modulus, radius, _, _ = own.contact(parameters, np.clip(xi, start, end))
     width = 1e-3 * min(parameters[gear]["face_width"] for gear in ("pinion", "gear"))
@@ -261,7 +272,8 @@ def test_the_table_of_jumps(written):
     if found is None:
         assert "jumps" not in written.document["chapters"]["contact_loss"]
         return
-    motions, table = written.data("motions"), written.table("jumps")
+    motions = written.data("motions")
+    table = written.table("jumps")
     assert len(table) == motions.sizes["jump"] > 0
     for at, one in enumerate(table):
         columns = {
@@ -279,7 +291,9 @@ def test_the_table_of_jumps(written):
 
 
 def test_the_table_of_stability(written):
-    linear, chart, hazard = written.data("linear"), written.data("stability"), nearest_hazard(written)
+    linear = written.data("linear")
+    chart = written.data("stability")
+    hazard = nearest_hazard(written)
     radius = linear.attrs["spectral_radius"]
     expected = {
         "largest Floquet multiplier": (radius, "1", "stable"),
@@ -307,7 +321,8 @@ def test_the_table_of_losses(written):
     parameters = written.parameters
     start, _, end, _ = own.path_of_contact(parameters)
     film, other, parameter = own.films(parameters, np.linspace(start, end, 201))
-    supply, share = own.power(parameters), written.document["numbers"]["efficiency"]["value"]
+    supply = own.power(parameters)
+    share = written.document["numbers"]["efficiency"]["value"]
     parts = {one["name"]: (one["value"]["value"], "W") for one in written.table("losses")[2:5]}
     assert list(parts) == LOSS_PARTS  # their values: the next test
     assert_rows(
@@ -333,12 +348,11 @@ def test_the_parts_of_the_loss_add_up_to_it(written):
 
 
 def test_the_error_budget(written):
-    budget, table, numbers = (
-        written.data("budget"),
-        written.table("error_budget"),
-        written.document["numbers"],
-    )
-    span, linear = numbers["dte_peak_to_peak"]["value"], written.data("linear").attrs
+    budget = written.data("budget")
+    table = written.table("error_budget")
+    numbers = written.document["numbers"]
+    span = numbers["dte_peak_to_peak"]["value"]
+    linear = written.data("linear").attrs
     samples = np.percentile(written.data("uncertainty")["dte_peak_to_peak"].to_numpy(), [5.0, 95.0])
     rows = dict(zip(budget["row"].to_numpy(), budget["dte"].to_numpy(), strict=True))
     assert rows["second"] == pytest.approx(abs(span - numbers["dte_peak_to_peak"]["second"]), rel=1e-9)
@@ -353,7 +367,8 @@ def test_the_error_budget(written):
     estimate = (linear | written.data("prediction").attrs)["error_estimate"]
     assert rows["numerics"] == pytest.approx(estimate * span, rel=1e-9)
     assert [one["error"] for one in table] == [_ERRORS[key] for key in rows]
-    force, second = own.static_force(written.parameters), of_motion(written, "second_program")
+    force = own.static_force(written.parameters)
+    second = of_motion(written, "second_program")
     first = of_motion(written, "prediction")
     at = list(rows).index("second")
     assert table[at]["tooth_force"]["value"] == close(abs(first["tooth_load"] - second["tooth_load"]) * force)
@@ -381,7 +396,8 @@ def test_the_tables_of_the_inputs_that_are_varied(written):
             assert one[key] == {"value": close(times * value), "unit": unit}, (name, key)
     swing = samples["dte_peak_to_peak_swing"].to_numpy()
     width = np.abs(swing[:, 1] - swing[:, 0])
-    table, inputs = written.table("inputs_varied"), list(map(str, samples["input"].to_numpy()))
+    table = written.table("inputs_varied")
+    inputs = list(map(str, samples["input"].to_numpy()))
     places = [inputs.index(one["field"]) for one in table]
     assert sorted(places) == list(range(len(inputs)))
     assert (np.diff(width[places]) <= 0.0).all(), "the largest effect first"
@@ -402,7 +418,8 @@ def test_the_tables_of_the_inputs_that_are_varied(written):
 
 
 def test_the_tables_of_the_second_program(written):
-    first, second = written.data("prediction"), written.data("second_program")
+    first = written.data("prediction")
+    second = written.data("second_program")
     limits = {("same equations", False): 1e-6, ("same equations", True): 1e-5}
     limits |= {("exact contact, finite motions", False): 0.05, ("exact contact, finite motions", True): 0.2}
     for one in written.table("agreement"):
@@ -424,8 +441,10 @@ def test_the_tables_of_the_second_program(written):
 
 
 def test_the_tables_of_inputs(written):
-    parameters, pair = written.parameters, pair_of(written)
-    sources, spreads = parameters["sources"], written.data("uncertainty")
+    parameters = written.parameters
+    pair = pair_of(written)
+    sources = parameters["sources"]
+    spreads = written.data("uncertainty")
     written_as = dict(
         zip(map(str, spreads["input"].to_numpy()), spreads.attrs["written"].split("; "), strict=True)
     )
@@ -453,7 +472,8 @@ def test_the_tables_of_inputs(written):
             ), one
         assert one["range"] == written_as.get(one["field"], ""), one
     states = [one["state"] for one in table]
-    given, unread = states.count(""), states.count("not read")
+    given = states.count("")
+    unread = states.count("not read")
     assumed = len(table) - given - unread
     # Of friction what the laws do not read between which it varies; the backlash where contact is kept.
     left = {one["field"] for one in table if one["state"] == "not read"}
@@ -493,7 +513,8 @@ def test_the_tables_of_evidence(written):
         shares = [abs(c["value"] - c.get("theory", 0.0)) / c["limit"] for c in kind["checks"] if c["limit"]]
         assert (one["checks"], one["use"]) == (len(kind["checks"]), close(max(shares)))
         assert one["state"]["text"] == ("ok" if max(shares) <= 1.0 else "failed")
-    chapter, faults = written.document["chapters"]["evidence"], stored["faults"]
+    chapter = written.document["chapters"]["evidence"]
+    faults = stored["faults"]
     note = (
         f"Of {faults['all']} faults put into the program, {faults.get('missed', 0)} are missed by all checks."
     )
@@ -520,7 +541,8 @@ def test_the_tables_on_the_page_are_those_of_report_json(written):
     }
     assert set(tables) == set(written.printed) - {"numbers"}
     for name, about in tables.items():
-        shown, rows = written.printed[name], written.table(name)
+        shown = written.printed[name]
+        rows = written.table(name)
         assert len(shown.rows) == len(rows), name
         for cells, row in zip(shown.rows, rows, strict=True):
             for text, value in zip(cells, row.values(), strict=True):

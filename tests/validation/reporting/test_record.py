@@ -101,7 +101,8 @@ def test_what_inputs_would_leave_is_blank_where_they_were_not_varied(wrong):
 
 def test_the_figure_draws_both_motions_and_their_orders(wrong, tmp_path):
     (picture,) = blocks(wrong, Picture)
-    found, figure = wrong.measured_error, picture.figure()
+    found = wrong.measured_error
+    figure = picture.figure()
     for row, one in enumerate(found.channels):
         left, right = figure.axes[2 * row : 2 * row + 2]
         curves = {line.get_gid(): np.ptp(line.get_ydata()) for line in left.lines if line.get_gid()}

@@ -105,7 +105,8 @@ class TestRelations:
         ("dte_peak_to_peak", lambda v: 2.0 * v, "another dte_peak_to_peak"),
     ])  # fmt: skip
     def test_a_wrong_number_is_seen(self, results, name, change, word, monkeypatch):
-        prediction, numbers = results.prediction, dict(results.prediction.numbers)
+        prediction = results.prediction
+        numbers = dict(results.prediction.numbers)
         numbers[name] = change(numbers[name])
         assert results.uncertainty is not None  # computed before the fault
         monkeypatch.setattr(type(prediction), "numbers", property(lambda self: numbers))

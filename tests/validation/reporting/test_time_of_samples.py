@@ -75,7 +75,8 @@ def test_without_time_page_1_has_no_range_and_says_why(nothing):
 
 def test_a_part_of_the_samples_is_a_range_of_that_part(monkeypatch):
     """Time that runs in predictions alone: two thirds are for samples, and facts and page say how many."""
-    now, own = [0.0], module._numbers
+    now = [0.0]
+    own = module._numbers
 
     def slow(*arguments):
         now[0] += 1.0
@@ -94,7 +95,8 @@ def test_a_part_of_the_samples_is_a_range_of_that_part(monkeypatch):
 
     assert found.attrs["taken"] == found.sizes["sample"] == 2 * ends >= 32
     assert found.attrs["alone"] == found.sizes["input"]
-    claims, first = facts(results), page_one(results)
+    claims = facts(results)
+    first = page_one(results)
     said = f"the range is from {2 * ends} of 128 possible machines; the time of {1 + 3 * ends} s was used up"
     assert claims["samples"].claim == said
     assert claims["samples"].value == 2.0 * ends

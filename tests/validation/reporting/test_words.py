@@ -70,7 +70,8 @@ def test_page_1_prints_the_numbers(written):
             below = np.mean(samples[key].to_numpy() < number["value"])
             assert (middle is None) == (0.2 <= below <= 0.8), key
         assert label == plain(f"{number['label']} {number['note']}")
-        unit, times = number["unit"], 100.0 if number["unit"] == "%" else 1.0
+        unit = number["unit"]
+        times = 100.0 if number["unit"] == "%" else 1.0
         low, high = number["low"], number["high"]
         wide = low is not None and high - low > 0.1 * abs(number["value"])
         digits = 5 if unit == "rpm" else 4 if unit == "%" else 2 if wide else 3
@@ -124,7 +125,8 @@ def test_the_title(written):
 
 def test_the_verdict(written):
     verdict, hazard, (speed, _) = written.document["verdict"], nearest_hazard(written), speed_of(written)
-    headline, reason = plain(verdict["headline"]), plain(verdict["reason"])
+    headline = plain(verdict["headline"])
+    reason = plain(verdict["reason"])
     if hazard is None:
         given = written.document["numbers"]
         ends = {
@@ -135,7 +137,8 @@ def test_the_verdict(written):
         widest = max(ends, key=lambda name: np.abs(ends[name]).max())
         assert np.abs(ends[widest]).max() > 0.10, "else another verdict"
         assert verdict["kind"] == "UNCERTAIN"
-        pattern, names = r"Levels uncertain: transmission error (.+?) %\.", ["dte_peak_to_peak"]
+        pattern = r"Levels uncertain: transmission error (.+?) %\."
+        names = ["dte_peak_to_peak"]
         if widest != "dte_peak_to_peak":
             names.append(widest)
             pattern = rf"Levels uncertain: transmission error (.+?) %, {RANGED[widest]} (.+?) %\."
@@ -177,8 +180,10 @@ def test_the_verdict(written):
 
 
 def test_the_actions(written):
-    actions, samples = written.document["actions"], written.data("uncertainty")
-    given, hazard = written.document["numbers"]["dte_peak_to_peak"]["value"], nearest_hazard(written)
+    actions = written.document["actions"]
+    samples = written.data("uncertainty")
+    given = written.document["numbers"]["dte_peak_to_peak"]["value"]
+    hazard = nearest_hazard(written)
     swing = samples["dte_peak_to_peak_swing"].to_numpy()
     width = np.abs(swing[:, 1] - swing[:, 0])
     gains = [plain(one["gain"]) for one in actions if one["gain"]]
@@ -212,7 +217,8 @@ def test_how_sure(written):
     counted = f"Inputs: {assumed} of {int(given) + int(assumed)} inputs are assumed."
     found = written.data("uncertainty").attrs
     if linear := found["linear"]:  # the range is not of motions with unilateral contact alone
-        taken, kept = found["taken"], found["taken"] - found["refused"]
+        taken = found["taken"]
+        kept = found["taken"] - found["refused"]
         words = (
             f"The range is from {taken} possible machines; in {linear} of {kept} the linear motion stands in."
         )
@@ -226,7 +232,8 @@ def test_how_sure(written):
     assert said in " ".join(plain(written.page).split()), (
         "page 1 has no powers of ten as a computer writes them"
     )
-    first, second = of_motion(written, "prediction"), of_motion(written, "second_program")
+    first = of_motion(written, "prediction")
+    second = of_motion(written, "second_program")
     first["dte_peak_to_peak"] = written.document["numbers"]["dte_peak_to_peak"]["value"]
     second["dte_peak_to_peak"] = written.document["numbers"]["dte_peak_to_peak"]["second"]
     apart = {name: abs(second[name] / first[name] - 1.0) for name in first if name != "least_force"}
@@ -303,10 +310,12 @@ def test_page_1_prints_what_differs_from_the_prediction(written):
 def test_a_form_of_the_model_outside_the_range_is_named():
     """The range of the samples is moved so that one form of the budget lies below it, and one above."""
     results = copy.copy(known("calm"))
-    budget, size = results.budget.copy(deep=True), results.prediction.peak_to_peak
+    budget = results.budget.copy(deep=True)
+    size = results.prediction.peak_to_peak
     low, high = (size * (1.0 + end) for end in results.spread("dte_peak_to_peak"))
     at = {key: place for place, key in enumerate(map(str, budget["row"].to_numpy()))}
-    budget["result"][at["contact"]], budget["result"][at["second"]] = 0.97 * low, 1.04 * high
+    budget["result"][at["contact"]] = 0.97 * low
+    budget["result"][at["second"]] = 1.04 * high
     budget["result"][at["stiffness"]] = 0.5 * (low + high)
     vars(results)["budget"] = budget
     own.assert_says(
@@ -318,7 +327,8 @@ def test_a_form_of_the_model_outside_the_range_is_named():
 
 def test_the_claims(written):
     """Each fact of report.json, and its row in the table of claims, against the saved data."""
-    found, table = written.document["facts"], written.table("claims")
+    found = written.document["facts"]
+    table = written.table("claims")
     assert [plain(one["claim"]).lower() for one in table] == [
         f"{plain(one['claim'])}.".lower() for one in found.values()
     ]
@@ -327,7 +337,8 @@ def test_the_claims(written):
     ]
     (speed, _), lost = speed_of(written), of_motion(written, "prediction")["least_force"] == 0.0
     assert found["contact"]["claim"] == ("the teeth lose contact" if lost else "contact is kept")
-    here, over = [speed, speed], [0.1 * speed, 2.0 * speed]
+    here = [speed, speed]
+    over = [0.1 * speed, 2.0 * speed]
     for key, one in found.items():
         scope = one["scope"]
         assert scope["effort"] == "small report"
@@ -335,7 +346,8 @@ def test_the_claims(written):
         wide = key in ("unstable_speeds", "jumps", "resonance")
         assert scope["speeds_rpm"] == pytest.approx(over if wide else here)
     samples = written.data("uncertainty")
-    unloaded, count = int((samples["least_force"].to_numpy() <= 0.0).sum()), samples.sizes["sample"]
+    unloaded = int((samples["least_force"].to_numpy() <= 0.0).sum())
+    count = samples.sizes["sample"]
     unstable = int(samples.attrs["unstable"])
     words = [f"{unloaded} of {count} possible machines lose contact"] if unloaded else []
     words += [f"{unstable} of {count} are unstable"] if unstable else []
@@ -366,7 +378,8 @@ def test_the_windows_of_contact_loss(written):
 
 
 def test_forms_outside_the_range_are_named_and_no_others(written):
-    first, budget = written.document["numbers"]["dte_peak_to_peak"], written.data("budget")
+    first = written.document["numbers"]["dte_peak_to_peak"]
+    budget = written.data("budget")
     if of_motion(written, "prediction")["least_force"] == 0.0:
         return
     remark = plain(written.result.first.remark)
@@ -404,7 +417,8 @@ def test_the_sentences_of_response_forces_and_contact_loss(written):
         (first["tooth_load"], "1"),
     )
     if nearest_hazard(written) is None:
-        pattern, count = r"Contact is never lost from (.*) to (.*) rpm\.", []
+        pattern = r"Contact is never lost from (.*) to (.*) rpm\."
+        count = []
     else:
         pattern = (
             r"Contact is lost at the operating point\. From (.*) to (.*) rpm contact can be lost at .* rpm; "
@@ -453,7 +467,8 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     )
     text = next(one[0] for one in written.document["chapters"]["how_sure"]["text"] if "Sobol" in one[0])
     lost = int((samples["least_force"].to_numpy() <= 0.0).sum())
-    unstable, refused = samples.attrs["unstable"], samples.attrs["refused"]
+    unstable = samples.attrs["unstable"]
+    refused = samples.attrs["refused"]
     count = samples.sizes["sample"] + refused
     assert text.startswith(
         f"Possible machines are scrambled Sobol points, seed {samples.attrs['seed']}; "
@@ -484,7 +499,8 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts():
     results = Results(pair("shafts", "19/41", 1450.0, 80.0).with_(shafts_of(30, 2e8)), SMALL)
     like = given.prediction
     vars(results) | {"check": given.check}
-    vars(results)["check"], vars(results)["like"] = given.check, like
+    vars(results)["check"] = given.check
+    vars(results)["like"] = like
     for factor, words in ((1.1, "by 10 %"), (0.8, "by 20 %")):
         vars(results)["second"] = replace(like, peak_to_peak=factor * like.peak_to_peak)
         said = plain(results.second_words)
@@ -553,7 +569,8 @@ def test_more_information_never_gives_a_worse_verdict(what):
     base = known_sizes(given.pair) if what == "known" else given.pair
     more = Results(base.with_(changes[what]), less.effort)
     more.__dict__ |= {"check": given.check, "chart": given.chart}  # on springs in both
-    poorer, first = page_one(less), page_one(more)
+    poorer = page_one(less)
+    first = page_one(more)
     assert list(Verdict).index(first.verdict) <= list(Verdict).index(poorer.verdict)
     values = sum(less.inputs)
     assert f"{less.inputs[1]} of {values} inputs are assumed, and they were not varied." in poorer.headline

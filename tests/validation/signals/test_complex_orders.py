@@ -77,7 +77,8 @@ def test_white_noise_alone_would_understate_correlated_noise():
     cycles = np.arange(1200) / 20.3
     slow = np.repeat(np.random.default_rng(1).normal(size=120), 10)
     blocks = np.zeros(cycles.size, dtype=np.int64)
-    white, found = complex_orders(cycles, slow, ORDERS, blocks=blocks), complex_orders(cycles, slow, ORDERS)
+    white = complex_orders(cycles, slow, ORDERS, blocks=blocks)
+    found = complex_orders(cycles, slow, ORDERS)
     assert np.trace(found.block(0)) > 3.0 * np.trace(white.block(0))
 
 
@@ -91,7 +92,8 @@ def test_samples_that_do_not_tell_the_orders_apart_are_refused():
 
 def test_one_shift_is_found_for_all_channels():
     phases = np.arange(256) / 256
-    first, second = signal(phases), signal(phases, VALUES[::-1] * 1e3)
+    first = signal(phases)
+    second = signal(phases, VALUES[::-1] * 1e3)
     both = [orders_of_period(one, 4) for one in (first, second)]
     moved = [one.shifted(0.637) for one in both]
     assert common_shift(moved, both, [1.0, 1e3]) == pytest.approx(0.637, abs=1e-6)
@@ -101,7 +103,8 @@ def test_one_shift_is_found_for_all_channels():
 def test_the_misfit_of_the_same_of_nothing_and_of_the_wrong_sign():
     phases = np.arange(256) / 256
     one = orders_of_period(signal(phases), 4)
-    nothing, reversed_ = orders_of_period(0.0 * phases, 4), orders_of_period(-signal(phases), 4)
+    nothing = orders_of_period(0.0 * phases, 4)
+    reversed_ = orders_of_period(-signal(phases), 4)
     for other, expected in ((one, 0.0), (nothing, 1.0), (reversed_, 2.0)):
         assert misfit([one], [other], [one.size]) == pytest.approx(expected, abs=1e-12)
     # Of two channels one of which is wrong: the root of the mean square.

@@ -118,7 +118,8 @@ def test_the_chapter_has_the_numbers_of_the_motion(results, blocks) -> None:
 
 
 def test_the_chapter_has_the_numbers_of_like_teeth_beside_them(results, blocks) -> None:
-    found, notes = results.teeth, [row[2] for row in blocks["teeth_numbers"].rows]
+    found = results.teeth
+    notes = [row[2] for row in blocks["teeth_numbers"].rows]
     assert f"{found.twin['normal_load'].max().item() / found.static_force:.3g}" in notes[1]
     assert f"{floquet.gear_pair_multipliers(found.pair.healthy).spectral_radius:.3g}" in notes[2]
 
@@ -134,7 +135,8 @@ def test_the_chapter_has_the_deviations_and_indicators(results, blocks) -> None:
 
 
 def test_the_curve_over_a_turn_repeats_that_of_like_teeth(results, blocks) -> None:
-    shown, z = blocks["teeth_turn"].data, results.pair.pinion.teeth
+    shown = blocks["teeth_turn"].data
+    z = results.pair.pinion.teeth
     cycle = shown.sizes["turn"] // z
     assert shown["healthy"].values[cycle:] == pytest.approx(shown["healthy"].values[:-cycle])
     assert shown["turn"].values[-1] == pytest.approx(1.0 - 1.0 / shown.sizes["turn"])
@@ -154,9 +156,11 @@ def test_the_bars_are_the_largest_loads_of_the_teeth(results, blocks) -> None:
 
 
 def test_the_orders_of_like_teeth_are_those_of_the_mesh(results, blocks) -> None:
-    found, z = results.teeth, results.pair.pinion.teeth
+    found = results.teeth
+    z = results.pair.pinion.teeth
     data = blocks["teeth_orders_pinion"].data
-    healthy, amplitude = data["healthy"].to_numpy(), data["amplitude"].to_numpy()
+    healthy = data["healthy"].to_numpy()
+    amplitude = data["amplitude"].to_numpy()
     twin = found.twin["dte"].to_numpy()
     assert healthy[z] == pytest.approx(2.0 * abs(np.fft.rfft(twin)[1]) / twin.size)
     assert set(np.flatnonzero(healthy) % z) == {0}
@@ -168,7 +172,8 @@ def test_the_orders_of_like_teeth_are_those_of_the_mesh(results, blocks) -> None
 
 
 def test_page_1_judges_the_teeth_as_given(results) -> None:
-    found, first = results.teeth, page_one(results)
+    found = results.teeth
+    first = page_one(results)
     lost = len(found.contact_lost)
     assert (first.verdict is Verdict.DO_NOT_RUN) == (lost > 0)
     assert ("the teeth lose contact" in first.headline) == (lost > 0)
@@ -215,7 +220,8 @@ def test_like_teeth_have_no_chapter_and_teeth_that_do_not_settle_have_the_linear
 
 
 def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
-    path, target = tmp_path / "own.toml", tmp_path / "motion.csv"
+    path = tmp_path / "own.toml"
+    target = tmp_path / "motion.csv"
     path.write_text(PAIR.to_toml(), encoding="utf-8")
     result = run("teeth", path, "-o", target)
     assert found.sentence in result.stdout
@@ -234,7 +240,8 @@ def test_the_command_prints_both(tmp_path, found: TeethFindings) -> None:
 
 
 def test_a_command_about_like_teeth_says_so(tmp_path) -> None:
-    path, motion = tmp_path / "own.toml", tmp_path / "motion.nc"
+    path = tmp_path / "own.toml"
+    motion = tmp_path / "motion.nc"
     path.write_text(PAIR.to_toml(), encoding="utf-8")
     assert "takes all teeth of a gear as alike" in run("stability", path).stderr
     result = run("simulate", path, "--steady", "--samples", 64, "-o", motion)

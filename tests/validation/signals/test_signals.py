@@ -24,7 +24,8 @@ PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     {"pinion.teeth": 21, "mesh.relief": "ignored", "centre_distance": None, **dict.fromkeys(_WHEELS)}
 )
 Z1, Z2 = PAIR.pinion.teeth, PAIR.gear.teeth  # 21 and 28: 84 mesh cycles, 4 and 3 turns
-CYCLES, SAMPLES = 84, 32
+CYCLES = 84
+SAMPLES = 32
 
 
 def result_of(signal: Callable[[np.ndarray], np.ndarray], cycles: int = CYCLES) -> xr.Dataset:
@@ -72,7 +73,8 @@ def test_amplitude_modulation_has_two_sidebands_of_half_its_depth() -> None:
 
 
 def test_the_average_of_a_shaft_keeps_its_own_orders_only() -> None:
-    own, other = tone(5, 2e-6), tone(5 * Z1 / Z2, 1e-6)
+    own = tone(5, 2e-6)
+    other = tone(5 * Z1 / Z2, 1e-6)
     kept = time_synchronous_average(result_of(added(own, other)), variable="dte", derivative=0)
     u = kept["turn"].to_numpy() * Z1
     np.testing.assert_allclose(kept["average"], own(u), atol=1e-18)

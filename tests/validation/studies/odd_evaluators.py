@@ -9,7 +9,10 @@ class Odd:
     """An evaluator that does something odd in one case."""
 
     def __init__(self, inner, what, at):
-        self.inner, self.what, self.at, self.outputs = inner, what, at, inner.outputs
+        self.inner = inner
+        self.what = what
+        self.at = at
+        self.outputs = inner.outputs
 
     def __call__(self, values):
         if values == self.at:

@@ -92,7 +92,8 @@ def test_a_file_that_is_no_store_is_refused_and_stays(study, tmp_path, kind):
         with sqlite3.connect(path) as db:
             db.execute("CREATE TABLE thesis (text)")
         db.close()
-    before, files = path.read_bytes(), len(os.listdir("/proc/self/fd")) if sys.platform == "linux" else 0
+    before = path.read_bytes()
+    files = len(os.listdir("/proc/self/fd")) if sys.platform == "linux" else 0
     with pytest.raises(StoreError, match=r"damaged or no store.*stays"):
         run_sweep(study, tmp_path, resume=True)
     with pytest.raises(StoreError, match="damaged or no store"):

@@ -85,7 +85,8 @@ def test_an_undamped_tongue_is_unstable(pair):
 
 
 def test_state_over_speed_is_the_worse_of_contact_and_sliding():
-    lowest, reversal = np.array([0.5, 0.5, 0.5, -0.1, np.nan]), np.array([0.0, 0.03, 0.06, 0.0, 0.0])
+    lowest = np.array([0.5, 0.5, 0.5, -0.1, np.nan])
+    reversal = np.array([0.0, 0.03, 0.06, 0.0, 0.0])
     assert validity_state(lowest, reversal).tolist() == [0, 1, 2, 2, 3]
 
 

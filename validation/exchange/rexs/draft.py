@@ -14,7 +14,8 @@ from validation.exchange.new_pair_file import GIVEN
 from validation.exchange.rexs.model import ATTRIBUTES, Component, RexsModel, si_from_rexs
 
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
-_SMALLEST, _LARGEST = 1e-30, 1e30
+_SMALLEST = 1e-30
+_LARGEST = 1e30
 
 
 class Reading(NamedTuple):
@@ -48,7 +49,8 @@ class Draft:
 
     def number(self, component: Component, attribute: str) -> Reading | None:
         """Read a number; what is no finite number becomes a problem."""
-        where, request = self.where(component, attribute), component.attributes.get(attribute)
+        where = self.where(component, attribute)
+        request = component.attributes.get(attribute)
         if request is None or request.value is None:
             return None
         try:

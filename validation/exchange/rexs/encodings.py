@@ -20,7 +20,8 @@ from validation.exchange.rexs.model import Document, RexsModel, broken, model_of
 #: have a few megabytes.
 MAX_BYTES = 32_000_000
 #: The schema of XML nests ten elements; more is no REXS.
-_MAX_DEPTH, _MAX_ELEMENTS = 32, 1_000_000
+_MAX_DEPTH = 32
+_MAX_ELEMENTS = 1_000_000
 _BLOCK = 65536
 _SKIPPED = ET.Element("skipped")
 _MARK = b"\xef\xbb\xbf"
@@ -133,7 +134,8 @@ class _Elements(ET.TreeBuilder):
 
     def __init__(self, file: str) -> None:
         super().__init__()
-        self.file, self.count = file, 0
+        self.file = file
+        self.count = 0
         self.path: list[str] = []
 
     def doctype(self, *_: object) -> None:
@@ -170,7 +172,8 @@ def _xml(model: dict[str, Any]) -> str:
         return ET.SubElement(parent, tag, {k: _text(v) for k, v in node.items() if not isinstance(v, list)})
 
     root = ET.Element("model", {key: value for key, value in model.items() if isinstance(value, str)})
-    relations, parts = ET.SubElement(root, "relations"), ET.SubElement(root, "components")
+    relations = ET.SubElement(root, "relations")
+    parts = ET.SubElement(root, "components")
     for relation in model["relations"]:
         element = add(relations, "relation", relation)
         for ref in relation["refs"]:

@@ -38,7 +38,8 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1], *, f
     ------
     ParameterError : an unknown suffix or version, or an existing file without ``force``
     """
-    pair, path = load_gear_pair(pair), file_path("path", path)
+    pair = load_gear_pair(pair)
+    path = file_path("path", path)
     check_file(path, tuple(FORMS), force=force)
     document = rexs_document(pair, one_of("version", version, WRITTEN))
     with whole_file(path, new=not force) as temporary:
@@ -73,7 +74,8 @@ class _Builder:
 
 def rexs_document(pair: GearPair, version: str = WRITTEN[-1]) -> Document:
     """Build the REXS tree of a pair."""
-    g, build = pair.geometry, _Builder()
+    g = pair.geometry
+    build = _Builder()
     unit = build.add("gear_unit", pair.name, number_of_gears=1, gear_shift_index=1, **_place(1, 0.0))
     backlash = dict.fromkeys(("minimum_normal_backlash", "maximum_normal_backlash"), g.normal_backlash)
     stage = build.add("cylindrical_stage", pair.name, center_distance=g.centre_distance, **backlash)
@@ -105,7 +107,9 @@ def _place(reference: int, offset: float) -> dict[str, object]:
 
 def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
     """Add a gear on its shaft with its load, material and flanks; return its id."""
-    g, gear, drives = pair.geometry, getattr(pair, which), which == "pinion"
+    g = pair.geometry
+    gear = getattr(pair, which)
+    drives = which == "pinion"
     brake = pair.operating.brake_torque
     torque = pair.operating.pinion_torque if drives else brake if isinstance(brake, float) else None
     speed = g.omega_pinion if drives else -g.omega_gear
@@ -139,7 +143,9 @@ def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
 
 def _add_flanks(build: _Builder, pair: GearPair, which: str, number: int) -> None:
     """Add both flanks, alike, with their reliefs, and the tool whose tip makes the root."""
-    rack, g, gear = pair.basic_rack, pair.geometry, getattr(pair, which)
+    rack = pair.basic_rack
+    g = pair.geometry
+    gear = getattr(pair, which)
     own = {
         "normal_pressure_angle": rack.pressure_angle,
         "addendum_modification_coefficient": float(pair.profile_shifts[0 if which == "pinion" else 1]),
@@ -175,9 +181,12 @@ def _add_lubricant(build: _Builder, pair: GearPair, unit: int, stage: int) -> No
     law = pair.lubricant.viscosity_law
     if law is None:
         return
-    name, v40, v100 = "", law.kinematic_viscosity_40, law.kinematic_viscosity_100
+    name = ""
+    v40 = law.kinematic_viscosity_40
+    v100 = law.kinematic_viscosity_100
     if law.iso_vg is not None:
-        name, index = f"ISO VG {law.iso_vg}", law.viscosity_index
+        name = f"ISO VG {law.iso_vg}"
+        index = law.viscosity_index
         v40, v100 = (1e-6 * float(grade_viscosity(law.iso_vg, celsius, index)) for celsius in (40.0, 100.0))
     casing = build.add("gear_casing", "casing", temperature_lubricant=law.temperature)
     build.relate("assembly", assembly=unit, part=casing)

@@ -79,7 +79,8 @@ def _read_relief(draft: Draft, which: str, relief: Component, geometry: Geometry
         )
         return
     begin, end = _roll_angle(start.si, base), end_of_flank(geometry, which, kind)
-    number, remark = to_file(depth.si, "um"), ""
+    number = to_file(depth.si, "um")
+    remark = ""
     if stated_at is not None and stated_at.si > base:
         stated = _roll_angle(stated_at.si, base)
         # The same diameter printed with 15 digits is not carried: that would only add rounding.

@@ -89,7 +89,8 @@ def gear_pair_from_rexs(
     picked, notes = _chosen(model, stage)
     given = by_fields(changes or {})
     with_file = {path: value for path, value in given.items() if path.startswith(_READ_WITH)}
-    draft, component = Draft(model, with_file, notes=notes), picked.component
+    draft = Draft(model, with_file, notes=notes)
+    component = picked.component
     gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, picked.gears), strict=True))
     read_gears(draft, gears)
     read_tooth_system(draft, component, gears)
@@ -130,7 +131,8 @@ def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
         raise broken(model.file, "it has no gear stage")
     if number is not None:
         stages = [stages[whole_number("stage", number, 1, len(stages)) - 1]]
-    listed, usable = "; ".join(map(str, stages)), [stage for stage in stages if not stage.reason]
+    listed = "; ".join(map(str, stages))
+    usable = [stage for stage in stages if not stage.reason]
     if len(usable) > 1:
         raise refuse("stage", "not given", f"one of {listed}", "Choose a stage by its number.")
     if not usable:

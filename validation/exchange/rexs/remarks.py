@@ -91,7 +91,8 @@ def _note_tips(draft: Draft, pair: GearPair, gears: dict[str, Component]) -> Non
     open_tips = [which for which in _GEARS if f"{which}.tip_alteration" in pair.assumed]
     if open_tips:
         tips = " and ".join(f"{2e3 * getattr(pair.geometry, f'tip_radius_{w}'):.3f} mm" for w in open_tips)
-        k, rack = to_stated(pair.tip_alteration, "mm"), pair.basic_rack.addendum_coefficient
+        k = to_stated(pair.tip_alteration, "mm")
+        rack = pair.basic_rack.addendum_coefficient
         named = " and ".join(f"{which}.tip_diameter" for which in open_tips)
         verb = "is" if len(open_tips) == 1 else "are"
         draft.note(

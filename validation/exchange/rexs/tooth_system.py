@@ -268,7 +268,8 @@ def _read_tool(draft: Draft, gears: dict[str, Component]) -> None:
 
 def _dedenda(draft: Draft, gears: dict[str, Component]) -> list[Reading | None]:
     """h_fP* from root diameters: d_f = m (z + 2 x - 2 h_fP*); a shift may be that of the centre distance."""
-    module, angle = draft.si("basic_rack.module"), draft.si("basic_rack.pressure_angle")
+    module = draft.si("basic_rack.module")
+    angle = draft.si("basic_rack.pressure_angle")
     teeth = _teeth(draft)
     if not module or not angle or teeth is None:
         return []

@@ -139,7 +139,8 @@ def _load_sharing(results: Results) -> str:
 
 def motions(results: Results) -> xr.Dataset:
     """What ``over_speed_figure`` draws: linear motion, range, motions with unilateral contact, jumps."""
-    data, search = linear_over_speed(results), results.jump_search
+    data = linear_over_speed(results)
+    search = results.jump_search
     saved = [branches.dataset for branches in search.branches]
     speed, size, stable = (
         np.concatenate([one[name].to_numpy().astype(float) for one in saved])
@@ -176,9 +177,11 @@ def motions(results: Results) -> xr.Dataset:
 
 def linear_over_speed(results: Results) -> xr.Dataset:
     """Linear peak to peak over speed, and its range where the inputs were varied."""
-    sweep, band = results.sweep, results.band
+    sweep = results.sweep
+    band = results.band
     speeds = sweep["speed"].to_numpy()
-    size, pushes = sweep["dte_peak_to_peak"].to_numpy(), sweep["normal_load_min"].to_numpy() > 0.0
+    size = sweep["dte_peak_to_peak"].to_numpy()
+    pushes = sweep["normal_load_min"].to_numpy() > 0.0
     stable = sweep["spectral_radius"].to_numpy() <= 1.0
     text = "transmission error, peak to peak"
     variables = {

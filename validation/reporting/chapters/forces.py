@@ -33,7 +33,8 @@ def write(results: Results) -> Content:
     prediction = results.prediction
     cycle = prediction.cycle
     path = contact_path(results.pair)
-    load, place = cycle["normal_load"].to_numpy(), cycle["position"].to_numpy()
+    load = cycle["normal_load"].to_numpy()
+    place = cycle["position"].to_numpy()
     # Hertzian pressure grows with the root of the load.
     touching = load > 0.0
     at = np.clip(place[touching], path.L_XA, path.L_XD)

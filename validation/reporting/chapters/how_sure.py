@@ -19,7 +19,8 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    found, budget = results.uncertainty, results.budget
+    found = results.uncertainty
+    budget = results.budget
     blocks: list[Block] = [_budget_table(budget)]
     blocks.append(
         Picture(
@@ -36,7 +37,8 @@ def write(results: Results) -> Content:
     blocks += [_ranges(found), inputs_table(found)]
     half = results.samples < results.effort.samples
     why = f" Half as many as else: a mesh cycle has {results.vibrations:.0f} vibrations." if half else ""
-    lost, unstable = int(found.attrs["contact_lost"]), int(found.attrs["unstable"])
+    lost = int(found.attrs["contact_lost"])
+    unstable = int(found.attrs["unstable"])
     blocks.append(
         Text(
             f"Possible machines are scrambled Sobol points, seed {found.attrs['seed']}; "

@@ -20,11 +20,13 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    pair, g = results.given, results.pair.geometry
+    pair = results.given
+    g = results.pair.geometry
     values = {path: v for path, v in field_values(pair).items() if path not in WORDS}
     spreads = {part.field: one.written for one in uncertain_inputs(pair) for part in one.parts}
     given, assumed = results.inputs
-    read, why = read_values(pair, contact_lost=results.like.contact_lost), reasons(pair)
+    read = read_values(pair, contact_lost=results.like.contact_lost)
+    why = reasons(pair)
     unread = len(values) - len(read)
     table = table_of(
         "parameters",

@@ -21,11 +21,14 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    pair, prediction = results.pair, results.prediction
+    pair = results.pair
+    prediction = results.prediction
     power = prediction.input_power
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # laws are compared outside their ranges too
-        laws, profile, path = losses_of_laws(pair), friction_profile(pair), contact_path(pair)
+        laws = losses_of_laws(pair)
+        profile = friction_profile(pair)
+        path = contact_path(pair)
     loss = 100.0 * (1.0 - laws["mesh_efficiency"].to_numpy())
     names = [str(name) for name in laws["law"].to_numpy()]
     data = labelled_dataset(
@@ -37,7 +40,8 @@ def write(results: Results) -> Content:
         },
     )
     places = np.linspace(path.L_XA, path.L_XD, 201)
-    film, other = path.film_thickness(places), path.film_thickness(places, "hamrock_dowson")
+    film = path.film_thickness(places)
+    other = path.film_thickness(places, "hamrock_dowson")
     parameter = profile["film_parameter"].to_numpy()
     parts = [(PLACES[place], lost, "W", "") for place, lost in prediction.losses.items()]
     table = quantities(

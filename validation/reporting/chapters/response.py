@@ -18,7 +18,9 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    pair, prediction, springs = results.pair, results.prediction, results.in_place_of_shafts
+    pair = results.pair
+    prediction = results.prediction
+    springs = results.in_place_of_shafts
     cycle = prediction.cycle
     period = pair.geometry.mesh_period
     time = labelled_dataset(

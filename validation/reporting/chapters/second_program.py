@@ -19,7 +19,9 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    check, second, springs = results.check, results.second, results.in_place_of_shafts
+    check = results.check
+    second = results.second
+    springs = results.in_place_of_shafts
     if isinstance(check, Absent):
         return Content("The second program does not run here.", (Text(check.detail),))
     blocks: list[Block] = []

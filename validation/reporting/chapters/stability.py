@@ -16,7 +16,8 @@ from validation.reporting.results import Results
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    chart, here = results.chart, results.multipliers
+    chart = results.chart
+    here = results.multipliers
     low, high = (number(speed, 5) for speed in results.speeds)
     share = float(np.mean(results.stability_line < 0))
     some = "no speed" if share == 0.0 else f"{100 * share:.2g} % of the speeds"
@@ -25,8 +26,10 @@ def write(results: Results) -> Content:
         f"to {high} rpm {'is' if some == 'no speed' else 'are'} unstable"
         f"{results.on_springs}."
     )
-    margin, damping = results.nearest_hazard, results.pair.mesh.damping_ratio
-    edge, thinnest = chart.attrs["nearest_edge_damping_ratio"], chart.attrs["thinnest_width"]
+    margin = results.nearest_hazard
+    damping = results.pair.mesh.damping_ratio
+    edge = chart.attrs["nearest_edge_damping_ratio"]
+    thinnest = chart.attrs["thinnest_width"]
     table = quantities(
         "stability",
         "Stability of the linear motion.",

@@ -41,7 +41,8 @@ def _spread(results: Results) -> list[Block]:
 
 
 def _tables(found: TeethFindings) -> list[Block]:
-    given, lengths = deviations_table(found.pair), ("cumulative", "pitch", "eccentricity")
+    given = deviations_table(found.pair)
+    lengths = ("cumulative", "pitch", "eccentricity")
     held = (int(one) if one < 12 else "none" for one in given["tolerance_class"])
     sizes = ([Quantity(float(given[name].sel(gear=gear)), "m") for name in lengths] for gear in GEARS)
     rows = tuple((gear, *size, one) for gear, size, one in zip(GEARS, sizes, held, strict=True))
@@ -96,9 +97,12 @@ def _indicators(found: TeethFindings) -> Table:
 
 
 def _pictures(found: TeethFindings) -> list[Block]:
-    motion, twin, pair = found.motion, found.twin, found.pair
+    motion = found.motion
+    twin = found.twin
+    pair = found.pair
     count = motion.sizes["time"]
-    turns, samples = found.period / pair.pinion.teeth, twin.sizes["time"]
+    turns = found.period / pair.pinion.teeth
+    samples = twin.sizes["time"]
     shown_count = min(count, _MOST_TURNS * pair.pinion.teeth * samples)
     turn = np.arange(count) * (found.period / (pair.pinion.teeth * count))
     healthy = np.tile(twin["dte"].to_numpy(), found.period)
@@ -123,7 +127,8 @@ def _pictures(found: TeethFindings) -> list[Block]:
 
 def _loads(found: TeethFindings) -> list[Picture]:
     """Map of all meeting pairs over the hunting period; else the teeth of the gear whose teeth differ."""
-    pair, share = found.pair, found.largest_loads / found.static_force
+    pair = found.pair
+    share = found.largest_loads / found.static_force
     words = "largest load over the mean mesh force"
     teeth = {gear: np.arange(getattr(pair, gear).teeth) + 1 for gear in GEARS}
     if found.period not in (pair.pinion.teeth, pair.gear.teeth):

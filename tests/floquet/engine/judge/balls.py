@@ -91,7 +91,8 @@ def _flow(piece: Piece, n: int, start: arb, length: arb, terms: int, bits: int) 
     ]
     rough = [float(a.upper()) for a in norms]
     beyond, radius = piece.bound(start, length) if piece.bound else (arb(0), math.inf)
-    best, rho = math.inf, 2.0
+    best = math.inf
+    rho = 2.0
     for R in _RHO:
         if 0.9 * radius > R:
             g = sum(a * R ** (k + 1) / (k + 1) for k, a in enumerate(rough))
@@ -130,7 +131,8 @@ def worst_ratio(
     values: np.ndarray, bounds: np.ndarray, exact: Sequence[tuple[complex, float]]
 ) -> tuple[float, float]:
     """Largest error over its bound, computed and exact multipliers being matched best; largest error."""
-    centre, radius = np.array([e[0] for e in exact]), np.array([e[1] for e in exact])
+    centre = np.array([e[0] for e in exact])
+    radius = np.array([e[1] for e in exact])
     # What the disks of the reference leave open counts for the package, and so do the last digits of complex.
     error = np.maximum(np.abs(values[:, None] - centre) - radius - 4e-16 * np.abs(centre), 0.0)
     ratio = error / np.maximum(bounds[:, None], 1e-300)

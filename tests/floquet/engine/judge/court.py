@@ -105,7 +105,8 @@ def _routes(kind: str, pair: GearPair, truth: Disks) -> list[Finding]:
 
 def _of_ten(kind: str, route: str, found: Any, oloa: np.ndarray, truth: Disks) -> list[Finding]:
     """Finding on the six multipliers that are not the bearings' off the line of action, if they differ."""
-    values, errors = np.asarray(found.multipliers), np.asarray(found.multiplier_errors)
+    values = np.asarray(found.multipliers)
+    errors = np.asarray(found.multiplier_errors)
     certificate = found.attrs["certificate"] if route.startswith("chart") else found.certificate
     feedback = np.abs(values[:, None] - oloa).min(axis=1) > 1e-12 * (1.0 + np.abs(values))
     if feedback.sum() != 6:
@@ -123,7 +124,8 @@ def table(findings: Sequence[Finding]) -> str:
     for kind, route, certificate in sorted(keys, key=lambda k: (KINDS.index(k[0]), k[1], k[2])):
         here = [f for f in findings if (f.kind, f.route, f.certificate) == (kind, route, certificate)]
         false = sum(f.ratio > 1.0 for f in here)
-        wrong, undecided = sum(f.wrong for f in here), sum(f.undecided for f in here)
+        wrong = sum(f.wrong for f in here)
+        undecided = sum(f.undecided for f in here)
         worst = max(f.ratio for f in here)
         cells = (kind, route, certificate, len(here), f"{worst:.1e}", false, wrong, undecided)
         lines.append("| " + " | ".join(map(str, cells)) + " |")

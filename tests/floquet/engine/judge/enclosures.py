@@ -97,7 +97,9 @@ def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: S
     Every number of the system is exact, and so are its shapes and frequencies, which only name coordinates.
     """
     ctx.prec = BITS
-    m, T, form = system.v.size, arb(period), system.modal()
+    m = system.v.size
+    T = arb(period)
+    form = system.modal()
     rate = arb(2 ** round(float(np.log2(form.omega.max()))))  # of both halves of the state alike
     G = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
     pieces = []
@@ -118,7 +120,8 @@ def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: S
             ]
             for c in range(m):
                 v = arb(float(system.v[c]))
-                still, moving = arb(float(system.stiffness[r, c])), arb(float(system.damping[r, c]))
+                still = arb(float(system.stiffness[r, c]))
+                moving = arb(float(system.damping[r, c]))
                 moving += arb(float(G[r, c])) / T
                 spring = own[0](u) * v + still
                 damper = own[1](u) * v * arb(float(zeta)) + moving

@@ -27,7 +27,8 @@ def finding(
     """Finding on multipliers with their bounds."""
     ratio, _ = worst_ratio(values, errors, truth)
     modulus = np.abs(values)
-    radius, error = float(modulus.max()), float((modulus + errors).max() - modulus.max())
+    radius = float(modulus.max())
+    error = float((modulus + errors).max() - modulus.max())
     low, high = (max(abs(c) + s * r for c, r in truth) for s in (-1.0, 1.0))
     wrong = (radius + error < 1.0 and low > 1.0) or (radius - error > 1.0 and high < 1.0)
     undecided = not (radius + error < 1.0 or radius - error > 1.0)

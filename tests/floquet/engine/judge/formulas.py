@@ -15,7 +15,8 @@ def _analytic(entry: Callable[..., object]) -> Callable[[arb, arb, int], list[ar
     """Taylor coefficients of an entire function of the time, by arithmetic of power series."""
 
     def coefficients(start: arb, length: arb, count: int) -> list[arb]:
-        kept, ctx.cap = ctx.cap, count
+        kept = ctx.cap
+        ctx.cap = count
         series = entry(arb_series([start, length], count))
         ctx.cap = kept
         return [series[k] for k in range(count)]  # type: ignore[index]
@@ -55,7 +56,9 @@ def formula(rng: np.random.Generator) -> list[Finding]:
     ends = np.array([0.0, *inner, T])
     rows = rng.normal(size=(ends.size - 1, int(rng.integers(1, 5))))
     count = int(rng.integers(1, 4))
-    mean, a, b = float(rng.uniform(0.5, 20.0)), rng.normal(size=count), rng.normal(size=count)
+    mean = float(rng.uniform(0.5, 20.0))
+    a = rng.normal(size=count)
+    b = rng.normal(size=count)
     damping = float(rng.choice([0.0, 0.05, rng.uniform(0.0, 2.0)]))
     wave = FourierSeries(T, mean, a.tolist(), b.tolist())
     ripple = PiecewisePolynomial(ends, rows)
@@ -87,7 +90,8 @@ def formula(rng: np.random.Generator) -> list[Finding]:
     findings = []
     for method in ("auto", "gauss"):
         found = monodromy(system, 1e-8, method=method)
-        kind, route = "formula", "engine" if method == "auto" else "engine, sampled"
+        kind = "formula"
+        route = "engine" if method == "auto" else "engine, sampled"
         errors = found.multiplier_errors
         findings.append(finding(kind, route, found.multipliers, errors, truth, found.certificate))
     return findings

@@ -35,9 +35,13 @@ def ball(value: fmpq | float) -> arb:
 def pieces(pair: GearPair, cycle: MeshCycle | None = None) -> list[Piece]:
     """x' = A(t) x for x = (q, x_p, x_g, and their rates over a unit that makes both of like size)."""
     system = periodic_system(pair, "mesh", cycle=cycle)
-    cycle, s = system.cycle, system.structure
-    g, laws = cycle.geometry, cycle.elements
-    pitch, first, last = exact(g.base_pitch), exact(g.L_XA), exact(g.L_XD)
+    cycle = system.cycle
+    s = system.structure
+    g = cycle.geometry
+    laws = cycle.elements
+    pitch = exact(g.base_pitch)
+    first = exact(g.L_XA)
+    last = exact(g.L_XD)
     period = ball(g.mesh_period)
     rows = [[ball(x) for x in (g.base_radius_pinion, -g.base_radius_gear, 0.0, 0.0)]]
     rows += [[arb(0), arb(0), arb(1), arb(0)], [arb(0), arb(0), arb(0), arb(1)]]
