@@ -19,9 +19,9 @@ import numpy as np
 from lumped.compiler import in_threads
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, EXACT, FORCE
 from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, static_loads
+from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE, EXACT, FORCE
 from lumped.mesh.tables import MeshTables
 from lumped.model.kernels import Propagated, chained, propagate, states_along
 from lumped.model.periodic_system import LTVSystem, Supports
@@ -243,7 +243,7 @@ def linear_motion(
     brake = float(weights[2])
     largest = np.abs(starts @ relative.T).max()
     closure = float(np.abs(relative @ (starts[-1] - starts[0])).max() / largest)
-    touch = Touch.TIED if form.tables.law.windows else Touch.LINEAR
+    touch = Touch.TIED if form.tables.law.prescribed else Touch.LINEAR
     flat = states.reshape(-1, system.size)
     return RevolutionMotion(
         *(pair, system, outer, touch, time, flat, load, torque, brake, powers, closure, float(error)),

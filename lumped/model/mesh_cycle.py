@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
-from lumped.mesh.element import Records
 from lumped.mesh.linear import forces_of_laws
+from lumped.mesh.records import Records
 from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs

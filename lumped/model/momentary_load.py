@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from lumped.errors import NumericalError
-from lumped.mesh.motion import WORK, Body, Run, run_cycles
+from lumped.mesh.motion import WORK, Body, CycleSpan, Run, run_cycles
 from lumped.mesh.tables import MeshTables, cycle_pairs
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
@@ -94,10 +94,9 @@ def run(
     ripples = torque_ripples(pair)
     mesh = cycle_pairs(tables)
     work = np.zeros(1, WORK)
-    found: Run = run_cycles(
-        start, cycles, recorded, tables, body_of(system, torques), ripples, state, mesh, work
-    )
-    return found
+    span = CycleSpan(start, cycles, recorded)
+    result: Run = run_cycles(span, tables, body_of(system, torques), ripples, state, mesh, work)
+    return result
 
 
 def body_of(system: LTVSystem, torques: FloatArray) -> Body:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
 from lumped.errors import refuse
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, Records
+from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE, Records
 from lumped.model.equations import Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, PairState
 from lumped.model.supports import SUPPORTS, Form
@@ -194,7 +194,7 @@ class LTVSystem:
 
     @cached_property
     def directions(self) -> FloatArray:
-        """Accelerations (4, m) of z per unit of each field of ``lumped.mesh.element.FORCE``."""
+        """Accelerations (4, m) of z per unit of each field of ``lumped.mesh.records.FORCE``."""
         return np.vstack([self.per_load, self.per_apart])
 
     def mesh_forces(

@@ -142,7 +142,7 @@ class RevolutionMotion:
         """Whether the pair in each place can carry load, (pairs, k): in its window, or where it does."""
         tables = self.tables
         g = self.pair.geometry
-        if not tables.law.windows:
+        if not tables.law.prescribed:
             return np.asarray(self.load != 0.0)
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
         place = tables.position[step, 0].T  # just inside of the step
@@ -162,7 +162,7 @@ class RevolutionMotion:
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
         pitch = tables.law.rolling_speed * tables.duration
         touches = self.touches
-        moved = 0.0 * self.time if tables.law.windows else swing(tables, self.time)
+        moved = 0.0 * self.time if tables.law.prescribed else swing(tables, self.time)
         # As the integration does: the step is that of the shifted middle of the own one.
         middle = 0.5 * (tables.edges[step] + tables.edges[step + 1])
         pitches, phase = np.divmod(middle + moved / pitch, 1.0)

@@ -50,7 +50,7 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     tables = mesh_tables(laws, 1.0, count)
     # With prescribed contact too, pairs touch where their own gaps close; with a stiffness of the whole mesh
     # within A to D.
-    tables = tables._replace(law=tables.law._replace(windows=False))
+    tables = tables._replace(law=tables.law._replace(prescribed=False))
     approach, each = static_loads(tables, 0, period)
     loads = each["static"].transpose(2, 0, 1)
     kept = np.flatnonzero(tables.outputs)

@@ -15,9 +15,10 @@ from functools import partial
 import numpy as np
 
 from lumped.faults.base import ToothFault
-from lumped.mesh.element import FLANKS, QUICK, ContactLaw, Records
+from lumped.mesh.damper import damping_coefficient
 from lumped.mesh.motion import RIPPLE
-from lumped.mesh.statics import end_gaps
+from lumped.mesh.records import FLANKS, QUICK, ContactLaw, Records
+from lumped.mesh.statics import flank_end_gaps
 from lumped.mesh.tables import LAWS, TOOTH, TURNING, MeshTables
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import contact_of
@@ -122,7 +123,8 @@ class ToothLaws:
         if self.elements is None:
             k = np.where(inside, self.mesh.stiffness.extended(xi), 0.0)
             gap = self.mesh.relief(xi)
-            c = self._dampers(k)
+            mass = bodies_of(self.pair).effective_mass
+            c = damping_coefficient(self.pair.mesh.damping_ratio, k, mass)
         else:
             k = self.elements.stiffness(xi)
             c = self.elements.damping(xi)
@@ -146,11 +148,6 @@ class ToothLaws:
         found["friction"] = self.friction(np.clip(xi, first + near, last - near))
         return found
 
-    def _dampers(self, k: FloatArray) -> FloatArray:
-        ratio = self.pair.mesh.damping_ratio
-        mass = bodies_of(self.pair).effective_mass
-        return np.asarray(2.0 * ratio * np.sqrt(k * mass), dtype=np.float64)
-
     def shapes(self, xi: FloatArray) -> Records:
         """TOOTH (..., 2) of pinion and gear: gap per unit of each number of their teeth."""
         g = self.geometry
@@ -159,7 +156,7 @@ class ToothLaws:
         for which, length in enumerate(self.lengths(np.clip(xi, g.L_XA, g.L_XD))):
             flank = self.flanks[which]
             gear = (self.pair.pinion, self.pair.gear)[which]
-            found["error"][..., which] = 1.0
+            found["gap"][..., which] = 1.0
             # Material at the tip, none at the pitch point, where the index is taken.
             found["slope"][..., which] = -(length - pitch[which]) / (flank.tip - flank.start)
             if gear.tip_relief is not None:
@@ -182,15 +179,15 @@ class ToothLaws:
         beyond = np.linspace(0.0, self.high - self.low, 65)[1:]
         radii = (g.base_radius_pinion, g.base_radius_gear)
         no_edge = -beyond, 0.0, g.L_XY  # an edge only adds to the gap
-        before = end_gaps(beyond, tips[1], *no_edge, *radii) / beyond**2
-        behind = end_gaps(beyond, tips[0], *no_edge, *radii[::-1]) / beyond**2
+        before = flank_end_gaps(beyond, tips[1], *no_edge, *radii) / beyond**2
+        behind = flank_end_gaps(beyond, tips[0], *no_edge, *radii[::-1]) / beyond**2
         least = _LEAST_GAP * before.min(), _LEAST_GAP * behind.min()
         return g.L_XY - tips[1], tips[0], g.L_XY, g.undercut_pinion, g.undercut_gear, *least
 
     def contact_law(self) -> ContactLaw:
         """Law of the contact for motions."""
         neighbours = self.loaded and len(self.mesh.neighbours) > 0
-        return self.mesh.law._replace(converged=QUICK, coupled=neighbours, windows=not self.loaded)
+        return self.mesh.law._replace(converged=QUICK, coupled=neighbours, prescribed=not self.loaded)
 
     def turning(self) -> Records:
         """TURNING of both gears, then of each ripple of a torque; nothing swings yet."""
@@ -214,7 +211,7 @@ def torque_ripples(pair: GearPair) -> Records:
 def _of_teeth(teeth: OwnTeeth) -> Records:
     """TOOTH of each tooth of a gear."""
     found = np.zeros(teeth.error.size, TOOTH)
-    found["error"] = teeth.error
+    found["gap"] = teeth.error
     found["slope"] = teeth.slope
     found["relief"] = teeth.relief
     return found

@@ -185,7 +185,7 @@ def _linear_balance(pair: GearPair, system: LTVSystem, samples: int) -> Revoluti
         pair=pair,
         system=system,
         tables=tables,
-        touch=Touch.WINDOWS if tables.law.windows else Touch.MOMENTARY,
+        touch=Touch.WINDOWS if tables.law.prescribed else Touch.MOMENTARY,
         time=linear.time,
         states=linear.states,
         load=np.zeros((tables.ahead.size, 1)),

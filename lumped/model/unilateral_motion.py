@@ -240,7 +240,7 @@ class Shooting:
             pair=self.pair,
             system=system,
             tables=self.tables,
-            touch=Touch.WINDOWS if self.tables.law.windows else Touch.MOMENTARY,
+            touch=Touch.WINDOWS if self.tables.law.prescribed else Touch.MOMENTARY,
             time=time,
             states=without_drift(system, time, whole.states, whole.end, self.cycles * system.period),
             load=whole.loads,

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.errors import NumericalError
-from lumped.mesh.element import EXACT, FLANKS, ContactLaw
+from lumped.mesh.records import EXACT, FLANKS, ContactLaw
 from lumped.mesh.statics import Phases, static_approaches, workspace
 from lumped.path_function import PathFunction
 from lumped.typing import BoolArray, FloatArray
@@ -30,8 +30,8 @@ _SPRINGS = ContactLaw(
     converged=EXACT,
     full_damper=1.0,
     coupled=False,
-    apart=-np.inf,
-    windows=False,
+    apart_below=-np.inf,
+    prescribed=False,
     radius_pinion=1.0,
     radius_gear=1.0,
     rolling_speed=0.0,

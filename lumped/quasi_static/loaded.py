@@ -20,8 +20,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
-from lumped.mesh.element import CONTACT, EXACT, FLANKS, ContactLaw, Records
-from lumped.mesh.statics import Phases, deciding_ways, middle_contacts, static_approaches, workspace
+from lumped.mesh.damper import FULL_DAMPING, damping_law
+from lumped.mesh.records import CONTACT, EXACT, FLANKS, ContactLaw, Records
+from lumped.mesh.statics import Phases, middle_contacts, static_approaches, tips_minus_edges, workspace
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
@@ -53,8 +54,6 @@ _DAMPING_TOLERANCE = 1e-11
 _KEPT = 256
 #: Largest load of a pair, over the mean load, for which ``ContactLaw.apart`` holds.
 _MOST_LOAD = 10.0
-#: The damper is whole where a pair carries this share of the mean load.
-FULL_DAMPING = 1.0 / 15.0
 
 
 def _least(law: PathFunction) -> float:
@@ -224,8 +223,8 @@ class StaticMesh:
             converged=EXACT,
             full_damper=FULL_DAMPING * self.force,
             coupled=len(self.neighbours) > 0,
-            apart=_MOST_LOAD * self.force * min([0.0, *(_least(moved) for moved in self.neighbours)]),
-            windows=False,
+            apart_below=_MOST_LOAD * self.force * min([0.0, *(_least(moved) for moved in self.neighbours)]),
+            prescribed=False,
             radius_pinion=g.base_radius_pinion,
             radius_gear=g.base_radius_gear,
             rolling_speed=g.omega_pinion * g.base_radius_pinion,
@@ -326,7 +325,7 @@ class StaticMesh:
             tip = g.tip_length_pinion
             edge = g.undercut_gear
             radii = radii[::-1]
-        return np.asarray(deciding_ways(beyond, tip, back, edge, length, *radii), dtype=np.float64)
+        return np.asarray(tips_minus_edges(beyond, tip, back, edge, length, *radii), dtype=np.float64)
 
     def back(self, at_start: bool, xi: FloatArray) -> FloatArray:
         """Way of the contact back from the edge at start or end of undercut flanks, (n,) [m]."""
@@ -340,11 +339,10 @@ def _damping(pair: GearPair, ratio: float) -> PathFunction:
     """C = 2 zeta sqrt(k m_e) of a pair ``at_rest``, taking hold with the load, with zeta = ``ratio``."""
     contact = loaded_contact(pair)
     low, high = contact.stiffness.interval
-    scale = 2.0 * ratio * np.sqrt(bodies_of(pair).effective_mass)
+    whole_damper = damping_law(ratio, contact.secant, bodies_of(pair).effective_mass)
 
     def damping(xi: FloatArray) -> FloatArray:
-        root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
-        return np.asarray(scale * root * contact.engagement(xi) * contact.closing(xi), dtype=np.float64)
+        return whole_damper(xi) * contact.engagement(xi) * contact.closing(xi)
 
     engaged = contact.engagement
     breaks = np.union1d(np.union1d(engaged.breaks, contact.secant.breaks), contact.closing.breaks)

@@ -15,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from lumped.errors import NumericalError
+from lumped.mesh.damper import damping_law
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
@@ -102,11 +103,7 @@ def _damping(stiffness: PathFunction, ratio: float, mass: float) -> PathFunction
     low, high = stiffness.interval
     if ratio == 0.0:
         return PathFunction.constant(0.0, low, high)
-    scale = 2.0 * ratio * np.sqrt(mass)
-
-    def damping(xi: FloatArray) -> FloatArray:
-        return np.asarray(scale * np.sqrt(np.maximum(stiffness(xi), 0.0)), dtype=np.float64)
-
+    damping = damping_law(ratio, stiffness, mass)
     values = damping(np.linspace(low, high, 401))
     from_zero = min(values[0], values[-1]) < 1e-3 * values.max()
     relative = _DAMPING_TOLERANCE_FROM_ZERO if from_zero else _DAMPING_TOLERANCE

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.mesh.statics import end_gaps
+from lumped.mesh.statics import flank_end_gaps
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
@@ -78,8 +78,8 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     edges = (g.undercut_pinion, g.undercut_gear)
     way = g.L_XY - at - tips[1], at - tips[0]
     back = edges[0] - at, edges[1] - (g.L_XY - at)
-    before = end_gaps(way[0], tips[1], back[0], edges[0], g.L_XY, *radii)
-    behind = end_gaps(way[1], tips[0], back[1], edges[1], g.L_XY, *radii[::-1])
+    before = flank_end_gaps(way[0], tips[1], back[0], edges[0], g.L_XY, *radii)
+    behind = flank_end_gaps(way[1], tips[0], back[1], edges[1], g.L_XY, *radii[::-1])
     return np.asarray((before + behind).reshape(place.shape), dtype=np.float64)
 
 

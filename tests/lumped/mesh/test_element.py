@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
+from tests.lumped.mesh.records_calls import Mesh, corner_at
 
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE
+from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE
 from lumped.model.equations import structure
-from tests.lumped.mesh.element_calls import Mesh, corner_at
 
 #: Unlike pairs whose loads move each other; the outer two are beyond the ends of their flanks, on corners.
 COUPLED = {"stiffness": [2.4e8, 3.1e8, 2.7e8], "softening": 1.3e-10, "coupled": True, "lengthening": 3e-6}
@@ -241,7 +241,7 @@ class TestLimits:
         assert state["approach"] == pytest.approx(1.5e-5, rel=1e-12)
 
     def test_in_its_window_a_pair_pulls_with_its_whole_damper(self):
-        mesh = Mesh([0.001], stiffness=2e8, damping=5e3, gap=2e-6, windows=True)  # far outside its flanks
+        mesh = Mesh([0.001], stiffness=2e8, damping=5e3, gap=2e-6, prescribed=True)  # far outside its flanks
         assert mesh.loads(-1e-5) == pytest.approx([-2400.0])
         assert mesh.force(1.2e-5, 0.1).normal == pytest.approx(2000.0 + 500.0)
         assert mesh.force(1e-6, 0.1).normal == pytest.approx(300.0)

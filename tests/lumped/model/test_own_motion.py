@@ -4,19 +4,19 @@ import functools
 
 import numpy as np
 import pytest
+from tests.lumped.mesh.records_calls import line_at
 
 import lumped
 from lumped.gauss_legendre import gauss_tableau
-from lumped.mesh.element import FORCE, LINE
+from lumped.mesh.damper import FULL_DAMPING
 from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, kinks, linear_form_at, static_loads
+from lumped.mesh.records import FORCE, LINE
 from lumped.mesh.tables import TURNING
 from lumped.model.cycle_maps import linear_motion
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.model.unilateral_motion import settled_motion
-from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
-from tests.lumped.mesh.element_calls import line_at
 from tests.unlike_pairs import unlike_pair
 
 COS = np.cos(np.radians(20.0))
