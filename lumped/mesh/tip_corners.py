@@ -115,13 +115,13 @@ def start_of_flanks(pair: Record, approach: float, line: Record, law: ContactLaw
     """Return the end before A: the gear's tip corner on the pinion's flank, at an approach of the gears."""
     half = half_way_out(approach, line)
     return FlankEnd(
-        pair.before_start + half,
-        pair.tip_gear,
-        pair.before_edge - half,
-        pair.edge_pinion,
-        line.length,
-        law.radius_pinion,
-        law.radius_gear,
+        beyond_tip=pair.before_start + half,
+        tip=pair.tip_gear,
+        beyond_edge=pair.before_edge - half,
+        edge=pair.edge_pinion,
+        line=line.length,
+        flank_radius=law.radius_pinion,
+        tip_radius=law.radius_gear,
     )
 
 
@@ -130,13 +130,13 @@ def end_of_flanks(pair: Record, approach: float, line: Record, law: ContactLaw) 
     """Return the end behind D: the pinion's tip corner on the gear's flank, at an approach of the gears."""
     half = half_way_out(approach, line)
     return FlankEnd(
-        pair.behind_end + half,
-        pair.tip_pinion,
-        pair.behind_edge - half,
-        pair.edge_gear,
-        line.length,
-        law.radius_gear,
-        law.radius_pinion,
+        beyond_tip=pair.behind_end + half,
+        tip=pair.tip_pinion,
+        beyond_edge=pair.behind_edge - half,
+        edge=pair.edge_gear,
+        line=line.length,
+        flank_radius=law.radius_gear,
+        tip_radius=law.radius_pinion,
     )
 
 

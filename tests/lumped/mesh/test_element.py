@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
-from tests.lumped.mesh.records_calls import Mesh, corner_at
+from tests.lumped.mesh.element_calls import Mesh, corner_at
 
 from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE
 from lumped.model.equations import structure

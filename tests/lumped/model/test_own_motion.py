@@ -4,7 +4,7 @@ import functools
 
 import numpy as np
 import pytest
-from tests.lumped.mesh.records_calls import line_at
+from tests.lumped.mesh.element_calls import line_at
 
 import lumped
 from lumped.gauss_legendre import gauss_tableau
