@@ -23,10 +23,10 @@ from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, static_loads
 from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE, EXACT, FORCE
 from lumped.mesh.tables import MeshTables
-from lumped.model.kernels import Propagated, chained, propagate, states_along
+from lumped.model.kernels import FreeSteps, Propagated, chained, propagate, states_along
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.powers import mean_powers
-from lumped.model.propagation import FreeSteps, distinct_lengths, fastest_frequency, padded, without_mesh
+from lumped.model.propagation import distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.revolution_motion import RevolutionMotion, Touch
 from lumped.model.steady import balanced_start, periodic_solution, sample_times
 from lumped.model.swing import moments, swinging
@@ -79,8 +79,9 @@ class CycleSteps:
         self.tables = self.tables._replace(law=self.tables.law._replace(converged=EXACT))
         self.lengths = np.diff(self.tables.edges) * system.period
         self.turns = bool(self.tables.turning["amplitude"].any())
-        first, which = distinct_lengths(system, self.lengths)
-        self.which, self.distinct = which[None], self.lengths[first]
+        first, length_of_step = distinct_lengths(system, self.lengths)
+        self.length_of_step = length_of_step[None]
+        self.distinct_lengths = self.lengths[first]
         self.free = self.free_steps()
         self.width = self.free.along.shape[1]
         numbers = range(self.tables.period) if only is None else only
@@ -102,7 +103,7 @@ class CycleSteps:
             forces = np.vstack([forces, moments(system), torques[m:].T])
         extra = padded(system, torques)
         tableau = gauss_tableau(STAGES)
-        return without_mesh(system, self.distinct, extra, tableau, forces, with_rates=with_rates)
+        return without_mesh(system, self.distinct_lengths, extra, tableau, forces, with_rates=with_rates)
 
     def with_like_teeth(self) -> CycleSteps:
         """The same steps through the one mesh cycle of like teeth, by their laws."""
@@ -155,11 +156,13 @@ class CycleSteps:
             found[..., AT_REST, of_shaft] += ripple["amplitude"] * np.cos(turn)
         return found
 
-    def along(self, columns: FloatArray, kept: int, strength: FloatArray, free: FreeSteps) -> Propagated:
-        """``propagate`` of a block of cycles."""
+    def propagated(
+        self, columns: FloatArray, recorded: int, strength: FloatArray, free: FreeSteps
+    ) -> Propagated:
+        """Take columns (cycles, columns, width) through a block of cycles; see ``propagate``."""
         deflection = np.ascontiguousarray(self.system.deflection)
-        found: Propagated = propagate(columns, kept, strength, self.which, *free, deflection)
-        return found
+        result: Propagated = propagate(columns, recorded, strength, self.length_of_step, free, deflection)
+        return result
 
     def cycle_maps(self) -> FloatArray:
         """Affine map of each mesh cycle, (cycles, n, n + 3).
@@ -178,12 +181,12 @@ class CycleSteps:
         units[0, 2 * fed :, n : n + 3] = np.eye(3)
         others = np.pad(np.eye(n) - (back @ to).T, ((0, 0), (0, self.width - n)))
         nothing = np.zeros((1, self.lengths.size, STAGES, 3, self.free.by_force.shape[2]))
-        still = self.along(others[None], 0, nothing, self.free).ends[0].T
+        still = self.propagated(others[None], 0, nothing, self.free).ends[0].T
 
         def maps(block: tuple[int, int]) -> FloatArray:
             first, count = block
             strength = self.strength(first, self.part(first, count))
-            ends = self.along(np.tile(units, (count, 1, 1)), 0, strength, self.free).ends.swapaxes(1, 2)
+            ends = self.propagated(np.tile(units, (count, 1, 1)), 0, strength, self.free).ends.swapaxes(1, 2)
             return np.concatenate([ends[..., : 2 * fed] @ to + still, ends[..., 2 * fed :]], axis=2)
 
         return np.concatenate(in_threads(maps, self.cycles))
@@ -269,7 +272,7 @@ def stepped_run(
         start[0, 0, : state.size] = state
         start[0, 0, state.size : state.size + weights.size] = weights
         at = form.first + (cycle - form.first) % known
-        ends, states, _ = form.along(start, 1, form.strength(at, form.part(at, 1)), form.free)
+        ends, states, _ = form.propagated(start, 1, form.strength(at, form.part(at, 1)), form.free)
         found.append(states[0, kept, 0])
         state = ends[0, 0, : state.size]
     return np.stack(found), state
@@ -317,7 +320,7 @@ def _inside(form: CycleSteps, cycles: FloatArray, weights: FloatArray) -> tuple[
         start[:, 0, : 2 * m] = cycles[first : first + count]
         start[:, 0, 2 * m : 2 * m + weights.size] = weights
         strength = form.strength(first, part)
-        _, states, inside = form.along(start, 1, strength, free)
+        _, states, inside = form.propagated(start, 1, strength, free)
         # One-dimensional: numpy takes rows of four numbers slowly.
         approach, closing = inside[:, :, 0, : 2 * STAGES].reshape(-1, 2, STAGES).swapaxes(0, 1).reshape(2, -1)
         rates = inside[:, :, 0, 2 * STAGES :].reshape(-1, m)

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, merged, propagate, states_along
+from lumped.model.kernels import FreeSteps, chained, merged, propagate, states_along
 from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
@@ -210,12 +209,12 @@ def _steps(
     moves[n] = True
     moving = np.flatnonzero(moves)
     columns = np.ascontiguousarray(np.broadcast_to(units[moving], (k, moving.size, units.shape[0])))
-    found = propagate(columns, moving.size, strength, which[:, None], *free, system.deflection)
+    propagated = propagate(columns, moving.size, strength, which[:, None], free, system.deflection)
     closing = np.ones_like(pairs.damping) if pairs.closing is None else pairs.closing
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate, closing])
     maps = np.ascontiguousarray(free.along[:, :, stages:].swapaxes(1, 2))[which]
-    maps[:, :, moving] = found.ends.swapaxes(1, 2)
-    return Steps(h, maps, moving, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
+    maps[:, :, moving] = propagated.ends.swapaxes(1, 2)
+    return Steps(h, maps, moving, propagated.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
 
 
 def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArray]:
@@ -226,24 +225,6 @@ def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArr
     whole = np.round(h / (_ROUNDING * system.period))
     _, first, which = np.unique(whole, return_index=True, return_inverse=True)
     return first, which
-
-
-class FreeSteps(NamedTuple):
-    """What ``propagate`` needs of k step lengths with s stages.
-
-    Attributes
-    ----------
-    along : (k, wide, rows) p (s), then the end (2m), without forces, of unit states and forcings; further
-        rows, where asked for, are the rates (s, m) of all coordinates at the stages
-    by_force : (k, s, forces, rows) what they take from each force at each stage
-    by_p : (k, 2s, s) deflection at the stages, then its rate, by p
-    reach : (k, s) time from the start to each stage [s]
-    """
-
-    along: FloatArray
-    by_force: FloatArray
-    by_p: FloatArray
-    reach: FloatArray
 
 
 def without_mesh(
