@@ -24,11 +24,12 @@ from lumped.mesh.places import fill_linear_form, static_loads
 from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE, EXACT, FORCE
 from lumped.mesh.tables import MeshTables
 from lumped.model.kernels import FreeSteps, Propagated, chained, propagate, states_along
+from lumped.model.period_closure import balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.powers import mean_powers
 from lumped.model.propagation import distinct_lengths, fastest_frequency, padded, without_mesh
 from lumped.model.revolution_motion import RevolutionMotion, Touch
-from lumped.model.steady import balanced_start, periodic_solution, sample_times
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.swing import moments, swinging
 from lumped.model.tooth_laws import ToothLaws, mesh_tables, torque_ripples
 from lumped.schema.pair import GearPair
@@ -114,10 +115,10 @@ class CycleSteps:
         times = low[:, None] + (high - low)[:, None] * tables.nodes
         forces, pairs = system.mesh_forces(times.ravel(), np.repeat(segment, STAGES))
         states = np.zeros(times.size, STATE)
-        square, rate, rest = pairs.damper_power
-        states["damper_by_square"] = square
-        states["damper_by_rate"] = rate
-        states["damper_at_rest"] = rest
+        power = pairs.damper_power
+        states["damper_by_square"] = power.by_square
+        states["damper_by_rate"] = power.by_rate
+        states["damper_at_rest"] = power.at_rest
         like = copy.copy(self)
         like.pair = self.pair.healthy
         like.first = 0

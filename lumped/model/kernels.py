@@ -82,7 +82,7 @@ class StepMemory(NamedTuple):
 
 @called
 def _copy(target: FloatArray, source: FloatArray) -> None:
-    """Do ``target[:] = source``, for which numba would spend two seconds on the message about other shapes."""
+    """Copy a matrix. numba would spend two seconds on ``target[:] = source`` and its error message."""
     for row in range(target.shape[0]):
         for column in range(target.shape[1]):
             target[row, column] = source[row, column]
@@ -174,7 +174,7 @@ def write_coasting(
 
 @inlined
 def solve_stages(by_p: FloatArray, memory: StepMemory) -> None:
-    """Solve for p from ``rows`` without feedback and the coasting motion; add p to the motion of the stages."""
+    """Solve for p of one column, and add the part of p to the coasting motion of the stages."""
     rows = memory.rows
     stage_motion = memory.stage_motion
     p = memory.p

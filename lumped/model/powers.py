@@ -168,7 +168,7 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     return np.stack(
         [
             -values["friction_power"].sum(axis=0),
-            pairs.taken(values["dte_dot"]).sum(axis=0),
+            pairs.damper_powers(values["dte_dot"]).sum(axis=0),
             supports["bearings"],
             supports.get("shafts", np.zeros(times.size)),
             corner_force(values, pairs) * (values["y_g_dot"] - values["y_p_dot"]),

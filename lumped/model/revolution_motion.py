@@ -9,12 +9,13 @@ import math
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lumped.labelling import Variable
 from lumped.mesh.tables import MeshTables
+from lumped.model.linear_or_unilateral import Contact
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import labelled, peak_to_peak, response
@@ -31,10 +32,6 @@ if TYPE_CHECKING:
 _MOST_SAMPLES = 512
 _LEAST_SAMPLES = 32
 _ALL_SAMPLES = 65536
-
-
-#: Argument ``contact``: teeth that are tied to the linear form, or that only push.
-Contact = Literal["linear", "unilateral"]
 
 
 class Touch(Enum):

@@ -7,21 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import tee
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import one_of, real_number, real_numbers
+from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.mesh.tables import MeshTables
 from lumped.model.cycle_maps import CycleSteps, linear_steps, loads_of, stepped_run
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.period_closure import balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
 from lumped.model.results import VARIABLES, labelled, response
-from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch
-from lumped.model.steady import balanced_start, periodic_solution, sample_times
+from lumped.model.revolution_motion import RevolutionMotion, Touch
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.model.tooth_laws import ToothLaws
 from lumped.ranges import warned_once
@@ -79,7 +81,7 @@ def run_up(
     NumericalError : a speed on the way has no periodic motion, or the motion overflows
     """
     pair = load_gear_pair(pair)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     advice = "Give the speed at the start and at the end: (500, 3000)."
     ends = real_numbers("speeds_rpm", speeds_rpm, 0.0, LARGEST_SPEED, above=True, unit="rpm", action=advice)
@@ -99,7 +101,7 @@ def run_up(
     groups = list(_groups(begins))
     hertz = ((last - first) / (begins[last] - begins[first]) for first, last in groups)
     pairs = (pair.with_({"operating.pinion_speed": float(60.0 / pair.pinion.teeth * f)}) for f in hertz)
-    of_groups = _linear if contact == "linear" else _unilateral
+    of_groups = _unilateral if form is MotionForm.UNILATERAL else _linear
     parts = of_groups(pairs, groups, supports, samples_per_cycle)
     times = []
     values = []

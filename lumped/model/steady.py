@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
+from lumped.model.period_closure import balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import STAGES, STEP_ANGLE, StepMaps, step_maps
 from lumped.model.results import peak_to_peak, response
@@ -163,45 +163,6 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
     twice = np.eye(2)
     relative = np.kron(twice, system.supports.relative) @ phi @ np.kron(twice, system.supports.back)
     return float(np.abs(np.linalg.eigvals(relative)).max())
-
-
-def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Initial state (n,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
-    operating = system.pair.operating
-    n = system.size
-    brake = operating.brake_torque
-    unknown = 2 if brake == "balanced" else 1
-    known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
-    matrix = np.zeros((n + 1, n + 1))
-    matrix[:n, :n] = np.eye(n) - phi
-    matrix[:n, n] = -forced[:, unknown]
-    unit = system.supports.units
-    common = system.supports.common_weights
-    matrix[n, : common.size] = common
-    right = np.append(forced @ known, 0.0)
-    # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
-    rate = 1.0 / system.period
-    columns = np.concatenate([unit, unit * rate, [0.0]])
-    columns[n] = system.pinion_torque / _static(system)
-    rows = np.append(columns[:n], common[0] * unit[0])
-    scaled = matrix * columns / rows[:, None]
-    condition = float(np.linalg.cond(scaled))
-    if not condition < 1e13:
-        raise NumericalError(
-            f"No periodic motion at {operating.pinion_speed * 30 / np.pi:.6g} rpm "
-            f"(condition {condition:.1e}): a multiplier is at +1. Change the speed slightly or add damping."
-        )
-    solution = np.linalg.solve(scaled, right / rows) * columns
-    weights = known.copy()
-    weights[unknown] = solution[n]
-    return solution[:n], weights
-
-
-def _static(system: LTVSystem) -> float:
-    """Order of the static deflection [m], for scaling only."""
-    k = system.cycle.elements.stiffness
-    load = system.pinion_torque / abs(float(system.structure.deflection[0]))
-    return load / max(float(k(k.breaks[:-1]).max()), k.mean())
 
 
 def sample_times(period: float, samples: int) -> FloatArray:

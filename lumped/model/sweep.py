@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import one_of, real_numbers
+from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
-from lumped.model.revolution_motion import Contact
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import steady_state
 from lumped.path_of_contact import friction_path_function
@@ -79,7 +79,7 @@ def speed_sweep(
     ParameterError : a speed or the number of samples is out of range, before any work starts
     """
     pair = load_gear_pair(pair)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     speeds = running_speeds(speeds_rpm)
     pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
@@ -96,7 +96,7 @@ def speed_sweep(
         )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
-    if contact == "linear" and pair.healthy is pair:
+    if form is MotionForm.LINEAR_LIKE_TEETH:
         motions = _linear_motions(pairs, supports, samples_per_cycle)
     else:
         motions = _motions(pairs, contact, supports, samples_per_cycle)

@@ -7,19 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.arguments import one_of, whole_number
+from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
-from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch, labelled_motion
+from lumped.model.revolution_motion import RevolutionMotion, Touch, labelled_motion
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import check_printed
@@ -82,12 +83,12 @@ def simulate(
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
     samples = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     check_printed(pair, contact, as_printed)
-    if contact == "linear" and pair.healthy is pair:
+    if form is MotionForm.LINEAR_LIKE_TEETH:
         return transient(pair, cycles, samples, initial, as_printed, supports, progress)
-    motion = _linear_run if contact == "linear" else _unilateral_run
+    motion = _linear_run if form is MotionForm.LINEAR_OWN_TEETH else _unilateral_run
     given = initial if isinstance(initial, str) else "given"
     attributes = provenance(pair, cycles=cycles, samples_per_cycle=samples, initial=given, contact=contact)
     found = motion(pair, cycles, samples, initial, supports, progress)

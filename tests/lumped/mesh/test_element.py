@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
-from tests.lumped.mesh.element_calls import Mesh, corner_at
 
 from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE
 from lumped.model.equations import structure
+from tests.lumped.mesh.element_calls import Mesh, corner_at
 
 #: Unlike pairs whose loads move each other; the outer two are beyond the ends of their flanks, on corners.
 COUPLED = {"stiffness": [2.4e8, 3.1e8, 2.7e8], "softening": 1.3e-10, "coupled": True, "lengthening": 3e-6}

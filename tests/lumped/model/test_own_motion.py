@@ -4,7 +4,6 @@ import functools
 
 import numpy as np
 import pytest
-from tests.lumped.mesh.element_calls import line_at
 
 import lumped
 from lumped.gauss_legendre import gauss_tableau
@@ -17,6 +16,7 @@ from lumped.model.cycle_maps import linear_motion
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.model.unilateral_motion import settled_motion
 from lumped.schema.bodies import bodies_of
+from tests.lumped.mesh.element_calls import line_at
 from tests.unlike_pairs import unlike_pair
 
 COS = np.cos(np.radians(20.0))
