@@ -1,29 +1,28 @@
 """Losses of the mesh: loss factor, mean friction, sliding loss and efficiency.
 
-This package computes the losses of quasi-static meshing, without vibration. A loss of a motion is computed where
-the motion is computed. All places use the definitions below.
+This package computes the losses of quasi-static meshing, without vibration. The losses of a motion are
+computed where the motion is computed. All places use these definitions of a power [W]:
 
-Definitions, the power of each loss [W]:
-
-- sliding: P = sum over the pairs of F v_s, with F = mu N and the sliding velocity
+- sliding: sum over the pairs of F v_s, with F = mu N and the sliding velocity
   v_s = (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi) - (y_p' - y_g')
-- tooth dampers: P = sum over the pairs of (N - N_el) p', the force of the damper times the rate of the
-  compression. In the linear form N - N_el = c p'
-- bearings, shafts: P = z'^T D z', the dampers D of the supports
+- tooth dampers: sum over the pairs of (N - N_el) p', the force of the damper times the rate of the
+  compression; in the linear form N - N_el = c p'
+- bearings, shafts: z'^T D z', with the matrix D of the dampers of the supports
 - efficiency: 1 - (sum of all mean losses) / (T_p Omega_p)
 
-Where each is computed:
+Places that compute the losses:
 
-| motion | sliding | tooth dampers | bearings, shafts |
-|---|---|---|---|
-| quasi-static | ``losses.efficiency.quasi_static_losses`` | none | none |
-| linear, like teeth | ``model.results.response`` | ``model.mesh_cycle.PairState.damper_powers`` | ``model.supports`` |
-| linear, own teeth | ``model.cycle_maps`` (``_velocities``) | ``mesh.linear.add_damper_power`` | ``model.supports`` |
-| unilateral | ``mesh.motion.sliding_power`` | ``mesh.damper.damper_power`` | ``mesh.motion.add_work`` |
+- quasi-static: ``losses.efficiency.quasi_static_losses``, sliding alone
+- linear motion of like teeth: ``model.results.response`` (sliding),
+  ``model.mesh_cycle.PairState.damper_powers``, ``model.supports.Supports.powers``
+- linear motion of teeth that differ: ``model.cycle_maps.working_velocities`` (sliding),
+  ``mesh.linear.add_damper_power``, ``model.supports.Supports.powers``
+- unilateral motion: ``mesh.motion.sliding_power``, ``mesh.damper.damper_power``, ``mesh.motion.add_work``
 
 Mean losses are collected as ``model.powers.MeanPowers`` (linear, like teeth) and
-``model.revolution_motion.RevolutionMotion.losses`` (all other motions). ``validation.prediction.motion.losses_of``
-reads them for a report. The multibody model has a power balance of its own, ``multibody.power_balance``.
+``model.revolution_motion.RevolutionMotion.losses`` (all other motions).
+``validation.prediction.motion.losses_of`` reads them for a report. The multibody model has a power balance of
+its own, ``multibody.power_balance``.
 
 Sources: docs/theory/contact_energy.md, "First law", "Mean powers".
 """

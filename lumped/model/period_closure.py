@@ -27,6 +27,9 @@ from lumped.typing import FloatArray
 if TYPE_CHECKING:
     from lumped.model.periodic_system import LTVSystem
 
+#: Forcings of a linear motion: the forcing of the system, one N m of T_p beyond the torque of the file, and
+#: one N m of T_g.
+OWN_FORCING, MORE_PINION_TORQUE, BRAKE_TORQUE = range(3)
 #: Condition number of the equations above which a multiplier counts as +1.
 _SINGULAR = 1e13
 #: What a run over the period gives beside the mismatch at its end.
@@ -47,7 +50,7 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
 
     Returns
     -------
-    (n,) state at the start, and (3,) weights: 1, T_p beyond the torque of the file, T_g [N m]
+    (n,) state at the start, and (3,) weights: 1, T_p beyond the torque of the file and T_g [N m]
 
     Raises
     ------
@@ -56,7 +59,7 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
     operating = system.pair.operating
     n = system.size
     brake = operating.brake_torque
-    unknown = 2 if brake == "balanced" else 1
+    unknown = BRAKE_TORQUE if brake == "balanced" else MORE_PINION_TORQUE
     weights = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
     matrix = np.zeros((n + 1, n + 1))
     matrix[:n, :n] = np.eye(n) - phi

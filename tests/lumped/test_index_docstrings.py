@@ -45,5 +45,5 @@ def test_a_name_that_does_not_exist_is_seen():
     assert resolve("losses.loss_factor.ohlendorf") is lumped.losses.ohlendorf
     with pytest.raises((AttributeError, ModuleNotFoundError)):
         resolve("lumped.mesh.damper.no_such_power")
-    with pytest.raises(ModuleNotFoundError):
+    with pytest.raises((AttributeError, ModuleNotFoundError)):
         resolve("nowhere.at.all")

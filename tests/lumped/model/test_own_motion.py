@@ -324,7 +324,7 @@ class TestOfEveryPair:
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
         laws = ToothLaws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
-        own = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2])
+        own = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4).c)
         x = (np.arange(2000) + 0.5) / 2000
         shape = (28, *own.position.shape[:2])
         form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
