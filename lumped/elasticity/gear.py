@@ -72,7 +72,7 @@ class FlankCompliance:
         """u_c at lengths along the base tangent, any shape [-]."""
         return np.asarray(chebyshev.chebval(self._at(length), self.own), dtype=np.float64)
 
-    def moved(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
+    def neighbour_motion(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
         """Motion of the tooth ``apart`` pitches ahead of a loaded one, at lengths of the same shape [-]."""
         result = chebyshev.chebval2d(self._at(loaded), self._at(length), self.cross[apart - 1])
         return np.asarray(result, dtype=np.float64)

@@ -57,6 +57,12 @@ def damping_law(
     return damping
 
 
+def rescaled_damping(damping: FloatArray, stiffness: FloatArray, former_stiffness: FloatArray) -> FloatArray:
+    """Return the damping coefficient after a change of the stiffness, as c grows with sqrt(k) [N s/m]."""
+    ratio = stiffness / np.where(former_stiffness > 0.0, former_stiffness, 1.0)
+    return np.asarray(damping * np.sqrt(ratio), dtype=np.float64)
+
+
 @inlined
 def damper_share(load: float, law: ContactLaw) -> float:
     """Share s of the damper that acts at an elastic load: s = x^2 (3 - 2 x), x = N_el over the full load.

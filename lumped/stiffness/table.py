@@ -201,9 +201,9 @@ def _neighbour_breaks(
     shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
 
     def within(positions: ArrayLike) -> FloatArray:
-        moved = np.unique(np.add.outer(np.asarray(positions), shifts))
-        moved = moved[(moved > g.L_XA + same) & (moved < g.L_XD - same)]
-        return moved[np.diff(moved, prepend=-np.inf) > same]
+        copies = np.unique(np.add.outer(np.asarray(positions), shifts))
+        copies = copies[(copies > g.L_XA + same) & (copies < g.L_XD - same)]
+        return copies[np.diff(copies, prepend=-np.inf) > same]
 
     jumps = within(switches)
     joints = within(knots)
