@@ -1,4 +1,4 @@
-"""One mesh cycle: where each tooth pair is, when the coefficients switch, and what they are in between.
+"""The mesh cycle of like teeth: positions of the tooth pairs, coefficients, and the times of their switches.
 
 Sources: Abbas Al-Zubaidi 2008, eqs. 5a and 5b; docs/theory/equations.md, "Frame".
 """
@@ -25,11 +25,11 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray, IntArray
 
-#: One-sided limits are taken this fraction of a base pitch inside a segment.
+#: Distance from the end of a segment at which a one-sided limit is taken, over the base pitch.
 _INSIDE = 1e-12
 #: Switch times closer than this fraction of a cycle are one.
 _SAME = 1e-10
-#: The same for breaks: their phases are known to this.
+#: The same for breaks, whose phases have this rounding error.
 _ROUNDING = 1e-13
 
 
@@ -147,17 +147,17 @@ class MeshCycle:
 
     @property
     def start(self) -> float:
-        """Where a pair can first touch: A, or before it with loaded contact [m]."""
+        """Position at which a pair can first touch: A, with loaded contact before A [m]."""
         return self.elements.stiffness.interval[0]
 
     @property
     def end(self) -> float:
-        """Where a pair can last touch: D, or behind it with loaded contact [m]."""
+        """Position at which a pair can last touch: D, with loaded contact behind D [m]."""
         return self.elements.stiffness.interval[1]
 
     @cached_property
     def offsets(self) -> FloatArray:
-        """xi_i at t = 0, whole pitches from A, of all pairs that can touch in the cycle; ahead first [m]."""
+        """Positions xi_i at t = 0 of all pairs that can touch in the cycle; the pair ahead is first [m]."""
         g = self.geometry
         ahead = math.floor((self.end - g.L_XA) / g.base_pitch)
         behind = math.ceil((g.L_XA - self.start) / g.base_pitch)
@@ -190,7 +190,7 @@ class MeshCycle:
 
     @cached_property
     def break_phases(self) -> FloatArray:
-        """Phases in [0, 1) at which a pair passes any break of a law, or A, P or D; as computed."""
+        """Phases in [0, 1) at which a pair passes a break of a law, or A, P or D, with their rounding."""
         g = self.geometry
         positions = np.concatenate([[g.L_XA, g.L_XP, g.L_XD], *(law.breaks for law in self._laws)])
         return np.asarray(np.unique(np.mod((positions - g.L_XA) / g.base_pitch, 1.0)), dtype=np.float64)
@@ -202,10 +202,10 @@ class MeshCycle:
 
     @cached_property
     def breaks(self) -> FloatArray:
-        """Ends of the pieces in which every law of every pair is one polynomial, 0 and T_m included [s].
+        """Ends of the pieces in which every law of every pair is one polynomial, with 0 and T_m [s].
 
-        The one list of such times: quadrature, propagation, fits and error bounds all read it. ``edges`` are
-        among them; other breaks that are closer together than rounding count as one.
+        Quadrature, propagation, fits and error bounds all use these times. All ``edges`` are among them.
+        Other breaks that differ by rounding count as one.
         """
         near = _ROUNDING * self.period
         marks = np.union1d(self.edges, self.break_phases * self.period)
@@ -229,13 +229,14 @@ class MeshCycle:
         Parameters
         ----------
         time : (k,) times [s]
-        segment : the smooth segment to which all times belong, or each (k,), so that values at its ends are
-            its one-sided limits; by default each time's own segment, right-continuous at switches
+        segment : smooth segment of all times, or of each time (k,). At the ends of the segment the values are
+            limits from inside the segment. By default the segment in which each time lies; a switch belongs
+            to the segment behind it
         """
         g = self.geometry
         t = np.atleast_1d(np.asarray(time, dtype=float))
         if segment is None:
-            # Times round to either side of an edge, by more in later cycles; just before it counts as at it.
+            # Rounding puts times on either side of an edge: a time just before an edge counts as the edge.
             same = _ROUNDING * self.period + 4.0 * np.spacing(np.abs(t))
             tau = np.mod(t, self.period)
             tau = np.where(tau > self.period - same, 0.0, tau)
@@ -285,7 +286,7 @@ def friction_coefficients(elements: MeshElements, place: FloatArray, contact: Bo
 
 
 def is_edge(times: FloatArray, edges: FloatArray) -> BoolArray:
-    """Whether each of some times (k,) is one of the increasing edges; a tenth of the time of `numpy.isin`."""
+    """Whether each time (k,) is one of the increasing edges; ten times faster than `numpy.isin`."""
     return np.asarray(edges[np.minimum(np.searchsorted(edges, times), edges.size - 1)] == times)
 
 

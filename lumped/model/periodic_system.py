@@ -67,9 +67,12 @@ def on_springs(pair: GearPair, supports: Supports | None, what: str) -> GearPair
 
 @dataclass(frozen=True, eq=False)
 class MeshGain:
-    """Feedback of the mesh, z'' = stiffness (u.z) + damping (u.z') + error + ..., each (k, m).
+    """Feedback of the mesh, z'' = stiffness (u.z) + damping (u.z') + error + ....
 
-    And its pairs.
+    Attributes
+    ----------
+    stiffness, damping, error : (k, m)
+    pairs : coefficients of the tooth pairs from which the feedback follows
     """
 
     stiffness: FloatArray
