@@ -23,7 +23,7 @@ T = TypeVar("T")
 def whole_number(
     field: str, value: object, low: int, high: int, action: str = "Choose a number in that range."
 ) -> int:
-    """Return a count from ``low`` to ``high`` given as any integer type, or refuse it."""
+    """Return a whole number from ``low`` to ``high`` of any integer type, or refuse it."""
     try:
         if isinstance(value, bool) or not isinstance(value, SupportsIndex):
             raise TypeError
@@ -45,7 +45,7 @@ def real_number(
     unit: str = "",
     action: str = "Choose a number in that range.",
 ) -> float:
-    """Return a finite number from ``low`` to ``high`` given as any real type, or refuse it; text is none.
+    """Return a finite number from ``low`` to ``high`` of any real type, or refuse it. Text is refused.
 
     With ``above`` the lower end itself is refused; ``unit`` is for the message.
     """
@@ -66,9 +66,9 @@ def real_numbers(
     unit: str = "",
     action: str = "Correct the list.",
 ) -> FloatArray:
-    """Return one or more finite numbers as a list (n,), or refuse them; one number is a list of one.
+    """Return one or more finite numbers as an array (n,), or refuse them. A single number is allowed.
 
-    Arguments as in ``real_number``; with ``increasing`` each must be larger than the one before.
+    Arguments as of ``real_number``. With ``increasing`` each number must be larger than the previous number.
     """
     array = _real(value)
     if array is not None and array.ndim <= 1 and array.size:
@@ -92,7 +92,10 @@ def real_array(field: str, value: object, *, finite: bool = True) -> FloatArray:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Ask whether the nearest known name was meant, or those that it is a word of; else nothing."""
+    """Return a question whether a similar name was meant; an empty text where no name is similar.
+
+    Names that contain the given name as a word are similar: torque, pinion_torque.
+    """
     names = list(known)
     parts = [one for one in names if name and name in one.split("_")]  # torque: pinion_torque, brake_torque
     close = parts or difflib.get_close_matches(name[:80], names, n=1, cutoff=0.5)
@@ -101,10 +104,10 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 def one_of(field: str, value: object, names: Iterable[str], action: str = "Choose one of them.") -> str:
     """Return a name out of ``names``, or refuse it."""
-    known = tuple(names)
-    if not isinstance(value, str) or value not in known:
-        near = nearest(str(value), known)
-        raise refuse(field, shown(value), "one of " + ", ".join(known), near or action)
+    allowed_names = tuple(names)
+    if not isinstance(value, str) or value not in allowed_names:
+        near = nearest(str(value), allowed_names)
+        raise refuse(field, shown(value), "one of " + ", ".join(allowed_names), near or action)
     return value
 
 
@@ -115,11 +118,11 @@ def some_of(
     action: str = "Correct the name.",
     spelling: Callable[[object], object] = lambda value: value,
 ) -> tuple[Name, ...]:
-    """Return a selection of names or numbers, or refuse it; a single text is none.
+    """Return a selection of names or numbers, or refuse it. A single text is refused.
 
     ``spelling`` turns another spelling of a name into the name.
     """
-    known = tuple(names)
+    allowed_names = tuple(names)
     single = (
         not isinstance(values, Iterable)
         or isinstance(values, (str, bytes))
@@ -127,14 +130,14 @@ def some_of(
     )
     chosen: list[Any] = []
     for value in [values] if single else map(spelling, values):
-        if single or not isinstance(value, Hashable) or value not in known:
-            raise refuse(field, shown(value), "a list out of " + ", ".join(map(str, known)), action)
+        if single or not isinstance(value, Hashable) or value not in allowed_names:
+            raise refuse(field, shown(value), "a list out of " + ", ".join(map(str, allowed_names)), action)
         chosen.append(value)
     return tuple(chosen)
 
 
 def of_type(field: str, value: object, kind: type[T], what: str) -> T:
-    """Return an object of one type, or refuse it; ``what`` is the type in words, and what makes one."""
+    """Return an object of one type, or refuse it. ``what`` names the type, and the function that makes it."""
     if not isinstance(value, kind):
         raise refuse(field, shown(value), what, "Give one of these.")
     return value
@@ -148,7 +151,7 @@ def file_path(field: str, value: object) -> Path:
 
 
 def _real(value: object) -> FloatArray | None:
-    """Array of a value that holds real numbers and nothing else; None for any other."""
+    """Return a value as an array of real numbers; None where the value has anything else."""
     try:
         array: NDArray[Any] = np.asarray(
             list(value) if isinstance(value, (Iterator, Set, ValuesView)) else value

@@ -1,7 +1,7 @@
-"""Files that are kept between runs: results of finite elements, compiled code.
+"""Files that are stored between runs: results of finite elements, compiled code.
 
-A file is named after everything that its content depends on. It begins with a checksum and gets its name when
-it is complete. So a kill, a full disk or runs side by side leave no file that stands for another one.
+The name of a file is a hash of everything on which its content depends. A file begins with a checksum and
+gets its name when it is complete. So a kill, a full disk or parallel runs leave no wrong file.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from lumped.typing import FloatArray
 def cached(
     folder: str, sources: Iterable[Path], inputs: bytes, compute: Callable[[], dict[str, FloatArray]]
 ) -> dict[str, FloatArray]:
-    """Return the arrays that ``compute`` returns, from the user's cache folder where they are known.
+    """Return the arrays that ``compute`` returns, from the user's cache folder where they are stored.
 
-    ``inputs`` is all that they depend on apart from the source files, libraries and the machine. A folder
-    that cannot be written is done without.
+    ``inputs`` is everything on which the arrays depend beside the source files, libraries and the machine. If
+    the folder cannot be written, nothing is stored.
     """
     key = hashlib.sha256(_made_by(tuple(sources)) + blas_threads().encode() + b"\0" + inputs).hexdigest()
     path = cache_folder() / folder / f"{key}.npz"
@@ -45,7 +45,7 @@ def cached(
 
 
 def cache_folder() -> Path:
-    """The user's cache folder; for a user without a home one that cannot be made."""
+    """Return the user's cache folder; for a user without a home, a folder that cannot be made."""
     try:
         folder = user_cache_path("spurcheck", appauthor=False)
     except RuntimeError:
@@ -54,7 +54,7 @@ def cache_folder() -> Path:
 
 
 def read_whole(path: Path) -> bytes | None:
-    """Content that ``write_whole`` has stored; None where there is none or it is damaged."""
+    """Return content that ``write_whole`` has stored; None where it is missing or damaged."""
     try:
         stored = path.read_bytes()
     except OSError:
@@ -63,7 +63,7 @@ def read_whole(path: Path) -> bytes | None:
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Store content with its checksum under a name that appears when all is written."""
+    """Store content with its checksum. The file gets its name when it is complete."""
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
     try:
@@ -84,7 +84,7 @@ def _made_by(sources: tuple[Path, ...]) -> bytes:
 
 @cache
 def processor() -> str:
-    """Name of the processor: BLAS and the compilers choose their instructions, and with them roundings."""
+    """Name of the processor, which decides the instructions of BLAS and compilers, and so the rounding."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
@@ -93,7 +93,10 @@ def processor() -> str:
 
 
 def blas_threads() -> str:
-    """Threads of OpenBLAS, by the settings that it reads when it is loaded: they cut large products."""
+    """Number of threads of OpenBLAS, by the settings that OpenBLAS reads when it is loaded.
+
+    The number decides how large products are cut, and so their rounding.
+    """
     for name in ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"):
         if os.environ.get(name):
             return os.environ[name]

@@ -61,7 +61,7 @@ def _compiled(function: Callable[..., Any], /, **options: Any) -> Any:
 
 
 def is_stored(function: Callable[..., Any]) -> bool:
-    """Whether there is a file with code of this compiled function as it is now."""
+    """Whether a file has the code of this compiled function in its present state."""
     return any(Path(function._cache.cache_path).glob("*.kernel"))  # type: ignore[attr-defined]
 
 
@@ -72,7 +72,10 @@ def kernel_folder() -> Path:
 
 
 def in_threads(run: Callable[[Part], Result], parts: Sequence[Part]) -> list[Result]:
-    """Results of ``run`` on parts, a thread a core, for kernels that release the interpreter lock."""
+    """Return the results of ``run`` on all parts.
+
+    Threads run in parallel: kernels release the interpreter lock.
+    """
     count = min(cores(), len(parts))
     if count <= 1:
         return [run(part) for part in parts]
@@ -81,7 +84,7 @@ def in_threads(run: Callable[[Part], Result], parts: Sequence[Part]) -> list[Res
 
 
 class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
-    """Compiled code of one function, a file for its stamp, the types of its arguments and the processor."""
+    """Stored code of one compiled function: one file for each stamp, types of arguments and processor."""
 
     def __init__(self, dispatcher: Any) -> None:
         self._dispatcher = dispatcher
@@ -134,9 +137,9 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
             self._release(path)
 
     def _calls_older_code(self) -> bool:
-        """Whether a function that this one calls was compiled before a global changed in this process.
+        """Whether a called function was compiled before one of its globals changed in this process.
 
-        A module that is loaded again changes the globals of functions that others still hold.
+        A module that is loaded again changes the globals of functions that other modules still call.
         """
         files = [
             one._cache for one in compiled_behind(self._dispatcher) if isinstance(one._cache, _KernelFiles)
@@ -144,9 +147,10 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
         return any(one._first_stamp not in (None, stamp_of(one._dispatcher)) for one in files)
 
     def _hold(self, path: Path) -> bool:
-        """Wait until no other process compiles this kernel, and keep the others waiting.
+        """Lock a kernel file: wait until no other process compiles the kernel, and make other processes wait.
 
-        False: there is no place, or it calls itself by another kernel, and is held already.
+        Returns False where the file cannot be written, or where this process has the lock already because the
+        kernel calls itself through another kernel.
         """
         if path in self._held:
             return False

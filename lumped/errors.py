@@ -15,7 +15,7 @@ class FieldProblem:
     Attributes
     ----------
     field : dotted path of the field, e.g. ``"pinion.face_width"``
-    value : what was given, as text with its unit
+    value : the refused value, as text with its unit
     allowed : the allowed range or set, as text with its unit
     action : what to do next
     """
@@ -37,7 +37,7 @@ _MOST_CHARACTERS = 500
 
 
 def quoted(value: object) -> str:
-    """Text of a value as code writes it, also of one that is nested deeper than Python counts."""
+    """Return a value as Python code would write it, also a value that is nested too deeply for ``repr``."""
     try:
         return repr(value.item() if isinstance(value, np.generic) else value)
     except RecursionError:
@@ -47,7 +47,7 @@ def quoted(value: object) -> str:
 
 
 def shown(value: object, most: int = _SHOWN_CHARACTERS) -> str:
-    """Text of a refused value, cut to a length that a message bears."""
+    """Return the text of a refused value, cut to a length that fits into a message."""
     text = value if isinstance(value, str) else quoted(value)
     cut = f"... ({len(text)} characters)" if len(text) > most else ""
     # Line ends, control characters and halves of surrogate pairs as code writes them.
@@ -65,7 +65,7 @@ class ParameterError(SpurcheckError, ValueError):
     Parameters
     ----------
     problems : the refused inputs
-    source : where they came from (a file name, a preset, "mapping")
+    source : origin of the inputs (a file name, a preset, "mapping")
     """
 
     def __init__(self, problems: list[FieldProblem], source: str = "") -> None:
@@ -105,10 +105,12 @@ class StorageError(SpurcheckError, OSError):
 
 
 class LawRangeWarning(UserWarning):
-    """A friction or film law was evaluated outside the range in which it was fitted.
+    """A friction or film law was evaluated outside its range of validity.
 
-    ``subject``: the law and the quantity, the same for every value of it; ``largest``: the largest friction
-    coefficient outside.
+    Attributes
+    ----------
+    subject : the law and the quantity, without the value
+    largest : largest friction coefficient outside the range
     """
 
     def __init__(self, text: str, subject: str = "", largest: float = 0.0) -> None:
@@ -118,12 +120,12 @@ class LawRangeWarning(UserWarning):
 
 
 class LikeTeethWarning(UserWarning):
-    """A function that takes all teeth as alike got a pair whose teeth differ: the result is of like teeth."""
+    """A function for like teeth got a pair whose teeth differ. The result is that of like teeth."""
 
 
 class ResolutionWarning(UserWarning):
-    """A function that can only be sampled has features narrower than the samples that were taken first."""
+    """A function that is sampled has features that are narrower than the first samples."""
 
 
 class OldFormatWarning(UserWarning):
-    """A parameter file of an older format means something else than the same text in today's format."""
+    """The text of a parameter file has another meaning in its older format than in the present format."""

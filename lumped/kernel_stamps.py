@@ -1,4 +1,4 @@
-"""The stamp of a compiled function: a hash of all that its machine code depends on.
+"""The stamp of a compiled function: a hash of everything on which its machine code depends.
 
 When numba compiles a function it freezes what the function's global names stand for into the code. The stamp
 is taken then, of the same objects: bytecode, defaults and closure of the function, the numbers, arrays and
@@ -47,7 +47,7 @@ _CODE = (
 
 
 class UnknownDependencyError(Exception):
-    """Nobody can know whether code on disk would belong to the function."""
+    """It cannot be decided whether code on disk belongs to the function."""
 
 
 def stamp_of(dispatcher: Any) -> str:
@@ -63,7 +63,7 @@ def stamp_of(dispatcher: Any) -> str:
 
 
 def compiled_behind(dispatcher: Any) -> list[Any]:
-    """A compiled function and all that it calls, directly or not."""
+    """Return a compiled function and all compiled functions that it calls, directly or not."""
     dependencies = _Dependencies()
     dependencies.of_compiled(dispatcher)
     return dependencies.functions
@@ -84,10 +84,11 @@ def _fields(kind: Any) -> Iterator[tuple[str, ...]]:
 
 
 class _Dependencies:
-    """Walks from one function to all that it depends on.
+    """A walk from one function to everything on which it depends.
 
-    The answer of each method is made of texts, numbers and tuples, so that ``repr`` tells any two apart. What
-    has been visited is named by its number in the walk: functions may call each other in circles.
+    The methods return texts, numbers and tuples, so that ``repr`` differs for any two results. An object that
+    was visited before is represented by its number in the walk, because functions may call each other in
+    circles.
     """
 
     def __init__(self) -> None:
@@ -95,7 +96,7 @@ class _Dependencies:
         self.functions: list[Any] = []
 
     def of_compiled(self, dispatcher: Any) -> tuple[Any, ...]:
-        """A compiled function, its options and all that it names."""
+        """Return a compiled function with its options and all globals that it names."""
         if (number := self._again(id(dispatcher))) is not None:
             return "again", number
         self.functions.append(dispatcher)
@@ -110,22 +111,28 @@ class _Dependencies:
         return module, name, self._of(bound, (), function), self._of_code(function.__code__, function)
 
     def _of_code(self, code: CodeType, function: FunctionType) -> tuple[Any, ...]:
-        """Bytecode, constants, functions inside, and every global that it may name.
+        """Return bytecode, constants, inner functions, and every global that the code may name.
 
-        ``co_names`` holds attributes too: one that is called like a global brings that in for nothing.
+        ``co_names`` has attributes too. An attribute with the name of a global brings in this global without
+        need.
         """
         constants = [
             self._of_code(one, function) if isinstance(one, CodeType) else self._of(one, (), function)
             for one in code.co_consts
         ]
-        known = function.__globals__
+        global_names = function.__globals__
         named = [
-            (name, self._of(known[name], code.co_names, function)) for name in code.co_names if name in known
+            (name, self._of(global_names[name], code.co_names, function))
+            for name in code.co_names
+            if name in global_names
         ]
         return *(getattr(code, part) for part in _CODE), *constants, *named
 
     def _of(self, value: Any, names: tuple[str, ...], function: FunctionType) -> Any:
-        """What a global stands for; ``names`` are those that code may ask a module for."""
+        """Return the content of a global.
+
+        ``names`` are the attributes that the code may read from a module.
+        """
         kind = type(value)
         if value is None or value is ... or kind in (bool, int, float, complex, str, bytes):
             return kind.__name__, repr(value)
@@ -157,23 +164,23 @@ class _Dependencies:
         return self._of_files(value, function)
 
     def _of_module(self, module: ModuleType, names: tuple[str, ...], function: FunctionType) -> Any:
-        """What code may ask a module for, ``module.name``."""
+        """Return the attributes that the code may read from a module."""
         if _root(module.__name__) in _LIBRARIES:
             return "library", module.__name__
         if (number := self._again((id(module), names))) is not None:
             return "again", number
-        held = [(name, getattr(module, name)) for name in names if hasattr(module, name)]
-        return module.__name__, [(name, self._of(value, names, function)) for name, value in held]
+        attributes = [(name, getattr(module, name)) for name in names if hasattr(module, name)]
+        return module.__name__, [(name, self._of(value, names, function)) for name, value in attributes]
 
     def _of_files(self, value: Any, function: FunctionType) -> tuple[str, ...]:
-        """Text of the file that a global comes from, or else the function, and of all that this imports."""
+        """Return a hash of the file of a global, else of the function, and of all files that are imported."""
         module = getattr(value, "__module__", None)
         if not isinstance(module, str) or _root(module) in _LIBRARIES:
             module = function.__module__
         return "files", getattr(value, "__qualname__", type(value).__qualname__), _text_behind(module)
 
     def _again(self, key: object) -> int | None:
-        """The number of what was visited before, else None."""
+        """Return the number of an object that was visited before, else None."""
         number = self._visited.get(key)
         self._visited.setdefault(key, len(self._visited))
         return number
@@ -184,7 +191,7 @@ def _root(module: str) -> str:
 
 
 def _in_library(value: Any) -> bool:
-    """Whether a class or function is the one that a library holds by its name."""
+    """Whether a class or function is the object with this name in a library."""
     module = getattr(value, "__module__", None)
     name = getattr(value, "__qualname__", None)
     if not isinstance(module, str) or not isinstance(name, str) or _root(module) not in _LIBRARIES:
@@ -225,10 +232,12 @@ def _imports(tree: ast.AST, package: str) -> Iterator[str]:
 
 def _file(module: str) -> Path | None:
     """Source file of a module that is or can be imported; None: there is none of that name."""
-    held = sys.modules.get(module)
+    imported = sys.modules.get(module)
     try:
-        spec = None if held is not None else importlib.util.find_spec(module)
+        spec = None if imported is not None else importlib.util.find_spec(module)
     except (ImportError, ValueError):
         return None
-    path = held.__file__ if held is not None and hasattr(held, "__file__") else spec and spec.origin
+    path = (
+        imported.__file__ if imported is not None and hasattr(imported, "__file__") else spec and spec.origin
+    )
     return Path(path) if path and path.endswith(".py") else None

@@ -1,4 +1,4 @@
-"""Datasets whose variables all carry a unit and a plain name, and attributes that say what made them."""
+"""Datasets whose variables have units and plain names, with attributes about their origin."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Coordinate = tuple[Any, str, str]
 
 
 class Described(Protocol):
-    """A gear pair, as far as provenance reads it."""
+    """The part of a gear pair that ``provenance`` reads."""
 
     @property
     def name(self) -> str:
@@ -30,7 +30,7 @@ class Described(Protocol):
 
     @property
     def stiffness_words(self) -> str:
-        """What stiffness is given, of the whole mesh or of one tooth pair."""
+        """Words: the stiffness of the whole mesh, or of one tooth pair, and its model."""
 
     def to_toml(self) -> str:
         """All parameters."""
@@ -41,7 +41,7 @@ def labelled_dataset(
     coordinates: Mapping[str, Coordinate],
     attributes: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:
-    """Put arrays under their names, units and dimensions; every result says the versions that made it."""
+    """Return arrays as a dataset with names, units and dimensions, and with the versions of the program."""
     import xarray as xr  # takes a third of a second, which an import of the package should not
 
     return xr.Dataset(
@@ -58,7 +58,7 @@ def labelled_dataset(
 
 
 def provenance(pair: Described, **settings: Any) -> dict[str, Any]:
-    """Attributes that say what a result was made from: parameters, hash, versions, settings."""
+    """Return the attributes about the origin of a result: parameters, hash, versions, settings."""
     text = pair.to_toml()
     return {
         "gear_pair": pair.name,
@@ -89,7 +89,7 @@ def _sha256(text: str) -> str:
 
 @cache
 def source_hash() -> str:
-    """SHA-256 over names and contents of the four packages' files: says more than a version does."""
+    """SHA-256 of the names and contents of all files of the four packages, which changes with every edit."""
     digest = hashlib.sha256()
     for package in _OWN:
         root = Path(str(resources.files(package)))

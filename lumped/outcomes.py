@@ -1,4 +1,4 @@
-"""Why a result is not there: a code with a text, in the place of strings and None.
+"""Reasons why a result is missing: a code with a text, instead of strings and None.
 
 A function that may have no result returns ``A | Absent``. The code is for programs, the text for people.
 """
@@ -10,7 +10,7 @@ from enum import Enum
 
 
 class Outcome(Enum):
-    """Codes; the value is the text that a reader gets."""
+    """Codes of the reasons. The value of a code is its text for a reader."""
 
     CONTACT_NOT_LOST = "Contact is never lost, so the linear motion is the motion."
     FAILED = "The computation failed."
@@ -25,7 +25,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class Absent:
-    """A result that is not there: the code, and what else is known, e.g. the message of the error."""
+    """A missing result: the code, and a detail, e.g. the message of the error."""
 
     outcome: Outcome
     detail: str = ""

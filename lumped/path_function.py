@@ -29,13 +29,14 @@ Array = TypeVar("Array", NDArray[np.float64], NDArray[np.longdouble])
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
 FIT_DEGREE = 8
 _MAX_CUTS = 44
-#: A function is smooth at a break if the polynomial before it holds beyond, for this share of the shorter
-#: piece and to so much of the largest value.
+#: A function counts as smooth at a break if the polynomial before the break also holds behind it: over this
+#: share of the shorter piece, and to this share of the largest value.
 _BEYOND = 0.25
 _SMOOTH = 1e-6
-#: Pieces of this share of the interval and longer err by the tolerance at most, see ``PathFunction.fit``.
+#: Pieces that are longer than this share of the interval err by the tolerance at most, see
+#: ``PathFunction.fit``.
 _FULL_LENGTH = 0.125
-#: Cutting without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
+#: Most pieces. More of them mean rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
 _MAX_PIECES = 4000
 
 _NODES = np.asarray(chebyshev.chebpts1(FIT_DEGREE + 1), dtype=np.float64)
@@ -93,10 +94,10 @@ class PathFunction:
 
     def __call__(self, xi: ArrayLike) -> FloatArray:
         """Values at positions xi [m], any shape; zero outside the interval, right-continuous at switches."""
-        at = np.asarray(xi, dtype=float)
-        places = at.ravel()[:]
+        array = np.asarray(xi, dtype=float)
+        places = array.ravel()[:]
         places.setflags(write=False)  # as breaks are: an array of another kind is another compilation
-        return _evaluated(self.breaks, self.coefficients, places).reshape(at.shape)
+        return _evaluated(self.breaks, self.coefficients, places).reshape(array.shape)
 
     @cached_property
     def slope(self) -> PathFunction:
@@ -112,16 +113,17 @@ class PathFunction:
 
     @cached_property
     def bends(self) -> FloatArray:
-        """Inner breaks behind which the function does not go on as the polynomial before them says [m].
+        """Inner breaks at which the function is not smooth: switches, and the knots of a table [m].
 
-        Switches, and the knots of a table. At the other breaks, which a fit has cut, it is smooth.
+        At all other breaks, where ``fit`` has cut a piece, the polynomial before the break also holds behind
+        it.
         """
         pieces = np.diff(self.breaks)
         beyond = _BEYOND * np.minimum(pieces[:-1], pieces[1:])
         before = shifted(self.coefficients[:, :-1], pieces[:-1])
         powers = np.arange(len(before) - 1, -1, -1)[:, None]
-        off = np.sum(np.abs(before - self.coefficients[:, 1:]) * beyond**powers, axis=0)
-        result: FloatArray = self.breaks[1:-1][off > _SMOOTH * np.abs(self.coefficients[-1]).max()]
+        difference = np.sum(np.abs(before - self.coefficients[:, 1:]) * beyond**powers, axis=0)
+        result: FloatArray = self.breaks[1:-1][difference > _SMOOTH * np.abs(self.coefficients[-1]).max()]
         return result
 
     def mean(self) -> float:
@@ -144,8 +146,8 @@ class PathFunction:
         new = np.ravel(np.asarray(positions, dtype=float))
         breaks = np.unique(np.concatenate([self.breaks, new[(new > low) & (new < high)]]))
         piece = np.searchsorted(self.breaks, breaks[:-1], side="right") - 1
-        moved = shifted(self.coefficients[:, piece], breaks[:-1] - self.breaks[piece])
-        return PathFunction(breaks, moved, self.switches)
+        coefficients = shifted(self.coefficients[:, piece], breaks[:-1] - self.breaks[piece])
+        return PathFunction(breaks, coefficients, self.switches)
 
     @classmethod
     def constant(cls, value: float, low: float, high: float) -> PathFunction:
@@ -183,7 +185,8 @@ class PathFunction:
         NumericalError : a value is not finite, or a piece does not converge, as when a kink is missing from
             ``breaks``
         """
-        low, high = np.array(breaks[:-1], dtype=float), np.array(breaks[1:], dtype=float)
+        low = np.array(breaks[:-1], dtype=float)
+        high = np.array(breaks[1:], dtype=float)
         most = max(_MAX_PIECES, 4 * low.size)  # a table brings as many pieces as it has points
         result: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         for last in [False] * _MAX_CUTS + [True]:
@@ -197,14 +200,16 @@ class PathFunction:
             result.append((low[good], half[good], series[good]))
             if good.all():
                 break
-            low, high = low[~good], high[~good]
+            low = low[~good]
+            high = high[~good]
             if last or low.size + sum(start.size for start, *_ in result) > most:
                 raise NumericalError(
                     f"No polynomial fit to {tolerance:.2g} near xi = {low[0]:.6g} m: the function is noisy "
                     "there, or has a jump or kink that is no break; name it, or raise the tolerance."
                 )
             middle = cut(low, high)
-            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+            low = np.concatenate([low, middle])
+            high = np.concatenate([middle, high])
         start, half, series = (np.concatenate(part) for part in zip(*result, strict=True))
         order = np.argsort(start)
         powers = series[order] @ _TO_POWERS / half[order, None] ** np.arange(FIT_DEGREE + 1)
@@ -213,7 +218,7 @@ class PathFunction:
 
 @compiled
 def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> FloatArray:
-    """Values (k,) at positions (k,); neighbours mostly lie on the same piece, which is tried first."""
+    """Values (k,) at positions (k,). The piece of the previous position is tried first."""
     values = np.zeros(xi.size)
     last = breaks.size - 1
     piece = 0
@@ -222,7 +227,8 @@ def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> 
         if not breaks[0] <= x <= breaks[last]:
             continue
         if not (breaks[piece] <= x and (x < breaks[piece + 1] or piece == last - 1)):
-            low, high = 0, last
+            low = 0
+            high = last
             while high - low > 1:
                 middle = (low + high) // 2
                 if x >= breaks[middle]:
@@ -239,19 +245,19 @@ def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> 
 
 
 def shifted(coefficients: Array, by: ArrayLike) -> Array:
-    """Coefficients (order, ...), highest power first, about points that lie further on by ``by``, (...)."""
-    moved = coefficients.copy()
-    for last in range(len(moved) - 1, 0, -1):  # synthetic division
+    """Return coefficients (order, ...), highest power first, about points shifted by ``by`` (...)."""
+    result = coefficients.copy()
+    for last in range(len(result) - 1, 0, -1):  # synthetic division
         for i in range(1, last + 1):
-            moved[i] += by * moved[i - 1]
-    return moved
+            result[i] += by * result[i - 1]
+    return result
 
 
 def _values(
-    function: Callable[[FloatArray], FloatArray], low: FloatArray, half: FloatArray, at: FloatArray
+    function: Callable[[FloatArray], FloatArray], low: FloatArray, half: FloatArray, points: FloatArray
 ) -> FloatArray:
     """Values (pieces, points) at points of [-1, 1] on every piece."""
-    xi = low[:, None] + half[:, None] * (1.0 + at)
+    xi = low[:, None] + half[:, None] * (1.0 + points)
     values = function(xi.ravel()).reshape(xi.shape)
     if not np.isfinite(values).all():
         worst = xi[~np.isfinite(values)][0]

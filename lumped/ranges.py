@@ -1,4 +1,4 @@
-"""Validity ranges of empirical laws as data, and what lies outside them."""
+"""Validity ranges of empirical laws as data, and violations of these ranges."""
 
 from __future__ import annotations
 
@@ -55,14 +55,14 @@ class ValidityRange:
 
 @dataclass(frozen=True)
 class RangeViolation:
-    """One argument that left its range.
+    """An argument of a law outside its validity range.
 
     Attributes
     ----------
-    law, range : what is left
+    law, range : name of the law, and the range of the argument
     minimum, maximum : extreme values of the argument, in the range's unit
     share : fraction of the positions that lie outside
-    largest : largest friction coefficient there; NaN where the law is of something else
+    largest : largest friction coefficient at these positions; NaN where the law is no friction law
     """
 
     law: str
@@ -74,7 +74,8 @@ class RangeViolation:
 
     def __str__(self) -> str:
         unit = "" if self.range.unit == "1" else f" {self.range.unit}"
-        low, high = f"{self.minimum:.4g}", f"{self.maximum:.4g}"
+        low = f"{self.minimum:.4g}"
+        high = f"{self.maximum:.4g}"
         values = f"is {low}" if low == high else f"runs from {low} to {high}"
         friction = "" if math.isnan(self.largest) else f", where mu is up to {self.largest:.2g}"
         return (
@@ -86,9 +87,14 @@ class RangeViolation:
 def range_violations(
     law: str, ranges: Iterable[ValidityRange], values: Mapping[str, ArrayLike], friction: ArrayLike = math.nan
 ) -> tuple[RangeViolation, ...]:
-    """Compare the arguments of a law, of any shape in the units of its ranges, with its validity ranges.
+    """Compare the arguments of a law with its validity ranges.
 
-    ``friction``: coefficient at the same positions [-]; NaN for a law of something else.
+    Parameters
+    ----------
+    law : name of the law
+    ranges : validity ranges of the law
+    values : arguments by quantity, of any shape, in the units of the ranges
+    friction : friction coefficient at the same positions [-]; NaN where the law is no friction law
     """
     result = []
     for limits in ranges:
@@ -116,24 +122,24 @@ def warn_violations(violations: Iterable[RangeViolation]) -> None:
 
 @contextlib.contextmanager
 def warned_once() -> Iterator[None]:
-    """Issue one ``LawRangeWarning`` per law and quantity at the end, that with the largest coefficient."""
-    with warnings.catch_warnings(record=True) as found:
+    """Issue one ``LawRangeWarning`` per law and quantity at the end: the one with the largest coefficient."""
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always", LawRangeWarning)
         yield
     worst: dict[str, warnings.WarningMessage] = {}
-    for one in found:
+    for one in warned:
         subject = str(getattr(one.message, "subject", one.message))
-        known = worst.setdefault(subject, one)
-        if getattr(one.message, "largest", 0.0) > getattr(known.message, "largest", 0.0):
+        worst_so_far = worst.setdefault(subject, one)
+        if getattr(one.message, "largest", 0.0) > getattr(worst_so_far.message, "largest", 0.0):
             worst[subject] = one
     for one in worst.values():
         warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
 
 
 def checked(field: str, value: ArrayLike, unit: str, *, allow_zero: bool = False) -> FloatArray:
-    """Return a law's argument as a float array, or refuse what no law can take.
+    """Return an argument of a law as a float array, or refuse it.
 
-    That is a value not finite, negative, or zero where ``allow_zero`` is false.
+    Values that are not finite or negative are refused, and zero where ``allow_zero`` is false.
     """
     array = real_array(field, value, finite=False)
     # Two reductions settle the usual case; laws are evaluated thousands of times in a chart.

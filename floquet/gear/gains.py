@@ -19,8 +19,8 @@ import numpy.typing as npt
 from floquet.rank_one.piecewise import series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
-from lumped.mesh.element import BY_APPROACH, BY_RATE
 from lumped.mesh.places import kinks, linear_form_at
+from lumped.mesh.records import BY_APPROACH, BY_RATE
 from lumped.mesh.tables import MeshTables
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.swing import moments

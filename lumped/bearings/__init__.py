@@ -1,1 +1,1 @@
-"""Stiffness of the bearings that hold the gears, from what a catalogue says of them."""
+"""Stiffness of the bearings of the gears, from the data of a catalogue."""

@@ -1,12 +1,12 @@
-"""Stiffness of rolling bearings from type, number, size and load, and their size from a torque.
+"""Stiffness of rolling bearings from type, number, size and load of the elements, and bearings for a torque.
 
 The stiffness is the slope dF/d(delta) of the radial load over the displacement, in its direction (along) and
 at right angles to it (across). Lengths in m, forces in N.
 
 Sources: E. Kraemer, Dynamics of Rotors and Foundations, 1993; M. I. Friswell, J. E. T. Penny, S. D. Garvey
 and A. W. Lees, Dynamics of Rotating Machines, 2010, pages 182 to 185, as in the rotor library ROSS.
-Both stiffnesses follow from Palmgren's compliance of one contact and Stribeck's share of its load: see
-docs/theory/bearings.md, where the constants are derived.
+Both stiffnesses follow from Palmgren's compliance of one contact and Stribeck's load distribution. The
+constants are derived in docs/theory/bearings.md.
 """
 
 from __future__ import annotations
@@ -69,10 +69,10 @@ def stiffness_along(kind: str, number: int, size: float, load: float, contact_an
 
 
 def across_ratio(kind: str, number: int) -> float:
-    """Stiffness across the load over that along it, published for 8, 12 and 16 rolling elements.
+    """Ratio of the stiffness across the load to the stiffness along the load.
 
-    Between them on straight lines. Fewer than 8 have the ratio of 8, more than 16 that of 16: a parabola
-    through the three, continued, would fall again.
+    The ratio is published for 8, 12 and 16 rolling elements. Between these numbers it is interpolated by
+    straight lines. Fewer than 8 elements have the ratio of 8, more than 16 the ratio of 16.
     """
     published = _ACROSS[kind]
     return float(np.interp(number, list(published), list(published.values())))

@@ -48,7 +48,7 @@ def one_thread() -> Iterator[None]:
 
 @cache
 def libraries() -> tuple[_Threads, ...]:
-    """Every OpenBLAS that came with the wheels of numpy and scipy, which have loaded it."""
+    """Return every OpenBLAS library in the wheels of numpy and scipy; both packages have loaded them."""
     result = []
     for package in (np, scipy):
         (root,) = map(Path, package.__path__)

@@ -74,8 +74,11 @@ def assembled(nodes: FloatArray, elements: IntArray, poisson: float) -> tuple[sp
     """Stiffness matrix (2 n, 2 n); loads (2 n, 3) of unit accelerations along x, along y and about 0."""
     shapes, places, gradients, area = quadrature(nodes, elements, 3)
     strain = np.zeros((*area.shape, 3, 18))
-    strain[..., 0, 0::2] = strain[..., 2, 1::2] = gradients[:, 0]
-    strain[..., 1, 1::2] = strain[..., 2, 0::2] = gradients[:, 1]
+    xx, yy, xy = range(3)
+    strain[..., xx, 0::2] = gradients[:, 0]
+    strain[..., xy, 1::2] = gradients[:, 0]
+    strain[..., yy, 1::2] = gradients[:, 1]
+    strain[..., xy, 0::2] = gradients[:, 1]
     stress = plane_law(poisson) @ strain * area[..., None, None]
     size = len(elements)
     rows = area.shape[1] * 3

@@ -1,4 +1,4 @@
-"""How far the flanks of one gear give way under loads, as functions of where the loads are."""
+"""Compliances of the flanks of one gear, as functions of the places of load and point."""
 
 from __future__ import annotations
 
@@ -22,20 +22,22 @@ from lumped.typing import FloatArray
 #: Elements at the surface of the mesh, and of the coarser one that shows its error [modules].
 FINE = 0.2
 COARSE = 0.3
-#: Loads along the flank, and terms in each direction that neighbours, which hardly feel the place, are given.
+#: Loads along the flank; terms in each direction for the motion of neighbours, which hardly depends on the
+#: places.
 _LOADS = 14
 _TERMS = 4
-#: Nearer than this to the edge of the tip the half plane of the load ends [modules].
+#: Least distance of a load from the edge of the tip, where the half plane of the load ends [modules].
 _EDGE = 0.05
-#: Nearer than this to the base circle the flank is too curved for it [modules].
+#: Least length of a load on the base tangent: the flank is too curved near the base circle [modules].
 _BASE = 0.25
-#: A gear without a bore: root over bore radius. Its free body does not feel so small a hole.
+#: Root over bore radius of the mesh of a gear without a bore. So small a hole hardly changes a free body.
 _SOLID = 10.0
 
 
 @dataclass(frozen=True)
 class PlaneGear:
-    """What the deflection of a gear depends on; lengths in modules, ``profile`` of module 1.
+    """The data on which the deflection of a gear depends. Lengths are in modules; ``profile`` has the module
+    1.
 
     ``bore`` is a radius, 0 for a solid gear; ``poisson`` that of plane stress, nu/(1 - nu) for plane strain;
     ``reach`` the number of teeth ahead whose motion is wanted. A "free" gear balances the load by its own
@@ -72,7 +74,7 @@ class FlankCompliance:
         """u_c at lengths along the base tangent, any shape [-]."""
         return np.asarray(chebyshev.chebval(self._at(length), self.own), dtype=np.float64)
 
-    def moved(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
+    def neighbour_motion(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
         """Motion of the tooth ``apart`` pitches ahead of a loaded one, at lengths of the same shape [-]."""
         result = chebyshev.chebval2d(self._at(loaded), self._at(length), self.cross[apart - 1])
         return np.asarray(result, dtype=np.float64)
@@ -97,13 +99,13 @@ def flank_compliance(gear: PlaneGear, size: float = FINE) -> FlankCompliance:
 
     def compute() -> dict[str, FloatArray]:
         nodes = chebyshev.chebpts1(_LOADS)
-        at = 0.5 * (low + high) + 0.5 * (high - low) * nodes
+        lengths = 0.5 * (low + high) + 0.5 * (high - low) * nodes
         with one_thread():
-            found = compliances(mesh, gear.poisson, profile.teeth, at, gear.reach, gear.support)
-        own = chebyshev.chebfit(nodes, np.diag(found[0]), _LOADS - 1)
+            motions = compliances(mesh, gear.poisson, profile.teeth, lengths, gear.reach, gear.support)
+        own_tooth = chebyshev.chebfit(nodes, np.diag(motions[0]), _LOADS - 1)
         basis = np.linalg.pinv(chebyshev.chebvander(nodes, _TERMS - 1))
         # Rows of the matrices are points, columns loads.
-        return {"own": own, "cross": np.einsum("li,mji,kj->mlk", basis, found[1:], basis)}
+        return {"own": own_tooth, "cross": np.einsum("li,mji,kj->mlk", basis, motions[1:], basis)}
 
     inputs = mesh.nodes.tobytes() + gear.support.encode() + numbers.tobytes()
     result = cached("elasticity", sorted(Path(__file__).parent.glob("*.py")), inputs, compute)
@@ -111,7 +113,7 @@ def flank_compliance(gear: PlaneGear, size: float = FINE) -> FlankCompliance:
 
 
 def bore_radius(gear: PlaneGear) -> float:
-    """Radius of the bore that is meshed [modules]."""
+    """Radius of the bore in the mesh [modules]."""
     return gear.bore or gear.profile.root_radius / _SOLID
 
 

@@ -20,8 +20,10 @@ from lumped.elasticity.load import flank_load
 from lumped.elasticity.sector import Sector
 from lumped.typing import FloatArray
 
-#: What holds the gear: nothing (its own inertia balances the load, motions are counted from the mean one), or
-#: its bore.
+#: Column of the rotation among the rigid motions: along x, along y, rotation.
+_ROTATION = 2
+#: Support of the gear. "free": the inertia of the gear balances the load, and motions count from the mean
+#: motion; "clamped": the bore is fixed.
 Support = Literal["free", "clamped"]
 
 
@@ -31,9 +33,9 @@ class Chain:
 
     Attributes
     ----------
-    stiffness : (2 r, 2 r) of the cut behind, then of that ahead
-    loads : (2 r, c) on the cuts by unit values of c loads
-    work : (c, c) work of the loads on the motions that they cause with both cuts held
+    stiffness : (2 r, 2 r) of the cut behind, then of the cut ahead
+    loads : (2 r, c) forces on the cuts by unit values of c loads
+    work : (c, c) work of the loads on the motions that the loads cause while both cuts are fixed
     """
 
     stiffness: FloatArray
@@ -52,99 +54,111 @@ def compliances(
 ) -> FloatArray:
     """Motion of points on the flanks by unit loads on tooth 0, both along the line of action.
 
-    Young's modulus and thickness are 1, lengths in modules. Loads and points are at ``lengths`` (n,) along
-    the base tangent; ``radii`` as in ``flank_load``. Returned is (reach + 1, n, n) for the teeth 0, 1, ...:
-    motion of the point, by the load. On tooth 0 it is the smooth part u_c alone, which means something on the
-    diagonal.
+    Young's modulus and thickness are 1, lengths are in modules.
+
+    Parameters
+    ----------
+    lengths : (n,) of loads and points along the base tangent
+    reach : number of the teeth ahead of tooth 0 whose motion is computed
+    radii : as of ``flank_load``
+
+    Returns
+    -------
+    (reach + 1, n, n) for the teeth 0, 1, ...: motion of each point by each load. On tooth 0 the motion is the
+    smooth part u_c; only its diagonal, the motion of the loaded point, has a meaning.
     """
     options = () if radii is None else (radii,)
-    applied, read, taken = (
+    applied, read, singular_integrals = (
         np.stack(each, axis=-1)
         for each in zip(*(flank_load(mesh, poisson, length, *options) for length in lengths), strict=True)
     )
-    matrix, heavy = assembled(mesh.nodes, mesh.elements, poisson)
+    matrix, inertia_loads = assembled(mesh.nodes, mesh.elements, poisson)
     pitch = 2.0 * math.pi / teeth
     count = lengths.size
-    one = _condensed(mesh, matrix, np.concatenate([applied, read, heavy], axis=1), pitch, support)
+    one_pitch = _condensed(
+        mesh, matrix, np.concatenate([applied, read, inertia_loads], axis=1), pitch, support
+    )
     body = slice(2 * count, 2 * count + 3)
-    rest = Chain(one.stiffness, one.loads[:, body], one.work[body, body])
-    left = teeth - 1 - reach
+    body_only = Chain(one_pitch.stiffness, one_pitch.loads[:, body], one_pitch.work[body, body])
+    other_teeth = teeth - 1 - reach
     # Columns: loads of tooth 0, points of the teeth 0 to reach, three accelerations of the whole gear.
-    cut = one.stiffness.shape[0] // 2
-    cuts = reach + 2 if left else reach + 1
+    cut = one_pitch.stiffness.shape[0] // 2
+    cuts = reach + 2 if other_teeth else reach + 1
     columns = count * (reach + 2) + 3
     total = np.zeros((cuts, cut, cuts, cut))
     work = np.zeros((columns, columns))
     loads = np.zeros((cuts, cut, columns))
 
     def add(chain: Chain, chosen: np.ndarray, behind: int, ahead: int, turn: float) -> None:
-        turned = np.eye(chosen.size)
-        turned[-3:, -3:] = _turn(turn)
+        rotation = np.eye(chosen.size)
+        rotation[-3:, -3:] = _turn(turn)
         ends = [behind, ahead % cuts]
         stiffness = chain.stiffness.reshape(2, cut, 2, cut)
-        forces = (chain.loads @ turned).reshape(2, cut, -1)
+        forces = (chain.loads @ rotation).reshape(2, cut, -1)
         for i, row in enumerate(ends):
             loads[row][:, chosen] += forces[i]
             for j, column in enumerate(ends):
                 total[row, :, column] += stiffness[i, :, j]
-        work[np.ix_(chosen, chosen)] += turned.T @ chain.work @ turned
+        work[np.ix_(chosen, chosen)] += rotation.T @ chain.work @ rotation
 
     last = np.arange(columns - 3, columns)
     for tooth in range(reach + 1):
         points = np.arange(count * (tooth + 1), count * (tooth + 2))
         used = np.arange(count, 2 * count + 3) if tooth else np.arange(2 * count + 3)
         chosen = np.concatenate([points, last] if tooth else [np.arange(count), points, last])
-        part = Chain(one.stiffness, one.loads[:, used], one.work[np.ix_(used, used)])
+        part = Chain(one_pitch.stiffness, one_pitch.loads[:, used], one_pitch.work[np.ix_(used, used)])
         add(part, chosen, tooth, tooth + 1, tooth * pitch)
-    if left:
-        add(_row(rest, left, pitch), last, reach + 1, 0, (reach + 1) * pitch)
+    if other_teeth:
+        add(_row(body_only, other_teeth, pitch), last, reach + 1, 0, (reach + 1) * pitch)
 
     stiffness = total.reshape(cuts * cut, -1)
     forces = loads.reshape(cuts * cut, -1)
-    kept = np.ones(len(stiffness), dtype=bool)
+    not_pinned = np.ones(len(stiffness), dtype=bool)
     balance = np.eye(columns)
     resultants = np.zeros((3, columns))
     if support == "free":
         rigid = np.zeros((len(applied), 3))
         rigid[::2, 0] = rigid[1::2, 1] = 1.0
-        rigid[::2, 2] = -mesh.nodes[:, 1]
-        rigid[1::2, 2] = mesh.nodes[:, 0]
-        own = rigid.T @ heavy
-        mass = teeth * np.array([own[0, 0], own[0, 0], own[2, 2]])
+        rigid[::2, _ROTATION] = -mesh.nodes[:, 1]
+        rigid[1::2, _ROTATION] = mesh.nodes[:, 0]
+        inertia = rigid.T @ inertia_loads
+        mass = teeth * np.array([inertia[0, 0], inertia[0, 0], inertia[_ROTATION, _ROTATION]])
         resultants[:, :count] = rigid.T @ applied
         for tooth in range(reach + 1):
-            at = slice(count * (tooth + 1), count * (tooth + 2))
-            resultants[:, at] = _turn(tooth * pitch).T @ rigid.T @ read
+            points_of_tooth = slice(count * (tooth + 1), count * (tooth + 2))
+            resultants[:, points_of_tooth] = _turn(tooth * pitch).T @ rigid.T @ read
         resultants /= mass[:, None]
         balance[-3:] -= resultants
-        kept[[0, 1, cut - 1]] = False  # three pins: the balanced gear does not feel them
-    moved = np.linalg.solve(stiffness[np.ix_(kept, kept)], forces[kept])
-    result = balance.T @ (work + forces[kept].T @ moved) @ balance
-    points = result[count:-3, :count] - resultants[:, count:-3].T @ taken
+        not_pinned[[0, 1, cut - 1]] = False  # three pins, whose forces are zero because the loads balance
+    motion = np.linalg.solve(stiffness[np.ix_(not_pinned, not_pinned)], forces[not_pinned])
+    result = balance.T @ (work + forces[not_pinned].T @ motion) @ balance
+    points = result[count:-3, :count] - resultants[:, count:-3].T @ singular_integrals
     return np.asarray(points.reshape(reach + 1, count, count))
 
 
 def _turn(angle: float) -> FloatArray:
     """Accelerations (along x, along y, about 0) in axes turned by an angle; (3, 3)."""
-    c, s = math.cos(angle), math.sin(angle)
+    c = math.cos(angle)
+    s = math.sin(angle)
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _condensed(
     mesh: Sector, matrix: sparse.csc_array, loads: FloatArray, pitch: float, support: Support
 ) -> Chain:
-    """One pitch; its bore held where ``support`` says so."""
-    held = set(mesh.bore.tolist()) if support == "clamped" else set()
-    cuts = [np.array([node for node in cut if node not in held]) for cut in (mesh.behind, mesh.ahead)]
+    """Condense one pitch to its cuts; a "clamped" bore is fixed."""
+    bore_nodes = set(mesh.bore.tolist()) if support == "clamped" else set()
+    cuts = [np.array([node for node in cut if node not in bore_nodes]) for cut in (mesh.behind, mesh.ahead)]
     outer = np.concatenate([np.stack([2 * cut, 2 * cut + 1], -1).ravel() for cut in cuts])
     inner = np.ones(len(loads), dtype=bool)
     inner[outer] = False
-    for node in held:
+    for node in bore_nodes:
         inner[2 * node : 2 * node + 2] = False
     polar = np.zeros((outer.size, outer.size))
     half = outer.size // 2
     for first, angle in ((0, -0.5 * pitch), (half, 0.5 * pitch)):
-        c, s = math.cos(angle), math.sin(angle)
+        c = math.cos(angle)
+        s = math.sin(angle)
         for k in range(first, first + half, 2):
             polar[k : k + 2, k : k + 2] = [[c, -s], [s, c]]
     inside = np.flatnonzero(inner)
@@ -161,37 +175,37 @@ def _condensed(
 
 
 def _connected(a: Chain, b: Chain, turn: float) -> Chain:
-    """Two chains of accelerations in a row, the second turned against the first."""
+    """Join two chains whose loads are accelerations; the second is turned against the first by an angle."""
     half = len(a.stiffness) // 2
     t = _turn(turn)
     b = Chain(b.stiffness, b.loads @ t, t.T @ b.work @ t)
     middle = a.stiffness[half:, half:] + b.stiffness[:half, :half]
-    pulled = np.concatenate([a.stiffness[half:, :half], b.stiffness[:half, half:]], axis=1)
+    by_cuts = np.concatenate([a.stiffness[half:, :half], b.stiffness[:half, half:]], axis=1)
     force = a.loads[half:] + b.loads[:half]
     by_ends, by_force = np.split(
-        np.linalg.solve(middle, np.concatenate([pulled, force], axis=1)), [2 * half], 1
+        np.linalg.solve(middle, np.concatenate([by_cuts, force], axis=1)), [2 * half], 1
     )
     ends = np.zeros_like(a.stiffness)
     ends[:half, :half] = a.stiffness[:half, :half]
     ends[half:, half:] = b.stiffness[half:, half:]
     return Chain(
-        ends - pulled.T @ by_ends,
-        np.concatenate([a.loads[:half], b.loads[half:]]) - pulled.T @ by_force,
+        ends - by_cuts.T @ by_ends,
+        np.concatenate([a.loads[:half], b.loads[half:]]) - by_cuts.T @ by_force,
         a.work + b.work + force.T @ by_force,
     )
 
 
 def _row(one: Chain, count: int, pitch: float) -> Chain:
-    """Equal pitches in a row."""
+    """Join ``count`` equal pitches in a row."""
     result = None
-    found_count = 0
+    joined = 0
     power = one
     power_count = 1
     while True:
         if count & power_count:
-            result = power if result is None else _connected(result, power, found_count * pitch)
-            found_count += power_count
-        if found_count == count:
+            result = power if result is None else _connected(result, power, joined * pitch)
+            joined += power_count
+        if joined == count:
             assert result is not None
             return result
         power = _connected(power, power, power_count * pitch)

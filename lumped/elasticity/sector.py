@@ -115,35 +115,37 @@ def stations(profile: ToothProfile, tip: float, bore: float, size: float) -> Sta
     )
 
 
-def sector(profile: ToothProfile, tip: float, bore: float, at: Stations) -> Sector:
+def sector(profile: ToothProfile, tip: float, bore: float, places: Stations) -> Sector:
     """Mesh one pitch of a tooth of module 1 between two radii [modules], nodes at the stations."""
     # The tooth: rows of nodes from the foot to the tip, columns across.
-    u_1, h_1, _ = profile.fillet_points(at.above)
-    u_2, h_2, *_ = profile.involute_points(at.lengths)
-    u, h = np.concatenate([u_1, u_2[1:]]), np.concatenate([h_1, h_2[1:]])
+    u_1, h_1, _ = profile.fillet_points(places.above)
+    u_2, h_2, *_ = profile.involute_points(places.lengths)
+    u = np.concatenate([u_1, u_2[1:]])
+    h = np.concatenate([h_1, h_2[1:]])
     foot = math.hypot(u[0], h[0])
     half = math.atan2(h[0], u[0])
     top = math.atan2(h[-1], u[-1])
-    eta = at.across
+    eta = places.across
     s = np.linspace(0.0, 1.0, u.size)[:, None]
     x = u[:, None] + (1.0 - s) ** 2 * foot * (np.cos(eta * half) - math.cos(half))
     x += s**2 * tip * (np.cos(eta * top) - math.cos(top))
     y = h[:, None] * eta
     y[0] = foot * np.sin(eta * half)
     # The rim: the surface from space to space, and rows below it.
-    u_3, h_3, _ = profile.fillet_points(at.below)
+    u_3, h_3, _ = profile.fillet_points(places.below)
     radius = np.hypot(u_3, h_3)
     angle = np.arctan2(h_3, u_3)
-    more = at.land[1:]
+    more = places.land[1:]
     radius = np.append(radius, np.full(more.size, profile.root_radius))
     angle = np.append(angle, more)
     angle[-1] = math.pi / profile.teeth
     radii = np.concatenate([radius[::-1], np.full(eta.size - 2, foot), radius])
     angles = np.concatenate([-angle[::-1], eta[1:-1] * half, angle])
-    rim = bore + at.depth[:, None] * (radii - bore)
+    rim = bore + places.depth[:, None] * (radii - bore)
     # Numbers: the rim row by row, then the tooth above its foot.
     below = np.arange(rim.size).reshape(rim.shape)
-    first, last = radius.size - 1, radius.size + eta.size - 2
+    first = radius.size - 1
+    last = radius.size + eta.size - 2
     rest = rim.size + np.arange(x[1:].size).reshape(-1, eta.size)
     above = np.concatenate([below[-1:, first : last + 1], rest])
     points = [np.stack([rim * np.cos(angles), rim * np.sin(angles)], -1), np.stack([x[1:], y[1:]], -1)]
@@ -155,8 +157,8 @@ def sector(profile: ToothProfile, tip: float, bore: float, at: Stations) -> Sect
         behind=below[:, 0],
         ahead=below[:, -1],
         bore=below[0],
-        flank=_edges(above[at.above.size - 1 :, -1]),
-        lengths=at.lengths,
+        flank=_edges(above[places.above.size - 1 :, -1]),
+        lengths=places.lengths,
         surface=np.concatenate([_edges(line) for line in lines]),
     )
 
@@ -166,8 +168,8 @@ def _foot(profile: ToothProfile) -> float:
     bottom, joint = profile.fillet_range
 
     def excess(roll: float) -> float:
-        at = roll + np.array([-5e-5, 5e-5]) * (joint - bottom)
-        u, h, _ = profile.fillet_points(at)
+        rolls = roll + np.array([-5e-5, 5e-5]) * (joint - bottom)
+        u, h, _ = profile.fillet_points(rolls)
         return float(abs(h[1] - h[0]) - abs(u[1] - u[0]))
 
     low, high = (bottom + share * (joint - bottom) for share in (1e-3, 0.97))

@@ -1,4 +1,4 @@
-"""What faults of a tooth share: their section of the parameter file, and what they do to the contact.
+"""The base of the faults of a tooth: their section of the parameter file, and their effect on the contact.
 
 Sources: docs/theory/teeth.md, "Faults".
 """
@@ -19,12 +19,14 @@ from lumped.typing import FloatArray
 
 @dataclass(frozen=True)
 class Flank:
-    """The loaded flank of a tooth in its mesh, SI; places on it are lengths along the own base tangent [m].
+    """The loaded flank of a tooth in its mesh, SI. A place on the flank is a length along the base tangent
+    [m].
 
     Attributes
     ----------
     wheel : the gear as it is cut
-    tip, start : lengths of its tip, and of where the mate's tip touches it first or an undercut ends it [m]
+    tip, start : place of the tip, and place where the mate's tip touches first or an undercut ends the flank
+        [m]
     face_width : common to both gears [m]
     youngs_modulus : of the gear [Pa]
     hertz : linear compliance of the Hertzian contact over the whole face width [m/N]
@@ -43,27 +45,27 @@ class Flank:
 
 
 class ToothFault(Section):
-    """Base of the faults: the entry of ``faults`` with what it changes; by default nothing."""
+    """Base of the faults: an entry of ``faults``, with what it changes. By default it changes nothing."""
 
     kind: str
     tooth: int = Field(ge=1, le=1000, strict=True, description="number of the tooth, in order of engagement")
 
     def problems(self, flank: Flank) -> Iterator[FieldProblem]:
-        """Values that do not fit this tooth, each with its field below the fault's own."""
+        """Yield the values that do not fit this tooth, each with the name of its field."""
         yield from ()
 
     def compliance(self, flank: Flank, length: FloatArray) -> FloatArray:
-        """Compliance that it adds at places (n,) of the flank, (n,) [m/N]."""
+        """Return the compliance (n,) that the fault adds at places (n,) of the flank [m/N]."""
         return np.zeros(np.shape(length))
 
     def gap(self, flank: Flank, length: FloatArray) -> FloatArray:
-        """Material missing at places (n,) of the flank, (n,) [m]."""
+        """Return the missing material (n,) at places (n,) of the flank [m]."""
         return np.zeros(np.shape(length))
 
     def kinks(self, flank: Flank) -> tuple[float, ...]:
-        """Places where ``compliance`` or ``gap`` jumps or has a kink [m]."""
+        """Return the places where ``compliance`` or ``gap`` jumps or has a kink [m]."""
         return ()
 
     def end(self, flank: Flank) -> float:
-        """Place where the flank ends [m]: a corner that is left is the tip of this tooth."""
+        """Return the place where the flank ends: the tip corner of this tooth [m]."""
         return flank.tip

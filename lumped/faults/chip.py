@@ -14,7 +14,7 @@ from lumped.fields.units import Quantity
 
 
 class Chip(ToothFault):
-    """No flank beyond a roll angle; the corner that is left is the tip of this tooth."""
+    """The flank ends at a roll angle. The corner there is the tip corner of this tooth."""
 
     kind: Literal["chip"] = Field("chip", description="a broken corner")
     roll_angle: Annotated[float, Quantity("deg", at_least=0, at_most=180)] = Field(
@@ -22,7 +22,7 @@ class Chip(ToothFault):
     )
 
     def problems(self, flank: Flank) -> Iterator[FieldProblem]:
-        """A chip that leaves nothing of the flank in contact, or begins beyond the tip."""
+        """Yield a chip that removes all of the flank in contact, or begins beyond the tip."""
         radius = flank.wheel.tooth.base_radius
         low, high = (math.degrees(place / radius) for place in (flank.start, flank.tip))
         if not low < math.degrees(self.roll_angle) <= high:
@@ -30,5 +30,5 @@ class Chip(ToothFault):
             yield FieldProblem("roll_angle", value, f"{low:.4f} to {high:.4f} deg", "End it on the flank.")
 
     def end(self, flank: Flank) -> float:
-        """Its edge."""
+        """Return the place of the edge of the chip [m]."""
         return min(flank.tip, flank.length(self.roll_angle))

@@ -37,7 +37,7 @@ class Crack(ToothFault):
     )
 
     def problems(self, flank: Flank) -> Iterator[FieldProblem]:
-        """A crack deeper than half the root."""
+        """Yield a crack that is deeper than half the root."""
         thickness = 2.0 * root_section(flank.wheel.tooth)[1]
         largest = _DEEPEST * thickness / math.sin(self.angle)
         if self.depth > largest:
@@ -45,7 +45,7 @@ class Crack(ToothFault):
             yield FieldProblem("depth", f"{self.depth * 1e3:g} mm", allowed, "Lower the depth.")
 
     def compliance(self, flank: Flank, length: FloatArray) -> FloatArray:
-        """Of an edge crack in a strip as thick as the root under the moment of the load (n,) [m/N]."""
+        """Return the compliance (n,) of an edge crack in a strip as thick as the root [m/N]."""
         u, half = root_section(flank.wheel.tooth)
         at_u, at_h, _, angle = flank.wheel.tooth.involute_points(np.asarray(length, dtype=float))
         arm = np.cos(angle) * (at_u - u) - np.sin(angle) * at_h
@@ -56,14 +56,15 @@ class Crack(ToothFault):
 
 
 def root_section(tooth: ToothProfile) -> tuple[float, float]:
-    """Place u on the centre line and half thickness h where the fillet is at 30 degrees to it [m]."""
+    """Place u on the centre line and half thickness h where the fillet is at 30 degrees to this line [m]."""
     bottom, top = tooth.fillet_range
 
     def slope(roll: float) -> float:
         u, h, _ = tooth.fillet_points(roll + 1e-6 * (top - bottom) * np.array([-1.0, 1.0]))
         return float((h[0] - h[1]) / (u[1] - u[0])) - math.tan(math.radians(30.0))
 
-    low, high = bottom + 1e-5 * (top - bottom), top - 1e-5 * (top - bottom)
+    low = bottom + 1e-5 * (top - bottom)
+    high = top - 1e-5 * (top - bottom)
     # A fillet whose slope stays below or above 30 degrees has its critical section at that end.
     ends = slope(low), slope(high)
     roll = brentq(slope, low, high) if ends[0] * ends[1] < 0.0 else (high if ends[0] > 0.0 else low)

@@ -37,13 +37,16 @@ class Spall(ToothFault):
         return self
 
     def problems(self, flank: Flank) -> Iterator[FieldProblem]:
-        """A pit wider than the flank."""
+        """Yield a pit that is wider than the flank."""
         if self.width is not None and self.width > flank.face_width:
             allowed = f"<= {flank.face_width * 1e3:g} mm, the face width in contact"
             yield FieldProblem("width", f"{self.width * 1e3:g} mm", allowed, "Lower the width.")
 
     def compliance(self, flank: Flank, length: FloatArray) -> FloatArray:
-        """Of the Hertzian contact, which is less wide by the pit; the tooth behind it stays whole."""
+        """Return the compliance of the Hertzian contact, which the pit makes narrower.
+
+        The tooth is not weaker.
+        """
         if self._whole(flank):
             return np.zeros(np.shape(length))
         assert self.width is not None  # it is not the whole width
@@ -51,12 +54,12 @@ class Spall(ToothFault):
         return np.asarray(more * self._inside(flank, length), dtype=np.float64)
 
     def gap(self, flank: Flank, length: FloatArray) -> FloatArray:
-        """The depth, where no flank is left beside the pit."""
+        """Return the depth of a pit over the whole face width; 0 beside a narrower pit [m]."""
         depth = self.pit_depth if self._whole(flank) else 0.0
         return np.asarray(depth * self._inside(flank, length), dtype=np.float64)
 
     def kinks(self, flank: Flank) -> tuple[float, ...]:
-        """Its ends."""
+        """Return the places of both ends of the pit [m]."""
         return flank.length(self.start_roll_angle), flank.length(self.end_roll_angle)
 
     def _whole(self, flank: Flank) -> bool:

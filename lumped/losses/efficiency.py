@@ -1,4 +1,4 @@
-"""Mesh efficiency and sliding power without vibration, and of all laws side by side.
+"""Mesh efficiency and sliding loss without vibration, for one friction law or for all laws side by side.
 
 Sources: docs/theory/mesh_physics.md, "Losses"; docs/theory/equations.md, "Periodic motion and the brake
 torque"; ISO/TR 14179-2:2001.
@@ -76,13 +76,13 @@ def quasi_static_losses(
     mu = friction_path_function(pair, law)
     teeth = springs(pair, sharing)
     power_in = torque * g.omega_pinion
-    at = quadrature(g, [mu, *teeth.functions])
-    share = teeth.share(at)
-    coefficient = np.where(at.contact, mu(at.position), 0.0)
-    arm = g.base_radius_pinion + at.position * coefficient
+    positions = quadrature(g, [mu, *teeth.functions])
+    share = teeth.share(positions)
+    coefficient = np.where(positions.contact, mu(positions.position), 0.0)
+    arm = g.base_radius_pinion + positions.position * coefficient
     normal = torque / (share * arm).sum(axis=0) * share
-    loss = at.mean((coefficient * normal * sliding_velocity(g, at.position)).sum(axis=0))
-    factor = mean_loss_factor(g, at, share)
+    loss = positions.mean((coefficient * normal * sliding_velocity(g, positions.position)).sum(axis=0))
+    factor = mean_loss_factor(g, positions, share)
     return QuasiStaticLosses(1.0 - loss / power_in, loss, power_in, factor, loss / (factor * power_in))
 
 

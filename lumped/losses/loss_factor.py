@@ -72,18 +72,18 @@ class Springs:
 
     @property
     def functions(self) -> list[PathFunction]:
-        """The path functions that the shares are made of."""
+        """Path functions from which the shares follow."""
         return [self.stiffness] if self.error is None else [self.stiffness, self.error]
 
-    def share(self, at: CyclePositions) -> FloatArray:
+    def share(self, positions: CyclePositions) -> FloatArray:
         """Fraction of the mesh load on each pair; (pairs, k), sums to 1 over the pairs.
 
         All pairs deflect by the same delta = (F + SUM k_i e_i)/SUM k_i and carry k_i (delta - e_i).
         """
-        k = np.where(at.contact, self.stiffness(at.position), 0.0)
+        k = np.where(positions.contact, self.stiffness(positions.position), 0.0)
         if self.error is None:
             return np.asarray(k / k.sum(axis=0), dtype=np.float64)
-        e = np.where(at.contact, self.error(at.position), 0.0)
+        e = np.where(positions.contact, self.error(positions.position), 0.0)
         delta = (self.force + (k * e).sum(axis=0)) / k.sum(axis=0)
         return np.asarray(k * (delta - e) / self.force, dtype=np.float64)
 
@@ -165,14 +165,14 @@ def loss_factor(pair: AnyPair, sharing: Sharing = "uniform") -> float:
     pair = load_gear_pair(pair)
     g = pair.geometry
     teeth = springs(pair, sharing)
-    at = quadrature(g, teeth.functions)
-    return mean_loss_factor(g, at, teeth.share(at))
+    positions = quadrature(g, teeth.functions)
+    return mean_loss_factor(g, positions, teeth.share(positions))
 
 
-def mean_loss_factor(g: Geometry, at: CyclePositions, share: FloatArray) -> float:
-    """H_v of given load shares (pairs, k) at the nodes of a cycle."""
-    slide = sliding_velocity(g, at.position)
-    return at.mean((share * np.abs(slide)).sum(axis=0)) / (g.omega_pinion * g.base_radius_pinion)
+def mean_loss_factor(g: Geometry, positions: CyclePositions, share: FloatArray) -> float:
+    """H_v of load shares (pairs, k) at positions of a mesh cycle."""
+    slide = sliding_velocity(g, positions.position)
+    return positions.mean((share * np.abs(slide)).sum(axis=0)) / (g.omega_pinion * g.base_radius_pinion)
 
 
 def sliding_velocity(g: Geometry, position: FloatArray) -> FloatArray:

@@ -1,8 +1,10 @@
 """The linear form of the mesh: its force on small motions about the static state of every pair.
 
-A pair that touches or leaves, whose damper becomes full, or whose tip leaves the line of action inside a
-step of an integration makes a kink there. ``linear_cycles`` finds these kinks, and gives steps that have one
-the moments of the force instead of its values at the nodes.
+    N = N_el + k_t (delta - delta_static) + s c p'
+
+k_t is the tangent of the elastic load. A pair that would pull does pull in this form; in
+``lumped.mesh.unilateral_force`` it has no load. ``lumped.mesh.kinks`` finds where the form has kinks over
+whole mesh cycles.
 
 Sources: docs/theory/teeth.md, "The linear form"; docs/theory/contact_energy.md, "Loaded contact of the linear
 model".
@@ -16,7 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh.element import (
+from lumped.mesh.damper import acting_damping
+from lumped.mesh.element import in_contact, rolling_rate, share_load, static_approach
+from lumped.mesh.records import (
     AT_REST,
     BY_APPROACH,
     BY_RATE,
@@ -27,47 +31,47 @@ from lumped.mesh.element import (
     ContactLaw,
     Record,
     Records,
-    acts,
     add_force,
     called,
     clear_force,
-    damper_share,
-    deciding_tips,
     inlined,
-    place_pair,
     record,
-    rolling_rate,
-    share_load,
-    static_approach,
-    ways_back,
 )
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
-from lumped.typing import FloatArray, IntArray
+from lumped.mesh.tip_corners import end_of_flanks, place_pair, start_of_flanks, tip_minus_edge
+from lumped.typing import FloatArray
 
-#: The mesh about its static state, beside its FORCE.
+#: What the linear form has beside FORCE: the static state, and the power of the dampers as a polynomial of
+#: the rate of the approach.
 STATE = record(
-    approach="of the static state [m]; NaN where no pair carries the force",
-    moment_pinion="of the mesh force on the pinion by its eccentricity, over the force [m]",
-    moment_gear="the same of the gear [m]",
-    damper_by_square="power of the dampers over the square of the rate of the approach [N s/m]",
-    damper_by_rate="over that rate [N]",
-    damper_at_rest="without it [W]",
+    approach="static approach [m]; NaN where no pair carries the force",
+    moment_pinion="lever arm that the pinion's eccentricity gives the mesh force [m]",
+    moment_gear="lever arm that the gear's eccentricity gives the mesh force [m]",
+    damper_by_square="power of the dampers over the square of the rate [N s/m]",
+    damper_by_rate="power of the dampers over the rate [N]",
+    damper_at_rest="power of the dampers without a rate [W]",
 )
-#: Load of one pair: static, and of small motions.
+#: Load of one pair in the linear form.
 PAIR_LOAD = record(
-    static="elastic [N]",
-    by_approach="[N/m]",
-    by_rate="[N s/m]",
-    at_rest="without motion [N]",
+    static="elastic load in the static state [N]",
+    by_approach="load per approach [N/m]",
+    by_rate="load per rate of the approach [N s/m]",
+    at_rest="load without approach and rate [N]",
 )
-#: Numbers of a pair that change their sign at a kink: compression by its own load, load less that of the full
-#: damper, ways of the contact beyond the start and the end of the flanks. The last two are kinks of a slope.
-COMPRESSION, FULL_DAMPER, BEFORE_START, BEHIND_END, BEFORE_EDGE, BEHIND_EDGE = range(6)
-SIGNS = 6
-#: A kink so near to an end of a step, over the step, does not lie inside it.
-_AT_END = 1e-7
+#: Where the linear form is wanted, see ``linear_of_step``.
+PLACE = record(
+    cycle="mesh cycles after the first one, a whole number",
+    step="step of the mesh cycle, a whole number",
+    place="place in the step: 0 to 1, or ``node_place(j)``",
+)
+#: Switches of a pair: quantities that change their sign at a kink. COMPRESSION is the part of the compression
+#: that the pair's load causes, FULL_DAMPER the load less the load of the full damper; both make a kink of the
+#: load. TIP_AT_START and TIP_AT_END are ``tip_minus_edge`` at the ends of the flanks, EDGE_AT_START and
+#: EDGE_AT_END the distances beyond the edges; these four make a kink of the slope only.
+COMPRESSION, FULL_DAMPER, TIP_AT_START, TIP_AT_END, EDGE_AT_START, EDGE_AT_END = range(6)
+SWITCHES = 6
 #: Relative error of the static approach.
-_SETTLED = 1e-12
+_CONVERGED = 1e-12
 
 
 class LinearForm(NamedTuple):
@@ -88,7 +92,7 @@ def add_forces(
     pair: Records,
     forces: Records,
 ) -> None:
-    """Add the forces of pairs (pairs, k) to FORCE (k, 3); a record ``pair`` (1,) is worked in."""
+    """Add the forces of pairs (pairs, k) to FORCE (k, 3). ``pair``, (1,) PAIR, is memory."""
     for time in range(position.shape[1]):
         for i in range(position.shape[0]):
             pair[0].position = position[i, time]
@@ -106,105 +110,220 @@ def forces_of_laws(
     by_rate: FloatArray,
     at_rest: FloatArray,
 ) -> Records:
-    """FORCE (k, 3) of pairs (pairs, k) whose loads in the linear form are known: those of ``PAIR_LOAD``."""
-    found = np.zeros((position.shape[1], 3), FORCE)
+    """Return FORCE (k, 3) of pairs (pairs, k) whose loads in the linear form are known.
+
+    Parameters
+    ----------
+    position, friction : xi [m] and mu of each pair
+    tilt : of the normal at a tip corner; None is 0
+    by_approach, by_rate, at_rest : loads as in PAIR_LOAD
+    """
+    forces = np.zeros((position.shape[1], 3), FORCE)
     tilts = np.zeros(position.shape) if tilt is None else tilt
-    place, mu, angle = (np.ascontiguousarray(one) for one in (position, friction, tilts))
-    rise, damper, rest = (np.ascontiguousarray(one) for one in (by_approach, by_rate, at_rest))
-    add_forces(place, mu, angle, rise, damper, rest, np.zeros(1, PAIR), found)
-    return found
+    add_forces(
+        np.ascontiguousarray(position),
+        np.ascontiguousarray(friction),
+        np.ascontiguousarray(tilts),
+        np.ascontiguousarray(by_approach),
+        np.ascontiguousarray(by_rate),
+        np.ascontiguousarray(at_rest),
+        np.zeros(1, PAIR),
+        forces,
+    )
+    return forces
 
 
 class Instant(NamedTuple):
-    """A mesh at one instant, and what is sought about it.
+    """The mesh at one instant with its linear form, and the memory to compute them.
 
     Attributes
     ----------
-    pairs, line, coupling : (pairs,) PAIR, (1,) LINE, (pairs, pairs) between nodes
-    share : (nodes,) of each node in what is between them
-    contacts, matrix : of ``share_load``
+    pairs, line, coupling : (pairs,) PAIR, (1,) LINE and (pairs, pairs) interpolated between the nodes
+    node_shares : (nodes,) share of each node in the interpolation
+    contacts, matrix : (pairs,) CONTACT, and (pairs, pairs) memory, of ``share_load``
+    static : (1,) static approach; on entry the guess from which it is sought [m]
+    forces, state : (3,) FORCE and (1,) STATE of the linear form
     loads : (pairs,) PAIR_LOAD
-    signs : (6, pairs) of ``SIGNS``
-    static : (1,) the last static approach, from which the next one is sought [m]
+    switches : (SWITCHES, pairs) quantities that change their sign at a kink
     """
 
     pairs: Records
     line: Records
     coupling: FloatArray
-    share: FloatArray
+    node_shares: FloatArray
     contacts: Records
     matrix: FloatArray
-    loads: Records
-    signs: FloatArray
     static: FloatArray
+    forces: Records
+    state: Records
+    loads: Records
+    switches: FloatArray
 
 
 def empty_instant(tables: MeshTables) -> Instant:
-    """Records for a mesh; not compiled, for that takes half a second."""
+    """Return the memory of an instant. Not compiled, because compiling takes half a second."""
     nodes = tables.position.shape[1]
     count = tables.position.shape[2]
     return Instant(
-        np.zeros(count, PAIR),
-        np.zeros(1, LINE),
-        np.zeros((count, count)),
-        np.ones(nodes),
-        np.zeros(count, CONTACT),
-        np.empty((count, count)),
-        np.zeros(count, PAIR_LOAD),
-        np.zeros((SIGNS, count)),
-        np.zeros(1),
+        pairs=np.zeros(count, PAIR),
+        line=np.zeros(1, LINE),
+        coupling=np.zeros((count, count)),
+        node_shares=np.ones(nodes),
+        contacts=np.zeros(count, CONTACT),
+        matrix=np.empty((count, count)),
+        static=np.zeros(1),
+        forces=np.zeros(3, FORCE),
+        state=np.zeros(1, STATE),
+        loads=np.zeros(count, PAIR_LOAD),
+        switches=np.zeros((SWITCHES, count)),
     )
 
 
 @inlined
-def lagrange(x: float, nodes: FloatArray, share: FloatArray) -> None:
-    """Write the share of the value at each node in that at ``x`` of the polynomial through them."""
+def lagrange(x: float, nodes: FloatArray, shares: FloatArray) -> None:
+    """Write the Lagrange polynomials of the nodes at ``x``: the share of each node in the interpolation."""
     for j in range(nodes.size):
-        share[j] = below = 1.0
+        shares[j] = 1.0
+        denominator = 1.0
         for other in range(nodes.size):
             if other != j:
-                share[j] *= x - nodes[other]
-                below *= nodes[j] - nodes[other]
-        share[j] /= below
+                shares[j] *= x - nodes[other]
+                denominator *= nodes[j] - nodes[other]
+        shares[j] /= denominator
+
+
+@inlined
+def interpolate_line(step: int, mesh: CyclePairs, instant: Instant) -> None:
+    """Write the line of action between the nodes of a step, by the shares of the nodes."""
+    line = instant.line[0]
+    line.length = 0.0
+    line.lengthening = 0.0
+    line.turn = 0.0
+    line.gap_rate = 0.0
+    line.moment_pinion = 0.0
+    line.moment_gear = 0.0
+    for j in range(instant.node_shares.size):
+        share = instant.node_shares[j]
+        node_line = mesh.lines[step, j]
+        line.length += share * node_line.length
+        line.lengthening += share * node_line.lengthening
+        line.turn += share * node_line.turn
+        line.gap_rate += share * node_line.gap_rate
+        line.moment_pinion += share * node_line.moment_pinion
+        line.moment_gear += share * node_line.moment_gear
+
+
+@inlined
+def interpolate_pair(i: int, step: int, tables: MeshTables, mesh: CyclePairs, instant: Instant) -> None:
+    """Write one pair between the nodes of a step, by the shares of the nodes."""
+    count = instant.pairs.size
+    pair = instant.pairs[i]
+    position = 0.0
+    pair.stiffness = 0.0
+    pair.damping = 0.0
+    pair.friction = 0.0
+    pair.gap = 0.0
+    pair.gap_slope = 0.0
+    for n in range(count):
+        instant.coupling[i, n] = 0.0
+    for j in range(instant.node_shares.size):
+        share = instant.node_shares[j]
+        node_pair = mesh.pairs[step, j, i]
+        position += share * node_pair.position
+        pair.stiffness += share * node_pair.stiffness
+        pair.damping += share * node_pair.damping
+        pair.friction += share * node_pair.friction
+        pair.gap += share * node_pair.gap
+        pair.gap_slope += share * node_pair.gap_slope
+        coupling = tables.coupling[step, j]
+        for n in range(count):
+            instant.coupling[i, n] += share * coupling[i, n]
+    place_pair(pair, position, tables.flanks[mesh.kind[i]], instant.line[0], tables.law)
 
 
 @called
-def put_between(step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant) -> None:
-    """Write the pairs at a place of a step, 0 to 1, by the polynomials through those at its nodes."""
-    lagrange(x, tables.nodes, at.share)
-    line = at.line[0]
-    nodes = tables.nodes.size
-    count = at.pairs.size
-    line.length = line.lengthening = line.turn = line.gap_rate = 0.0
-    line.moment_pinion = line.moment_gear = 0.0
-    for j in range(nodes):
-        share = at.share[j]
-        there = mesh.lines[step, j]
-        line.length += share * there.length
-        line.lengthening += share * there.lengthening
-        line.turn += share * there.turn
-        line.gap_rate += share * there.gap_rate
-        line.moment_pinion += share * there.moment_pinion
-        line.moment_gear += share * there.moment_gear
-    for i in range(count):
-        pair = at.pairs[i]
-        position = 0.0
-        pair.stiffness = pair.damping = pair.friction = pair.gap = pair.gap_slope = 0.0
-        for n in range(count):
-            at.coupling[i, n] = 0.0
-        for j in range(nodes):
-            share = at.share[j]
-            of_node = mesh.pairs[step, j, i]
-            position += share * of_node.position
-            pair.stiffness += share * of_node.stiffness
-            pair.damping += share * of_node.damping
-            pair.friction += share * of_node.friction
-            pair.gap += share * of_node.gap
-            pair.gap_slope += share * of_node.gap_slope
-            coupling = tables.coupling[step, j]
-            for n in range(count):
-                at.coupling[i, n] += share * coupling[i, n]
-        place_pair(pair, position, tables.flanks[mesh.kind[i]], line, tables.law)
+def interpolate_mesh(step: int, x: float, tables: MeshTables, mesh: CyclePairs, instant: Instant) -> None:
+    """Write pairs, coupling and line of action at a place of a step, by polynomials through the nodes."""
+    lagrange(x, tables.nodes, instant.node_shares)
+    interpolate_line(step, mesh, instant)
+    for i in range(instant.pairs.size):
+        interpolate_pair(i, step, tables, mesh, instant)
+
+
+@inlined
+def clear_form(forces: Records, state: Record) -> None:
+    """Set the linear form to zero."""
+    for part in range(3):
+        clear_force(forces[part])
+    state.approach = 0.0
+    state.moment_pinion = 0.0
+    state.moment_gear = 0.0
+    state.damper_by_square = 0.0
+    state.damper_by_rate = 0.0
+    state.damper_at_rest = 0.0
+
+
+@inlined
+def copy_form(to_forces: Records, to_state: Record, forces: Records, state: Record) -> None:
+    """Copy a linear form."""
+    for part in range(3):
+        to_forces[part].normal = forces[part].normal
+        to_forces[part].friction = forces[part].friction
+        to_forces[part].friction_moment = forces[part].friction_moment
+        to_forces[part].separating = forces[part].separating
+    to_state.approach = state.approach
+    to_state.moment_pinion = state.moment_pinion
+    to_state.moment_gear = state.moment_gear
+    to_state.damper_by_square = state.damper_by_square
+    to_state.damper_by_rate = state.damper_by_rate
+    to_state.damper_at_rest = state.damper_at_rest
+
+
+@inlined
+def add_form(factor: float, to_forces: Records, to_state: Record, forces: Records, state: Record) -> None:
+    """Add a factor times a linear form to another one."""
+    for part in range(3):
+        to_forces[part].normal += factor * forces[part].normal
+        to_forces[part].friction += factor * forces[part].friction
+        to_forces[part].friction_moment += factor * forces[part].friction_moment
+        to_forces[part].separating += factor * forces[part].separating
+    to_state.approach += factor * state.approach
+    to_state.moment_pinion += factor * state.moment_pinion
+    to_state.moment_gear += factor * state.moment_gear
+    to_state.damper_by_square += factor * state.damper_by_square
+    to_state.damper_by_rate += factor * state.damper_by_rate
+    to_state.damper_at_rest += factor * state.damper_at_rest
+
+
+@inlined
+def add_damper_power(damping: float, compression_share: float, rolling: float, state: Record) -> None:
+    """Add the power c (f delta' - r)^2 of a damper to the coefficients of delta'^2, delta' and 1.
+
+    f is the share of the approach that compresses the pair, r the rate at which rolling opens the gap [m/s].
+    """
+    state.damper_by_square += damping * compression_share**2
+    state.damper_by_rate -= 2.0 * damping * compression_share * rolling
+    state.damper_at_rest += damping * rolling**2
+
+
+@inlined
+def linear_load(
+    static: float, damping: float, compression_share: float, rolling: float, contact: Record, load: Record
+) -> None:
+    """Write N = N_el + k_t (delta - static) + c (f delta' - r); for f, r see ``add_damper_power``."""
+    load.static = contact.load
+    load.by_approach = contact.tangent
+    load.by_rate = damping * compression_share
+    load.at_rest = contact.load - contact.tangent * static - damping * rolling
+
+
+@inlined
+def clear_load(load: Record) -> None:
+    """Set the load of a pair to zero."""
+    load.static = 0.0
+    load.by_approach = 0.0
+    load.by_rate = 0.0
+    load.at_rest = 0.0
 
 
 @inlined
@@ -218,350 +337,151 @@ def linearise(
     state: Record,
     loads: Records,
 ) -> None:
-    """Write force, state and load of each pair about the static approach; ``contacts`` are those there.
+    """Write the linear form and the load of each pair about a static approach.
 
-    N_n = N_el + k_t (delta - static) + c p'_n of the pairs that press; with prescribed contact about 0.
+    Parameters
+    ----------
+    static : static approach [m]; with prescribed contact, which is linear everywhere, 0
+    contacts : of ``share_load`` at the static approach
+    forces, state, loads : written: (3,) FORCE, STATE, (pairs,) PAIR_LOAD
     """
-    for part in range(3):
-        clear_force(forces[part])
+    clear_form(forces, state)
     state.approach = static
     state.moment_pinion = line.moment_pinion
     state.moment_gear = line.moment_gear
-    state.damper_by_square = state.damper_by_rate = state.damper_at_rest = 0.0
     for i in range(pairs.size):
         pair = pairs[i]
         contact = contacts[i]
         load = loads[i]
-        load.static = load.by_approach = load.by_rate = load.at_rest = 0.0
-        if not acts(pair, contact, law):
+        clear_load(load)
+        if not in_contact(pair, contact, law):
             continue
-        damping = pair.damping * damper_share(contact.load, law)
-        closing = 1.0 - contact.gap_by_approach
+        damping = acting_damping(pair, contact, law)
+        compression_share = 1.0 - contact.gap_by_approach
         rolling = rolling_rate(contact, line, law)
-        load.static = contact.load
-        load.by_approach = contact.tangent
-        load.by_rate = damping * closing
-        load.at_rest = contact.load - contact.tangent * static - damping * rolling
+        linear_load(static, damping, compression_share, rolling, contact, load)
         add_force(forces[BY_APPROACH], load.by_approach, pair, contact.tilt)
         add_force(forces[BY_RATE], load.by_rate, pair, contact.tilt)
         add_force(forces[AT_REST], load.at_rest, pair, contact.tilt)
-        state.damper_by_square += damping * closing**2
-        state.damper_by_rate -= 2.0 * damping * closing * rolling
-        state.damper_at_rest += damping * rolling**2
+        add_damper_power(damping, compression_share, rolling, state)
 
 
 @inlined
-def write_signs(
-    static: float, pairs: Records, line: Record, law: ContactLaw, coupling: FloatArray, at: Instant
+def write_switches(
+    static: float,
+    pairs: Records,
+    line: Record,
+    law: ContactLaw,
+    coupling: FloatArray,
+    instant: Instant,
 ) -> None:
-    """Write the numbers of each pair that change their sign at a kink."""
+    """Write the quantities of each pair that change their sign at a kink; 0 where a pair has none."""
+    switches = instant.switches
     for i in range(pairs.size):
         pair = pairs[i]
-        contact = at.contacts[i]
-        for sign in range(SIGNS):
-            at.signs[sign, i] = 0.0
-        if pair.stiffness <= 0.0 or law.windows:
+        contact = instant.contacts[i]
+        for switch in range(SWITCHES):
+            switches[switch, i] = 0.0
+        if pair.stiffness <= 0.0 or law.prescribed:
             continue
-        at.signs[COMPRESSION, i] = contact.compression
+        switches[COMPRESSION, i] = contact.compression
         for n in range(pairs.size):
-            at.signs[COMPRESSION, i] -= coupling[i, n] * at.contacts[n].load
-        at.signs[FULL_DAMPER, i] = contact.load - law.full_damper
-        at.signs[BEFORE_START, i], at.signs[BEHIND_END, i] = deciding_tips(pair, static, line, law)
-        first, last = ways_back(pair, static, line)
-        at.signs[BEFORE_EDGE, i] = first if pair.edge_pinion > 0.0 else 0.0
-        at.signs[BEHIND_EDGE, i] = last if pair.edge_gear > 0.0 else 0.0
+            switches[COMPRESSION, i] -= coupling[i, n] * instant.contacts[n].load
+        switches[FULL_DAMPER, i] = contact.load - law.full_damper
+        start = start_of_flanks(pair, static, line, law)
+        end = end_of_flanks(pair, static, line, law)
+        switches[TIP_AT_START, i] = tip_minus_edge(start)
+        switches[TIP_AT_END, i] = tip_minus_edge(end)
+        switches[EDGE_AT_START, i] = start.beyond_edge if start.edge > 0.0 else 0.0
+        switches[EDGE_AT_END, i] = end.beyond_edge if end.edge > 0.0 else 0.0
 
 
 @called
-def linear_at(
-    pairs: Records,
-    line: Record,
-    coupling: FloatArray,
-    law: ContactLaw,
-    at: Instant,
-    forces: Records,
-    state: Record,
+def linear_of_mesh(
+    pairs: Records, line: Record, coupling: FloatArray, law: ContactLaw, instant: Instant
 ) -> None:
-    """Write the linear form of the mesh of one instant into ``forces`` (3,), ``state``, and ``at``."""
-    if law.windows:  # linear already
+    """Write the linear form, the loads and the switches of given pairs into ``instant``."""
+    if law.prescribed:  # linear already, about any state
         static = 0.0
-        share_load(static, pairs, line, law, coupling, at.matrix, at.contacts)
+        share_load(static, pairs, line, law, coupling, instant.matrix, instant.contacts)
     else:
-        guess = 0.0 if math.isnan(at.static[0]) else at.static[0]
+        guess = 0.0 if math.isnan(instant.static[0]) else instant.static[0]
         static = static_approach(
-            guess, _SETTLED, law.force, pairs, line, law, coupling, at.matrix, at.contacts
+            guess, _CONVERGED, law.force, pairs, line, law, coupling, instant.matrix, instant.contacts
         )
-    at.static[0] = static
-    linearise(static, pairs, line, law, at.contacts, forces, state, at.loads)
-    write_signs(static, pairs, line, law, coupling, at)
+    instant.static[0] = static
+    linearise(static, pairs, line, law, instant.contacts, instant.forces, instant.state[0], instant.loads)
+    write_switches(static, pairs, line, law, coupling, instant)
+
+
+def node_place(node: int) -> float:
+    """Return -1 - j, the place that stands for the node j in ``linear_of_step``. For callers in Python."""
+    return -1.0 - node
 
 
 @inlined
-def linear_of_step(
-    step: int, x: float, tables: MeshTables, mesh: CyclePairs, at: Instant, forces: Records, state: Record
-) -> None:
-    """``linear_at`` a place of a step whose pairs ``mesh`` has: 0 to 1, or -1 - j for the node j."""
-    if x > -0.5:
-        put_between(step, x, tables, mesh, at)
-        pairs = at.pairs
-        line = at.line
-        coupling = at.coupling
-    else:
-        node = int(-1.0 - x)
+def is_node(place: float) -> bool:
+    """Whether a place is a node itself."""
+    return place <= -0.5
+
+
+@inlined
+def node_of(place: float) -> int:
+    """Return the node j of ``node_place``."""
+    return int(-1.0 - place)
+
+
+@inlined
+def linear_of_step(step: int, place: float, tables: MeshTables, mesh: CyclePairs, instant: Instant) -> None:
+    """Write the linear form at a place of a step into ``instant``.
+
+    Parameters
+    ----------
+    step : whose pairs ``mesh`` has
+    place : 0 to 1, where pairs are interpolated between the nodes, or ``node_place(j)``, the node j itself
+    """
+    if is_node(place):
+        node = node_of(place)
         pairs = mesh.pairs[step, node]
         line = mesh.lines[step, node : node + 1]
         coupling = tables.coupling[step, node]
-    linear_at(pairs, line[0], coupling, tables.law, at, forces, state)
+    else:
+        interpolate_mesh(step, place, tables, mesh, instant)
+        pairs = instant.pairs
+        line = instant.line
+        coupling = instant.coupling
+    linear_of_mesh(pairs, line[0], coupling, tables.law, instant)
 
 
 @compiled(nogil=True)
 def linear_places(
     start: int,
     tables: MeshTables,
-    asked: FloatArray,
+    places: Records,
     form: LinearForm,
     loads: Records,
     mesh: CyclePairs,
-    at: Instant,
+    instant: Instant,
 ) -> None:
-    """Write the linear form at n places into ``form``, and into ``loads`` (n or 0, pairs) those of each pair.
+    """Write the linear form at n places of the mesh cycles from ``start`` on.
 
-    ``asked`` (n, 3) is cycles after ``start``, step, and place in it, as of ``linear_of_step``. ``mesh`` and
-    ``at`` are worked in.
+    Parameters
+    ----------
+    places : (n,) PLACE
+    form : written, (n, 3) FORCE and (n,) STATE
+    loads : written, PAIR_LOAD (n, pairs); (0, pairs) where no loads are wanted
+    mesh, instant : memory
     """
-    known = np.empty(tables.position.shape[0], np.int64)  # cycle whose pairs a step has
-    for step in range(known.size):
-        known[step] = -1
-    for n in range(asked.shape[0]):
-        cycle = int(asked[n, 0])
-        step = int(asked[n, 1])
-        if known[step] != cycle:
-            known[step] = cycle
+    cycle_of_step = np.empty(tables.position.shape[0], np.int64)  # whose pairs ``mesh`` has in each step
+    for step in range(cycle_of_step.size):
+        cycle_of_step[step] = -1
+    for n in range(places.shape[0]):
+        cycle = int(places[n].cycle)
+        step = int(places[n].step)
+        if cycle_of_step[step] != cycle:
+            cycle_of_step[step] = cycle
             fill_steps(start + cycle, step, step + 1, tables, mesh)
-        linear_of_step(step, asked[n, 2], tables, mesh, at, form.forces[n], form.states[n])
-        for i in range(at.loads.size if n < loads.shape[0] else 0):
-            loads[n, i] = at.loads[i]
-
-
-@inlined
-def add_part(part: float, forces: Records, state: Record, of_forces: Records, of_state: Record) -> None:
-    """Add a part of a linear form to another one."""
-    for n in range(3):
-        force = forces[n]
-        of_force = of_forces[n]
-        force.normal += part * of_force.normal
-        force.friction += part * of_force.friction
-        force.friction_moment += part * of_force.friction_moment
-        force.separating += part * of_force.separating
-    state.approach += part * of_state.approach
-    state.moment_pinion += part * of_state.moment_pinion
-    state.moment_gear += part * of_state.moment_gear
-    state.damper_by_square += part * of_state.damper_by_square
-    state.damper_by_rate += part * of_state.damper_by_rate
-    state.damper_at_rest += part * of_state.damper_at_rest
-
-
-@inlined
-def clear(forces: Records, state: Record) -> None:
-    """No force, no state."""
-    for n in range(3):
-        clear_force(forces[n])
-    state.approach = state.moment_pinion = state.moment_gear = 0.0
-    state.damper_by_square = state.damper_by_rate = state.damper_at_rest = 0.0
-
-
-class Kinks(NamedTuple):
-    """Kinks of one mesh cycle in the order of their phases: (most,) phase and step, (1,) their number."""
-
-    phase: FloatArray
-    step: IntArray
-    known: IntArray
-
-
-@inlined
-def keep_kink(phase: float, step: int, kinks: Kinks) -> None:
-    """Put a kink among those of the cycle, in the order of phases."""
-    place = kinks.known[0]
-    while place > 0 and kinks.phase[place - 1] > phase:
-        kinks.phase[place], kinks.step[place] = kinks.phase[place - 1], kinks.step[place - 1]
-        place -= 1
-    kinks.phase[place] = phase
-    kinks.step[place] = step
-    kinks.known[0] += 1
-
-
-@called
-def find_kink(
-    sign: int,
-    i: int,
-    ends: tuple[float, float],
-    values: tuple[float, float],
-    step: int,
-    rounds: int,
-    tables: MeshTables,
-    mesh: CyclePairs,
-    at: Instant,
-    forces: Records,
-    state: Record,
-    kinks: Kinks,
-) -> None:
-    """Find the phase where a number of a pair is zero between two phases, by the rule of Illinois.
-
-    An end of a step between them is looked at first: kinks of like teeth are there.
-    """
-    (low, high), (at_low, at_high), edges, last = ends, values, tables.edges, -1
-    root = 0.0
-    here = step
-    for left in range(rounds, -1, -1):
-        root = (low * at_high - high * at_low) / (at_high - at_low)
-        if left == rounds and low < edges[step + 1] < high:
-            root = edges[step + 1]
-        here = step + 1 if step < edges.size - 2 and root >= edges[step + 1] else step
-        if left == 0:
-            break
-        x = (root - edges[here]) / (edges[here + 1] - edges[here])
-        linear_of_step(here, x, tables, mesh, at, forces, state)
-        value = at.signs[sign, i]
-        if (value < 0.0) == (at_low < 0.0):
-            at_high *= 0.5 if last == 0 else 1.0
-            low = root
-            at_low = value
-            last = 0
-        else:
-            at_low *= 0.5 if last == 1 else 1.0
-            high = root
-            at_high = value
-            last = 1
-    keep_kink(root, here, kinks)
-
-
-@called
-def fill_moments(
-    step: int,
-    first: int,
-    kinks: Kinks,
-    tables: MeshTables,
-    mesh: CyclePairs,
-    at: Instant,
-    forces: Records,
-    state: Record,
-    to_forces: Records,
-    to_states: Records,
-) -> int:
-    """Write the moments of a step with kinks, the first of them ``first``; the next kink behind the step.
-
-    With the rule of the nodes on both sides of each kink, f_j = sum_q w_q l_j(x_q) f(x_q)/b_j has the moments
-    of f on the polynomials l_j of the nodes.
-    """
-    nodes = tables.nodes.size
-    edges = tables.edges
-    low = 0.0
-    for j in range(nodes):
-        clear(to_forces[j], to_states[j])
-    while low < 1.0:
-        high = 1.0
-        if first < kinks.known[0] and kinks.step[first] == step:
-            high = max(low, (kinks.phase[first] - edges[step]) / (edges[step + 1] - edges[step]))
-            first += 1
-        for node in range(nodes if high > low else 0):
-            linear_of_step(step, low + (high - low) * tables.nodes[node], tables, mesh, at, forces, state)
-            weight = (high - low) * tables.weights[node]
-            for j in range(nodes):
-                part = weight * at.share[j] / tables.weights[j]
-                add_part(part, to_forces[j], to_states[j], forces, state)
-        low = high
-    return first
-
-
-@compiled
-def twice_as_long(values: FloatArray) -> FloatArray:
-    """The same values and as much place behind them."""
-    longer = np.empty(2 * values.size)
-    for i in range(values.size):
-        longer[i] = values[i]
-    return longer
-
-
-@compiled(nogil=True)
-def linear_cycles(
-    start: int,
-    tables: MeshTables,
-    looks: FloatArray,
-    signs: int,
-    rounds: int,
-    form: LinearForm,
-    fills: bool,
-    mesh: CyclePairs,
-    at: Instant,
-) -> FloatArray:
-    """Linear form of mesh cycles from ``start`` on, and the phases of their kinks, by cycles from ``start``.
-
-    ``form`` has (cycles, steps, nodes, 3) FORCE and (cycles, steps, nodes) STATE. Where it ``fills`` them,
-    they are those at the nodes, which ``looks`` then are, and in a step with kinks the moments. ``looks``
-    (k,) are places in a step, as of ``linear_of_step``, between which each of the first ``signs`` numbers of
-    a pair has at most one root; it is found by so many ``rounds``. ``mesh`` and ``at`` are worked in.
-    """
-    (steps, _, count), edges, looked = tables.position.shape, tables.edges, looks.size
-    one = LinearForm(np.empty(3, FORCE), np.empty(1, STATE))
-    phase = np.empty(steps * looked)
-    values = np.empty((steps * looked, SIGNS, count))
-    most = phase.size * signs * count
-    kinks = Kinks(np.empty(most), np.empty(most, np.int64), np.empty(1, np.int64))
-    found = np.empty(16)
-    known = 0
-    first = steps - steps  # the literal 0 would be compiled for itself
-    for look in range(phase.size):
-        step = look // looked
-        x = looks[look % looked]
-        place = x if x > -0.5 else tables.nodes[int(-1.0 - x)]
-        phase[look] = edges[step] + (edges[step + 1] - edges[step]) * place
-    for cycle in range(form.states.shape[0]):
-        fill_steps(start + cycle, first, steps, tables, mesh)
-        for look in range(phase.size):
-            step = look // looked
-            j = look % looked
-            forces = form.forces[cycle, step, j] if fills else one.forces
-            state = form.states[cycle, step, j] if fills else one.states[0]
-            linear_of_step(step, looks[j], tables, mesh, at, forces, state)
-            for sign in range(SIGNS):
-                for i in range(count):
-                    values[look, sign, i] = at.signs[sign, i]
-        kinks.known[0] = 0
-        for look in range(1, phase.size):
-            ends = phase[look - 1], phase[look]
-            for sign in range(signs):
-                for i in range(count):
-                    here = values[look - 1, sign, i], values[look, sign, i]
-                    if here[0] * here[1] < 0.0:
-                        step = (look - 1) // looked
-                        find_kink(
-                            sign,
-                            i,
-                            ends,
-                            here,
-                            step,
-                            rounds,
-                            tables,
-                            mesh,
-                            at,
-                            one.forces,
-                            one.states[0],
-                            kinks,
-                        )
-        for kink in range(kinks.known[0]):
-            if known == found.size:
-                found = twice_as_long(found)
-            found[known] = cycle + kinks.phase[kink]
-            known += 1
-        kink = first
-        while fills and kink < kinks.known[0]:
-            step = kinks.step[kink]
-            x = (kinks.phase[kink] - edges[step]) / (edges[step + 1] - edges[step])
-            if x < _AT_END or x > 1.0 - _AT_END:
-                kink += 1
-                continue
-            kink = fill_moments(
-                step, kink, kinks, tables, mesh, at, one.forces, one.states[0],
-                form.forces[cycle, step], form.states[cycle, step],
-            )  # fmt: skip
-    return found[:known]
+        linear_of_step(step, places[n].place, tables, mesh, instant)
+        copy_form(form.forces[n], form.states[n], instant.forces, instant.state[0])
+        for i in range(instant.loads.size if n < loads.shape[0] else 0):
+            loads[n, i] = instant.loads[i]

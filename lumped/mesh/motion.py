@@ -1,6 +1,6 @@
-"""Motion of the gears by momentary load: stiffness and damper of each pair follow its load.
+"""Motion of the gears by momentary load: stiffness and damper of each pair follow its load, teeth only push.
 
-The classical Runge-Kutta method of order 4 on steps that end wherever a law of a pair jumps or has a kink.
+The classical Runge-Kutta method of order 4, on steps that end wherever a law of a pair jumps or has a kink.
 
 Sources: docs/theory/teeth.md, "Motion"; docs/theory/contact_energy.md, "First law".
 """
@@ -13,25 +13,27 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh.element import MeshForce, Record, Records, inlined, mesh_force, record, share_load
+from lumped.mesh.element import share_load
+from lumped.mesh.records import Record, Records, inlined, record
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
+from lumped.mesh.unilateral_force import MeshForce, unilateral_force
 from lumped.typing import FloatArray
 
 #: A harmonic of a torque: amplitude cos(angle t/T_m + start).
 RIPPLE = record(
     shaft="0 pinion, 1 gear",
-    angle="in a mesh cycle [rad]",
+    angle="angle in one mesh cycle [rad]",
     start="phase at t = 0 [rad]",
     amplitude="[N m]",
     cycles="mesh cycles of a turn of the shaft",
 )
-#: Work in a run [J].
+#: Work of a run [J]. ``lumped.losses`` lists all places where a loss is computed.
 WORK = record(
-    sliding="that friction takes",
-    tooth_dampers="that the dampers of the pairs take",
-    bearings="that bearings take",
-    shafts="that shafts and couplings take",
-    teeth="that the normal loads do on the vibration of the gears",
+    sliding="taken by friction between the teeth",
+    tooth_dampers="taken by the dampers of the pairs",
+    bearings="taken by the bearings",
+    shafts="taken by shafts and couplings",
+    teeth="done by the normal loads on the vibration of the gears",
 )
 
 
@@ -42,13 +44,14 @@ class Body(NamedTuple):
     ----------
     constant : (m, 2m)
     torque : (m,) acceleration by the mean torques
-    deflection : (m,) delta = deflection . z
-    per_normal, per_friction, per_friction_moment, per_separating : (m,) acceleration per unit of FORCE
-    per_moment, per_torque : (2, m) per unit moment on, and torque of, pinion and gear
-    bearings, shafts : (m, m) forms of the rates that are the powers of the bearings, and of shafts with
-        couplings; (0, m) without shafts
+    deflection : (m,) u, with delta = u . z
+    per_normal, per_friction, per_friction_moment, per_separating : (m,) acceleration per unit of each field
+        of FORCE
+    per_moment, per_torque : (2, m) acceleration per unit moment on, and torque of, pinion and gear
+    bearings, shafts : (m, m) matrices whose quadratic form of the rates z' is the power of the bearings, and
+        of shafts with couplings; (0, m) without shafts
     turning : (2, m) rates of the rotation of pinion and gear per rate of z
-    off_line : (m,) y_p' - y_g' per rate of z
+    off_line : (m,) y_p' - y_g', across the line of action, per rate of z
     speeds : (2,) nominal speeds of pinion and gear [rad/s]
     line : L_XY [m]
     """
@@ -70,15 +73,23 @@ class Body(NamedTuple):
     line: float
 
 
+class CycleSpan(NamedTuple):
+    """Mesh cycles of a run: the first one, their number, and how many of the last ones are recorded."""
+
+    start: int
+    cycles: int
+    recorded: int
+
+
 class Run(NamedTuple):
     """What a run recorded, and where it ended.
 
     Attributes
     ----------
-    states : (outputs, 2m)
-    loads : (pairs, outputs) [N]
-    end : (2m,) state
-    work : (1,) WORK
+    states : (outputs, 2m) states at the outputs of the recorded cycles
+    loads : (pairs, outputs) normal load of each pair [N]
+    end : (2m,) state at the end
+    work : (1,) WORK in the recorded cycles
     """
 
     states: FloatArray
@@ -89,7 +100,7 @@ class Run(NamedTuple):
 
 @inlined
 def accelerate(state: FloatArray, force: MeshForce, line: Record, body: Body, rate: FloatArray) -> None:
-    """Write the rates (2m,) of a state (2m,) under a force of the mesh."""
+    """Write the rates z', z'' (2m,) of a state z, z' (2m,) under a force of the mesh."""
     m = body.torque.size
     for j in range(m):
         per_normal = (
@@ -109,7 +120,7 @@ def accelerate(state: FloatArray, force: MeshForce, line: Record, body: Body, ra
 
 @inlined
 def add_ripples(cycle: int, phase: float, ripples: Records, body: Body, rate: FloatArray) -> None:
-    """Add the accelerations by the harmonics of the torques."""
+    """Add the accelerations by the harmonics of the torques at a phase of a mesh cycle."""
     m = body.torque.size
     for n in range(ripples.size):
         ripple = ripples[n]
@@ -121,7 +132,7 @@ def add_ripples(cycle: int, phase: float, ripples: Records, body: Body, rate: Fl
 
 @inlined
 def dot(row: FloatArray, values: FloatArray, first: int) -> float:
-    """Product of a row with as many values from ``first`` on."""
+    """Scalar product of a row with as many values, from the value ``first`` on."""
     total = 0.0
     for j in range(row.size):
         total += row[j] * values[first + j]
@@ -129,8 +140,8 @@ def dot(row: FloatArray, values: FloatArray, first: int) -> float:
 
 
 @inlined
-def form(matrix: FloatArray, values: FloatArray, first: int) -> float:
-    """Quadratic form of as many values from ``first`` on as the matrix has rows; 0 for a matrix of none."""
+def quadratic_form(matrix: FloatArray, values: FloatArray, first: int) -> float:
+    """Quadratic form of a matrix (m, m) with m values, from the value ``first`` on; 0 for a matrix (0, m)."""
     total = 0.0
     for j in range(matrix.shape[0]):
         total += values[first + j] * dot(matrix[j], values, first)
@@ -138,32 +149,87 @@ def form(matrix: FloatArray, values: FloatArray, first: int) -> float:
 
 
 @inlined
+def sliding_power(
+    force: MeshForce, speed_pinion: float, speed_gear: float, off_line: float, line: float
+) -> float:
+    """Power that friction takes from the gears, F v_s summed over all pairs [W].
+
+    v_s = omega_p xi - omega_g (L - xi) - (y_p' - y_g')
+
+    Parameters
+    ----------
+    force : force of all pairs, with F = sum of mu N and the moment sum of mu N xi
+    speed_pinion, speed_gear : omega_p, omega_g, speeds with their vibration [rad/s]
+    off_line : y_p' - y_g' [m/s]
+    line : L [m]
+    """
+    power: float = force.friction_moment * (speed_pinion + speed_gear)
+    power -= force.friction * (speed_gear * line + off_line)
+    return power
+
+
+@inlined
 def add_work(
-    time: float, state: FloatArray, closing: float, force: MeshForce, line: Record, body: Body, work: Record
+    time: float,
+    state: FloatArray,
+    approach_rate: float,
+    force: MeshForce,
+    line: Record,
+    body: Body,
+    work: Record,
 ) -> None:
-    """Add the work in a time at the powers of a state."""
+    """Add the work of all powers at a state during a time [s]."""
     m = body.torque.size
-    pinion, gear = dot(body.turning[0], state, m), dot(body.turning[1], state, m)
+    pinion = dot(body.turning[0], state, m)
+    gear = dot(body.turning[1], state, m)
     off_line = dot(body.off_line, state, m)
-    # Sliding velocity (Omega_p + theta_p') xi - (Omega_g + theta_g') (L - xi) - (y_p' - y_g').
-    speed_pinion, speed_gear = body.speeds[0] + pinion, body.speeds[1] + gear
-    sliding = force.friction_moment * (speed_pinion + speed_gear)
-    sliding -= force.friction * (speed_gear * body.line + off_line)
+    speed_pinion = body.speeds[0] + pinion
+    speed_gear = body.speeds[1] + gear
+    sliding = sliding_power(force, speed_pinion, speed_gear, off_line, body.line)
     # The moments of eccentric gears work on the vibration too.
     by_moments = line.moment_pinion * pinion + line.moment_gear * gear
-    teeth = force.normal * (closing - line.gap_rate - by_moments) + force.separating * off_line
+    teeth = force.normal * (approach_rate - line.gap_rate - by_moments) + force.separating * off_line
     work.sliding += time * sliding
     work.tooth_dampers += time * force.damper_power
-    work.bearings += time * form(body.bearings, state, m)
-    work.shafts += time * form(body.shafts, state, m)
+    work.bearings += time * quadratic_form(body.bearings, state, m)
+    work.shafts += time * quadratic_form(body.shafts, state, m)
     work.teeth += time * teeth
+
+
+@inlined
+def write_stage_state(
+    stage: int, h: float, state: FloatArray, rates: FloatArray, stage_state: FloatArray
+) -> None:
+    """Write the state at which a stage of the Runge-Kutta method evaluates the rates.
+
+    At stage 0 this is the state itself: the row ``rates[-1]`` then counts with the factor 0.
+    """
+    factor = 0.0 if stage == 0 else h if stage == 3 else 0.5 * h
+    for j in range(state.size):
+        stage_state[j] = state[j] + factor * rates[stage - 1, j]
+
+
+@inlined
+def advance(h: float, rates: FloatArray, state: FloatArray) -> None:
+    """Advance a state by a step of the length h, from the rates of the four stages."""
+    for j in range(state.size):
+        state[j] += h / 6.0 * (rates[0, j] + 2.0 * rates[1, j] + 2.0 * rates[2, j] + rates[3, j])
+
+
+@inlined
+def write_output(
+    row: int, state: FloatArray, normal: FloatArray, states: FloatArray, loads: FloatArray
+) -> None:
+    """Write state and normal loads of one output."""
+    for j in range(state.size):
+        states[row, j] = state[j]
+    for i in range(normal.size):
+        loads[i, row] = normal[i]
 
 
 @compiled
 def run_cycles(
-    start: int,
-    cycles: int,
-    recorded: int,
+    span: CycleSpan,
     tables: MeshTables,
     body: Body,
     ripples: Records,
@@ -171,17 +237,21 @@ def run_cycles(
     mesh: CyclePairs,
     work: Records,
 ) -> Run:
-    """Motion from a state (2m,) at the start of a mesh cycle, over so many; the last ones are recorded.
+    """Follow the motion over mesh cycles from a state at the start of the first one.
 
-    The nodes of ``tables`` are start, middle and end of each step; ``mesh`` is worked in, ``work`` (1,)
-    is added to.
+    Parameters
+    ----------
+    tables : its nodes are start, middle and end of each step
+    initial : (2m,) state
+    mesh : memory
+    work : (1,) WORK, to which the work in the recorded cycles is added
     """
     m = body.torque.size
     count = tables.position.shape[2]
     steps = tables.edges.size - 1
     outputs = 0
     for step in range(steps):
-        outputs += recorded * tables.outputs[step]
+        outputs += span.recorded * tables.outputs[step]
     states = np.empty((outputs, 2 * m))
     loads = np.empty((count, outputs))
     state = np.empty(2 * m)
@@ -190,42 +260,33 @@ def run_cycles(
     for j in range(2 * m):
         state[j] = initial[j]
         rates[-1, j] = 0.0
-    law = tables.law
     edges = tables.edges
-    contacts = mesh.contacts
-    matrix = mesh.matrix
     normal = np.empty(count)
-    # the literal 0 would be compiled for itself
     row = 0
-    first = steps - steps
-    for cycle in range(start, start + cycles):
-        keeps = cycle >= start + cycles - recorded
-        fill_steps(cycle, first, steps, tables, mesh)
+    zero = steps - steps  # numba would compile ``fill_steps`` once more for the literal 0
+    for cycle in range(span.start, span.start + span.cycles):
+        records = cycle >= span.start + span.cycles - span.recorded
+        fill_steps(cycle, zero, steps, tables, mesh)
         for step in range(steps):
-            h = (edges[step + 1] - edges[step]) * tables.duration
+            length = edges[step + 1] - edges[step]
+            h = length * tables.duration
             for stage in range(4):
                 node = (stage + 1) // 2
-                part = 0.0 if stage == 0 else h if stage == 3 else 0.5 * h
-                for j in range(2 * m):
-                    stage_state[j] = state[j] + part * rates[stage - 1, j]
+                write_stage_state(stage, h, state, rates, stage_state)
                 approach = dot(body.deflection, stage_state, 0)
-                closing = dot(body.deflection, stage_state, m)
+                approach_rate = dot(body.deflection, stage_state, m)
                 pairs = mesh.pairs[step, node]
                 line = mesh.lines[step, node]
-                share_load(approach, pairs, line, law, tables.coupling[step, node], matrix, contacts)
-                force = mesh_force(closing, pairs, line, law, contacts, normal)
+                coupling = tables.coupling[step, node]
+                share_load(approach, pairs, line, tables.law, coupling, mesh.matrix, mesh.contacts)
+                force = unilateral_force(approach_rate, pairs, line, tables.law, mesh.contacts, normal)
                 accelerate(stage_state, force, line, body, rates[stage])
-                phase = edges[step] + 0.5 * node * (edges[step + 1] - edges[step])
-                add_ripples(cycle, phase, ripples, body, rates[stage])
-                if keeps:
+                add_ripples(cycle, edges[step] + 0.5 * node * length, ripples, body, rates[stage])
+                if records:
                     weight = h / (3.0 if 0 < stage < 3 else 6.0)
-                    add_work(weight, stage_state, closing, force, line, body, work[0])
-                if keeps and stage == 0 and tables.outputs[step] == 1:
-                    for j in range(2 * m):
-                        states[row, j] = state[j]
-                    for i in range(count):
-                        loads[i, row] = normal[i]
+                    add_work(weight, stage_state, approach_rate, force, line, body, work[0])
+                if records and stage == 0 and tables.outputs[step] == 1:
+                    write_output(row, state, normal, states, loads)
                     row += 1
-            for j in range(2 * m):
-                state[j] += h / 6.0 * (rates[0, j] + 2.0 * rates[1, j] + 2.0 * rates[2, j] + rates[3, j])
+            advance(h, rates, state)
     return Run(states, loads, state, work)

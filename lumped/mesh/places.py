@@ -9,67 +9,97 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import NumericalError
-from lumped.mesh.element import FORCE, Records
+from lumped.mesh.kinks import KinkSearch, linear_cycles
 from lumped.mesh.linear import (
+    FULL_DAMPER,
     PAIR_LOAD,
-    SIGNS,
+    PLACE,
     STATE,
+    SWITCHES,
     LinearForm,
     empty_instant,
-    linear_cycles,
     linear_places,
+    node_place,
 )
+from lumped.mesh.records import FORCE, Records
 from lumped.mesh.tables import MeshTables, cycle_pairs
 from lumped.typing import FloatArray
 
-#: Steps to a kink inside a step of the linear form, whose error is that of the step there.
+#: Evaluations to find one kink inside a step of the linear form: the kink errs no more than the step itself.
 _FEW_ROUNDS = 3
+#: Switches of which a step with a kink gets moments: touching and the full damper. The others bend a slope
+#: only.
+_KINKS_OF_LOADS = FULL_DAMPER + 1
 
 
 def linear_form_at(
-    tables: MeshTables, start: int, *where: ArrayLike, loads: bool = False
+    tables: MeshTables,
+    start: int,
+    cycle: ArrayLike,
+    step: ArrayLike,
+    place: ArrayLike,
+    *,
+    loads: bool = False,
 ) -> tuple[LinearForm, Records]:
-    """Linear form at cycles after ``start``, steps and places that go together (...), see ``linear_places``.
+    """Return the linear form at places of the mesh cycles from ``start`` on, and the loads of the pairs.
 
-    Returned are FORCE (..., 3) and STATE (...), and PAIR_LOAD (..., pairs) where ``loads`` are asked for.
+    Parameters
+    ----------
+    cycle, step, place : as in PLACE; arrays that broadcast to one shape (...)
+    loads : whether the loads are wanted
+
+    Returns
+    -------
+    FORCE (..., 3) and STATE (...); PAIR_LOAD (..., pairs), or (0, pairs) without loads
     """
-    asked = np.stack(np.broadcast_arrays(*where), axis=-1).astype(float)
-    shape = asked.shape[:-1]
-    asked = asked.reshape(-1, 3)
-    form = LinearForm(np.zeros((len(asked), 3), FORCE), np.zeros(len(asked), STATE))
-    of_pairs = np.zeros((len(asked) if loads else 0, tables.ahead.size), PAIR_LOAD)
-    linear_places(start, tables, asked, form, of_pairs, cycle_pairs(tables), empty_instant(tables))
-    _all_carried(form)
-    whole = LinearForm(form.forces.reshape(*shape, 3), form.states.reshape(shape))
-    return whole, of_pairs.reshape(*shape, tables.ahead.size) if loads else of_pairs
+    cycles, steps, in_step = np.broadcast_arrays(cycle, step, place)
+    shape = cycles.shape
+    places = np.zeros(cycles.size, PLACE)
+    places["cycle"] = cycles.ravel()
+    places["step"] = steps.ravel()
+    places["place"] = in_step.ravel()
+    pairs = tables.ahead.size
+    form = LinearForm(np.zeros((places.size, 3), FORCE), np.zeros(places.size, STATE))
+    pair_loads = np.zeros((places.size if loads else 0, pairs), PAIR_LOAD)
+    linear_places(start, tables, places, form, pair_loads, cycle_pairs(tables), empty_instant(tables))
+    _check_static(form)
+    shaped = LinearForm(form.forces.reshape(*shape, 3), form.states.reshape(shape))
+    return shaped, pair_loads.reshape(*shape, pairs) if loads else pair_loads
 
 
-def _all_carried(form: LinearForm) -> None:
+def _check_static(form: LinearForm) -> None:
+    """Raise NumericalError where no pair carries the force."""
     if not np.isfinite(form.states["approach"]).all():
         raise NumericalError("At a position no tooth pair carries the load: check stiffness and deviations.")
 
 
 def fill_linear_form(tables: MeshTables, start: int, form: LinearForm) -> None:
-    """Fill FORCE (cycles, steps, nodes, 3) and STATE (cycles, steps, nodes) of consecutive cycles."""
-    nodes = np.arange(tables.nodes.size, dtype=np.float64)
-    mesh = cycle_pairs(tables)
-    at = empty_instant(tables)
-    linear_cycles(start, tables, -1.0 - nodes, 2, _FEW_ROUNDS, form, True, mesh, at)
-    _all_carried(form)
+    """Write FORCE (cycles, steps, nodes, 3) and STATE (cycles, steps, nodes) of consecutive mesh cycles."""
+    nodes = np.array([node_place(j) for j in range(tables.nodes.size)])
+    search = KinkSearch(nodes, _KINKS_OF_LOADS, _FEW_ROUNDS)
+    linear_cycles(start, tables, search, form, True, cycle_pairs(tables), empty_instant(tables))
+    _check_static(form)
 
 
 def static_loads(tables: MeshTables, start: int, cycles: int) -> tuple[FloatArray, Records]:
     """Static approach (cycles, steps) [m] and PAIR_LOAD (cycles, steps, pairs) at the starts of the steps."""
-    where = np.arange(cycles)[:, None], np.arange(tables.edges.size - 1), -1.0
-    form, loads = linear_form_at(tables, start, *where, loads=True)
+    cycle = np.arange(cycles)[:, None]
+    steps = np.arange(tables.edges.size - 1)
+    form, loads = linear_form_at(tables, start, cycle, steps, node_place(0), loads=True)
     return np.asarray(form.states["approach"], dtype=np.float64), loads
 
 
-def kinks(tables: MeshTables, start: int, cycles: int, looks: FloatArray, rounds: int) -> FloatArray:
-    """Phases of all kinks of mesh cycles from ``start`` on, in cycles after it; see ``linear_cycles``."""
+def kinks(tables: MeshTables, start: int, cycles: int, places: FloatArray, rounds: int) -> FloatArray:
+    """Phases of all kinks of the mesh cycles from ``start`` on, in cycles after ``start``.
+
+    Parameters
+    ----------
+    places, rounds : as of ``KinkSearch``
+    """
     shape = (cycles, tables.edges.size - 1, 0)
-    nothing = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
-    mesh = cycle_pairs(tables)
-    at = empty_instant(tables)
-    found: FloatArray = linear_cycles(start, tables, looks, SIGNS, rounds, nothing, False, mesh, at)
-    return found
+    no_form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))
+    search = KinkSearch(places, SWITCHES, rounds)
+    phases: FloatArray = linear_cycles(
+        start, tables, search, no_form, False, cycle_pairs(tables), empty_instant(tables)
+    )
+    return phases

@@ -12,22 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh.element import (
-    CONTACT,
-    LINE,
-    PAIR,
-    ContactLaw,
-    Record,
-    Records,
-    damper_share,
-    flank_end,
-    inlined,
-    open_gap,
-    place_pair,
-    share_load,
-    static_approach,
-    tip_decides,
-)
+from lumped.mesh.damper import damper_share
+from lumped.mesh.element import share_load, static_approach, write_gap
+from lumped.mesh.records import CONTACT, LINE, PAIR, ContactLaw, Record, Records, inlined
+from lumped.mesh.tip_corners import FlankEnd, flank_end_gap, place_pair, tip_minus_edge
 from lumped.typing import FloatArray
 
 #: Relative error of an approach from which laws are fitted: that of rounding.
@@ -40,11 +28,11 @@ class Phases(NamedTuple):
     Attributes
     ----------
     position : (n, pairs) xi [m]
-    stiffness : (n, pairs) k at the mean load [N/m]; 0 where a pair is not followed
-    gap : (n, pairs) without tip corners [m]
-    coupling : (n, pairs, pairs), or (1, pairs, pairs) where pairs stand alone, w_ij by which the load of a
-        pair moves another [m/N]
-    lengthening : of the line of action by the loaded bearings [m]
+    stiffness : (n, pairs) k at the mean load [N/m]; 0 where a pair is too far from its path to be computed
+    gap : (n, pairs) gap without tip corners [m]
+    coupling : w_ij by which the load of pair j moves pair i [m/N]; (n, pairs, pairs), or (1, pairs, pairs)
+        where no pair moves another
+    lengthening : length that the deflection of the bearings adds to the line of action [m]
     """
 
     position: FloatArray
@@ -55,7 +43,7 @@ class Phases(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Records to work in: (pairs,) PAIR, (pairs,) CONTACT, (1,) LINE, and a matrix (pairs, pairs)."""
+    """Memory of the kernels: (pairs,) PAIR, (pairs,) CONTACT, (1,) LINE and a matrix (pairs, pairs)."""
 
     pairs: Records
     contacts: Records
@@ -64,17 +52,17 @@ class Workspace(NamedTuple):
 
 
 def workspace(phases: Phases) -> Workspace:
-    """For as many pairs; not compiled, for that takes half a second."""
+    """Return the memory for some phases. Not compiled, because compiling takes half a second."""
     count = phases.position.shape[1]
     matrix = np.zeros((count, count))
     return Workspace(np.zeros(count, PAIR), np.zeros(count, CONTACT), np.zeros(1, LINE), matrix)
 
 
 @inlined
-def put_pairs(
+def write_pairs(
     phases: Phases, phase: int, flanks: Record, law: ContactLaw, pairs: Records, line: Record
 ) -> None:
-    """Write the pairs and the line of action of a phase."""
+    """Write the pairs and the line of action of one phase."""
     line.length = flanks.length + phases.lengthening
     line.lengthening = phases.lengthening
     for i in range(pairs.size):
@@ -102,27 +90,28 @@ def static_approaches(
     loads: FloatArray,
     space: Workspace,
 ) -> FloatArray:
-    """Static approach (n,) [m] at the phases under forces (n,) [N]; NaN where no pair can carry one.
+    """Static approach (n,) [m] at n phases under forces (n,) [N]; NaN where no pair can carry the force.
 
-    ``loads`` (n or 0, pairs) receive those of the pairs. Without a force the approach is the least gap.
+    Without a force the approach is the least gap. ``loads``, (n, pairs) or (0, pairs), is written: the load
+    of each pair.
     """
     n, count = phases.position.shape
     pairs, contacts, lines, matrix = space
-    found = np.empty(n)
+    approaches = np.empty(n)
     guess = 0.0
     for phase in range(n):
-        put_pairs(phases, phase, flanks[0], law, pairs, lines[0])
+        write_pairs(phases, phase, flanks[0], law, pairs, lines[0])
         coupling = phases.coupling[phase if law.coupled else 0]
         if force[phase] > 0.0:
-            found[phase] = static_approach(
+            approaches[phase] = static_approach(
                 guess, _EXACT, force[phase], pairs, lines[0], law, coupling, matrix, contacts
             )
         else:
-            found[phase] = least_gap(pairs)
-        guess = 0.0 if math.isnan(found[phase]) else found[phase]
+            approaches[phase] = least_gap(pairs)
+        guess = 0.0 if math.isnan(approaches[phase]) else approaches[phase]
         for i in range(count if phase < loads.shape[0] else 0):
             loads[phase, i] = contacts[i].load if force[phase] > 0.0 else 0.0
-    return found
+    return approaches
 
 
 @compiled
@@ -131,12 +120,14 @@ def middle_contacts(
     phases: Phases,
     flanks: Records,
     law: ContactLaw,
-    found: Records,
+    middle_contact: Records,
     space: Workspace,
 ) -> None:
-    """Write the contact of the middle pair at an approach of each phase (n,) [m] into ``found`` (n,).
+    """Write the contact of the middle pair into ``middle_contact`` (n,), at an approach of each phase (n,)
+    [m].
 
-    Its compression is that by its own load, without what the loads of its neighbours move it.
+    The compression is the part that the load of this pair causes: what the loads of the neighbours move the
+    pair is subtracted.
     """
     n, count = phases.position.shape
     pairs, contacts, lines, matrix = space
@@ -144,46 +135,48 @@ def middle_contacts(
     for phase in range(n):
         line = lines[0]
         coupling = phases.coupling[phase if law.coupled else 0]
-        put_pairs(phases, phase, flanks[0], law, pairs, line)
+        write_pairs(phases, phase, flanks[0], law, pairs, line)
         share_load(approach[phase], pairs, line, law, coupling, matrix, contacts)
-        one = found[phase]
-        open_gap(pairs[middle], approach[phase], line, law, one)
-        one.load = contacts[middle].load
-        one.tangent = contacts[middle].tangent
-        one.damper_share = damper_share(one.load, law)
+        contact = middle_contact[phase]
+        write_gap(pairs[middle], approach[phase], line, law, contact)
+        contact.load = contacts[middle].load
+        contact.tangent = contacts[middle].tangent
+        contact.damper_share = damper_share(contact.load, law)
         for j in range(count):
-            one.compression -= coupling[middle, j] * contacts[j].load
+            contact.compression -= coupling[middle, j] * contacts[j].load
 
 
 @compiled
-def end_gaps(
-    beyond: FloatArray,
+def flank_end_gaps(
+    beyond_tip: FloatArray,
     tip: float,
-    back: FloatArray,
+    beyond_edge: FloatArray,
     edge: float,
-    length: float,
+    line: float,
     flank_radius: float,
     tip_radius: float,
 ) -> FloatArray:
-    """Gaps (n,) where flanks end in a tip corner and an edge, see ``flank_end``; ways (n,) [m]."""
-    found = np.empty(beyond.size)
-    for i in range(beyond.size):
-        found[i] = flank_end(beyond[i], tip, back[i], edge, length, flank_radius, tip_radius).gap
-    return found
+    """Gaps (n,) [m] at one end of the flanks, of contacts (n,) beyond this end; see ``FlankEnd``."""
+    gaps = np.empty(beyond_tip.size)
+    for i in range(beyond_tip.size):
+        end = FlankEnd(beyond_tip[i], tip, beyond_edge[i], edge, line, flank_radius, tip_radius)
+        gaps[i] = flank_end_gap(end).gap
+    return gaps
 
 
 @compiled
-def deciding_ways(
-    beyond: FloatArray,
+def tips_minus_edges(
+    beyond_tip: FloatArray,
     tip: float,
-    back: FloatArray,
+    beyond_edge: FloatArray,
     edge: float,
-    length: float,
+    line: float,
     flank_radius: float,
     tip_radius: float,
 ) -> FloatArray:
-    """Where the tip corner decides the gap of ``end_gaps``, (n,) positive [m], see ``tip_decides``."""
-    found = np.empty(beyond.size)
-    for i in range(beyond.size):
-        found[i] = tip_decides(beyond[i], tip, back[i], edge, length, flank_radius, tip_radius)
-    return found
+    """Differences (n,) [m] between the roots of the gaps of tip and edge; see ``tip_minus_edge``."""
+    differences = np.empty(beyond_tip.size)
+    for i in range(beyond_tip.size):
+        end = FlankEnd(beyond_tip[i], tip, beyond_edge[i], edge, line, flank_radius, tip_radius)
+        differences[i] = tip_minus_edge(end)
+    return differences

@@ -10,6 +10,7 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import NumericalError
+from lumped.model.equations import X_G, X_P
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -56,7 +57,8 @@ def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.Stat
     b = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     c = np.zeros((3, system.size))
     c[0, :m] = system.deflection
-    c[1, 1] = c[2, 2] = 1.0
+    c[1, X_P - 1] = 1.0  # without the common rotation: one coordinate less
+    c[2, X_G - 1] = 1.0
     return control.ss(
         averaged_matrix(system),
         b,
@@ -77,9 +79,9 @@ class Mode:
     ----------
     natural_frequency : undamped [Hz]
     damping_ratio : [-]
-    resonant_speed : pinion speed at which the mesh frequency meets it [rpm]
-    shape : coordinate -> real amplitude relative to the largest; q, x_p, x_g, y_p, y_g, on shafts the modes
-        of the shafts with the teeth apart
+    resonant_speed : pinion speed at which the mesh frequency is the natural frequency [rpm]
+    shape : real amplitude of each coordinate over the largest amplitude. The coordinates are q, x_p, x_g,
+        y_p, y_g; on shafts, the modes of the shafts with the teeth apart
     """
 
     natural_frequency: float
@@ -112,13 +114,13 @@ def modes(pair: GearPair, supports: Supports = "springs") -> tuple[Mode, ...]:
     system = LTVSystem.of(pair, "elastic", supports=supports)
     m = len(system.coordinates)
     values, vectors = np.linalg.eig(averaged_matrix(system))
-    found = []
+    results = []
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag <= 0.0:
             continue
         shape = vector[:m] / vector[:m][np.argmax(np.abs(vector[:m]))]
         frequency = float(abs(value)) / (2.0 * np.pi)
-        found.append(
+        results.append(
             Mode(
                 natural_frequency=frequency,
                 damping_ratio=float(-value.real / abs(value)),
@@ -126,6 +128,6 @@ def modes(pair: GearPair, supports: Supports = "springs") -> tuple[Mode, ...]:
                 shape={name: float(a.real) for name, a in zip(system.coordinates, shape, strict=True)},
             )
         )
-    if len(found) != m:
+    if len(results) != m:
         raise NumericalError("A mode of the averaged pair is overdamped: lower the damping ratios.")
-    return tuple(sorted(found, key=lambda mode: mode.natural_frequency))
+    return tuple(sorted(results, key=lambda mode: mode.natural_frequency))

@@ -1,7 +1,7 @@
 """Dynamic factor K_v of ISO 6336-1:2006, method B, for a spur gear pair of steel.
 
-The tolerances of pitch and profile, which method B needs and a gear pair does not state, are those of a class
-of ISO 1328-1:2013.
+Method B needs tolerances of pitch and profile. A gear pair does not state them, so they are taken from a
+class of ISO 1328-1:2013.
 
 Sources: ISO 6336-1:2006, clause 6.5 (resonance ratio, table 8, B_p, B_f, B_k, running in of case-hardened
 gears, y = 0.075 f); ISO 1328-1:2013, f_pT and f_falphaT.
@@ -11,12 +11,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.stiffness.iso6336 import mean_mesh_stiffness, pair_single_stiffness
 
-#: Class of ISO 1328-1 that is taken where a pair states none: ground industrial gears.
+#: Default class of ISO 1328-1: ground industrial gears.
 TOLERANCE_CLASS = 6
 _RUN_IN = 0.075
 _SUBCRITICAL = 0.85
@@ -26,14 +27,14 @@ _SUPERCRITICAL = 1.5
 
 @dataclass(frozen=True)
 class IsoDynamicFactor:
-    """K_v and what it follows from.
+    """K_v and the values from which it follows.
 
     Attributes
     ----------
     factor : K_v [-]
     resonance_ratio : N, speed over the main resonance speed [-]
     zone : "subcritical", "main resonance", "intermediate" or "supercritical"
-    tolerance_class : of ISO 1328-1
+    tolerance_class : class of ISO 1328-1
     """
 
     factor: float
@@ -44,7 +45,8 @@ class IsoDynamicFactor:
 
 def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -> IsoDynamicFactor:
     """Return K_v by ISO 6336-1 method B, for a tolerance class of ISO 1328-1, 1 to 11."""
-    g, b = pair.geometry, bodies_of(pair)
+    g = pair.geometry
+    b = bodies_of(pair)
     width = 1e3 * g.face_width  # mm; the formulas are in N, mm, um
     ratio = pair.gear.teeth / pair.pinion.teeth
     eps = g.contact_ratio
@@ -68,10 +70,10 @@ def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -
     b_k = abs(1.0 - single * relief / load)
     limit = _SUBCRITICAL if load >= 100.0 else 0.5 + 0.35 * math.sqrt(load / 100.0)
     c = _factors(eps)
-    main = c[0] * b_p + c[1] * b_f + c[3] * b_k + 1.0
-    fast = c[4] * b_p + c[5] * b_f + c[6]
+    main = c.v1 * b_p + c.v2 * b_f + c.v4 * b_k + 1.0
+    fast = c.v5 * b_p + c.v6 * b_f + c.v7
     if n <= limit:
-        factor = n * (c[0] * b_p + c[1] * b_f + c[2] * b_k) + 1.0
+        factor = n * (c.v1 * b_p + c.v2 * b_f + c.v3 * b_k) + 1.0
         zone = "subcritical"
     elif n <= _MAIN:
         factor = main
@@ -85,13 +87,25 @@ def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -
     return IsoDynamicFactor(factor, n, zone, tolerance_class)
 
 
-def _factors(eps: float) -> tuple[float, ...]:
-    """C_v1 to C_v7 over the contact ratio (table 8)."""
+class _Factors(NamedTuple):
+    """Factors C_v1 to C_v7 of table 8."""
+
+    v1: float
+    v2: float
+    v3: float
+    v4: float
+    v5: float
+    v6: float
+    v7: float
+
+
+def _factors(eps: float) -> _Factors:
+    """Return the factors of table 8 at a contact ratio."""
     if eps <= 2.0:
         c7 = 0.75 if eps <= 1.5 else 0.125 * math.sin(math.pi * (eps - 2.0)) + 0.875
-        return 0.32, 0.34, 0.23, 0.90, 0.47, 0.47, c7
+        return _Factors(0.32, 0.34, 0.23, 0.90, 0.47, 0.47, c7)
     c7 = 1.0 if eps > 2.5 else 0.125 * math.sin(math.pi * (eps - 2.0)) + 0.875
-    return (
+    return _Factors(
         0.32,
         0.57 / (eps - 0.3),
         0.096 / (eps - 1.56),

@@ -1,6 +1,8 @@
-"""The repaired equations of motion of the 6-DOF model, as forces (docs/theory/equations.md, eqs. 1 to 9).
+"""The repaired equations of motion of the model with six degrees of freedom, as forces.
 
-The printed signs of eqs. 1, 2, 7 and 9 can be put back one at a time, to show what each does.
+The printed signs of eqs. 1, 2, 7 and 9 can be put back one at a time, to show the effect of each sign.
+
+Source: docs/theory/equations.md, eqs. 1 to 9.
 """
 
 from __future__ import annotations
@@ -17,8 +19,10 @@ from lumped.typing import FloatArray
 
 #: Order of the coordinates; states are coordinates followed by their rates.
 COORDINATES = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
-#: Equations of the paper whose printed sign differs from the repaired one.
+#: Equations of the paper whose printed sign differs from the repaired sign.
 PRINTED_EQUATIONS = (1, 2, 7, 9)
+#: Indices of the coordinates.
+THETA_P, THETA_G, X_P, X_G, Y_P, Y_G = range(6)
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +32,7 @@ class Structure:
     Attributes
     ----------
     mass : (6,) J_p, J_g, m_p, m_g, m_p, m_g
-    damping, stiffness : (6,) of the bearings; zero for the rotations
+    damping, stiffness : (6,) damping and stiffness of the bearings; zero for the rotations
     deflection : (6,) u with delta = u . z, the dynamic transmission error
     normal : (6,) generalised force on each coordinate per unit normal load of a pair
     friction_arm : (6, 2) generalised force per unit friction force, a[:, 0] + a[:, 1] * xi
@@ -53,26 +57,30 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
 
     Each column of forces reads like the paper: per unit N_i the pinion gets -r_bp (1), the gear +r_bg (2),
     x_p -1 (6), x_g +1 (7); per unit F_i the pinion gets -X_pi (1), the gear +X_gi = L_XY - X_pi (2),
-    y_p +1 (8), y_g -1 (9). The paper has no corners; their moment is path work, which the linear form lacks.
+    y_p +1 (8), y_g -1 (9). The paper has no tip corners. The moment of a tip corner is left out: it works on
+    the path of the contact, which the linear form does not have.
     """
-    g, b = pair.geometry, bodies_of(pair)
+    g = pair.geometry
+    b = bodies_of(pair)
     printed = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
     # Friction moment of eq. 1, mesh moment of 2, mesh force of 7, friction force of 9.
     s1, s2, s7, s9 = (-1.0 if number in printed else 1.0 for number in PRINTED_EQUATIONS)
-    r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
+    r_bp = g.base_radius_pinion
+    r_bg = g.base_radius_gear
     mass = np.array(
         [b.inertia_pinion, b.inertia_gear, b.mass_pinion, b.mass_gear, b.mass_pinion, b.mass_gear]
     )
-    pinion, gear = pair.bearings.pinion, pair.bearings.gear
+    pinion = pair.bearings.pinion
+    gear = pair.bearings.gear
     bearing = np.array(
         [0.0, 0.0, pinion.loa_stiffness, gear.loa_stiffness, pinion.oloa_stiffness, gear.oloa_stiffness]
     )
     ratio = [0.0, 0.0, pinion.loa_damping_ratio, gear.loa_damping_ratio]
     ratio += [pinion.oloa_damping_ratio, gear.oloa_damping_ratio]
     arm = np.zeros((6, 2))
-    arm[0] = 0.0, -s1
-    arm[1] = g.L_XY, -1.0
-    arm[4:, 0] = 1.0, -s9
+    arm[THETA_P] = 0.0, -s1
+    arm[THETA_G] = g.L_XY, -1.0
+    arm[Y_P:, 0] = 1.0, -s9
     return Structure(
         mass=mass,
         damping=2.0 * np.array(ratio) * np.sqrt(bearing * mass),

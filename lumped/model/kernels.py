@@ -1,4 +1,7 @@
-"""Compiled Gauss steps of a system with a feedback of rank one, and chains of affine maps."""
+"""Compiled Gauss steps of a system with a feedback of rank one, and chains of affine maps.
+
+Sources: E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, section II.7.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +10,46 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import compiled
+from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE
 from lumped.typing import FloatArray, IntArray
 
-#: Of functions that kernels alone call.
+#: Decorator of functions that only kernels call.
 called = compiled(no_cpython_wrapper=True)
+#: The same decorator for short functions of an inner loop: they allocate nothing and are copied into the
+#: loop.
+inlined = compiled(_nrt=False, forceinline=True, no_cpython_wrapper=True)
+
+
+class FreeSteps(NamedTuple):
+    """Gauss steps without the mesh: k step lengths with s stages, and the response to unit forces of the
+    mesh.
+
+    p are the accelerations u . z'' along the deflection at the stages.
+
+    Attributes
+    ----------
+    along : (k, columns, rows) rows of unit states and forcings: p (s), end of the step (2m), and further rows
+        that the caller wants, e.g. the rates (s, m) of all coordinates at the stages
+    by_force : (k, s, forces, rows) the same rows per unit of each force at each stage
+    by_p : (k, 2s, s) deflection at the stages, then its rate, per p
+    reach : (k, s) time from the start of the step to each stage [s]
+    """
+
+    along: FloatArray
+    by_force: FloatArray
+    by_p: FloatArray
+    reach: FloatArray
 
 
 class Propagated(NamedTuple):
-    """Columns that were taken through steps; the first of them are kept.
+    """Columns that ``propagate`` has taken through steps; the first columns are recorded at every step.
 
     Attributes
     ----------
     ends : (runs, columns, 2m) states at the ends of the runs
-    states : (runs, steps, kept, 2m) at the start of every step
-    inside : (runs, steps, kept, 2s + further) deflection at the stages, then its rate, then the further rows
+    states : (runs, steps, recorded, 2m) states at the start of every step
+    inside : (runs, steps, recorded, 2s + further) deflection at the stages, rate of the deflection at the
+        stages, further rows of ``FreeSteps.along``
     """
 
     ends: FloatArray
@@ -28,155 +57,243 @@ class Propagated(NamedTuple):
     inside: FloatArray
 
 
-@called
-def _copy(to: FloatArray, source: FloatArray) -> None:
-    """``to[:] = source``, for which numba would compile the message about other shapes: two seconds."""
-    for row in range(to.shape[0]):
-        for column in range(to.shape[1]):
-            to[row, column] = source[row, column]
+class StepMemory(NamedTuple):
+    """Memory for one step.
+
+    Attributes
+    ----------
+    feedback : (2s, rows) rows per deflection at each stage, then per rate of the deflection at each stage;
+        filled up with zeros to a multiple of four, as ``add_rows`` needs
+    at_rest : (rows,) rows by the forces without motion
+    stage_motion : (2s,) deflection at the stages, then its rate; filled up with zeros as ``feedback`` is
+    rows : (rows,) p, end of the step and further rows of one column
+    p : (s,) of one column
+    matrix, inverse : (s, s) of the equations for p
+    """
+
+    feedback: FloatArray
+    at_rest: FloatArray
+    stage_motion: FloatArray
+    rows: FloatArray
+    p: FloatArray
+    matrix: FloatArray
+    inverse: FloatArray
 
 
 @called
-def feedback_at_stages(strength: FloatArray, by_force: FloatArray, to: FloatArray, fixed: FloatArray) -> None:
-    """Write what p and end of a step take from deflections and rates at the stages, and from neither.
+def _copy(target: FloatArray, source: FloatArray) -> None:
+    """Copy a matrix. numba would spend two seconds on ``target[:] = source`` and its error message."""
+    for row in range(target.shape[0]):
+        for column in range(target.shape[1]):
+            target[row, column] = source[row, column]
 
-    ``strength`` (s, 3, forces) per deflection, per rate and without motion; ``by_force`` (s, forces, rows).
+
+@called
+def write_feedback(
+    strength: FloatArray, by_force: FloatArray, feedback: FloatArray, at_rest: FloatArray
+) -> None:
+    """Write ``feedback`` and ``at_rest`` of ``StepMemory`` from the strengths of the forces in one step.
+
+    Parameters
+    ----------
+    strength : (s, 3, forces) each force at each stage: by approach, by rate and at rest
+    by_force : (s, forces, rows) as in ``FreeSteps``
     """
     stages = strength.shape[0]
-    rows = fixed.size
+    rows = at_rest.size
     for row in range(rows):
-        fixed[row] = 0.0
+        at_rest[row] = 0.0
     for stage in range(stages):
         for row in range(rows):
-            to[stage, row] = to[stages + stage, row] = 0.0
+            feedback[stage, row] = 0.0
+            feedback[stages + stage, row] = 0.0
         for force in range(strength.shape[2]):
-            by_deflection = strength[stage, 0, force]
-            by_rate = strength[stage, 1, force]
-            at_rest = strength[stage, 2, force]
-            if by_deflection != 0.0 or by_rate != 0.0 or at_rest != 0.0:
+            by_deflection = strength[stage, BY_APPROACH, force]
+            by_rate = strength[stage, BY_RATE, force]
+            without_motion = strength[stage, AT_REST, force]
+            if by_deflection != 0.0 or by_rate != 0.0 or without_motion != 0.0:
                 for row in range(rows):
                     factor = by_force[stage, force, row]
-                    to[stage, row] += by_deflection * factor
-                    to[stages + stage, row] += by_rate * factor
-                    fixed[row] += at_rest * factor
+                    feedback[stage, row] += by_deflection * factor
+                    feedback[stages + stage, row] += by_rate * factor
+                    at_rest[row] += without_motion * factor
 
 
 @called
-def add_rows(found: FloatArray, values: FloatArray, rows: FloatArray, first: int) -> None:
-    """Add values times rows to what is found from an entry on.
+def add_rows(total: FloatArray, factors: FloatArray, rows: FloatArray, first: int) -> None:
+    """Add factors times rows to a total, from the entry ``first`` on.
 
-    Four rows together, for a processor loads and stores fewer; there are a multiple of four.
+    Four rows are added together, because a processor then loads and stores less. The number of factors is a
+    multiple of four.
     """
-    for i in range(0, values.size, 4):
-        f0 = values[i]
-        f1 = values[i + 1]
-        f2 = values[i + 2]
-        f3 = values[i + 3]
+    for i in range(0, factors.size, 4):
+        f0 = factors[i]
+        f1 = factors[i + 1]
+        f2 = factors[i + 2]
+        f3 = factors[i + 3]
         if f0 == 0.0 and f1 == 0.0 and f2 == 0.0 and f3 == 0.0:  # most of a unit column
             continue
-        part = rows[i : i + 4]
-        for row in range(first, found.size):
-            found[row] += f0 * part[0, row] + f1 * part[1, row] + f2 * part[2, row] + f3 * part[3, row]
+        four = rows[i : i + 4]
+        for row in range(first, total.size):
+            total[row] += f0 * four[0, row] + f1 * four[1, row] + f2 * four[2, row] + f3 * four[3, row]
+
+
+@called
+def invert_stages(by_p: FloatArray, memory: StepMemory) -> None:
+    """Write the inverse of the equations for p: 1 - feedback by_p."""
+    feedback = memory.feedback
+    matrix = memory.matrix
+    inverse = memory.inverse
+    stages = memory.p.size
+    for row in range(stages):
+        for column in range(stages):
+            unit = 1.0 if row == column else 0.0
+            matrix[row, column] = unit
+            inverse[row, column] = unit
+            for i in range(2 * stages):
+                matrix[row, column] -= feedback[i, row] * by_p[i, column]
+    solve_in_place(matrix, inverse)
+
+
+@inlined
+def write_coasting(
+    state: FloatArray, deflection: FloatArray, reach: FloatArray, stage_motion: FloatArray
+) -> None:
+    """Write the motion of the stages without accelerations: the rate stays, the deflection grows with it."""
+    m = deflection.size
+    stages = reach.size
+    start = 0.0
+    rate = 0.0
+    for j in range(m):
+        start += deflection[j] * state[j]
+        rate += deflection[j] * state[m + j]
+    for stage in range(stages):
+        stage_motion[stage] = start + reach[stage] * rate
+        stage_motion[stages + stage] = rate
+
+
+@inlined
+def solve_stages(by_p: FloatArray, memory: StepMemory) -> None:
+    """Solve for p of one column, and add the part of p to the coasting motion of the stages."""
+    rows = memory.rows
+    stage_motion = memory.stage_motion
+    p = memory.p
+    stages = p.size
+    for i in range(2 * stages):
+        for row in range(stages):
+            rows[row] += memory.feedback[i, row] * stage_motion[i]
+    for row in range(stages):
+        p[row] = 0.0
+        for i in range(stages):
+            p[row] += memory.inverse[row, i] * rows[i]
+    for row in range(2 * stages):
+        for i in range(stages):
+            stage_motion[row] += by_p[row, i] * p[i]
+
+
+@inlined
+def propagate_column(
+    state: FloatArray, length: int, free: FreeSteps, deflection: FloatArray, memory: StepMemory
+) -> None:
+    """Write ``rows`` and ``stage_motion`` of one column over a step: p, end and further rows.
+
+    Parameters
+    ----------
+    state : (columns of FreeSteps.along,) state (2m), then the weights of the forcings
+    length : index of the step length in ``free``
+    """
+    rows = memory.rows
+    weight = state[2 * deflection.size]
+    for row in range(rows.size):
+        rows[row] = memory.at_rest[row] * weight
+    add_rows(rows, state, free.along[length], 0)
+    write_coasting(state, deflection, free.reach[length], memory.stage_motion)
+    solve_stages(free.by_p[length], memory)
+    add_rows(rows, memory.stage_motion, memory.feedback, memory.p.size)
+
+
+@called
+def step_memory(stages: int, rows: int) -> StepMemory:
+    """Return the memory for steps with s stages."""
+    padded = -(-2 * stages // 4) * 4
+    return StepMemory(
+        np.zeros((padded, rows)),
+        np.empty(rows),
+        np.zeros(padded),
+        np.empty(rows),
+        np.empty(stages),
+        np.empty((stages, stages)),
+        np.empty((stages, stages)),
+    )
 
 
 @compiled(nogil=True)
 def propagate(
     columns: FloatArray,
-    kept: int,
+    recorded: int,
     strength: FloatArray,
-    which: IntArray,
-    free: FloatArray,
-    by_force: FloatArray,
-    by_p: FloatArray,
-    reach: FloatArray,
+    length_of_step: IntArray,
+    free: FreeSteps,
     deflection: FloatArray,
 ) -> Propagated:
     """Take columns through Gauss steps of z'' = free part + forces of rank one, each run from its own start.
 
     Parameters
     ----------
-    columns : (runs, columns, wide) states at the starts (2m), then the weights of the forcings; the forces
-        without motion have that of the first one
-    kept : how many columns are kept at every step; with none, further rows are not computed
-    strength : (runs, steps, s, 3, forces) of each force per deflection, per its rate and without motion
-    which : (runs or 1, steps) the length of each step, a row of the next four
-    free : (k, wide, s + 2m + further) p, the stage accelerations along the deflection, end, and further rows
-        of a step without forces
-    by_force, by_p : of ``lumped.model.propagation.without_mesh``, (k, s, forces, as many) and (k, 2s, s)
-    reach : (k, s) time from the start to each stage [s]
-    deflection : (m,)
+    columns : (runs, columns, 2m + forcings) states at the starts, then the weights of the forcings. The
+        forces without motion have the weight of the first forcing
+    recorded : number of columns that are recorded at every step; with 0, further rows are not computed
+    strength : (runs, steps, s, 3, forces) each force by approach, by rate and at rest
+    length_of_step : (runs or 1, steps) index of each step's length in ``free``
+    free : steps without the mesh
+    deflection : (m,) u
     """
-    runs, count, wide = columns.shape
+    runs = columns.shape[0]
+    count = columns.shape[1]
     steps = strength.shape[1]
     stages = strength.shape[2]
-    m = deflection.size
-    n = 2 * m
-    rows = free.shape[2] if kept > 0 else stages + 2 * m
-    further = rows - stages - n
+    n = 2 * deflection.size
+    further = free.along.shape[2] - stages - n if recorded > 0 else 0
     ends = np.empty((runs, count, n))
-    states = np.empty((runs, steps, kept, n))
-    inside = np.empty((runs, steps, kept, 2 * stages + further))
-    fours = -(-2 * stages // 4) * 4  # as ``add_rows`` takes them
-    to = np.zeros((fours, rows))
-    fixed = np.empty(rows)
-    found = np.empty(rows)
-    at_stages = np.zeros(fours)
-    p = np.empty(stages)
-    matrix = np.empty((stages, stages))
-    inverse = np.empty((stages, stages))
-    now = np.empty((count, wide))
+    states = np.empty((runs, steps, recorded, n))
+    inside = np.empty((runs, steps, recorded, 2 * stages + further))
+    memory = step_memory(stages, stages + n + further)
+    state = np.empty((count, columns.shape[2]))
     for run in range(runs):
-        _copy(now, columns[run])
+        _copy(state, columns[run])
         for step in range(steps):
-            of = which[run if which.shape[0] > 1 else 0, step]
-            feedback_at_stages(strength[run, step], by_force[of], to, fixed)
-            for row in range(stages):
-                for column in range(stages):
-                    matrix[row, column] = inverse[row, column] = 1.0 if row == column else 0.0
-                    for i in range(2 * stages):
-                        matrix[row, column] -= to[i, row] * by_p[of, i, column]
-            solve_in_place(matrix, inverse)
+            length = length_of_step[run if length_of_step.shape[0] > 1 else 0, step]
+            write_feedback(strength[run, step], free.by_force[length], memory.feedback, memory.at_rest)
+            invert_stages(free.by_p[length], memory)
             for column in range(count):
-                x = now[column]
-                place = rate = 0.0
-                for j in range(m):
-                    place += deflection[j] * x[j]
-                    rate += deflection[j] * x[m + j]
-                for row in range(rows):
-                    found[row] = fixed[row] * x[n]
-                add_rows(found, x, free[of], 0)
-                for stage in range(stages):
-                    at_stages[stage] = place + reach[of, stage] * rate
-                    at_stages[stages + stage] = rate
-                for i in range(2 * stages):
-                    for row in range(stages):
-                        found[row] += to[i, row] * at_stages[i]
-                for row in range(stages):
-                    p[row] = 0.0
-                    for i in range(stages):
-                        p[row] += inverse[row, i] * found[i]
-                for row in range(2 * stages):
-                    for i in range(stages):
-                        at_stages[row] += by_p[of, row, i] * p[i]
-                if column < kept:
+                propagate_column(state[column], length, free, deflection, memory)
+                if column < recorded:
                     for row in range(n):
-                        states[run, step, column, row] = x[row]
+                        states[run, step, column, row] = state[column, row]
                     for row in range(2 * stages):
-                        inside[run, step, column, row] = at_stages[row]
-                add_rows(found, at_stages, to, stages)
-                for row in range(further if column < kept else 0):
-                    inside[run, step, column, 2 * stages + row] = found[stages + n + row]
+                        inside[run, step, column, row] = memory.stage_motion[row]
+                    for row in range(further):
+                        inside[run, step, column, 2 * stages + row] = memory.rows[stages + n + row]
                 for row in range(n):
-                    x[row] = found[stages + row]
+                    state[column, row] = memory.rows[stages + row]
         for column in range(count):
             for row in range(n):
-                ends[run, column, row] = now[column, row]
+                ends[run, column, row] = state[column, row]
     return Propagated(ends, states, inside)
 
 
 @called
+def swap_rows(matrix: FloatArray, row: int, other: int) -> None:
+    """Swap two rows of a matrix."""
+    for column in range(matrix.shape[1]):
+        value = matrix[row, column]
+        matrix[row, column] = matrix[other, column]
+        matrix[other, column] = value
+
+
+@called
 def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
-    """Solve matrix (s, s) x = right (s, columns) in place, by elimination with pivots."""
+    """Solve matrix (s, s) x = right (s, columns) by elimination with pivots; ``right`` becomes x."""
     size, columns = right.shape
     for i in range(size):
         pivot = i
@@ -184,10 +301,8 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
             if abs(matrix[row, i]) > abs(matrix[pivot, i]):
                 pivot = row
         if pivot != i:
-            for column in range(size):
-                matrix[i, column], matrix[pivot, column] = matrix[pivot, column], matrix[i, column]
-            for column in range(columns):
-                right[i, column], right[pivot, column] = right[pivot, column], right[i, column]
+            swap_rows(matrix, i, pivot)
+            swap_rows(right, i, pivot)
         for row in range(i + 1, size):
             factor = matrix[row, i] / matrix[i, i]
             for column in range(i, size):
@@ -204,11 +319,17 @@ def solve_in_place(matrix: FloatArray, right: FloatArray) -> None:
 
 @compiled
 def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> FloatArray:
-    """States (k + 1, n) from x(0) (n,) by k affine maps (k, n, n + columns), forcings weighted (forcings,).
+    """States (k + 1, n) at the ends of k intervals whose affine maps are known.
 
-    Columns without a weight are zeros.
+    Parameters
+    ----------
+    maps : (k, n, n + columns) transition, then one column for each forcing; columns without a weight are
+        zeros
+    initial : (n,) state at the start
+    weights : (forcings,)
     """
-    k, n = maps.shape[0], maps.shape[1]
+    k = maps.shape[0]
+    n = maps.shape[1]
     x = np.empty((k + 1, n))
     for row in range(n):
         x[0, row] = initial[row]
@@ -224,42 +345,55 @@ def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> 
 
 
 def merged(maps: FloatArray, group: IntArray) -> FloatArray:
-    """``chained``, but the maps themselves where no two are of one group."""
+    """``chained``; where every map is a group of its own, the maps themselves."""
     result: FloatArray = maps if group.size == group[-1] + 1 else chained(maps, group)
     return result
 
 
+@called
+def multiply_maps(first: FloatArray, second: FloatArray, product: FloatArray) -> None:
+    """Write the product of two affine maps (n, n + columns): ``second`` after ``first``."""
+    n = first.shape[0]
+    width = first.shape[1]
+    for row in range(n):
+        for column in range(width):
+            product[row, column] = second[row, column] if column >= n else 0.0
+        for inner in range(n):
+            factor = second[row, inner]
+            for column in range(width):
+                product[row, column] += factor * first[inner, column]
+
+
 @compiled
 def chained(maps: FloatArray, group: IntArray) -> FloatArray:
-    """Affine maps (k, n, n + columns) of which consecutive ones of the same group (k,), 0, 1, ..., are one.
+    """Multiply consecutive affine maps of the same group into one map; (groups, n, n + columns).
 
-    Products of as many maps each are made one, so that rounding grows with the logarithm of their number.
+    Products of equally many maps are multiplied with each other, as in a binary tree, so that rounding grows
+    with the logarithm of the number of maps.
+
+    Parameters
+    ----------
+    maps : (k, n, n + columns)
+    group : (k,) group of each map: 0, 1, ..., without gaps
     """
     k, n, width = maps.shape
-    found = np.empty((group[k - 1] + 1, n, width))
+    products = np.empty((group[k - 1] + 1, n, width))
     most = int(np.log2(k)) + 2
     waiting = np.empty((most, n, width))
-    doubled = np.empty(most, dtype=np.int64)
+    doublings = np.empty(most, dtype=np.int64)
     product = np.empty((n, width))
-    held = 0
+    count = 0
     for j in range(k):
-        _copy(waiting[held], maps[j])
-        doubled[held] = 0
-        held += 1
+        _copy(waiting[count], maps[j])
+        doublings[count] = 0
+        count += 1
         last = j == k - 1 or group[j + 1] != group[j]
-        while held > 1 and (last or doubled[held - 1] == doubled[held - 2]):
-            before, after = waiting[held - 2], waiting[held - 1]
-            for row in range(n):
-                for column in range(width):
-                    product[row, column] = after[row, column] if column >= n else 0.0
-                for inner in range(n):
-                    factor = after[row, inner]
-                    for column in range(width):
-                        product[row, column] += factor * before[inner, column]
-            _copy(before, product)
-            held -= 1
-            doubled[held - 1] += 1
+        while count > 1 and (last or doublings[count - 1] == doublings[count - 2]):
+            multiply_maps(waiting[count - 2], waiting[count - 1], product)
+            _copy(waiting[count - 2], product)
+            count -= 1
+            doublings[count - 1] += 1
         if last:
-            _copy(found[group[j]], waiting[0])
-            held = 0
-    return found
+            _copy(products[group[j]], waiting[0])
+            count = 0
+    return products

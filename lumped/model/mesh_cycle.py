@@ -1,4 +1,4 @@
-"""One mesh cycle: where each tooth pair is, when the coefficients switch, and what they are in between.
+"""The mesh cycle of like teeth: positions of the tooth pairs, coefficients, and the times of their switches.
 
 Sources: Abbas Al-Zubaidi 2008, eqs. 5a and 5b; docs/theory/equations.md, "Frame".
 """
@@ -9,15 +9,15 @@ import math
 import warnings
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import LikeTeethWarning
 from lumped.gear_geometry.geometry import Geometry
-from lumped.mesh.element import Records
 from lumped.mesh.linear import forces_of_laws
+from lumped.mesh.records import Records
 from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
@@ -25,12 +25,27 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray, IntArray
 
-#: One-sided limits are taken this fraction of a base pitch inside a segment.
+#: Distance from the end of a segment at which a one-sided limit is taken, over the base pitch.
 _INSIDE = 1e-12
 #: Switch times closer than this fraction of a cycle are one.
 _SAME = 1e-10
-#: The same for breaks: their phases are known to this.
+#: The same for breaks, whose phases have this rounding error.
 _ROUNDING = 1e-13
+
+
+class DamperPower(NamedTuple):
+    """Power of the dampers of all pairs, by_square delta'^2 + by_rate delta' + at_rest; each (k,).
+
+    Attributes
+    ----------
+    by_square : [N s/m]
+    by_rate : [N]
+    at_rest : [W]
+    """
+
+    by_square: FloatArray
+    by_rate: FloatArray
+    at_rest: FloatArray
 
 
 @dataclass(frozen=True)
@@ -41,9 +56,13 @@ class PairState:
     ----------
     position : xi_i, also for a pair out of contact [m]
     contact : whether the pair is where it can touch
-    stiffness, damping, friction, error, error_rate : k_i [N/m], c_i [N s/m], mu_i [-], e_i [m], de_i/dt [m/s]
-    tilt : sine of the angle between normal and line of action [-]; None where that is 0
-    closing : rate of the compression over delta' - e' [-]; None where that is 1
+    stiffness : k_i [N/m]
+    damping : c_i [N s/m]
+    friction : friction coefficient mu_i, with the sign of the sliding [-]
+    error : e_i [m]
+    error_rate : de_i/dt [m/s]
+    tilt : sine of the angle between normal and line of action [-]; None where the sine is 0
+    closing : f_i, rate of the compression over delta' - e_i' [-]; None where f_i is 1
     """
 
     position: FloatArray
@@ -56,34 +75,49 @@ class PairState:
     tilt: FloatArray | None = None
     closing: FloatArray | None = None
 
-    def of_places(self, kept: IntArray) -> PairState:
-        """Those of some places (n,) alone."""
+    def of_places(self, places: IntArray) -> PairState:
+        """Return the coefficients of the pairs at some places (n,) only."""
         arrays: dict[str, Any] = {one.name: getattr(self, one.name) for one in fields(self)}
-        return replace(self, **{name: one[kept] for name, one in arrays.items() if one is not None})
+        return replace(self, **{name: one[places] for name, one in arrays.items() if one is not None})
 
-    def taken(self, rate: FloatArray) -> FloatArray:
-        """Power (pairs, k) [W] that the dampers take in the linear form, at a rate of the approach [m/s]."""
+    def damper_powers(self, rate: FloatArray) -> FloatArray:
+        """Power f_i c_i (delta' - e_i')^2 of each damper in the linear form (pairs, k) [W].
+
+        ``rate`` is the rate delta' of the approach (k,) [m/s].
+        """
         share = 1.0 if self.closing is None else self.closing
         return np.asarray(share * self.damping * (rate - self.error_rate) ** 2)
 
     @property
-    def damper_power(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """``taken`` of all pairs over the square of the rate of the approach, over the rate, and the rest."""
+    def damper_power(self) -> DamperPower:
+        """The sum of ``damper_powers`` over all pairs, as a polynomial of the rate of the approach."""
         damping = self.damping if self.closing is None else self.closing * self.damping
         by_rate = -2.0 * damping * self.error_rate
-        return damping.sum(axis=0), by_rate.sum(axis=0), (damping * self.error_rate**2).sum(axis=0)
+        return DamperPower(
+            by_square=damping.sum(axis=0),
+            by_rate=by_rate.sum(axis=0),
+            at_rest=(damping * self.error_rate**2).sum(axis=0),
+        )
 
     def load(self, approach: FloatArray, rate: FloatArray) -> FloatArray:
-        """Normal load (pairs, k) [N] of the linear form, at an approach [m] and its rate [m/s]."""
-        closing = rate - self.error_rate
-        return np.asarray(self.stiffness * (approach - self.error) + self.damping * closing)
+        """Normal load k (delta - e) + c (delta' - e') of each pair in the linear form (pairs, k) [N].
+
+        ``approach`` is delta (k,) [m], ``rate`` is delta' (k,) [m/s].
+        """
+        compression_rate = rate - self.error_rate
+        return np.asarray(self.stiffness * (approach - self.error) + self.damping * compression_rate)
 
     @property
     def forces(self) -> Records:
         """FORCE (k, 3) of all pairs in the linear form, see ``lumped.mesh.linear``."""
-        at_rest = -(self.stiffness * self.error + self.damping * self.error_rate)
-        loads = self.stiffness, self.damping, at_rest
-        return forces_of_laws(self.position, self.friction, self.tilt, *loads)
+        return forces_of_laws(
+            position=self.position,
+            friction=self.friction,
+            tilt=self.tilt,
+            by_approach=self.stiffness,
+            by_rate=self.damping,
+            at_rest=-(self.stiffness * self.error + self.damping * self.error_rate),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,17 +147,17 @@ class MeshCycle:
 
     @property
     def start(self) -> float:
-        """Where a pair can first touch: A, or before it with loaded contact [m]."""
+        """Position at which a pair can first touch: A, with loaded contact before A [m]."""
         return self.elements.stiffness.interval[0]
 
     @property
     def end(self) -> float:
-        """Where a pair can last touch: D, or behind it with loaded contact [m]."""
+        """Position at which a pair can last touch: D, with loaded contact behind D [m]."""
         return self.elements.stiffness.interval[1]
 
     @cached_property
     def offsets(self) -> FloatArray:
-        """xi_i at t = 0, whole pitches from A, of all pairs that can touch in the cycle; ahead first [m]."""
+        """Positions xi_i at t = 0 of all pairs that can touch in the cycle; the pair ahead is first [m]."""
         g = self.geometry
         ahead = math.floor((self.end - g.L_XA) / g.base_pitch)
         behind = math.ceil((g.L_XA - self.start) / g.base_pitch)
@@ -156,7 +190,7 @@ class MeshCycle:
 
     @cached_property
     def break_phases(self) -> FloatArray:
-        """Phases in [0, 1) at which a pair passes any break of a law, or A, P or D; as computed."""
+        """Phases in [0, 1) at which a pair passes a break of a law, or A, P or D, with their rounding."""
         g = self.geometry
         positions = np.concatenate([[g.L_XA, g.L_XP, g.L_XD], *(law.breaks for law in self._laws)])
         return np.asarray(np.unique(np.mod((positions - g.L_XA) / g.base_pitch, 1.0)), dtype=np.float64)
@@ -168,10 +202,10 @@ class MeshCycle:
 
     @cached_property
     def breaks(self) -> FloatArray:
-        """Ends of the pieces in which every law of every pair is one polynomial, 0 and T_m included [s].
+        """Ends of the pieces in which every law of every pair is one polynomial, with 0 and T_m [s].
 
-        The one list of such times: quadrature, propagation, fits and error bounds all read it. ``edges`` are
-        among them; other breaks that are closer together than rounding count as one.
+        Quadrature, propagation, fits and error bounds all use these times. All ``edges`` are among them.
+        Other breaks that differ by rounding count as one.
         """
         near = _ROUNDING * self.period
         marks = np.union1d(self.edges, self.break_phases * self.period)
@@ -183,7 +217,7 @@ class MeshCycle:
 
     @cached_property
     def _contact(self) -> BoolArray:
-        """Which pairs can touch in which smooth segment (pairs, segments); it cannot change inside."""
+        """Whether each pair can touch in each smooth segment (pairs, segments); constant inside a segment."""
         g = self.geometry
         middle = 0.5 * (self.edges[:-1] + self.edges[1:]) * g.omega_pinion * g.base_radius_pinion
         place = self.offsets[:, None] + middle
@@ -195,13 +229,14 @@ class MeshCycle:
         Parameters
         ----------
         time : (k,) times [s]
-        segment : the smooth segment to which all times belong, or each (k,), so that values at its ends are
-            its one-sided limits; by default each time's own segment, right-continuous at switches
+        segment : smooth segment of all times, or of each time (k,). At the ends of the segment the values are
+            limits from inside the segment. By default the segment in which each time lies; a switch belongs
+            to the segment behind it
         """
         g = self.geometry
         t = np.atleast_1d(np.asarray(time, dtype=float))
         if segment is None:
-            # Times round to either side of an edge, by more in later cycles; just before it counts as at it.
+            # Rounding puts times on either side of an edge: a time just before an edge counts as the edge.
             same = _ROUNDING * self.period + 4.0 * np.spacing(np.abs(t))
             tau = np.mod(t, self.period)
             tau = np.where(tau > self.period - same, 0.0, tau)
@@ -211,19 +246,47 @@ class MeshCycle:
             index = np.broadcast_to(segment, t.shape)
         speed = g.omega_pinion * g.base_radius_pinion
         inside = _INSIDE * g.base_pitch
-        low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
+        low = speed * self.edges[index] + inside
+        high = speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
         contact = np.take(self._contact, index, axis=1)
         place = self.offsets[:, None] + shift
-        slope, k, c, mu, error, *corners = (
-            np.where(contact, law(place), 0.0) for law in (self.elements.error_slope, *self._laws)
-        )
         position = self.offsets[:, None] + speed * tau
-        return PairState(position, contact, k, c, mu, error, slope * speed, *corners)
+        e = self.elements
+        return PairState(
+            position=position,
+            contact=contact,
+            stiffness=_in_contact(e.stiffness, place, contact),
+            damping=_in_contact(e.damping, place, contact),
+            friction=friction_coefficients(e, place, contact),
+            error=_in_contact(e.error, place, contact),
+            error_rate=_in_contact(e.error_slope, place, contact) * speed,
+            tilt=None if e.tilt is None else _in_contact(e.tilt, place, contact),
+            closing=None if e.closing is None else _in_contact(e.closing, place, contact),
+        )
+
+
+def _in_contact(law: PathFunction, place: FloatArray, contact: BoolArray) -> FloatArray:
+    """Values of a law at the places (pairs, k) [m] of the pairs, 0 where a pair is out of contact."""
+    return np.asarray(np.where(contact, law(place), 0.0), dtype=np.float64)
+
+
+def friction_coefficients(elements: MeshElements, place: FloatArray, contact: BoolArray) -> FloatArray:
+    """Friction coefficient mu of every pair, with the sign of the sliding; 0 out of contact (pairs, k).
+
+    The law mu(xi) is ``MeshElements.friction``, made by ``lumped.path_of_contact.friction_path_function``. At
+    a time t, ``MeshCycle.sample(t).friction`` is mu of every pair.
+
+    Parameters
+    ----------
+    place : xi of the pairs (pairs, k) [m]
+    contact : whether each pair can touch (pairs, k)
+    """
+    return _in_contact(elements.friction, place, contact)
 
 
 def is_edge(times: FloatArray, edges: FloatArray) -> BoolArray:
-    """Whether each of some times (k,) is one of the increasing edges; a tenth of the time of `numpy.isin`."""
+    """Whether each time (k,) is one of the increasing edges; ten times faster than `numpy.isin`."""
     return np.asarray(edges[np.minimum(np.searchsorted(edges, times), edges.size - 1)] == times)
 
 

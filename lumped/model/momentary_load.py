@@ -1,4 +1,4 @@
-"""Motion by momentary load: a run from any state, its steps, and mean powers of what it records.
+"""Motion by momentary load: a run from any state, the steps of the run, and the mean powers that it records.
 
 Sources: docs/theory/teeth.md, "Motion", "Brake torque"; docs/theory/validity.md, "Prediction".
 """
@@ -10,8 +10,9 @@ import math
 import numpy as np
 
 from lumped.errors import NumericalError
-from lumped.mesh.motion import WORK, Body, Run, run_cycles
+from lumped.mesh.motion import WORK, Body, CycleSpan, Run, run_cycles
 from lumped.mesh.tables import MeshTables, cycle_pairs
+from lumped.model.equations import Y_G, Y_P
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
 from lumped.model.swing import moments, swinging
@@ -19,19 +20,23 @@ from lumped.model.tooth_laws import ToothLaws, mesh_tables, torque_ripples
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-#: Steps in a period of the fastest vibration, and least steps in a mesh cycle: where a pair touches inside a
-#: step, 256 cost 0.1 % of a motion with contact loss.
+#: Steps in a period of the fastest vibration, and least steps in a mesh cycle. With 256 steps a motion with
+#: contact loss errs by 0.1 %, because pairs touch inside steps.
 _STEPS = 40
 _LEAST_STEPS = 512
-#: Where a mesh cycle has so many steps, each vibration gets fewer, but no fewer than these: a slow pair has
-#: damped them within a small part of the cycle. Most steps in a mesh cycle: a second for each of its passes.
+#: A mesh cycle with more steps than this gets fewer steps in each vibration, but not fewer than _FEWEST: a
+#: slow pair damps vibrations within a small part of the cycle. Most steps in a mesh cycle: a run of one cycle
+#: then takes a second.
 _MANY_STEPS = 16_384
 _FEWEST = 8
 _MOST_STEPS = 65_536
 
 
 def steps_of(system: LTVSystem) -> int:
-    """Steps in a mesh cycle, by the fastest vibration; a NumericalError says that they are too many."""
+    """Number of steps in a mesh cycle that the fastest vibration needs.
+
+    NumericalError where they are too many.
+    """
     swings = fastest_frequency(system) * system.period / (2.0 * math.pi)
     if _FEWEST * swings > _MOST_STEPS:
         rpm = system.pair.operating.pinion_speed * 30.0 / math.pi
@@ -45,12 +50,12 @@ def steps_of(system: LTVSystem) -> int:
 
 
 def momentary_tables(laws: ToothLaws, system: LTVSystem, step: float, outputs: int) -> MeshTables:
-    """Tables for ``run``: steps of at most so many mesh cycles, and so many outputs in each."""
+    """Tables for ``run``, with steps of at most ``step`` mesh cycles and ``outputs`` outputs in a cycle."""
     return swinging(mesh_tables(laws, step, outputs, (0.0, 0.5, 1.0)), system)
 
 
 def mean_powers(run: Run, duration: float) -> dict[str, float]:
-    """Mean powers of what was recorded [W]; see ``RevolutionMotion.powers``."""
+    """Mean powers in the recorded cycles of a run [W]; see ``RevolutionMotion.powers``."""
     names = ("sliding", "tooth_dampers", "bearings", "shafts", "teeth")
     powers = {name: float(run.work[name][0]) / duration for name in names}
     return powers | {"rolling": powers["tooth_dampers"] - powers.pop("teeth")}
@@ -59,7 +64,7 @@ def mean_powers(run: Run, duration: float) -> dict[str, float]:
 def without_drift(
     system: LTVSystem, time: FloatArray, states: FloatArray, end: FloatArray, duration: float
 ) -> FloatArray:
-    """States (k, 2m) of a period, without the mean of the common rotation and what steps leave of it.
+    """States (k, 2m) of a period without the mean and without the drift of the common rotation.
 
     ``end`` (2m,) is the state after the period of ``duration`` [s].
     """
@@ -90,18 +95,24 @@ def run(
     state: FloatArray,
     torques: FloatArray,
 ) -> Run:
-    """``run_cycles`` of a pair on its supports, from a state (2m,) at the start of a cycle."""
+    """Follow the motion of a pair on its supports over mesh cycles.
+
+    Parameters
+    ----------
+    start, cycles, recorded : as of ``CycleSpan``
+    state : (2m,) state at the start
+    torques : (2m,) constant accelerations by the torques
+    """
     ripples = torque_ripples(pair)
     mesh = cycle_pairs(tables)
     work = np.zeros(1, WORK)
-    found: Run = run_cycles(
-        start, cycles, recorded, tables, body_of(system, torques), ripples, state, mesh, work
-    )
-    return found
+    span = CycleSpan(start, cycles, recorded)
+    result: Run = run_cycles(span, tables, body_of(system, torques), ripples, state, mesh, work)
+    return result
 
 
 def body_of(system: LTVSystem, torques: FloatArray) -> Body:
-    """The gears on their supports as numbers, under constant torques (2m,) of acceleration."""
+    """The gears on their supports as numbers, with constant accelerations (2m,) by the torques."""
     g = system.pair.geometry
     m = len(system.coordinates)
     rates = system.gears
@@ -119,14 +130,14 @@ def body_of(system: LTVSystem, torques: FloatArray) -> Body:
         bearings=_power_matrix(system, "bearings"),
         shafts=_power_matrix(system, "shafts"),
         turning=np.ascontiguousarray(rates[:2]),
-        off_line=np.ascontiguousarray(rates[4] - rates[5]),
+        off_line=np.ascontiguousarray(rates[Y_P] - rates[Y_G]),
         speeds=np.array([g.omega_pinion, g.omega_gear]),
         line=g.L_XY,
     )
 
 
 def _power_matrix(system: LTVSystem, place: str) -> FloatArray:
-    """Matrix (m, m) whose form of the rates is the power that a place of the supports takes, or (0, m)."""
+    """Matrix (m, m) whose quadratic form of the rates is the power of a place of the supports, or (0, m)."""
     m = len(system.coordinates)
     if place not in system.supports.places:
         return np.zeros((0, m))

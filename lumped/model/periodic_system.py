@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
 from lumped.errors import refuse
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE, Records
+from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE, Records
 from lumped.model.equations import Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, PairState
 from lumped.model.supports import SUPPORTS, Form
@@ -25,12 +25,12 @@ from lumped.schema.pair import GearPair
 from lumped.shafts.pair import supported_shafts
 from lumped.typing import FloatArray
 
-#: What holds the gears: springs of their own, or the elastic shafts of the parameter file in their bearings.
+#: Supports of the gears: four springs, or the elastic shafts of the parameter file in their bearings.
 Supports = Literal["springs", "shafts"]
 
 
 def supports_of(pair: GearPair, supports: Supports | None) -> Supports:
-    """What holds the gears: as asked, by default the shafts of a pair that has them, else its springs."""
+    """Return the supports of the argument; by default shafts where the pair has shafts, else springs."""
     if supports is None:
         return "springs" if pair.shafts is None else "shafts"
     one_of("supports", supports, get_args(Supports))
@@ -38,7 +38,7 @@ def supports_of(pair: GearPair, supports: Supports | None) -> Supports:
 
 
 def without_shafts(pair: GearPair) -> GearPair:
-    """The pair on the springs of ``bearings`` alone; ranges of its shafts' values go with the shafts."""
+    """Return the pair on the springs of ``bearings``: without shafts and the ranges of their values."""
     if pair.shafts is None:
         return pair
     ranges = {path: spread for path, spread in pair.uncertainty if path.split(".")[0] != "shafts"}
@@ -46,7 +46,7 @@ def without_shafts(pair: GearPair) -> GearPair:
 
 
 def with_supports(pair: GearPair, supports: Supports | None) -> GearPair:
-    """The pair whose own supports are those that are asked for: without its shafts for "springs"."""
+    """Return the pair with the supports of the argument: without shafts for "springs"."""
     if supports_of(pair, supports) == "springs":
         return without_shafts(pair)
     supported_shafts(pair)  # refused for a pair that has none
@@ -54,17 +54,26 @@ def with_supports(pair: GearPair, supports: Supports | None) -> GearPair:
 
 
 def on_springs(pair: GearPair, supports: Supports | None, what: str) -> GearPair:
-    """The pair without shafts, for ``what`` is on springs alone; refused unless these are asked for."""
+    """Return the pair without shafts, because ``what`` can be computed on springs only.
+
+    Refused unless ``supports`` is "springs" or the pair has no shafts.
+    """
     if supports_of(pair, supports) == "shafts":
         allowed = f'"springs" for {what}, which cannot be computed on shafts'
-        given = "left out for a pair with shafts" if supports is None else supports
-        raise refuse("supports", given, allowed, 'Give supports="springs".')
+        argument = "left out for a pair with shafts" if supports is None else supports
+        raise refuse("supports", argument, allowed, 'Give supports="springs".')
     return without_shafts(pair)
 
 
 @dataclass(frozen=True, eq=False)
 class MeshGain:
-    """Feedback z'' = ... + stiffness (u.z) + damping (u.z') + error of the mesh, (k, m), by ``pairs``."""
+    """Feedback of the mesh, z'' = stiffness (u.z) + damping (u.z') + error + ....
+
+    Attributes
+    ----------
+    stiffness, damping, error : (k, m)
+    pairs : coefficients of the tooth pairs from which the feedback follows
+    """
 
     stiffness: FloatArray
     damping: FloatArray
@@ -82,20 +91,22 @@ class LTVSystem:
     form : "full" (theta_p, theta_g, x_p, x_g, y_p, y_g: 12 states, with the rigid rotation),
         "elastic" (q = r_bp theta_p - r_bg theta_g instead of the rotations: 10 states) or
         "mesh" (q, x_p, x_g: the 6 states that decide stability). On shafts z are modal coordinates of
-        the shafts with the teeth apart, in "full" the common rotation first and the relative one second,
-        without the common one in the other two, as gyroscopic moments couple y
+        the shafts with the teeth apart: in "full" the common rotation is first and the relative rotation
+        second; "elastic" and "mesh" are the same and lack the common rotation, because gyroscopic moments
+        couple y
     coordinates : names of z, (m,)
     cycle : mesh cycle with positions, switch times and coefficients of the tooth pairs
-    constant : (2m, 2m) part of A that does not depend on time: bearings, each on one coordinate, so that
-        its blocks are diagonal; on shafts squares of frequencies, dissipation and gyroscopic moments
+    constant : (2m, 2m) part of A that does not depend on time. On springs the blocks are diagonal, because
+        each bearing acts on one coordinate; on shafts they have the squares of the frequencies, the
+        dissipation and the gyroscopic moments
     torque_pinion, torque_gear : (2m,) b per unit T_p and per unit T_g
     deflection : (m,) u with dynamic transmission error u . z
-    reduction : (m, 6) takes accelerations of both gears by forces on them alone to those of z; without
-        shafts it also makes z of the six coordinates
+    reduction : (m, 6) from accelerations of both gears by forces on the gears to accelerations of z; on
+        springs also from the six coordinates to z
     structure : constant data of the equations of motion without shafts
-    gears : (6, m) rows that make the six coordinates of z, up to the common rotation
+    gears : (6, m) from z to the six coordinates, up to the common rotation
     gyroscopic : (m, m) gyroscopic moments over the speed of the pinion, part of ``constant``
-    supports : what holds the gears, in the coordinates of "full"
+    supports : the supports of the gears, in the coordinates of "full"
     """
 
     pair: GearPair
@@ -127,7 +138,7 @@ class LTVSystem:
         cycle: MeshCycle | None = None,
         supports: Supports,
     ) -> Self:
-        """The system of a gear pair; arguments as ``periodic_system``."""
+        """Return the system of a gear pair; arguments as of ``periodic_system``."""
         one_of("form", form, get_args(Form))
         one_of("supports", supports, get_args(Supports))
         s = structure(pair, as_printed)
@@ -194,7 +205,7 @@ class LTVSystem:
 
     @cached_property
     def directions(self) -> FloatArray:
-        """Accelerations (4, m) of z per unit of each field of ``lumped.mesh.element.FORCE``."""
+        """Accelerations (4, m) of z per unit of each field of ``lumped.mesh.records.FORCE``."""
         return np.vstack([self.per_load, self.per_apart])
 
     def mesh_forces(
@@ -251,7 +262,7 @@ def periodic_system(
     form : coordinates, see ``LTVSystem``; the rigid rotation is only in "full"
     as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; every form stays exact, because all
         forces depend on the rotations through the dynamic transmission error only
-    cycle : the pair's mesh cycle where it is known already
+    cycle : the mesh cycle of the pair, if it has been computed already
     supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
         the shafts of a pair that has them
 

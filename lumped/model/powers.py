@@ -1,8 +1,8 @@
-"""Where the power of the periodic motion goes: sliding, tooth dampers, bearings, brake.
+"""Mean powers of the linear motion of like teeth: sliding, tooth dampers, bearings, shafts, brake.
 
-A force N = k(xi) delta has no potential, so with prescribed contact the brake torque, which balances moments,
-balances sliding friction alone, and an energy residual is left. Where the contact is conservative the mean
-powers balance exactly, and the brake torque follows from them.
+With prescribed contact the force N = k(xi) delta has no potential. The brake torque then balances the moments
+and sliding friction, and an energy residual remains. With loaded contact the mean powers balance exactly, and
+the brake torque follows from them. ``lumped.losses`` lists the definitions of all losses.
 
 Sources: docs/theory/contact_energy.md, "Mean powers"; Oh, Grosh and Barber, J. Vib. Acoust. 127 (2005) 208.
 """
@@ -20,6 +20,8 @@ from lumped.model.steady import PeriodicSolution
 from lumped.quasi_static.contacts import contact_of
 from lumped.typing import FloatArray, IntArray
 
+#: Rows of ``_powers``.
+_SLIDING, _TOOTH_DAMPERS, _BEARINGS, _SHAFTS, _CORNERS = range(5)
 #: Gauss nodes and weights in an interval from 0 to 1.
 _NODES, _WEIGHTS = 0.5 * np.array(leggauss(3)) + np.array([[0.5], [0.0]])
 #: Hermite's quintics of values, first and second derivatives at 0, then at 1; powers of s, lowest first.
@@ -45,7 +47,7 @@ class MeanPowers:
     Attributes
     ----------
     driving : of the pinion's torque
-    sliding, tooth_dampers, bearings, shafts : losses by place; couplings belong to the shafts
+    sliding, tooth_dampers, bearings, shafts : losses; the loss of couplings belongs to the shafts
     energy_residual : losses less driving and braking power of the equations of motion
     """
 
@@ -58,7 +60,7 @@ class MeanPowers:
 
     @property
     def lost(self) -> float:
-        """All losses together [W]."""
+        """Sum of all losses [W]."""
         return self.sliding + self.tooth_dampers + self.bearings + self.shafts
 
     @property
@@ -74,12 +76,12 @@ class MeanPowers:
 
 
 def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> dict[str, float]:
-    """Torques that hold the mean speed [N m] and efficiency, by name.
+    """Torques that hold the mean speed [N m], and the efficiency, by name.
 
     Parameters
     ----------
     solution : periodic motion of the "full" system
-    conservative : whether the brake balances every loss, and not only moments; default that of the contact
+    conservative : whether the brake balances every loss, or the moments only; by default as the contact is
     """
     powers = mean_powers(solution)
     brake_torque = solution.brake_torque
@@ -93,13 +95,15 @@ def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> 
 
 
 def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
-    """``balance``, mean losses by place, and those that no torque balances [W], as attributes of a result."""
+    """Attributes of a result: ``balance``, the mean losses, and the power that no torque balances [W]."""
     powers = mean_powers(solution)
     places = ("sliding", "tooth_dampers", *solution.system.supports.places)
-    found: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
+    losses: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
     conservative = contact_of(solution.system.pair).conservative
     return (
-        balance(solution) | found | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
+        balance(solution)
+        | losses
+        | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
     )
 
 
@@ -110,19 +114,21 @@ def mean_powers(solution: PeriodicSolution) -> MeanPowers:
     power = _powers(solution, times, states) @ weights
     return MeanPowers(
         driving=solution.pinion_torque * solution.system.pair.geometry.omega_pinion,
-        sliding=float(power[0]),
-        tooth_dampers=float(power[1]),
-        bearings=float(power[2]),
-        shafts=float(power[3]),
-        energy_residual=solution.energy_residual + float(power[4]),
+        sliding=float(power[_SLIDING]),
+        tooth_dampers=float(power[_TOOTH_DAMPERS]),
+        bearings=float(power[_BEARINGS]),
+        shafts=float(power[_SHAFTS]),
+        energy_residual=solution.energy_residual + float(power[_CORNERS]),
     )
 
 
 def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Gauss nodes inside the intervals of the integration [s], states there, and weights of a mean [-].
+    """Gauss nodes inside the intervals of the integration [s], states at the nodes, and weights of a mean
+    [-].
 
-    Inside an interval the motion is the quintic that has its displacements, rates and accelerations at both
-    ends: the losses err by some 1e-7 of themselves (5e-5 at 3 rpm, where intervals are bounded in number).
+    Inside an interval the motion is the quintic through the displacements, rates and accelerations at both
+    ends. The relative error of the losses is some 1e-7 (5e-5 at 3 rpm, where the number of intervals is
+    bounded).
     """
     time = solution.cycle_time
     states = solution.cycle_states
@@ -145,19 +151,23 @@ def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatA
 def _accelerations(
     solution: PeriodicSolution, times: FloatArray, states: FloatArray, segment: IntArray
 ) -> FloatArray:
-    """Accelerations (k, m) at states (k, 2m), as limits from inside the smooth segments."""
+    """Accelerations (k, m) at states (k, 2m) and times, as limits from inside the smooth segments."""
     system = solution.system
     m = len(solution.system.coordinates)
     gain = system.gain(times, segment)
-    found = states @ system.constant[m:].T + gain.error
-    found += gain.stiffness * (states[:, :m] @ system.deflection)[:, None]
-    found += gain.damping * (states[:, m:] @ system.deflection)[:, None]
+    accelerations = states @ system.constant[m:].T + gain.error
+    accelerations += gain.stiffness * (states[:, :m] @ system.deflection)[:, None]
+    accelerations += gain.damping * (states[:, m:] @ system.deflection)[:, None]
     torques = solution.pinion_torque * system.torque_pinion + solution.brake_torque * system.torque_gear
-    return np.asarray(found + torques[m:], dtype=np.float64)
+    return np.asarray(accelerations + torques[m:], dtype=np.float64)
 
 
 def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -> FloatArray:
-    """Powers taken by sliding, tooth dampers, bearings, shafts; work of corners at n states, (5, n) [W]."""
+    """Powers at n states: rows SLIDING to CORNERS, (5, n) [W].
+
+    Losses of sliding, tooth dampers, bearings and shafts, and the power of the force that tip corners exert
+    off the line of action.
+    """
     from lumped.model.results import corner_force, response
 
     system = solution.system
@@ -168,7 +178,7 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     return np.stack(
         [
             -values["friction_power"].sum(axis=0),
-            pairs.taken(values["dte_dot"]).sum(axis=0),
+            pairs.damper_powers(values["dte_dot"]).sum(axis=0),
             supports["bearings"],
             supports.get("shafts", np.zeros(times.size)),
             corner_force(values, pairs) * (values["y_g_dot"] - values["y_p_dot"]),

@@ -1,17 +1,16 @@
-"""Gauss-Legendre collocation for linear systems with smooth coefficients, blocks of steps at once."""
+"""Gauss-Legendre collocation of the linear system: steps through a mesh cycle, computed in blocks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
 from lumped.errors import NumericalError
-from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, merged, propagate, states_along
+from lumped.gauss_legendre import ButcherTableau, gauss_tableau
+from lumped.model.kernels import FreeSteps, chained, merged, propagate, states_along
 from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
@@ -20,21 +19,22 @@ from lumped.typing import FloatArray, IntArray
 #: (4!)^4 / (9 (8!)^3) = 5.6e-10, so a step of 0.5 rad errs by about 1e-12.
 STEP_ANGLE = 0.5
 STAGES = 4
-#: Rounding of times over the period.
+#: Rounding error of times, over the period.
 _ROUNDING = 1e-15
-#: A step passes over joints of pieces that are no shorter than this share of it.
+#: A step may pass over the joint of two pieces of a law if both pieces are longer than this share of the
+#: step.
 _SHORT_PIECE = 0.5
-#: Bounds on memory: steps solved together where they are not kept, most numbers of maps that are kept (and so
-#: many steps in any case), and most intervals where every step is one.
+#: Bounds on memory: steps that are solved together where maps are not stored; most numbers of all stored
+#: maps, and a number of steps that is stored in any case; most intervals where every step is an interval.
 _BLOCK = 1024
-_MOST_KEPT = 4_000_000
+_MOST_STORED = 4_000_000
 _MOST_INTERVALS = 16384
-_ALWAYS_KEPT = 4096
-#: Most steps of a mesh cycle: some ten seconds of work.
+_ALWAYS_STORED = 4096
+#: Most steps of a mesh cycle; so many take some ten seconds.
 _MAX_STEPS = 1_000_000
-#: Most stretches of the mesh cycle on which the stiffness is looked at, beside those between switches.
+#: Most stretches of the mesh cycle on which the stiffness is evaluated, beside those between switches.
 _MOST_LOOKS = 512
-#: Columns of maps are filled up with zeros to a multiple of this, for a processor multiplies as many at once.
+#: The number of columns of a map is a multiple of this, because a processor multiplies so many at once.
 _TOGETHER = 8
 
 
@@ -46,9 +46,10 @@ class Steps:
     ----------
     length : (k,) [s]
     maps : (k, n, n + columns) transition, then forced for each forcing, then columns of zeros
-    moving : columns of the maps that move the teeth; steps of one length have all others alike
-    inside : (k, moving, 2 s) maps of these to the dynamic transmission error at the stages, and to its rate
-    teeth : (5, pairs, k, s) k, c, e, e' and ``closing`` there, as in ``PairState``
+    moving : indices of the columns that move the teeth; all steps of one length have the same other columns
+    inside : (k, moving, 2 s) maps of the moving columns to the dynamic transmission error at the stages, then
+        to its rate
+    teeth : (5, pairs, k, s) stiffness, damping, error, error_rate and closing of ``PairState`` at the stages
     """
 
     length: FloatArray
@@ -60,15 +61,15 @@ class Steps:
 
 @dataclass(frozen=True, eq=False)
 class StepMaps:
-    """Affine maps x(end) = transition x(start) + forced of consecutive intervals, each of one or more steps.
+    """Affine maps x(end) = transition x(start) + forced of consecutive intervals. An interval has some steps.
 
     Attributes
     ----------
     edges : (steps + 1,) ends of the steps [s]
     times : (intervals + 1,) ends of the intervals, 0 and the period included [s]
-    forcings : the own one and one per unit of each extra column
+    forcings : number of forcings: the forcing of the system, and one for each extra column
     maps : (intervals, n, n + columns) transition, then forced for each forcing, then columns of zeros
-    steps : all steps in blocks; computed anew where they would fill the memory
+    steps : returns all steps in blocks; they are computed again where storing them would fill the memory
     """
 
     edges: FloatArray
@@ -80,32 +81,34 @@ class StepMaps:
     @cached_property
     def over_all(self) -> tuple[FloatArray, FloatArray]:
         """Map over all steps: transition (n, n) and forced (n, forcings)."""
-        whole = chained(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
-        n = whole.shape[0]
-        return whole[:, :n], whole[:, n : n + self.forcings]
+        over_cycle = chained(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
+        n = over_cycle.shape[0]
+        return over_cycle[:, :n], over_cycle[:, n : n + self.forcings]
 
     def states(self, initial: FloatArray, weights: FloatArray) -> FloatArray:
-        """States (intervals + 1, n) at ``times`` from x(0) and the weight (forcings,) of each."""
-        found: FloatArray = states_along(self.maps, initial, weights)
-        return found
+        """States (intervals + 1, n) at ``times``, from x(0) (n,) and weights (forcings,)."""
+        states: FloatArray = states_along(self.maps, initial, weights)
+        return states
 
     def energy_residual(self, initial: FloatArray, weights: FloatArray) -> float:
-        """Mean power that losses take beyond what torques bring [W], of the periodic motion from x(0).
+        """Mean power by which the losses exceed what the torques bring [W], of the periodic motion from x(0).
 
-        The tooth forces N_i do the work N_i delta' on the bodies, with both gears' rigid rotation none; the
-        dampers take f_i c_i (delta' - e_i')^2. The rest, f_i c_i (delta' - e_i')^2 - N_i delta', is of no
-        energy: in the mean all other powers cancel.
+        The tooth forces N_i do the work N_i delta' on the vibration and no work on the rigid rotation. The
+        dampers take f_i c_i (delta' - e_i')^2. The difference f_i c_i (delta' - e_i')^2 - N_i delta' belongs
+        to no energy. The means of all other powers cancel.
         """
         state = initial
         work = 0.0
         for steps in self.steps():
             states = states_along(steps.maps, state, weights)
-            given = np.column_stack([states[:-1], np.broadcast_to(weights, (len(states) - 1, weights.size))])
-            dte, rate = np.split((given[:, None, steps.moving] @ steps.inside)[:, 0], 2, axis=1)
+            columns = np.column_stack(
+                [states[:-1], np.broadcast_to(weights, (len(states) - 1, weights.size))]
+            )
+            dte, rate = np.split((columns[:, None, steps.moving] @ steps.inside)[:, 0], 2, axis=1)
             k, c, e, e_rate, closing = steps.teeth
             power = (k * (dte - e)).sum(axis=0) * rate
             power += (c * (rate - e_rate) * (rate - closing * (rate - e_rate))).sum(axis=0)
-            work += float(steps.length @ power @ gauss_tableau(power.shape[1])[1])
+            work += float(steps.length @ power @ gauss_tableau(power.shape[1]).b)
             state = states[-1]
         return -work / float(self.times[-1])
 
@@ -135,35 +138,36 @@ def step_maps(
     step_angle: float = STEP_ANGLE,
     stages: int = STAGES,
 ) -> StepMaps:
-    """Propagate all unit states and forcings over one mesh cycle, step by step, aligned with the switches.
+    """Propagate all unit states and forcings over one mesh cycle. Steps end at every switch.
 
     Parameters
     ----------
-    extra : (n, columns) constant forcings of the rates to carry beside the system's own
+    extra : (n, columns) constant forcings in addition to the forcing of the system
     outputs : times in [0, T_m] that end an interval [s]; by default there is one interval
-    every_step : whether every step ends one, as long as there are not too many for the memory
+    every_step : whether every step is an interval; where these would fill the memory, a few steps are
     step_angle : largest angle of the fastest frequency per step [rad]
     """
     grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
     forcings = 1 + extra.shape[1]
     extra = padded(system, extra)
-    first, which = distinct_lengths(system, grid.length)
+    first, length_of_step = distinct_lengths(system, grid.length)
     free = without_mesh(system, grid.length[first], extra, gauss_tableau(stages), system.directions)
 
     count = grid.length.size
-    few = count <= max(_ALWAYS_KEPT, _MOST_KEPT // free.along[0].size)
-    together = count if few else _BLOCK  # kept ones at once: maps need not be copied into one array
+    few = count <= max(_ALWAYS_STORED, _MOST_STORED // free.along[0].size)
+    together = count if few else _BLOCK  # stored steps in one block: their maps need not be copied
 
     def steps() -> Iterator[Steps]:
         for low in range(0, count, together):
-            at = slice(low, low + together)
-            yield _steps(system, grid.segment[at], grid.edges[:-1][at], grid.length[at], which[at], free)
+            block = slice(low, low + together)
+            start = grid.edges[:-1][block]
+            yield _steps(system, grid.segment[block], start, grid.length[block], length_of_step[block], free)
 
-    kept = list(steps()) if few else None
+    stored = list(steps()) if few else None
     parts = []
     groups = []
     low = 0
-    for block in kept or steps():
+    for block in stored or steps():
         group = grid.interval[low : low + together]
         parts.append(merged(block.maps, group - group[0]))
         groups.append(np.unique(group))
@@ -171,11 +175,11 @@ def step_maps(
     maps = merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
         raise NumericalError("The mesh cycle cannot be integrated: check stiffness and inertia for extremes.")
-    return StepMaps(grid.edges, grid.times, forcings, maps, steps if kept is None else lambda: kept)
+    return StepMaps(grid.edges, grid.times, forcings, maps, steps if stored is None else lambda: stored)
 
 
 def padded(system: LTVSystem, extra: FloatArray) -> FloatArray:
-    """Forcings (n, columns) with columns of zeros behind, so that maps have the width of ``Steps.maps``."""
+    """Return forcings (n, columns) with columns of zeros at the end, as ``Steps.maps`` has."""
     return np.pad(extra, ((0, 0), (0, -(system.size + 1 + extra.shape[1]) % _TOGETHER)))
 
 
@@ -184,10 +188,10 @@ def _steps(
     segment: IntArray,
     start: FloatArray,
     h: FloatArray,
-    which: IntArray,
+    length_of_step: IntArray,
     free: FreeSteps,
 ) -> Steps:
-    """Gauss steps of lengths h (k,) from the times ``start``; ``which`` of the lengths of ``free`` each has.
+    """Gauss steps of lengths h (k,) from the times ``start``; ``length_of_step`` is their index in ``free``.
 
     In x = (z, v) with z' = v only the stage accelerations W_i are unknown. With the constant part (K, C) of
     A, the deflections delta = u.z and delta' = u.v at the stages and the mesh's feedback (g_k, g_c, g_0),
@@ -195,69 +199,59 @@ def _steps(
         W_i = K (z + h c_i v + h^2 (a a)_ij W_j) + C (v + h a_ij W_j) + f + n_i,
         n_i = g_k,i delta_i + g_c,i delta'_i + g_0,i.
 
-    The part without n depends on h alone, and few lengths differ. W reaches n through the numbers p_i = u.W_i
-    only, so each step solves s equations instead of s m, for all unit states and forcings together that move
+    The part without n depends on h alone, and few lengths differ. n depends on W only through the s numbers
+    p_i = u.W_i. So each step solves s equations instead of s m, for all unit states and forcings that move
     the teeth.
     """
-    n, k, (_, stages) = system.size, h.size, free.reach.shape
-    times = (start[:, None] + h[:, None] * gauss_tableau(stages)[2]).ravel()
+    n = system.size
+    k = h.size
+    stages = free.reach.shape[1]
+    times = (start[:, None] + h[:, None] * gauss_tableau(stages).c).ravel()
     forces, pairs = system.mesh_forces(times, np.repeat(segment, stages))
     strength = forces.view(np.float64).reshape(k, 1, stages, 3, -1)
     units = np.eye(free.along.shape[1])
-    # A column with an approach at its start, or an acceleration along it, or the forces without motion.
+    # A column moves the teeth by its approach, by an acceleration along the approach, or by forces at rest.
     moves = (free.along[:, :, :stages] != 0.0).any(axis=(0, 2))
     moves[:n] |= np.tile(system.deflection != 0.0, 2)
     moves[n] = True
     moving = np.flatnonzero(moves)
     columns = np.ascontiguousarray(np.broadcast_to(units[moving], (k, moving.size, units.shape[0])))
-    found = propagate(columns, moving.size, strength, which[:, None], *free, system.deflection)
+    propagated = propagate(columns, moving.size, strength, length_of_step[:, None], free, system.deflection)
     closing = np.ones_like(pairs.damping) if pairs.closing is None else pairs.closing
     teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate, closing])
-    maps = np.ascontiguousarray(free.along[:, :, stages:].swapaxes(1, 2))[which]
-    maps[:, :, moving] = found.ends.swapaxes(1, 2)
-    return Steps(h, maps, moving, found.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
+    maps = np.ascontiguousarray(free.along[:, :, stages:].swapaxes(1, 2))[length_of_step]
+    maps[:, :, moving] = propagated.ends.swapaxes(1, 2)
+    return Steps(h, maps, moving, propagated.inside[:, 0], teeth.reshape(*teeth.shape[:2], k, stages))
 
 
 def distinct_lengths(system: LTVSystem, h: FloatArray) -> tuple[IntArray, IntArray]:
-    """Where each of few lengths of steps stands first, and which one every step has.
+    """Return the step that first has each distinct length, and the index of the length of every step.
 
-    Lengths that differ by the rounding of times are one: few are left where outputs are evenly spaced.
+    Lengths that differ by the rounding of times count as one. Evenly spaced outputs leave few lengths.
     """
-    whole = np.round(h / (_ROUNDING * system.period))
-    _, first, which = np.unique(whole, return_index=True, return_inverse=True)
-    return first, which
-
-
-class FreeSteps(NamedTuple):
-    """What ``propagate`` needs of k step lengths with s stages.
-
-    Attributes
-    ----------
-    along : (k, wide, rows) p (s), then the end (2m), without forces, of unit states and forcings; further
-        rows, where asked for, are the rates (s, m) of all coordinates at the stages
-    by_force : (k, s, forces, rows) what they take from each force at each stage
-    by_p : (k, 2s, s) deflection at the stages, then its rate, by p
-    reach : (k, s) time from the start to each stage [s]
-    """
-
-    along: FloatArray
-    by_force: FloatArray
-    by_p: FloatArray
-    reach: FloatArray
+    rounded = np.round(h / (_ROUNDING * system.period))
+    _, first, length_of_step = np.unique(rounded, return_index=True, return_inverse=True)
+    return first, length_of_step
 
 
 def without_mesh(
     system: LTVSystem,
     h: FloatArray,
     extra: FloatArray,
-    gauss: tuple[FloatArray, FloatArray, FloatArray],
+    gauss: ButcherTableau,
     directions: FloatArray,
     *,
     with_rates: bool = False,
 ) -> FreeSteps:
-    """What ``propagate`` needs of step lengths h (k,), of forces with the ``directions`` (forces, m).
+    """Gauss steps of the lengths h (k,) without the mesh, and the response to unit forces of the mesh.
 
-    ``with_rates``: the rates of all coordinates at the stages are further rows.
+    Parameters
+    ----------
+    h : (k,) step lengths [s]
+    extra : (n, columns) forcings in addition to the forcing of the system
+    gauss : tableau of the method
+    directions : (forces, m) acceleration of the coordinates per unit of each force
+    with_rates : whether the rates of all coordinates at the stages are further rows
     """
     a, b, c = gauss
     s = c.size
@@ -269,8 +263,8 @@ def without_mesh(
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
     lengths = h
     h = h[:, None, None]
-    left = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
-    inverse = np.linalg.inv(left).reshape(k, s, m, s, m)
+    implicit = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
+    inverse = np.linalg.inv(implicit).reshape(k, s, m, s, m)
     right = np.zeros((k, s, m, 2 * m + forces.shape[1]))
     right[..., :m] = stiffness
     right[..., m : 2 * m] = h[..., None] * np.multiply.outer(c, stiffness) + damping
@@ -303,7 +297,16 @@ def without_mesh(
 
 @dataclass(frozen=True, eq=False)
 class _StepGrid:
-    """Steps of a mesh cycle: ends [s]; length [s], smooth segment and interval of each; interval ends [s]."""
+    """Steps of a mesh cycle.
+
+    Attributes
+    ----------
+    edges : (steps + 1,) ends of the steps [s]
+    length : (steps,) [s]
+    segment : (steps,) smooth segment of the mesh cycle in which the step lies
+    interval : (steps,) interval of ``StepMaps`` to which the step belongs
+    times : (intervals + 1,) ends of the intervals [s]
+    """
 
     edges: FloatArray
     length: FloatArray
@@ -313,18 +316,18 @@ class _StepGrid:
 
 
 def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_angle: float) -> _StepGrid:
-    """Steps that end at outputs, wherever a law is not smooth, and wherever its pieces are short."""
+    """Steps that end at the outputs, where a law is not smooth, and where the pieces of a law are short."""
     period = system.period
     switches = system.cycle.edges
     breaks = system.cycle.breaks
     marks = np.union1d(switches, system.cycle.bends)
     largest = step_angle / fastest_frequency(system)
     marks = _distinct(np.union1d(marks, outputs), system)
-    # Joints join pieces of one smooth law, which varies fast where its pieces are short.
+    # A smooth law has short pieces where it varies fast: steps end at joints of short pieces.
     pieces = np.diff(breaks)
     gaps = np.diff(marks)
-    at = np.clip(np.searchsorted(marks, breaks[1:-1], side="right") - 1, 0, gaps.size - 1)
-    short = np.minimum(pieces[:-1], pieces[1:]) < _SHORT_PIECE * np.minimum(gaps, largest)[at]
+    gap_of_joint = np.clip(np.searchsorted(marks, breaks[1:-1], side="right") - 1, 0, gaps.size - 1)
+    short = np.minimum(pieces[:-1], pieces[1:]) < _SHORT_PIECE * np.minimum(gaps, largest)[gap_of_joint]
     marks = _distinct(np.union1d(marks, breaks[1:-1][short]), system)
     parts = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
     if not parts.sum() <= _MAX_STEPS:
@@ -355,7 +358,10 @@ def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_an
 
 
 def _distinct(marks: FloatArray, system: LTVSystem) -> FloatArray:
-    """Increasing times of which those that differ by rounding are one; a switch stays where it is exactly."""
+    """Merge increasing times that differ by rounding.
+
+    Of a switch and another time the exact switch remains.
+    """
     close = np.flatnonzero(np.diff(marks) < 1e-13 * system.period)
     if close.size == 0:
         return marks

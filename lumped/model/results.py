@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lumped.labelling import Variable, labelled_dataset
-from lumped.model.equations import COORDINATES
+from lumped.model.equations import COORDINATES, THETA_G, THETA_P, Y_G, Y_P
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
 from lumped.quasi_static.contacts import contact_of
@@ -18,7 +18,7 @@ from lumped.typing import BoolArray, FloatArray
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Loads below this share of the static load are zero for the question whether teeth separate.
+#: Share of the static load below which a load counts as zero where the question is whether teeth separate.
 LOAD_NOISE = 1e-4
 #: Variable -> (dimensions, unit, plain name). Every model of the pair returns these.
 VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
@@ -58,7 +58,7 @@ def labelled(
     attributes: Mapping[str, Any],
     further: Mapping[str, Variable] | None = None,
 ) -> xr.Dataset:
-    """Put arrays of ``VARIABLES``, and ``further`` ones, under their names, units and dimensions."""
+    """Return arrays of ``VARIABLES``, and ``further`` variables, as a dataset with names and units."""
     variables: dict[str, Variable] = {
         name: (dims, values[name], unit, text)
         for name, (dims, unit, text) in VARIABLES.items()
@@ -72,15 +72,19 @@ def labelled(
 def dataset(
     system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return states (k, n) of the "full" system with all loads and velocities that follow from them."""
+    """Return states (k, n) of the "full" system as a dataset, with all loads and velocities that follow."""
     return system.supports.labelled(labelled(time, response(system, time, states), attributes), states)
 
 
 def load_range(pair: GearPair, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
-    """Largest load of a tooth pair, and smallest load: negative where the teeth would separate [N].
+    """Largest load of a tooth pair, and least load, which is negative where the teeth would separate [N].
 
-    ``load`` (pairs, k) [N], ``contact`` (pairs, k) whether the pair can touch. What must press depends on the
-    form of contact, see ``Contact.pressing``.
+    The form of contact decides whether every pair must press or all pairs together, see ``Contact.pressing``.
+
+    Parameters
+    ----------
+    load : (pairs, k) [N]
+    contact : (pairs, k) whether the pair can touch
     """
     touching = contact > 0
     pressing, where = contact_of(pair).pressing(load, touching)
@@ -94,20 +98,26 @@ def needs_pull(pair: GearPair, motion: xr.Dataset) -> bool:
 
 
 def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArray) -> float:
-    """Largest distance from the pitch point at which a loaded pair slides backwards [m]; 0 if none does.
+    """Largest distance from the pitch point at which a loaded pair slides backwards [m]; 0 if no pair does.
 
-    Between two samples of which one slides backwards the velocity is a straight line.
+    Between two samples the velocity is taken as a straight line.
 
-    All (pairs, k): signed distance from the pitch point [m], sliding velocity, nominally of the sign of the
-    distance [m/s], and whether the pair carries load.
+    Parameters
+    ----------
+    distance : (pairs, k) signed distance from the pitch point [m]
+    sliding : (pairs, k) sliding velocity; without vibration it has the sign of the distance [m/s]
+    loaded : (pairs, k) whether the pair carries load
     """
     forwards = sliding * np.sign(distance)
     farthest = float(np.where(loaded & (forwards < 0.0), np.abs(distance), 0.0).max())
-    before, after = np.s_[:, :-1], np.s_[:, 1:]
+    before = np.s_[:, :-1]
+    after = np.s_[:, 1:]
     turns = (forwards[before] * forwards[after] < 0.0) & (distance[before] * distance[after] > 0.0)
     turns &= loaded[before] & loaded[after]
-    v0, v1 = forwards[before][turns], forwards[after][turns]
-    d0, d1 = distance[before][turns], distance[after][turns]
+    v0 = forwards[before][turns]
+    v1 = forwards[after][turns]
+    d0 = distance[before][turns]
+    d1 = distance[after][turns]
     return float(np.abs(d0 + v0 / (v0 - v1) * (d1 - d0)).max(initial=farthest))
 
 
@@ -118,12 +128,16 @@ def response(
     normal_load: FloatArray | None = None,
     pairs: PairState | None = None,
 ) -> dict[str, FloatArray]:
-    """Return the arrays of ``dataset`` by name, without labels.
+    """Return the variables of ``VARIABLES`` at states by name, without labels. A loss of sliding is here.
 
-    ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where contact may be lost,
-    and ``pairs`` their coefficients, where teeth differ.
+    Parameters
+    ----------
+    time, states : (k,) [s], (k, n) of the "full" system
+    normal_load : (pairs, k) load of each pair [N]; by default the load of the linear form
+    pairs : coefficients of the pairs; by default those of like teeth
     """
-    g, s = system.pair.geometry, system.structure
+    g = system.pair.geometry
+    s = system.structure
     z, rates = system.gear_motion(states)
     dte = z @ s.deflection
     dte_dot = rates @ s.deflection
@@ -133,9 +147,9 @@ def response(
     friction = pairs.friction * normal
     arm_g = g.L_XY - pairs.position
     sliding = (
-        (g.omega_pinion + rates[:, 0]) * pairs.position
-        - (g.omega_gear + rates[:, 1]) * arm_g
-        - (rates[:, 4] - rates[:, 5])
+        (g.omega_pinion + rates[:, THETA_P]) * pairs.position
+        - (g.omega_gear + rates[:, THETA_G]) * arm_g
+        - (rates[:, Y_P] - rates[:, Y_G])
     )
     values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
     values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
@@ -165,10 +179,10 @@ def corner_force(values: Mapping[str, FloatArray], pairs: PairState) -> FloatArr
 
 
 def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> float:
-    """Largest minus smallest value, extremes between two samples included.
+    """Largest minus least value, with the extremes between two samples.
 
-    Between samples the motion is the cubic with their values and rates. Its error falls with the fourth power
-    of the interval; where a force jumps inside an interval, with the square.
+    Between two samples the motion is the cubic through their values and rates. The error of the cubic falls
+    with the fourth power of the interval; where a force jumps inside the interval, with the square.
     """
     step = np.diff(time)
     rise = np.diff(values)
@@ -187,7 +201,10 @@ def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> flo
 
 
 def cycle_peak_to_peak(run: xr.Dataset, name: str, period: float | None = None) -> float:
-    """Peak to peak of a displacement of a result; ``period`` where it closes and leaves its end out [s]."""
+    """Peak to peak of a displacement of a result.
+
+    ``period`` [s] is given where the result is periodic and does not contain the end of its period.
+    """
     time, values, rates = (run[key].to_numpy() for key in ("time", name, f"{name}_dot"))
     if period is not None:
         time = np.append(time, time[0] + period)

@@ -9,12 +9,13 @@ import math
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lumped.labelling import Variable
 from lumped.mesh.tables import MeshTables
+from lumped.model.linear_or_unilateral import Contact
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import labelled, peak_to_peak, response
@@ -27,14 +28,10 @@ from lumped.typing import BoolArray, FloatArray, IntArray
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Most and least outputs of a mesh cycle by default, and how many all cycles together are to have.
+#: Most and least outputs in a mesh cycle by default, and about how many outputs a period has by default.
 _MOST_SAMPLES = 512
 _LEAST_SAMPLES = 32
 _ALL_SAMPLES = 65536
-
-
-#: Argument ``contact``: teeth that are tied to the linear form, or that only push.
-Contact = Literal["linear", "unilateral"]
 
 
 class Touch(Enum):
@@ -47,7 +44,7 @@ class Touch(Enum):
 
     @property
     def contact(self) -> Contact:
-        """Which argument ``contact`` asks for it."""
+        """The argument ``contact`` that gives this."""
         return "linear" if self in (Touch.TIED, Touch.LINEAR) else "unilateral"
 
 
@@ -60,27 +57,28 @@ class Origin(Enum):
 
 @dataclass(frozen=True, eq=False)
 class RevolutionMotion:
-    """Periodic motion over ``period`` mesh cycles.
+    """A periodic motion over ``period`` mesh cycles. A place is a row of all pairs that pass it one by one.
 
     Attributes
     ----------
     system : the "full" system of the healthy twin
-    tables : the contact that was integrated
+    tables : tables of the contact, with which the motion was integrated
     touch : how the teeth touch
     time : (k,) [s]
     states : (k, n)
-    load : (pairs, k) normal load of each place, of ``tables.ahead`` [N]
-    pinion_torque, brake_torque : mean torques that hold the mean speed against moments [N m]
-    powers : mean power of sliding, tooth dampers, bearings, shafts, and of the gap that closes as the teeth
-        roll [W]; {} where it is not known
+    load : (places, k) normal load in each place of ``tables.ahead`` [N]
+    pinion_torque, brake_torque : mean torques that balance the moments at the mean speed [N m]
+    powers : mean powers "sliding", "tooth_dampers", "bearings", "shafts", and "rolling", the power of the
+        gaps that change as the teeth roll [W]; {} where they were not computed
     closure : mismatch of the state after the period, over the largest displacement
-    error : difference of the dynamic transmission error to that of longer steps, over its largest value;
-        twice as long of like teeth and of the linear form, four times of teeth that differ and push only
-    spectral_radius : of the motion itself where teeth are alike, else of the healthy twin
+    error : difference of the dynamic transmission error to a motion by longer steps, over the largest value.
+        The steps are twice as long for like teeth and linear motions, four times for other unilateral motions
+    spectral_radius : largest modulus of the multipliers of the motion; where teeth differ, of the twin with
+        like teeth
     origin : how a motion with unilateral contact was found
-    first : number of the mesh cycle of the first time
-    stiffness : (k,) of the mesh in the linear form [N/m]; None: that of the pairs that carry load
-    between : variable -> how much the outputs miss of its peak to peak with like teeth [m]
+    first : mesh cycle at the first time
+    stiffness : (k,) stiffness of the mesh in the linear form [N/m]; None: the sum over pairs that carry load
+    between : part of the peak to peak of each variable that the outputs miss, with like teeth [m]
     """
 
     pair: GearPair
@@ -103,12 +101,12 @@ class RevolutionMotion:
 
     @property
     def period(self) -> int:
-        """Mesh cycles."""
+        """Mesh cycles after which the motion repeats."""
         return self.tables.period
 
     @property
     def losses(self) -> dict[str, float]:
-        """Place -> mean power that is lost there [W]."""
+        """Mean losses [W] by name: sliding, tooth dampers and the places of the supports."""
         return {
             place: self.powers[place] for place in ("sliding", "tooth_dampers", *self.system.supports.places)
         }
@@ -116,7 +114,7 @@ class RevolutionMotion:
     def balance(self, conservative: bool) -> dict[str, float]:
         """Torques that hold the mean speed [N m], and efficiency, as of ``lumped.model.powers.balance``.
 
-        Where the powers are not known there is no efficiency.
+        Without powers there is no efficiency.
         """
         if not self.powers:
             return {"brake_torque": self.brake_torque, "pinion_torque": self.pinion_torque}
@@ -128,85 +126,91 @@ class RevolutionMotion:
 
     @cached_property
     def number(self) -> IntArray:
-        """Number of the pair in each place at each output, (pairs, k)."""
+        """Number of the pair in each place at each output, (places, k)."""
         cycle = self.first + np.arange(self.time.size) // self.tables.outputs.sum()
         return np.asarray(cycle - self.tables.ahead[:, None], dtype=np.int64)
 
     @cached_property
     def teeth(self) -> tuple[IntArray, IntArray]:
-        """Teeth of pinion and gear in each place at each output, from 0, (pairs, k)."""
+        """Teeth of pinion and gear in each place at each output, counted from 0, (places, k)."""
         return numbers(self.pair, self.number)
 
     @cached_property
     def touches(self) -> BoolArray:
-        """Whether the pair in each place can carry load, (pairs, k): in its window, or where it does."""
+        """Whether each pair is in its window or, with loaded contact, carries load; (places, k)."""
         tables = self.tables
         g = self.pair.geometry
-        if not tables.law.windows:
+        if not tables.law.prescribed:
             return np.asarray(self.load != 0.0)
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
         place = tables.position[step, 0].T  # just inside of the step
         return np.asarray((place > g.L_XA) & (place < g.L_XD))
 
     @cached_property
-    def kept(self) -> IntArray:
-        """Places of a result: those of like teeth, and further ones that carry load."""
+    def shown_places(self) -> IntArray:
+        """Places (n,) that a result shows: the places of like teeth, and further places that carry load."""
         g = self.pair.geometry
         like = np.round((self.system.cycle.offsets - g.L_XA) / g.base_pitch)
         return np.flatnonzero(np.isin(self.tables.ahead, like) | (self.load != 0.0).any(axis=1))
 
     @cached_property
     def pairs(self) -> PairState:
-        """Coefficients of the pair in each place at each output; a pair that carries nothing has none."""
+        """Coefficients of the pair in each place at each output; 0 for a pair that carries no load."""
         tables = self.tables
         step = np.resize(np.flatnonzero(tables.outputs), self.time.size)
         pitch = tables.law.rolling_speed * tables.duration
         touches = self.touches
-        moved = 0.0 * self.time if tables.law.windows else swing(tables, self.time)
-        # As the integration does: the step is that of the shifted middle of the own one.
+        swung = 0.0 * self.time if tables.law.prescribed else swing(tables, self.time)
+        # As in ``lumped.mesh.tables.nearest_node``: the step to which the middle of the own step swings.
         middle = 0.5 * (tables.edges[step] + tables.edges[step + 1])
-        pitches, phase = np.divmod(middle + moved / pitch, 1.0)
-        at = np.searchsorted(tables.edges[1:-1], phase, side="right")
+        pitches, phase = np.divmod(middle + swung / pitch, 1.0)
+        swung_step = np.searchsorted(tables.edges[1:-1], phase, side="right")
         phase -= middle - tables.edges[step]
         place, when = np.nonzero(touches)
         place = np.clip(place - pitches[when].astype(np.int64), 0, tables.ahead.size - 1)
         kind = tables.kinds[self.teeth][touches]
-        way = ((phase - tables.edges[at]) * pitch)[when]
-        laws, slopes = (table[kind, at[when], 0, place] for table in (tables.laws, tables.slopes))
+        distance = ((phase - tables.edges[swung_step]) * pitch)[when]
+        laws, slopes = (table[kind, swung_step[when], 0, place] for table in (tables.laws, tables.slopes))
 
         def of_pairs(name: str) -> FloatArray:
-            found = np.zeros(touches.shape)
-            found[touches] = laws[name] + slopes[name] * way
-            return found
+            values = np.zeros(touches.shape)
+            values[touches] = laws[name] + slopes[name] * distance
+            return values
 
         k, c, mu, gap = (of_pairs(name) for name in ("stiffness", "damping", "friction", "gap"))
-        return PairState(tables.position[step, 0].T + moved, touches, k, c, mu, gap, np.zeros(gap.shape))
+        return PairState(tables.position[step, 0].T + swung, touches, k, c, mu, gap, np.zeros(gap.shape))
 
 
 def default_samples(period: int) -> int:
-    """Outputs a mesh cycle: fewer, the more cycles a period has; a power of two."""
-    found: int = 2 ** int(math.log2(_ALL_SAMPLES / period))
-    return min(max(found, _LEAST_SAMPLES), _MOST_SAMPLES)
+    """Default number of outputs in a mesh cycle: a power of two, smaller for periods of many cycles."""
+    samples: int = 2 ** int(math.log2(_ALL_SAMPLES / period))
+    return min(max(samples, _LEAST_SAMPLES), _MOST_SAMPLES)
 
 
 def labelled_motion(
     motion: RevolutionMotion, attributes: dict[str, Any], *, periodic: bool = True
 ) -> xr.Dataset:
-    """A motion under the names of ``lumped.model.results.VARIABLES``; of teeth that differ with their names.
+    """Return a motion as a dataset with the names of ``lumped.model.results.VARIABLES``.
 
-    Not ``periodic``: a transient, about which the attributes of the periodic motion say nothing.
+    Of teeth that differ the dataset names the teeth of each pair. A transient is not ``periodic`` and has no
+    attributes of a periodic motion.
     """
     system = motion.system
     pairs = motion.pairs
-    kept = motion.kept
-    values = response(system, motion.time, motion.states, motion.load[kept], pairs.of_places(kept))
+    places = motion.shown_places
+    values = response(system, motion.time, motion.states, motion.load[places], pairs.of_places(places))
     if motion.stiffness is not None:
         values["mesh_stiffness"] = motion.stiffness
     further: dict[str, Variable] = {}
     alike = motion.pair.healthy is motion.pair
     if not alike:
         further = {
-            f"{name}_tooth": (("pair", "time"), teeth[kept] + 1, "1", f"tooth of the {name}, counted from 1")
+            f"{name}_tooth": (
+                ("pair", "time"),
+                teeth[places] + 1,
+                "1",
+                f"tooth of the {name}, counted from 1",
+            )
             for name, teeth in zip(("pinion", "gear"), motion.teeth, strict=True)
         }
     attributes = attributes | motion.balance(contact_of(motion.pair).conservative)
@@ -222,8 +226,8 @@ def labelled_motion(
         attributes["origin"] = motion.origin.value
     if motion.powers:
         attributes |= {f"power_{place}": power for place, power in motion.losses.items()}
-        left = 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"]
-        attributes["power_energy_residual"] = left
+        residual = 0.0 if contact_of(motion.pair).conservative else motion.powers["rolling"]
+        attributes["power_energy_residual"] = residual
     if periodic:
         attributes |= _of_period(motion, values)
     run = labelled(motion.time, values, attributes, further)
@@ -232,12 +236,12 @@ def labelled_motion(
 
 def _of_period(motion: RevolutionMotion, values: dict[str, FloatArray]) -> dict[str, float]:
     """Errors and ranges of a motion that closes."""
-    found = {
+    attributes = {
         "closure": motion.closure,
         "error_estimate": motion.error,
     }
     closed = np.append(motion.time, motion.period * motion.system.period)
     for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
         one, rate = (np.append(values[key], values[key][0]) for key in (name, f"{name}_dot"))
-        found[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate) + motion.between.get(name, 0.0)
-    return found
+        attributes[f"{name}_peak_to_peak"] = peak_to_peak(closed, one, rate) + motion.between.get(name, 0.0)
+    return attributes

@@ -7,21 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import tee
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import one_of, real_number, real_numbers
+from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.mesh.tables import MeshTables
 from lumped.model.cycle_maps import CycleSteps, linear_steps, loads_of, stepped_run
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.period_closure import balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
 from lumped.model.results import VARIABLES, labelled, response
-from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch
-from lumped.model.steady import balanced_start, periodic_solution, sample_times
+from lumped.model.revolution_motion import RevolutionMotion, Touch
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.sweep import systems_over_speed
 from lumped.model.tooth_laws import ToothLaws
 from lumped.ranges import warned_once
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
 _NAMES = [name for name, (dimensions, *_) in VARIABLES.items() if dimensions == ("time",)]
 #: Most output times.
 _MOST = 3_000_000
-#: Share by which the speed may change while the coefficients stay, where that is more than one mesh cycle.
+#: Share by which the speed may change while the coefficients stay; they stay for one mesh cycle at least.
 _STEP = 1e-3
 
 
@@ -79,7 +81,7 @@ def run_up(
     NumericalError : a speed on the way has no periodic motion, or the motion overflows
     """
     pair = load_gear_pair(pair)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     advice = "Give the speed at the start and at the end: (500, 3000)."
     ends = real_numbers("speeds_rpm", speeds_rpm, 0.0, LARGEST_SPEED, above=True, unit="rpm", action=advice)
@@ -94,12 +96,13 @@ def run_up(
         action = "Change the duration or samples_per_cycle."
         raise refuse("seconds", f"{duration:g} s, {cycles} mesh cycles", allowed, action)
     # Cycle j begins where f_0 t + (f_1 - f_0) t^2/(2 T) = j: the root without cancellation at a small rate.
-    j, (low, high) = np.arange(cycles + 1), frequencies.tolist()
+    j = np.arange(cycles + 1)
+    low, high = frequencies.tolist()
     begins = 2.0 * j / (low + np.sqrt(np.maximum(low**2 + 2.0 * (high - low) / duration * j, 0.0)))
     groups = list(_groups(begins))
     hertz = ((last - first) / (begins[last] - begins[first]) for first, last in groups)
     pairs = (pair.with_({"operating.pinion_speed": float(60.0 / pair.pinion.teeth * f)}) for f in hertz)
-    of_groups = _linear if contact == "linear" else _unilateral
+    of_groups = _unilateral if form is MotionForm.UNILATERAL else _linear
     parts = of_groups(pairs, groups, supports, samples_per_cycle)
     times = []
     values = []
@@ -111,8 +114,8 @@ def run_up(
         if progress is not None:
             progress(last / cycles)
     time = np.concatenate(times)
-    found = np.concatenate(values, axis=1)
-    if not np.isfinite(found).all():
+    variables = np.concatenate(values, axis=1)
+    if not np.isfinite(variables).all():
         raise NumericalError("The motion grows beyond all numbers: raise the damping, or avoid the speed.")
     speed = ends[0] + (ends[1] - ends[0]) * time / duration
     turns = np.arange(time.size) / (samples_per_cycle * pair.pinion.teeth)
@@ -129,11 +132,11 @@ def run_up(
         "teeth": "alike" if pair.healthy is pair else "as given",
         "turns": cycles / pair.pinion.teeth,
     }
-    return labelled(time, dict(zip(_NAMES, found, strict=True)), attributes, further)
+    return labelled(time, dict(zip(_NAMES, variables, strict=True)), attributes, further)
 
 
 def _of_time(values: Mapping[str, FloatArray]) -> FloatArray:
-    """Variables that depend on time alone, (names, k)."""
+    """Return the variables that depend on time alone, (names, k)."""
     return np.stack([values[name] for name in _NAMES])
 
 
@@ -142,36 +145,40 @@ def _linear(
 ) -> Iterator[tuple[float, FloatArray]]:
     """Period of a mesh cycle [s] and variables of every group of cycles, by maps.
 
-    Teeth that differ add the difference of two runs by long steps, see `lumped.model.cycle_maps`.
+    Where teeth differ, the difference of two runs by long steps is added, see `lumped.model.cycle_maps`.
     """
-    ends: list[FloatArray] = []
-    given, alike = tee(pairs)
+    ends: dict[str, FloatArray] = {}  # states at the end of the last group, of three runs
+    own_pairs, alike = tee(pairs)
     systems = systems_over_speed((pair.healthy for pair in alike), supports)
-    for (first, last), pair, system in zip(groups, given, systems, strict=True):
+    for (first, last), pair, system in zip(groups, own_pairs, systems, strict=True):
         grid = sample_times(system.period, samples)
         count = last - first
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1), outputs=grid)
         start, weights = balanced_start(system, *maps.over_all)
-        ends = ends or [start, start, start]
-        found = []
+        ends = ends or {"short steps": start, "own teeth": start, "like teeth": start}
+        of_cycles = []
         for _ in range(count):
-            states = maps.states(ends[0], weights)
-            ends[0] = states[-1]
-            found.append(states[:-1])
+            states = maps.states(ends["short steps"], weights)
+            ends["short steps"] = states[-1]
+            of_cycles.append(states[:-1])
         if pair.healthy is pair:
             yield (
                 system.period,
-                np.concatenate([_of_time(response(system, grid, one)) for one in found], axis=1),
+                np.concatenate([_of_time(response(system, grid, one)) for one in of_cycles], axis=1),
             )
             continue
         form = CycleSteps(pair, system, samples, linear_steps(system), range(first, last))
-        own, ends[1] = stepped_run(form, first, count, ends[1], weights)
-        same, ends[2] = stepped_run(form.with_like_teeth(), first, count, ends[2], weights)
-        flat = np.concatenate(found) + (own - same).reshape(-1, system.size)
+        with_own, ends["own teeth"] = stepped_run(form, first, count, ends["own teeth"], weights)
+        with_like, ends["like teeth"] = stepped_run(
+            form.with_like_teeth(), first, count, ends["like teeth"], weights
+        )
+        states_of_group = np.concatenate(of_cycles) + (with_own - with_like).reshape(-1, system.size)
         tables = form.tables_of_outputs
-        load, stiffness = loads_of(form, tables, first, flat)
-        motion = _motion_of_group(pair, system, tables, first, flat, load)
-        values = response(system, motion.time, flat, load, motion.pairs) | {"mesh_stiffness": stiffness}
+        load, stiffness = loads_of(form, tables, first, states_of_group)
+        motion = _motion_of_group(pair, system, tables, first, states_of_group, load)
+        values = response(system, motion.time, states_of_group, load, motion.pairs) | {
+            "mesh_stiffness": stiffness
+        }
         yield system.period, _of_time(values)
 
 
@@ -180,8 +187,8 @@ def _unilateral(
 ) -> Iterator[tuple[float, FloatArray]]:
     """Period of a mesh cycle [s] and variables of every group of cycles, by momentary load.
 
-    Drive and brake have the torques of the linear motion of like teeth, and what the common rotation of the
-    group before was short of.
+    The torques are those of the linear motion of like teeth. The brake also corrects the rate of the common
+    rotation that the previous group left.
     """
     state: FloatArray | None = None
     missing = 0.0
@@ -213,7 +220,7 @@ def _motion_of_group(
     states: FloatArray,
     load: FloatArray,
 ) -> RevolutionMotion:
-    """Mesh cycles from one on, whose times are those of their own speed."""
+    """Return the motion of one group of mesh cycles, with the times of its own speed."""
     samples = int(tables.outputs.sum())
     return RevolutionMotion(
         pair=pair,
@@ -234,7 +241,7 @@ def _motion_of_group(
 
 
 def _groups(begins: FloatArray) -> Iterator[tuple[int, int]]:
-    """First cycle of each group and that after it."""
+    """Yield the first cycle of each group, and the cycle after its last one."""
     length: FloatArray = np.diff(begins)
     first = 0
     while first < length.size:

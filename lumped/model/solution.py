@@ -38,7 +38,7 @@ def transient(
     supports: Supports,
     progress: Progress | None,
 ) -> xr.Dataset:
-    """The result of ``lumped.simulate`` of like teeth."""
+    """Result of ``lumped.simulate`` for the linear motion of like teeth."""
     system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     grid = sample_times(system.period, samples_per_cycle)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
@@ -70,7 +70,7 @@ def transient(
 
 
 class Balanced(Protocol):
-    """A periodic motion, as far as a start needs it."""
+    """The part of a periodic motion that ``initial_state`` reads."""
 
     @property
     def states(self) -> FloatArray:
@@ -97,7 +97,7 @@ def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: Bala
 
 
 def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> FloatArray:
-    """At rest under the mean mesh load T_p / r_bp and the mean mesh stiffness: all states, rates zero.
+    """State at rest under the mean mesh load T_p / r_bp, with the mean mesh stiffness; all rates are zero.
 
     ``system`` is the "full" one; the torque [N m] is by default the operating point's.
     """
@@ -111,7 +111,7 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
     z = support.back @ np.linalg.solve(
         support.relative @ stiffness @ support.back, support.relative @ torques[m:] * load
     )
-    # Whatever the common rotation is: as two free rotors would, so that its weighted sum is zero.
+    # The common rotation is free: its weighted sum is zero, as of two free rotors.
     z -= support.common * ((support.common_weights @ z) / (support.common_weights @ support.common))
     return np.concatenate([z, np.zeros(m)])
 
@@ -125,9 +125,10 @@ def steady_cycle(
     estimate_error: bool = True,
     step_angle: float = STEP_ANGLE,
 ) -> xr.Dataset:
-    """The result of ``lumped.steady_state`` of like teeth, over one mesh cycle; the error may be left out.
+    """Result of ``lumped.steady_state`` for the linear motion of like teeth, over one mesh cycle.
 
-    ``step_angle`` is the largest angle of the fastest vibration in a step [rad].
+    ``estimate_error`` says whether the error is estimated; ``step_angle`` is the largest angle of the fastest
+    vibration in a step [rad].
     """
     system = LTVSystem.of(pair, "full", as_printed=as_printed, supports=supports)
     times = sample_times(system.period, samples_per_cycle)

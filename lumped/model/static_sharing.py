@@ -50,23 +50,23 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     tables = mesh_tables(laws, 1.0, count)
     # With prescribed contact too, pairs touch where their own gaps close; with a stiffness of the whole mesh
     # within A to D.
-    tables = tables._replace(law=tables.law._replace(windows=False))
-    approach, each = static_loads(tables, 0, period)
-    loads = each["static"].transpose(2, 0, 1)
-    kept = np.flatnonzero(tables.outputs)
+    tables = tables._replace(law=tables.law._replace(prescribed=False))
+    approach, pair_loads = static_loads(tables, 0, period)
+    loads = pair_loads["static"].transpose(2, 0, 1)
+    outputs = np.flatnonzero(tables.outputs)
     places = tables.ahead.size
-    load = loads[:, :, kept].reshape(places, -1)
+    load = loads[:, :, outputs].reshape(places, -1)
     pinion, gear = numbers(pair, np.repeat(np.arange(period), count) - tables.ahead[:, None])
     largest = np.full((pair.pinion.teeth, pair.gear.teeth), np.nan)
-    every = numbers(pair, np.arange(period) - tables.ahead[:, None])
-    largest[every] = 0.0
-    np.maximum.at(largest, every, loads.max(axis=2))
+    meeting = numbers(pair, np.arange(period) - tables.ahead[:, None])
+    largest[meeting] = 0.0
+    np.maximum.at(largest, meeting, loads.max(axis=2))
     phase = (np.arange(period)[:, None] + np.arange(count) / count).ravel()
     return labelled_dataset(
         {
             "transmission_error": (
                 "phase",
-                approach[:, kept].ravel(),
+                approach[:, outputs].ravel(),
                 "m",
                 "static transmission error, driven gear late",
             ),

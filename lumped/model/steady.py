@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
+from lumped.model.period_closure import BRAKE_TORQUE, MORE_PINION_TORQUE, balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.propagation import STAGES, STEP_ANGLE, StepMaps, step_maps
 from lumped.model.results import peak_to_peak, response
@@ -31,10 +31,10 @@ class PeriodicSolution:
     time : (k,) [s]
     states : (k, n)
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
-    error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
-    cycle_time, cycle_states : (i,) [s], 0, the period and all switches included, and (i, n): close enough to
-        resolve the fastest vibration
-    weights : (3,) of the forcings: the own one, and torques beyond that of pinion and gear [N m]
+    error : estimate of the largest relative error of the dynamic transmission error; None: not estimated
+    cycle_time : (i,) times that resolve the fastest vibration, with 0, the period and all switches [s]
+    cycle_states : (i, n) states at these times
+    weights : (3,) weights of the forcings, as of ``balanced_start``
     """
 
     system: LTVSystem
@@ -50,12 +50,12 @@ class PeriodicSolution:
 
     @cached_property
     def closure(self) -> float:
-        """Largest mismatch of state and state one cycle later, over the largest displacement or rate."""
+        """Largest difference of the states at both ends, over the largest displacement or rate."""
         return _closure(self.system, self.cycle_states)
 
     @property
     def over_cycle(self) -> tuple[FloatArray, FloatArray]:
-        """Map (n, n) of the states over the cycle, and (n, 3) by the own forcing, extra T_p and T_g."""
+        """Map of the states over the cycle (n, n), and the states that each forcing makes (n, 3)."""
         return self._maps.over_all
 
     @cached_property
@@ -73,15 +73,15 @@ class PeriodicSolution:
 
     @property
     def between(self) -> dict[str, float]:
-        """Variable -> how much of its peak to peak the times miss, with cubics between them [m]."""
+        """Part of the peak to peak of each variable that lies between the times and is missed there [m]."""
         times = np.append(self.time, self.system.period)
         states = np.vstack([self.states, self.states[:1]])
         seen = _peaks(self.system, times, states)
-        return {name: whole - seen[name] for name, whole in self.peak_to_peak.items()}
+        return {name: exact - seen[name] for name, exact in self.peak_to_peak.items()}
 
     @cached_property
     def energy_residual(self) -> float:
-        """Mean power that the normal loads leave, see ``StepMaps.energy_residual`` [W]."""
+        """Mean power of the normal loads that is no loss, see ``StepMaps.energy_residual`` [W]."""
         return self._maps.energy_residual(self.cycle_states[0], self.weights)
 
     @property
@@ -93,12 +93,9 @@ class PeriodicSolution:
 def periodic_solution(
     system: LTVSystem, times: FloatArray, *, estimate_error: bool = True, step_angle: float = STEP_ANGLE
 ) -> PeriodicSolution:
-    """Periodic motion at given times of the mesh cycle.
+    """Linear periodic motion of like teeth, at some times of the mesh cycle.
 
-    The map over one cycle has a defective double multiplier +1 (rigid rotation), so one torque must
-    balance: the brake torque, or, where the brake torque is given, the mean driving torque that holds the
-    speed. Bordering the map with that torque and with the position of the rigid rotation
-    (J_p theta_p / r_bp + J_g theta_g / r_bg = 0 at t = 0) makes it regular.
+    ``balanced_start`` gives the start, with J_p theta_p / r_bp + J_g theta_g / r_bg = 0 at t = 0.
 
     Parameters
     ----------
@@ -121,8 +118,8 @@ def periodic_solution(
         system=system,
         time=times,
         states=states,
-        pinion_torque=system.pinion_torque + float(weights[1]),
-        brake_torque=float(weights[2]),
+        pinion_torque=system.pinion_torque + float(weights[MORE_PINION_TORQUE]),
+        brake_torque=float(weights[BRAKE_TORQUE]),
         error=float(np.abs(dte[1] - dte[0]).max() / np.abs(dte[1]).max()) if estimate_error else None,
         cycle_time=maps.times,
         cycle_states=cycle,
@@ -132,79 +129,44 @@ def periodic_solution(
 
 
 def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "springs") -> PeriodicSolution:
-    """Periodic motion without error estimate, labels and provenance: half the time of ``steady_state``."""
+    """Linear periodic motion without error estimate and labels, in half the time of ``steady_state``."""
     system = LTVSystem.of(pair, "full", supports=supports)
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 
 def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str, float]:
-    """Peak to peak of the transmission error and of the translations."""
+    """Peak to peak of the transmission error and of the translations, by name [m]."""
     to = {"dte": system.structure.deflection} | dict(zip(COORDINATES[2:], np.eye(6)[2:], strict=True))
     z, rates = system.gear_motion(states)
     return {name: peak_to_peak(times, z @ v, rates @ v) for name, v in to.items()}
 
 
 def _closure(system: LTVSystem, states: FloatArray) -> float:
-    """Mismatch of the last and the first state; rotations count by their way on the base circle."""
+    """Relative difference of the last and the first state.
+
+    A rotation counts as a length on the base circle.
+    """
     radius = np.append(np.abs(system.structure.deflection[:2]), np.ones(4))
     z, rates = (part * radius for part in system.gear_motion(states))
     length = np.abs(z).max()
-    # A pair at rest but for rounding has no rate of its own to compare with.
+    # The rates of a pair at rest are rounding: the length over the period is the least scale of a rate.
     velocity = max(np.abs(rates).max(), length / system.period)
     return float(max(np.abs(z[-1] - z[0]).max() / length, np.abs(rates[-1] - rates[0]).max() / velocity))
 
 
 def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
-    """Largest modulus of the multipliers of the map phi (n, n) of a "full" system, rigid rotation left out.
+    """Largest modulus of the multipliers of a map phi (n, n) of the "full" system, without the rigid
+    rotation.
 
-    Nothing depends on the common rotation, so with S to the coordinates without it S phi = phi_rel S; any
-    right inverse R of S gives phi_rel = S phi R.
+    Nothing depends on the common rotation. With the matrix S to coordinates without the common rotation,
+    S phi = phi_rel S, and any right inverse R of S gives phi_rel = S phi R.
     """
     twice = np.eye(2)
     relative = np.kron(twice, system.supports.relative) @ phi @ np.kron(twice, system.supports.back)
     return float(np.abs(np.linalg.eigvals(relative)).max())
 
 
-def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Initial state (n,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
-    operating = system.pair.operating
-    n = system.size
-    brake = operating.brake_torque
-    unknown = 2 if brake == "balanced" else 1
-    known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
-    matrix = np.zeros((n + 1, n + 1))
-    matrix[:n, :n] = np.eye(n) - phi
-    matrix[:n, n] = -forced[:, unknown]
-    unit = system.supports.units
-    common = system.supports.common_weights
-    matrix[n, : common.size] = common
-    right = np.append(forced @ known, 0.0)
-    # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
-    rate = 1.0 / system.period
-    columns = np.concatenate([unit, unit * rate, [0.0]])
-    columns[n] = system.pinion_torque / _static(system)
-    rows = np.append(columns[:n], common[0] * unit[0])
-    scaled = matrix * columns / rows[:, None]
-    condition = float(np.linalg.cond(scaled))
-    if not condition < 1e13:
-        raise NumericalError(
-            f"No periodic motion at {operating.pinion_speed * 30 / np.pi:.6g} rpm "
-            f"(condition {condition:.1e}): a multiplier is at +1. Change the speed slightly or add damping."
-        )
-    solution = np.linalg.solve(scaled, right / rows) * columns
-    weights = known.copy()
-    weights[unknown] = solution[n]
-    return solution[:n], weights
-
-
-def _static(system: LTVSystem) -> float:
-    """Order of the static deflection [m], for scaling only."""
-    k = system.cycle.elements.stiffness
-    load = system.pinion_torque / abs(float(system.structure.deflection[0]))
-    return load / max(float(k(k.breaks[:-1]).max()), k.mean())
-
-
 def sample_times(period: float, samples: int) -> FloatArray:
-    """Evenly spaced times over one period, the end left out; (samples,) [s]."""
+    """Evenly spaced times (samples,) over one period, without its end [s]."""
     count = whole_number("samples_per_cycle", samples, 8, 65536)
     return np.asarray(np.arange(count) * (period / count), dtype=np.float64)

@@ -6,15 +6,16 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque"; docs/
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
-from lumped.arguments import one_of, some_of, whole_number
+from lumped.arguments import some_of, whole_number
 from lumped.errors import refuse
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import linear_motion
 from lumped.model.equations import PRINTED_EQUATIONS
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.periodic_system import Supports, supports_of
-from lumped.model.revolution_motion import Contact, default_samples, labelled_motion
+from lumped.model.revolution_motion import default_samples, labelled_motion
 from lumped.model.solution import steady_cycle
 from lumped.model.unilateral_motion import unilateral_motion
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -74,24 +75,27 @@ def steady_state(
         or one that settles too slowly
     """
     pair = load_gear_pair(pair)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     if samples_per_cycle is not None:
         samples_per_cycle = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
     check_printed(pair, contact, as_printed)
-    if contact == "linear" and pair.healthy is pair:
+    if form is MotionForm.LINEAR_LIKE_TEETH:
         return steady_cycle(
             pair, 512 if samples_per_cycle is None else samples_per_cycle, as_printed, supports
         )
     count = default_samples(period_of(pair)) if samples_per_cycle is None else samples_per_cycle
-    motion = (linear_motion if contact == "linear" else unilateral_motion)(pair, count, supports)
+    if form is MotionForm.LINEAR_OWN_TEETH:
+        motion = linear_motion(pair, count, supports)
+    else:
+        motion = unilateral_motion(pair, count, supports)
     return labelled_motion(motion, provenance(pair, samples_per_cycle=count, contact=contact))
 
 
 def check_printed(pair: AnyPair, contact: Contact, as_printed: Collection[int]) -> None:
     """Refuse printed signs where the equations are not those of the publication."""
     pair = load_gear_pair(pair)
-    printed = contact == "linear" and pair.healthy is pair
+    printed = motion_form(pair, contact) is MotionForm.LINEAR_LIKE_TEETH
     if not printed and some_of("as_printed", as_printed, PRINTED_EQUATIONS):
         allowed = "() with unilateral contact, and where teeth differ"
         raise refuse("as_printed", list(as_printed), allowed, "Use contact='linear' and pair.healthy.")

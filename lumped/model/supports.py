@@ -1,4 +1,4 @@
-"""What holds both gears: four springs, or elastic shafts; each gives coordinates, forces and powers.
+"""The supports of both gears: four springs, or elastic shafts. Each gives coordinates, forces and powers.
 
 Sources: docs/theory/equations.md, eqs. 6 to 9; docs/theory/shafts.md.
 """
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from lumped.model.equations import COORDINATES, Structure
+from lumped.model.equations import COORDINATES, X_P, Structure
 from lumped.schema.pair import GearPair
 from lumped.shafts.pair import shafted_pair
 from lumped.typing import FloatArray
@@ -29,12 +29,12 @@ class Coordinates:
     Attributes
     ----------
     names : (m,)
-    gears : (6, m) rows that make the six coordinates of z, up to the common rotation
-    reduction : (m, 6) takes accelerations of both gears by forces on them alone to those of z
-    stiffness, damping, gyroscopic : (m, m) with the teeth apart; the last over the speed of the pinion, and
-        part of the damping
-    torques : (2, m) per unit T_p and T_g
-    deflection : (m,) u with dynamic transmission error u . z
+    gears : (6, m) from z to the six coordinates, up to the common rotation
+    reduction : (m, 6) from accelerations of both gears by forces on the gears to accelerations of z
+    stiffness, damping : (m, m) with the teeth apart
+    gyroscopic : (m, m) gyroscopic part of the damping, over the speed of the pinion
+    torques : (2, m) accelerations per unit T_p and T_g
+    deflection : (m,) u, with the dynamic transmission error u . z
     """
 
     names: tuple[str, ...]
@@ -48,17 +48,19 @@ class Coordinates:
 
 
 class Supports(ABC):
-    """What holds both gears, in the m coordinates of the form "full".
+    """The supports of both gears, in the m coordinates of the form "full".
 
     Attributes
     ----------
-    name : of the member
-    places : where ``powers`` finds losses
+    name : value of the argument ``supports``
+    places : names of the losses of ``powers``
     bearing_names : (b,)
-    bearings : (b, 2, m) rows that make the displacement in each bearing along x and y
+    bearings : (b, 2, m) from z to the displacement in each bearing along x and y
     bearing_stiffness, bearing_dampers : (b, 2) [N/m], [N s/m]
-    relative, back : (m - 1, m) to coordinates without the common rotation, and (m, m - 1) a right inverse
-    common, common_weights : (m,) the motion of the common rotation, and what it is measured by
+    relative : (m - 1, m) from z to coordinates without the common rotation
+    back : (m, m - 1) a right inverse of ``relative``
+    common : (m,) motion of the common rotation
+    common_weights : (m,) weights whose scalar product with z measures the common rotation
     units : (m,) size of each coordinate where lengths are of order 1
     """
 
@@ -76,14 +78,14 @@ class Supports(ABC):
 
     @abstractmethod
     def coordinates(self, form: Form) -> Coordinates:
-        """The equations of a form, teeth apart."""
+        """Return the equations of a form, with the teeth apart."""
 
     @abstractmethod
     def powers(self, rates: FloatArray) -> dict[str, FloatArray]:
-        """Power that "bearings", and what else there is, take at rates (k, m), by place; (k,) [W]."""
+        """Losses at rates (k, m), by the names of ``places``; each (k,) [W]."""
 
     def labelled(self, run: xr.Dataset, states: FloatArray) -> xr.Dataset:
-        """The result of states (k, 2m) with what these supports alone have."""
+        """Return the result of states (k, 2m) with the variables that only these supports have."""
         return run.assign_attrs(supports=self.name)
 
     def bearing_forces(self, states: FloatArray) -> FloatArray:
@@ -93,11 +95,11 @@ class Supports(ABC):
         return np.asarray(-by_state @ states.T, dtype=np.float64)
 
     def forces_by_gear(self, states: FloatArray) -> dict[str, FloatArray]:
-        """Coordinate x_p to y_g -> sum of the bearing forces of this gear along it (k,) [N]."""
+        """Sum of the bearing forces of a gear along each coordinate x_p to y_g; (k,) [N]."""
         forces = self.bearing_forces(states)
         of_gear = np.array([name.startswith("gear") for name in self.bearing_names])
-        own = (forces[~of_gear].sum(axis=0), forces[of_gear].sum(axis=0))
-        return {COORDINATES[2 + 2 * d + which]: own[which][d] for d in (0, 1) for which in (0, 1)}
+        by_gear = (forces[~of_gear].sum(axis=0), forces[of_gear].sum(axis=0))
+        return {COORDINATES[2 + 2 * d + gear]: by_gear[gear][d] for d in (0, 1) for gear in (0, 1)}
 
 
 class Springs(Supports):
@@ -125,7 +127,7 @@ class Springs(Supports):
         self.common_weights = s.mass * self.common
 
     def coordinates(self, form: Form) -> Coordinates:
-        """Both rotations, or q = r_bp theta_p - r_bg theta_g; y only where they are asked for."""
+        """Return the equations: "full" has both rotations, the others q = r_bp theta_p - r_bg theta_g."""
         s = self.structure
         m = {"full": 6, "elastic": 5, "mesh": 3}[form]
         if form == "full":
@@ -136,7 +138,7 @@ class Springs(Supports):
             names = ("q", "x_p", "x_g", "y_p", "y_g")[:m]
             reduction = self.relative[:m]
             deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m]
-        # Bearings act on translations, which every form keeps as coordinates of their own.
+        # Bearings act on translations. Every translation of the form is a coordinate.
         lift = np.asarray(np.linalg.pinv(reduction), dtype=np.float64)
         return Coordinates(
             names=names,
@@ -150,12 +152,12 @@ class Springs(Supports):
         )
 
     def powers(self, rates: FloatArray) -> dict[str, FloatArray]:
-        """What the four dampers take."""
+        """Loss of the four dampers."""
         return {"bearings": np.einsum("km,m->k", rates**2, self.structure.damping)}
 
 
 class Shafts(Supports):
-    """Elastic shafts in their bearings, by their modes with the teeth apart; modal masses are 1."""
+    """Elastic shafts in their bearings, as modes with the teeth apart; modal masses are 1."""
 
     name = "shafts"
     places = ("bearings", "shafts")
@@ -172,37 +174,37 @@ class Shafts(Supports):
         self.relative = np.eye(m)[1:]
         self.back = np.eye(m)[:, 1:]
         self.common = self.common_weights = np.eye(m)[0]
-        self.units = np.full(m, np.sqrt(s.mass[2]))
+        self.units = np.full(m, np.sqrt(s.mass[X_P]))
 
     def coordinates(self, form: Form) -> Coordinates:
-        """All modes; without the common rotation but in "full", for gyroscopic moments couple y."""
+        """Return the equations of all modes. Only "full" has the common rotation."""
         modes = self.modes
-        kept = slice(0 if form == "full" else 1, None)
-        gears = modes.gears[:, kept]
+        shown = slice(0 if form == "full" else 1, None)
+        gears = modes.gears[:, shown]
         return Coordinates(
-            names=modes.names[kept],
+            names=modes.names[shown],
             gears=gears,
             reduction=gears.T * self.structure.mass,
-            stiffness=np.diag(modes.frequencies[kept] ** 2),
-            damping=(modes.damping + self.speed * modes.gyroscopic)[kept, kept],
-            gyroscopic=modes.gyroscopic[kept, kept],
-            torques=np.stack([modes.torque_pinion[kept], modes.torque_gear[kept]]),
-            deflection=modes.deflection[kept],
+            stiffness=np.diag(modes.frequencies[shown] ** 2),
+            damping=(modes.damping + self.speed * modes.gyroscopic)[shown, shown],
+            gyroscopic=modes.gyroscopic[shown, shown],
+            torques=np.stack([modes.torque_pinion[shown], modes.torque_gear[shown]]),
+            deflection=modes.deflection[shown],
         )
 
     def powers(self, rates: FloatArray) -> dict[str, FloatArray]:
-        """What the dashpots of the bearings, then the shafts with their couplings take."""
+        """Losses of the dashpots of the bearings, and of the shafts with their couplings."""
         inside = self.modes.modal_damping + self.modes.coupling_damping
         taken = {"bearings": self.modes.bearing_damping, "shafts": inside}
         return {place: np.sum((rates @ c) * rates, axis=1) for place, c in taken.items()}
 
     def labelled(self, run: xr.Dataset, states: FloatArray) -> xr.Dataset:
-        """With the force of every bearing on its shaft."""
+        """Return the result with the force of every bearing on its shaft."""
         forces = self.bearing_forces(states)
         variable = ("bearing", "direction", "time"), forces, {"units": "N", "long_name": "force on the shaft"}
         run = super().labelled(run, states).assign(bearing_force=variable)
         return run.assign_coords(bearing=list(self.bearing_names), direction=["loa", "oloa"])
 
 
-#: Name of the argument ``supports`` -> what it stands for.
+#: Value of the argument ``supports`` -> its class.
 SUPPORTS: dict[str, type[Springs] | type[Shafts]] = {kind.name: kind for kind in (Springs, Shafts)}

@@ -7,19 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import one_of, real_numbers
+from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
-from lumped.model.revolution_motion import Contact
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import steady_state
 from lumped.path_of_contact import friction_path_function
@@ -32,17 +32,18 @@ from lumped.typing import FloatArray, Progress
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Curves that are resolved: each group is drawn on one axis.
+#: Curves that the speeds shall resolve; each group is drawn on one axis.
 _DRAWN = (("dte_peak_to_peak",), ("normal_load_max", "normal_load_min"))
-#: Largest distance of a straight line between neighbours from the curve, over the height of its axis.
+#: Largest distance between the curve and the straight line through two neighbours, over the height of the
+#: axis.
 _TOLERANCE = 0.003
-#: Neighbours are no nearer than this share of their speed.
+#: Least distance of two speeds over the speed.
 _FINEST = 1e-4
-#: The first speeds are at least this share of their speed apart: no resonance is narrower.
+#: Least distance of two of the first speeds over the speed: no resonance is narrower.
 _APART = 3e-3
-#: Mesh orders whose meeting with a natural frequency is a first sample.
+#: Mesh orders that may excite a natural frequency at one of the first speeds.
 _ORDERS = 6
-#: Share of the speeds that is spent before looking at the curves.
+#: Share of the speeds that are chosen before the curves are known.
 _FIRST = 0.3
 
 
@@ -79,7 +80,7 @@ def speed_sweep(
     ParameterError : a speed or the number of samples is out of range, before any work starts
     """
     pair = load_gear_pair(pair)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     speeds = running_speeds(speeds_rpm)
     pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
@@ -96,7 +97,7 @@ def speed_sweep(
         )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
-    if contact == "linear" and pair.healthy is pair:
+    if form is MotionForm.LINEAR_LIKE_TEETH:
         motions = _linear_motions(pairs, supports, samples_per_cycle)
     else:
         motions = _motions(pairs, contact, supports, samples_per_cycle)
@@ -110,8 +111,9 @@ def speed_sweep(
         for name in names:
             table[f"{name}_peak_to_peak"][j] = numbers[f"{name}_peak_to_peak"]
             table[f"{name}_rms"][j] = np.std(run[name])
-        found = load_range(pair, run["normal_load"], run["contact"])
-        table["normal_load_max"][j], table["normal_load_min"][j] = found
+        loads = load_range(pair, run["normal_load"], run["contact"])
+        table["normal_load_max"][j] = loads[0]
+        table["normal_load_min"][j] = loads[1]
         table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
         for name in ("mesh_efficiency", "spectral_radius"):
             table[name][j] = numbers[name]
@@ -129,12 +131,12 @@ def speed_sweep(
     )
 
 
-#: A periodic motion: variables of ``VARIABLES`` and numbers as of the attributes of ``steady_state``.
+#: A periodic motion: variables of ``VARIABLES``, and numbers of the attributes of ``steady_state``.
 _Motion = tuple[Mapping[str, FloatArray], Mapping[str, float]]
 
 
 def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int) -> Iterator[_Motion | None]:
-    """Linear motions of like teeth; None where there is none."""
+    """Yield the linear motions of like teeth; None at a speed without periodic motion."""
     for system in systems_over_speed(pairs, supports):
         try:
             solution = periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
@@ -149,14 +151,14 @@ def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int)
 def _motions(
     pairs: Iterable[GearPair], contact: Contact, supports: Supports, samples: int
 ) -> Iterator[_Motion | None]:
-    """Motions of `lumped.steady_state`; None where there is none."""
+    """Yield the motions of `lumped.steady_state`; None at a speed without periodic motion."""
     for pair in pairs:
         try:
-            found = steady_state(pair, contact=contact, supports=supports, samples_per_cycle=samples)
+            result = steady_state(pair, contact=contact, supports=supports, samples_per_cycle=samples)
         except NumericalError:
             yield None
             continue
-        yield {str(name): values.to_numpy() for name, values in found.data_vars.items()}, found.attrs
+        yield {str(name): values.to_numpy() for name, values in result.data_vars.items()}, result.attrs
 
 
 def _label(name: str) -> tuple[str, str]:
@@ -169,19 +171,19 @@ def _label(name: str) -> tuple[str, str]:
 def systems_over_speed(
     pairs: Iterable[GearPair], supports: Supports = "springs", *, warn: bool = True
 ) -> Iterator[LTVSystem]:
-    """Systems of pairs that differ in speed alone: of the element laws only friction changes with it.
+    """Yield the systems of pairs that differ in speed alone. Only the friction law changes with the speed.
 
-    ``warn``: whether of friction laws outside their range at any speed, not at the first one alone.
+    ``warn``: whether to warn at every speed of friction laws outside their range, or at the first speed only.
     """
     elements: MeshElements | None = None
-    for at in pairs:
-        g = at.geometry
+    for pair in pairs:
+        g = pair.geometry
         if elements is None:
-            elements = MeshCycle.of(at).elements
+            elements = MeshCycle.of(pair).elements
         else:
-            friction = friction_path_function(at, interval=elements.stiffness.interval, warn=warn)
+            friction = friction_path_function(pair, interval=elements.stiffness.interval, warn=warn)
             elements = replace(elements, friction=friction)
-        yield LTVSystem.of(at, "full", cycle=MeshCycle(g, elements), supports=supports)
+        yield LTVSystem.of(pair, "full", cycle=MeshCycle(g, elements), supports=supports)
 
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
@@ -214,18 +216,18 @@ def resolved_sweep(
     import xarray as xr
 
     new = _first_speeds(pair, speeds_rpm, max(int(_FIRST * most), 2))[:most]
-    found: xr.Dataset | None = None
+    sweep: xr.Dataset | None = None
     done = 0
     while new.size:
         tell = None if progress is None else _part(progress, done / most, new.size / most)
-        part = speed_sweep(pair, np.sort(new), samples_per_cycle=samples_per_cycle, progress=tell)
-        found = part if found is None else xr.concat([found, part], "speed").sortby("speed")
-        done = found.sizes["speed"]
-        new = _halved(found)[: most - done]
-    assert found is not None  # two speeds at least
+        new_speeds = speed_sweep(pair, np.sort(new), samples_per_cycle=samples_per_cycle, progress=tell)
+        sweep = new_speeds if sweep is None else xr.concat([sweep, new_speeds], "speed").sortby("speed")
+        done = sweep.sizes["speed"]
+        new = _halved(sweep)[: most - done]
+    assert sweep is not None  # two speeds at least
     if progress is not None:
         progress(1.0)
-    return found
+    return sweep
 
 
 def _part(progress: Progress, first: float, share: float) -> Progress:
@@ -242,13 +244,13 @@ def _first_speeds(pair: GearPair, ends: tuple[float, float], count: int) -> Floa
     places = np.divide.outer(resonances, np.arange(1, _ORDERS + 1)).T.ravel()
     # Resonances are wider the faster the pair runs, so steps grow with the root of speed.
     between = np.linspace(low**0.5, high**0.5, count)[1:-1] ** 2
-    own = pair.operating.pinion_speed * 30.0 / np.pi
-    wanted = np.concatenate([[low, high, own], places, between])
-    kept: list[float] = []
+    operating_speed = pair.operating.pinion_speed * 30.0 / np.pi
+    wanted = np.concatenate([[low, high, operating_speed], places, between])
+    speeds: list[float] = []
     for speed in wanted[(wanted >= low) & (wanted <= high)]:
-        if all(abs(speed - other) > _APART * speed for other in kept):
-            kept.append(float(speed))
-    return np.array(kept)
+        if all(abs(speed - other) > _APART * speed for other in speeds):
+            speeds.append(float(speed))
+    return np.array(speeds)
 
 
 def _halved(sweep: xr.Dataset) -> FloatArray:
@@ -262,9 +264,9 @@ def _halved(sweep: xr.Dataset) -> FloatArray:
         height = float(np.nanmax(curves) - min(np.nanmin(curves), 0.0))
         for curve in curves:
             distance = np.maximum(distance, _straight_line_error(speed, curve) / (height or 1.0))
-    wide = np.diff(speed) > 2.0 * _FINEST * speed[1:]
+    not_too_close = np.diff(speed) > 2.0 * _FINEST * speed[1:]
     worst = np.argsort(-distance, kind="stable")
-    worst = worst[(distance[worst] > _TOLERANCE) & wide[worst]]
+    worst = worst[(distance[worst] > _TOLERANCE) & not_too_close[worst]]
     return np.asarray(0.5 * (speed[worst] + speed[worst + 1]))
 
 

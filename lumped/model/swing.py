@@ -1,6 +1,4 @@
-"""How far the common rotation swings under eccentric gears and ripples of the torques.
-
-The contact follows this swing.
+"""The swing of the common rotation under eccentric gears and ripples of the torques. The contacts follow it.
 
 Sources: docs/theory/teeth.md, "Eccentricity".
 """
@@ -16,7 +14,7 @@ from lumped.mesh.tables import RIPPLES, MeshTables
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray
 
-#: Largest swing over the base pitch: the contact follows it to first order.
+#: Largest swing over the base pitch, because the contact follows the swing to first order only.
 _MOST_SWING = 0.25
 
 
@@ -26,20 +24,21 @@ def moments(system: LTVSystem) -> FloatArray:
 
 
 def swinging(tables: MeshTables, system: LTVSystem) -> MeshTables:
-    """Tables whose contact follows the common rotation as eccentric gears and ripples of torques swing it.
+    """Return tables with the swing of the common rotation per amplitude of each TURNING.
 
-    ``system`` is the "full" one. F de/dphi = -F eps sin turns the free train by + sin/omega^2, A cos by -cos.
+    The gears are free in the common rotation: a moment -F eps sin(omega t) turns them by + sin/omega^2, a
+    torque A cos(omega t) by -cos/omega^2. ``system`` is the "full" one.
     """
     g = system.pair.geometry
     support = system.supports
     theta = system.gears[:2] @ support.common / float(support.common_weights @ support.common)
-    way = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
+    on_base_circles = 0.5 * float(np.array([g.base_radius_pinion, g.base_radius_gear]) @ theta)
     turning = tables.turning.copy()
     omega = 2.0 * math.pi / (turning["cycles"] * tables.duration)
     by_moment = tables.law.force * (moments(system) @ support.common_weights)
     torques = np.stack([system.torque_pinion, system.torque_gear])[:, support.common_weights.size :]
     by_torque = (torques @ support.common_weights)[turning["shaft"][RIPPLES:].astype(np.int64)]
-    turning["swing"] = way * np.append(by_moment, by_torque) / omega**2
+    turning["swing"] = on_base_circles * np.append(by_moment, by_torque) / omega**2
     swing = float(np.abs(turning["swing"] * turning["amplitude"]).sum())
     most = _MOST_SWING * g.base_pitch
     if swing > most:
@@ -55,9 +54,9 @@ def swinging(tables: MeshTables, system: LTVSystem) -> MeshTables:
 
 
 def swing(tables: MeshTables, time: FloatArray) -> FloatArray:
-    """Common rotation that the contact follows, at times (k,) [m]; tables of ``swinging``."""
-    moved = np.zeros(time.size)
+    """Swing of the contacts over xi, at times (k,) [m]; ``tables`` are those of ``swinging``."""
+    rotation = np.zeros(time.size)
     for shaft in tables.turning:
         turn = 2.0 * np.pi * time / (tables.duration * shaft["cycles"]) + shaft["start"]
-        moved += shaft["amplitude"] * shaft["swing"] * np.sin(turn)
-    return moved
+        rotation += shaft["amplitude"] * shaft["swing"] * np.sin(turn)
+    return rotation

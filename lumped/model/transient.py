@@ -7,19 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.arguments import one_of, whole_number
+from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
+from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
-from lumped.model.revolution_motion import Contact, RevolutionMotion, Touch, labelled_motion
+from lumped.model.revolution_motion import RevolutionMotion, Touch, labelled_motion
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import check_printed
@@ -32,7 +33,7 @@ from lumped.typing import Progress
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Mesh cycles between two words on progress.
+#: Mesh cycles between two calls of ``progress``.
 _BLOCK = 200
 
 
@@ -82,18 +83,18 @@ def simulate(
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
     samples = whole_number("samples_per_cycle", samples_per_cycle, 8, 65536)
-    one_of("contact", contact, get_args(Contact))
+    form = motion_form(pair, contact)
     supports = supports_of(pair, supports)
     check_printed(pair, contact, as_printed)
-    if contact == "linear" and pair.healthy is pair:
+    if form is MotionForm.LINEAR_LIKE_TEETH:
         return transient(pair, cycles, samples, initial, as_printed, supports, progress)
-    motion = _linear_run if contact == "linear" else _unilateral_run
-    given = initial if isinstance(initial, str) else "given"
-    attributes = provenance(pair, cycles=cycles, samples_per_cycle=samples, initial=given, contact=contact)
-    found = motion(pair, cycles, samples, initial, supports, progress)
-    if not np.isfinite(found.states).all():
+    motion = _linear_run if form is MotionForm.LINEAR_OWN_TEETH else _unilateral_run
+    start = initial if isinstance(initial, str) else "given"
+    attributes = provenance(pair, cycles=cycles, samples_per_cycle=samples, initial=start, contact=contact)
+    run_motion = motion(pair, cycles, samples, initial, supports, progress)
+    if not np.isfinite(run_motion.states).all():
         raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")
-    return labelled_motion(found, attributes, periodic=False)
+    return labelled_motion(run_motion, attributes, periodic=False)
 
 
 def _linear_run(
@@ -104,7 +105,7 @@ def _linear_run(
     supports: Supports,
     progress: Progress | None,
 ) -> RevolutionMotion:
-    """Motion of the linear form of teeth that differ: like teeth, plus what own teeth change."""
+    """Linear motion of teeth that differ: the motion of like teeth, plus what the deviations change."""
     steady = linear_motion(pair, samples, supports)
     system = steady.system
     form = CycleSteps(pair, system, samples, linear_steps(system))
@@ -117,23 +118,23 @@ def _linear_run(
     loads = []
     stiffness = []
     for cycle in range(cycles + 1):
-        own, own_end = stepped_run(form, cycle, 1, own_end, weights)
-        same, like_end = stepped_run(like, cycle, 1, like_end, weights)
+        with_own, own_end = stepped_run(form, cycle, 1, own_end, weights)
+        with_like, like_end = stepped_run(like, cycle, 1, like_end, weights)
         twin = maps.states(twin_end, weights)
         twin_end = twin[-1]
-        states.append(own[0] + (twin[:-1] - same[0]))
+        states.append(with_own[0] + (twin[:-1] - with_like[0]))
         load, of_mesh = loads_of(form, steady.tables, cycle % steady.period, states[-1])
         loads.append(load)
         stiffness.append(of_mesh)
         if progress is not None:
             progress(min((cycle + 1) / cycles, 1.0))
-    kept = cycles * samples + 1
+    count = cycles * samples + 1
     return replace(
         steady,
-        time=np.asarray(np.arange(kept) * (system.period / samples), dtype=np.float64),
-        states=np.concatenate(states)[:kept],
-        load=np.concatenate(loads, axis=1)[:, :kept],
-        stiffness=np.concatenate(stiffness)[:kept],
+        time=np.asarray(np.arange(count) * (system.period / samples), dtype=np.float64),
+        states=np.concatenate(states)[:count],
+        load=np.concatenate(loads, axis=1)[:, :count],
+        stiffness=np.concatenate(stiffness)[:count],
     )
 
 
@@ -145,7 +146,7 @@ def _unilateral_run(
     supports: Supports,
     progress: Progress | None,
 ) -> RevolutionMotion:
-    """Motion by momentary load under the torques of the periodic motion, or of the linear one."""
+    """Motion by momentary load, under the torques of the periodic motion, else of the linear motion."""
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
     periodic = isinstance(initial, str) and initial == "periodic"
     try:
@@ -161,31 +162,31 @@ def _unilateral_run(
     # One cycle more gives the end of the last one.
     for first in range(0, cycles + 1, _BLOCK):
         count = min(_BLOCK, cycles + 1 - first)
-        found = run(pair, steady.tables, system, first, count, count, state, torques)
-        states.append(found.states)
-        loads.append(found.loads)
-        state = found.end
+        block = run(pair, steady.tables, system, first, count, count, state, torques)
+        states.append(block.states)
+        loads.append(block.loads)
+        state = block.end
         if progress is not None:
             progress(min((first + count) / cycles, 1.0))
-    kept = cycles * samples + 1
+    outputs = cycles * samples + 1
     return replace(
         steady,
-        time=np.asarray(np.arange(kept) * (system.period / samples), dtype=np.float64),
-        states=np.concatenate(states)[:kept],
-        load=np.concatenate(loads, axis=1)[:, :kept],
+        time=np.asarray(np.arange(outputs) * (system.period / samples), dtype=np.float64),
+        states=np.concatenate(states)[:outputs],
+        load=np.concatenate(loads, axis=1)[:, :outputs],
         origin=None,
     )
 
 
 def _linear_balance(pair: GearPair, system: LTVSystem, samples: int) -> RevolutionMotion:
-    """The linear motion of like teeth: its torques stand in where there is no other periodic motion."""
+    """Return the linear motion of like teeth, whose torques are used where no unilateral motion is found."""
     linear = periodic_solution(system, np.zeros(1), estimate_error=False)
     tables = momentary_tables(ToothLaws(pair), system, 1.0 / steps_of(system), samples)
     return RevolutionMotion(
         pair=pair,
         system=system,
         tables=tables,
-        touch=Touch.WINDOWS if tables.law.windows else Touch.MOMENTARY,
+        touch=Touch.WINDOWS if tables.law.prescribed else Touch.MOMENTARY,
         time=linear.time,
         states=linear.states,
         load=np.zeros((tables.ahead.size, 1)),

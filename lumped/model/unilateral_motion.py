@@ -1,7 +1,11 @@
-"""Periodic motion with unilateral contact that follows the momentary load: near the linear one, or settled.
+"""Periodic motion with unilateral contact, in which stiffness and dampers follow the momentary load.
 
-Of like teeth `Shooting` closes one mesh cycle, or up to eight, by Broyden's method; of teeth that differ a
-run settles. With prescribed contact teeth push in its fixed windows.
+- Like teeth: `Shooting` closes one mesh cycle, or up to eight, by Broyden's method, from the linear motion.
+  Where this gives no stable motion, a run settles, and Broyden's method closes the motion that the run comes
+  to.
+- Teeth that differ: a run settles until its start has faded (`settled_motion`).
+
+With prescribed contact teeth push in fixed windows of the path.
 
 Sources: docs/theory/teeth.md, "Motion"; docs/theory/validity.md, "Prediction".
 """
@@ -20,7 +24,6 @@ import numpy as np
 from lumped.errors import NumericalError
 from lumped.mesh.motion import Run
 from lumped.mesh.tables import MeshTables
-from lumped.model.closing import Closed, close_period
 from lumped.model.momentary_load import (
     mean_powers,
     momentary_tables,
@@ -28,6 +31,7 @@ from lumped.model.momentary_load import (
     steps_of,
     without_drift,
 )
+from lumped.model.period_closure import Closed, close_period
 from lumped.model.periodic_system import LTVSystem, Supports
 from lumped.model.revolution_motion import Origin, RevolutionMotion, Touch
 from lumped.model.solution import static_deflection
@@ -36,30 +40,30 @@ from lumped.model.tooth_laws import ToothLaws
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-#: What may be left at the end of the period, over the size of the unknowns; with steps twice as long; and
-#: what is taken for closed where rounding lets no less be reached.
+#: Mismatch at the end of the period, over the size of the unknowns, that counts as closed; the same with
+#: steps twice as long; and what still counts as closed where rounding allows no less.
 _CLOSED = 1e-10
 _NEARLY_CLOSED = 1e-5
 _ACCEPTED = 1e-8
-#: Differences for derivatives, over the size of each unknown.
+#: Change of an unknown, over its size, for derivatives by differences.
 _DIFFERENCE = 1e-4
 #: Size of the change of the torque over the torque.
 _OF_TORQUE = 1e-3
-#: A disturbance of which less is left after a cycle has no derivatives of its own: the torque alone has.
+#: Spectral radius below which a disturbance fades within a cycle: the states then need no derivatives.
 _FADED = 1e-3
-#: A motion found has a peak to peak within this share of that of the run which settles to it.
-_NEAR = 0.3
-#: Mesh cycles of the first run to settle, of which each next one has twice as many; how many runs; mesh
-#: cycles of the longest motion that is looked for, and at how many times as many a run is looked at.
+#: A motion belongs to the run that settles if both have the same peak to peak within this share.
+_SAME_SWING = 0.3
+#: Mesh cycles of the first run that settles; each next run has twice as many. Most runs.
 _SETTLING = 400
 _RUNS = 5
+#: Mesh cycles of the longest motion that is sought. A run is compared with itself over so many times as many.
 _MOST_CYCLES = 8
-_LOOKED = 8
-#: Relative change after so many cycles that is called a repetition; outputs in a cycle of such a run.
+_COMPARED = 8
+#: Relative change after some cycles that counts as a repetition; outputs in a cycle of a run that settles.
 _REPEATS = 1e-6
 _OUTPUTS = 16
-#: Of teeth that differ: what a start is to have faded to before it is recorded, most cycles for that, and the
-#: largest mismatch after the period, over the largest displacement, that is called periodic.
+#: Teeth that differ: share of a start that may remain when the record begins, most cycles for that, and
+#: largest mismatch after the period, over the largest displacement, that counts as periodic.
 _START_FADED = 1e-11
 _MOST_SETTLING = 20_000
 _CALLED_CLOSED = 1e-4
@@ -67,18 +71,18 @@ _CALLED_CLOSED = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Shooting:
-    """Mesh cycles of like teeth from unknowns at their start.
+    """The search for a periodic motion of like teeth: runs over mesh cycles from unknowns at their start.
 
-    Unknowns (2m - 1,) are the state without the common rotation and the torque that balances: of the brake,
-    or of the drive where the brake torque is given.
+    The unknowns (2m - 1,) are the state without the common rotation, and the torque that balances: the brake
+    torque or, where the file gives the brake torque, the driving torque.
 
     Attributes
     ----------
-    pair : teeth alike
-    system : the "full" one
-    laws : of the tooth pairs
+    pair : gear pair with like teeth
+    system : the "full" system of the pair
+    laws : laws of the tooth pairs
     samples : outputs in a mesh cycle
-    cycles : mesh cycles after which the motion is to repeat
+    cycles : mesh cycles after which the motion shall repeat
     """
 
     pair: GearPair
@@ -89,55 +93,57 @@ class Shooting:
 
     @classmethod
     def of(cls, pair: GearPair, samples: int, supports: Supports) -> Self:
-        """Of one mesh cycle of a pair on its supports."""
+        """Return the search for a motion that repeats with every mesh cycle."""
         return cls(pair, LTVSystem.of(pair, "full", supports=supports), ToothLaws(pair), samples)
 
     @cached_property
     def step(self) -> float:
-        """Largest step in mesh cycles."""
+        """Largest step of the integration, in mesh cycles."""
         return 1.0 / steps_of(self.system)
 
     def tables_of(self, step: float, outputs: int) -> MeshTables:
-        """Tables of the contact over the mesh cycles."""
+        """Tables of the contact with steps of at most so many mesh cycles, and so many outputs in a cycle."""
         return momentary_tables(self.laws, self.system, step, outputs)._replace(period=self.cycles)
 
     @cached_property
     def every(self) -> int:
-        """Outputs of ``tables`` to one of ``coarse``."""
+        """Number of outputs of ``tables`` for one output of ``coarse``."""
         return next((n for n in (2, 3, 5, 7) if self.samples % n == 0), self.samples)
 
     @cached_property
     def tables(self) -> MeshTables:
-        """With the steps of the motion."""
+        """Tables with the steps of the motion."""
         return self.tables_of(self.step, self.samples)
 
     @cached_property
     def coarse(self) -> MeshTables:
-        """With steps twice as long, for derivatives and the error."""
+        """Tables with steps twice as long, for derivatives and for the error."""
         return self.tables_of(2.0 * self.step, self.samples // self.every)
 
     @cached_property
-    def both(self) -> tuple[FloatArray, FloatArray]:
-        """Matrices to states without the common rotation, and back."""
-        support = self.system.supports
-        twice = np.eye(2)
-        to, back = (np.kron(twice, one) for one in (support.relative, support.back))
-        return np.asarray(to, dtype=np.float64), np.asarray(back, dtype=np.float64)
+    def to_relative(self) -> FloatArray:
+        """Matrix (2m - 2, 2m) from states to states without the common rotation."""
+        return np.asarray(np.kron(np.eye(2), self.system.supports.relative), dtype=np.float64)
+
+    @cached_property
+    def from_relative(self) -> FloatArray:
+        """Matrix (2m, 2m - 2) back to all states; the common rotation becomes 0."""
+        return np.asarray(np.kron(np.eye(2), self.system.supports.back), dtype=np.float64)
 
     def torques(self, unknowns: FloatArray) -> tuple[float, float]:
-        """Mean torques of drive and brake [N m]."""
+        """Mean torques of drive and brake [N m] that belong to the unknowns."""
         operating = self.pair.operating
         if operating.brake_torque == "balanced":
             return operating.pinion_torque, float(unknowns[-1])
         return float(unknowns[-1]), float(operating.brake_torque)
 
     def unknowns(self, state: FloatArray, driving: float, brake: float) -> FloatArray:
-        """Unknowns of a state (2m,) under torques."""
+        """Unknowns that belong to a state (2m,) and the torques of drive and brake [N m]."""
         balanced = self.pair.operating.brake_torque == "balanced"
-        return np.append(self.both[0] @ state, brake if balanced else driving)
+        return np.append(self.to_relative @ state, brake if balanced else driving)
 
     def at_rest(self) -> FloatArray:
-        """Unknowns of the static deflection under the mean torques."""
+        """Unknowns that belong to the static deflection under the mean torques."""
         operating = self.pair.operating
         ratio = self.pair.gear.teeth / self.pair.pinion.teeth
         return self.unknowns(
@@ -147,117 +153,136 @@ class Shooting:
     def run(
         self, unknowns: FloatArray, tables: MeshTables, rate: float = 0.0, cycles: int = 0, recorded: int = 0
     ) -> tuple[FloatArray, Run]:
-        """First state (2m,), with a rate of the common rotation, and the run over the mesh cycles."""
+        """Run over mesh cycles from unknowns; returns the state (2m,) at the start and the run.
+
+        Parameters
+        ----------
+        unknowns, tables : start, and tables with the steps
+        rate : rate of the common rotation at the start
+        cycles, recorded : mesh cycles, and the last ones that are recorded; 0: as many as the motion has
+        """
         system = self.system
         driving, brake = self.torques(unknowns)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         common = system.supports.common
-        state = self.both[1] @ unknowns[:-1] + np.append(np.zeros(common.size), rate * common)
+        state = self.from_relative @ unknowns[:-1] + np.append(np.zeros(common.size), rate * common)
         count = cycles or self.cycles
         return state, run(self.pair, tables, system, 0, count, recorded or count, state, torques)
 
-    def left(self, unknowns: FloatArray, tables: MeshTables) -> tuple[FloatArray, Run]:
-        """What is left after the cycles: of the state, and of the rate of the common rotation."""
-        state, found = self.run(unknowns, tables)
-        moved = found.end - state
+    def mismatch(self, unknowns: FloatArray, tables: MeshTables) -> tuple[FloatArray, Run]:
+        """Change of state and weighted rate of the common rotation over the cycles; and the run."""
+        state, period_run = self.run(unknowns, tables)
+        change = period_run.end - state
         weights = self.system.supports.common_weights
-        return np.append(self.both[0] @ moved, weights @ moved[weights.size :]), found
+        return np.append(self.to_relative @ change, weights @ change[weights.size :]), period_run
 
     def scales(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Sizes of the unknowns, and of what is left."""
-        way, rate = np.abs(unknowns[:-1]).reshape(2, -1).max(axis=1)
-        rate = max(rate, way / self.system.period)
-        of_states = np.repeat([way, rate], unknowns.size // 2)
+        """Sizes of the unknowns (2m - 1,), and sizes of the entries of the mismatch (2m - 1,)."""
+        displacement, rate = np.abs(unknowns[:-1]).reshape(2, -1).max(axis=1)
+        rate = max(rate, displacement / self.system.period)
+        of_states = np.repeat([displacement, rate], unknowns.size // 2)
         support = self.system.supports
         sizes = np.append(of_states, _OF_TORQUE * abs(unknowns[-1]))
         return sizes, np.append(of_states, rate * float(support.common_weights @ support.common))
 
     def linear_derivatives(self, linear: PeriodicSolution, unknowns: FloatArray) -> FloatArray:
-        """Of what is left by the unknowns, both over their scales, by the maps of the linear motion."""
-        (sizes, of_left), (to, back) = self.scales(unknowns), self.both
+        """Derivatives of the mismatch by the unknowns, over their scales, by the linear motion's maps."""
+        sizes, of_mismatch = self.scales(unknowns)
         phi, forced = linear.over_cycle
         weights = self.system.supports.common_weights
         torque = 2
         if self.pair.operating.brake_torque != "balanced":
             torque = 1
-        left = np.vstack([to, np.append(np.zeros(weights.size), weights)])
-        slopes = np.column_stack([(left @ (phi - np.eye(phi.shape[0]))) @ back, left @ forced[:, torque]])
-        return np.asarray(slopes * sizes / of_left[:, None], dtype=np.float64)
+        to_mismatch = np.vstack([self.to_relative, np.append(np.zeros(weights.size), weights)])
+        by_state = (to_mismatch @ (phi - np.eye(phi.shape[0]))) @ self.from_relative
+        by_torque = to_mismatch @ forced[:, torque]
+        slopes = np.column_stack([by_state, by_torque])
+        return np.asarray(slopes * sizes / of_mismatch[:, None], dtype=np.float64)
 
     def derivatives(self, unknowns: FloatArray, all_states: bool = True) -> FloatArray:
-        """Of what is left by the unknowns, both over their scales, by steps twice as long."""
-        sizes, of_left = self.scales(unknowns)
-        about = self.left(unknowns, self.coarse)[0]
+        """Derivatives of the mismatch by the unknowns, both over their scales, by differences.
+
+        The runs have steps twice as long. Without ``all_states`` only the torque is changed, and the states
+        count as faded over the period.
+        """
+        sizes, of_mismatch = self.scales(unknowns)
+        unchanged = self.mismatch(unknowns, self.coarse)[0]
         slopes = -np.eye(unknowns.size)
         for j in range(0 if all_states else unknowns.size - 1, unknowns.size):
-            moved = unknowns + _DIFFERENCE * sizes * (np.arange(unknowns.size) == j)
-            slopes[:, j] = (self.left(moved, self.coarse)[0] - about) / _DIFFERENCE / of_left
+            changed = unknowns + _DIFFERENCE * sizes * (np.arange(unknowns.size) == j)
+            slopes[:, j] = (self.mismatch(changed, self.coarse)[0] - unchanged) / _DIFFERENCE / of_mismatch
         return slopes
 
     def closed(self, unknowns: FloatArray, slopes: FloatArray) -> Closed[Run]:
-        """Unknowns near these that close the period, found from derivatives that may be rough.
+        """Close the period by Broyden's method, from unknowns and derivatives that may be rough.
+
+        The first steps run with integration steps twice as long, the last ones with those of the motion.
 
         Raises
         ------
-        NumericalError : there are none
+        NumericalError : no unknowns close the period
         """
-        sizes, of_left = self.scales(unknowns)
+        sizes, of_mismatch = self.scales(unknowns)
 
         def over(tables: MeshTables) -> Callable[[FloatArray], tuple[FloatArray, Run]]:
-            def over_period(one: FloatArray) -> tuple[FloatArray, Run]:
-                left, found = self.left(one, tables)
-                return left / of_left, found
+            def over_period(start: FloatArray) -> tuple[FloatArray, Run]:
+                mismatch, period_run = self.mismatch(start, tables)
+                return mismatch / of_mismatch, period_run
 
             return over_period
 
-        # Half of the way by steps twice as long.
-        near = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED)
-        if near.left > _NEARLY_CLOSED:
+        rough = close_period(over(self.coarse), unknowns, sizes, slopes, closed=_NEARLY_CLOSED)
+        if rough.mismatch > _NEARLY_CLOSED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
-        found = close_period(over(self.tables), near.unknowns, sizes, near.derivatives, closed=_CLOSED)
-        if found.left > _ACCEPTED:
+        fine = close_period(over(self.tables), rough.unknowns, sizes, rough.derivatives, closed=_CLOSED)
+        if fine.mismatch > _ACCEPTED:
             raise NumericalError("No periodic motion that follows the momentary load is near this one.")
-        return found
+        return fine
 
-    def motion(self, found: Closed[Run], radius: float = 1.0) -> RevolutionMotion:
-        """The motion from unknowns that close the period; ``radius`` is that of a motion near by."""
+    def motion(self, closed: Closed[Run], radius: float = 1.0) -> RevolutionMotion:
+        """Return the motion of unknowns that close the period.
+
+        ``radius`` is the spectral radius of a motion close by. If a disturbance fades within a cycle there,
+        it is taken; else the spectral radius is computed.
+        """
         system = self.system
         support = self.system.supports
         m = support.common_weights.size
         weights = support.common_weights
         if radius >= _FADED:
-            slopes = self.derivatives(found.unknowns)[:-1, :-1]
+            slopes = self.derivatives(closed.unknowns)[:-1, :-1]
             radius = float(np.abs(np.linalg.eigvals(slopes + np.eye(2 * m - 2))).max())
-        # Powers are those of the mean speed: from a common rate whose mean vanishes.
-        way = found.passed.end[:m] - found.passed.states[0, :m]
-        rate = float(weights @ way) / float(weights @ support.common) / (self.cycles * system.period)
-        whole = self.run(found.unknowns, self.tables, rate=-rate)[1]
-        dte = whole.states[:, :m] @ system.deflection
-        other = self.run(found.unknowns, self.coarse)[1].states[:, :m] @ system.deflection
-        driving, brake = self.torques(found.unknowns)
+        # Powers are those of the mean speed: the run starts with a common rate whose mean vanishes.
+        change = closed.passed.end[:m] - closed.passed.states[0, :m]
+        rate = float(weights @ change) / float(weights @ support.common) / (self.cycles * system.period)
+        final = self.run(closed.unknowns, self.tables, rate=-rate)[1]
+        dte = final.states[:, :m] @ system.deflection
+        coarse_dte = self.run(closed.unknowns, self.coarse)[1].states[:, :m] @ system.deflection
+        driving, brake = self.torques(closed.unknowns)
         time = np.arange(self.cycles * self.samples) / self.samples * system.period
         return RevolutionMotion(
             pair=self.pair,
             system=system,
             tables=self.tables,
-            touch=Touch.WINDOWS if self.tables.law.windows else Touch.MOMENTARY,
+            touch=Touch.WINDOWS if self.tables.law.prescribed else Touch.MOMENTARY,
             time=time,
-            states=without_drift(system, time, whole.states, whole.end, self.cycles * system.period),
-            load=whole.loads,
+            states=without_drift(system, time, final.states, final.end, self.cycles * system.period),
+            load=final.loads,
             pinion_torque=driving,
             brake_torque=brake,
-            powers=mean_powers(whole, self.cycles * system.period),
-            closure=found.left,
-            error=float(np.abs(other - dte[:: self.every]).max() / np.abs(dte).max()),
+            powers=mean_powers(final, self.cycles * system.period),
+            closure=closed.mismatch,
+            error=float(np.abs(coarse_dte - dte[:: self.every]).max() / np.abs(dte).max()),
             spectral_radius=radius,
             origin=Origin.LINEAR,
         )
 
     def near(self, start: FloatArray, linear: PeriodicSolution) -> tuple[Closed[Run] | None, float]:
-        """Unknowns that close the period near a linear motion, and a spectral radius that holds there.
+        """Close the period near a linear motion; return the result, or None, and a spectral radius near
+        there.
 
-        Derivatives are those of the linear motion; where contact is lost they do not lead there, and others,
-        by differences, may.
+        First with the derivatives of the linear motion. Where contact is lost they may not lead to a motion;
+        then with derivatives by differences.
         """
         with suppress(NumericalError):
             return self.closed(start, self.linear_derivatives(linear, start)), linear.spectral_radius
@@ -266,35 +291,37 @@ class Shooting:
         return None, 1.0
 
     def settled(self, unknowns: FloatArray) -> RevolutionMotion:
-        """The stable motion of at most so many mesh cycles to which a run settles.
+        """Return the stable motion, of at most eight mesh cycles, to which a run settles.
 
-        First the run is compared with itself, then Broyden's method looks for a stable motion near it, since
-        near a bifurcation settling takes long.
+        Each run is compared with itself after 1 to 8 cycles. Broyden's method then looks for a stable motion
+        close to the run, because settling takes long near a bifurcation.
 
         Raises
         ------
         NumericalError : the run grows, or has not come to such a motion
         """
-        looked = _LOOKED * _MOST_CYCLES
+        compared = _COMPARED * _MOST_CYCLES
         deflection = self.system.deflection
         m = deflection.size
         tables = self.tables_of(2.0 * self.step, _OUTPUTS)
         for turn in range(_RUNS):
-            _, found = self.run(unknowns, tables, cycles=(_SETTLING << turn) + looked, recorded=looked)
-            if not np.isfinite(found.end).all():
+            cycles = (_SETTLING << turn) + compared
+            _, settling = self.run(unknowns, tables, cycles=cycles, recorded=compared)
+            if not np.isfinite(settling.end).all():
                 raise NumericalError("The motion with unilateral contact grows without bound.")
-            starts = np.vstack([found.states[::_OUTPUTS], found.end]) @ self.both[0].T
+            starts = np.vstack([settling.states[::_OUTPUTS], settling.end]) @ self.to_relative.T
             unknowns = np.append(starts[-1], unknowns[-1])
             sizes, _ = self.scales(unknowns)
-            moved = (np.abs(starts[-2::-1] - starts[-1]) <= _REPEATS * sizes[:-1]).all(axis=1)
-            repeats = np.flatnonzero(moved[:_MOST_CYCLES])[:1] + 1
-            swing = float(np.ptp(found.states[:, :m] @ deflection))
+            repeated = (np.abs(starts[-2::-1] - starts[-1]) <= _REPEATS * sizes[:-1]).all(axis=1)
+            repeats = np.flatnonzero(repeated[:_MOST_CYCLES])[:1] + 1
+            swing = float(np.ptp(settling.states[:, :m] @ deflection))
             for cycles in repeats if repeats.size else range(1, _MOST_CYCLES + 1):
                 with suppress(NumericalError):
                     of_cycles = replace(self, cycles=int(cycles))
                     motion = of_cycles.motion(of_cycles.closed(unknowns, of_cycles.derivatives(unknowns)))
-                    own = float(np.ptp(motion.states[:, :m] @ deflection))
-                    if motion.spectral_radius <= UNSTABLE and abs(own - swing) <= _NEAR * swing:
+                    swing_of_motion = float(np.ptp(motion.states[:, :m] @ deflection))
+                    same = abs(swing_of_motion - swing) <= _SAME_SWING * swing
+                    if motion.spectral_radius <= UNSTABLE and same:
                         return replace(motion, origin=Origin.SETTLED)
         raise NumericalError(
             f"A run with unilateral contact has not come to a motion of at most {_MOST_CYCLES} mesh cycles: "
@@ -305,18 +332,19 @@ class Shooting:
 def unilateral_motion(
     pair: GearPair, samples: int, supports: Supports = "springs", *, settles: bool = True
 ) -> RevolutionMotion:
-    """Periodic motion of a pair as given, with contact that follows the momentary load and only pushes.
+    """Periodic motion of a pair with unilateral contact by momentary load, with the teeth of the pair.
 
-    Of like teeth it is the one that Broyden's method finds from the linear motion, if it is stable, else the
-    one to which a run from there settles. Teeth that differ have the one to which a run from the motion of
-    their twin settles.
+    Like teeth: Broyden's method starts from the linear motion. If it finds no stable motion, the motion is
+    the one to which a run from the linear motion settles. Teeth that differ: the motion to which a run from
+    the motion of the twin with like teeth settles.
 
     Parameters
     ----------
     pair : a validated gear pair
     samples : outputs in a mesh cycle
     supports : as of ``periodic_system``
-    settles : whether to run where Broyden's method finds no stable motion; else what it finds is returned
+    settles : whether a run settles where Broyden's method finds no stable motion. If not, the unstable motion
+        is returned
 
     Raises
     ------
@@ -333,9 +361,9 @@ def unilateral_motion(
         start = shooting.unknowns(linear.states[0], linear.pinion_torque, linear.brake_torque)
         near, radius = shooting.near(start, linear)
         if near is not None:
-            found = shooting.motion(near, radius)
-            if found.spectral_radius <= UNSTABLE or not settles:
-                return found
+            motion = shooting.motion(near, radius)
+            if motion.spectral_radius <= UNSTABLE or not settles:
+                return motion
     if not settles:
         raise NumericalError("No periodic motion that follows the momentary load is near the linear one.")
     return shooting.settled(start)
@@ -346,16 +374,15 @@ def settled_motion(
 ) -> RevolutionMotion:
     """Periodic motion of a pair whose teeth differ, with unilateral contact.
 
-    Started from the motion of the healthy twin, it is followed until the start has faded, then recorded
-    over one period. A first run with coarser steps gives the brake torque, which the common rotation alone
-    feels.
+    A run starts from the motion of the twin with like teeth. When the start has faded, one period is
+    recorded. A first run with longer steps gives the brake torque, on which only the common rotation depends.
 
     Parameters
     ----------
     pair : a validated gear pair
     samples : outputs a mesh cycle
     supports : as of ``periodic_system``
-    steps : least number of steps in a mesh cycle; by default by the fastest vibration
+    steps : least number of steps in a mesh cycle; by default the number that the fastest vibration needs
     """
     touch = Touch.MOMENTARY if pair.mesh.contact == "loaded" else Touch.WINDOWS
     system = LTVSystem.of(pair.healthy, "full", supports=supports)
@@ -378,15 +405,16 @@ def settled_motion(
         tables = momentary_tables(laws, system, part / steps, samples)
         torques = driving * system.torque_pinion + brake * system.torque_gear
         count = settling + tables.period
-        found = run(pair, tables, system, -settling, count, tables.period, state, torques)
-        states = found.states
-        end = found.end
+        last_run = run(pair, tables, system, -settling, count, tables.period, state, torques)
+        states = last_run.states
+        end = last_run.end
         if not np.isfinite(end).all():
             raise NumericalError("The motion grows without bound: take smaller deviations or more damping.")
         duration = tables.period * system.period
         drift = float(weights @ (end - states[0])[m:]) / duration
         if part > 1 and isinstance(twin, RevolutionMotion):
-            # The twin balances with the shorter steps already: the drift of its own by these is theirs.
+            # The torques of the twin balance with short steps. With long steps the twin drifts: only the
+            # drift in addition belongs to the teeth that differ.
             drift -= _drift_of_twin(twin, part / steps)
         if pair.operating.brake_torque == "balanced":
             brake -= drift / float(weights @ system.torque_gear[m:])
@@ -409,38 +437,38 @@ def settled_motion(
             f"After {tables.period} mesh cycles the motion has not closed ({closed:.1e} of its size): it is "
             "unstable, not periodic over the period of the teeth, or damped too little."
         )
-    powers = mean_powers(found, duration)
+    powers = mean_powers(last_run, duration)
     # Sliding at nominal speed: without what a rate of the common rotation that is left adds.
     rates = system.gears[:2] @ (end - states[0])[:m] / duration
     powers["sliding"] -= float(driving * rates[0] - brake * rates[1])
     states = without_drift(system, time, states, end, duration)
     error /= float(np.abs(coarse).max())
     return RevolutionMotion(
-        *(pair, system, tables, touch, time, states, found.loads, driving, brake, powers, closed, error),
+        *(pair, system, tables, touch, time, states, last_run.loads, driving, brake, powers, closed, error),
         twin.spectral_radius,
         Origin.SETTLED,
     )
 
 
 def _drift_of_twin(twin: RevolutionMotion, step: float) -> float:
-    """Weighted rate per time that the common rotation of like teeth gains by long steps."""
+    """Weighted acceleration of the common rotation that like teeth get from long steps alone."""
     system = twin.system
     weights = twin.system.supports.common_weights
     tables = momentary_tables(ToothLaws(twin.pair), system, step, int(twin.tables.outputs.sum()))
     torques = twin.pinion_torque * system.torque_pinion + twin.brake_torque * system.torque_gear
     settling = _settling(twin.spectral_radius)
-    found = run(twin.pair, tables, system, -settling, settling + 1, 1, twin.states[0], torques)
-    return float(weights @ (found.end - found.states[0])[weights.size :]) / system.period
+    cycle = run(twin.pair, tables, system, -settling, settling + 1, 1, twin.states[0], torques)
+    return float(weights @ (cycle.end - cycle.states[0])[weights.size :]) / system.period
 
 
 def _settling(radius: float) -> int:
-    """Mesh cycles until a start has faded."""
+    """Mesh cycles until a start has faded, with the spectral radius of the motion."""
     if radius >= 1.0:
         raise NumericalError(
             f"The motion of the healthy twin is not stable (multiplier {radius:.6f}), so none settles: raise "
             "the damping or leave the speed."
         )
-    found = math.ceil(math.log(_START_FADED) / math.log(radius)) + 2
-    if found > _MOST_SETTLING:
-        raise NumericalError(f"A start fades in {found} mesh cycles, too slowly: raise mesh.damping_ratio.")
-    return found
+    cycles = math.ceil(math.log(_START_FADED) / math.log(radius)) + 2
+    if cycles > _MOST_SETTLING:
+        raise NumericalError(f"A start fades in {cycles} mesh cycles, too slowly: raise mesh.damping_ratio.")
+    return cycles

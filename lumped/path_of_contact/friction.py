@@ -35,7 +35,7 @@ _CHECKED_POSITIONS = 201
 
 
 def contact_path(pair: GearPair) -> ContactPath:
-    """Collect the nominal contact of a pair: kinematics at nominal speed, full static load w_n, film data.
+    """Return the nominal contact of a pair: kinematics at nominal speed, full static load w_n, film data.
 
     S is the mean of both Ra; R_comp is their root sum of squares unless ``friction.composite_roughness`` is
     given. The full static load w_n = T_p/(Z r_bp) is used at every position, as in the paper, also where two
@@ -95,15 +95,18 @@ def _contact(
 def friction_misfit(pair: GearPair, interval: tuple[float, float] | None = None) -> FloatArray:
     """Bound on the error of `friction_path_function` on each of its pieces (m,), see `fit_misfit`.
 
-    Where mu_avg is the mean of law II, the mean bound of that counts too; law IV reaches 1.22 mu_avg.
+    If mu_avg is the mean of law II, the mean bound of law II is added, times 1.25: law IV reaches 1.22
+    mu_avg.
     """
     path, settings, law = _contact(pair, None, interval)
-    _, found = _bounded(path, settings, law)
+    _, bounds_of_pieces = _bounded(path, settings, law)
     if pair.friction.coefficient is None and reads_average(law, path, settings):
         nominal = contact_path(pair)
         mean, bounds = _bounded(nominal, pair.friction, BENEDICT_KELLEY)
-        found = found + 1.25 * float(bounds @ np.diff(mean.breaks)) / (nominal.L_XD - nominal.L_XA)
-    return found
+        bounds_of_pieces = bounds_of_pieces + 1.25 * float(bounds @ np.diff(mean.breaks)) / (
+            nominal.L_XD - nominal.L_XA
+        )
+    return bounds_of_pieces
 
 
 def _bounded(
@@ -115,20 +118,20 @@ def _bounded(
 
 
 def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
-    """List where a pair leaves the validity ranges of a friction law, by default its own.
+    """List the validity ranges of a friction law that a pair leaves.
 
-    A law made of others (V) is checked against each of them where that one is in force.
+    Law V is made of other laws. Each of these laws is checked where it is in force.
 
     Parameters
     ----------
     pair : the gear pair
-    law : name of a friction law
+    law : name of a friction law; default ``pair.friction.law``
     """
     return violations_of(contact_path(pair), pair.friction, law_of(pair.friction, law).name)
 
 
 def reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> bool:
-    """Whether mu_avg acts somewhere on a path, of a law made of others in one that is in force there."""
+    """Whether a law uses mu_avg somewhere on a path; of law V, one of the laws that are in force there."""
     if law.parts is None:
         return law.coefficient
     parts = law.parts(_positions(path), path, settings)
@@ -137,14 +140,14 @@ def reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSetting
 
 @lru_cache(maxsize=256)
 def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
-    """mu(xi) of one law; cached, because charts over damping or stiffness ask for it at every node."""
+    """Fit mu(xi) of one law. The fit is cached: charts over damping or stiffness need it at every node."""
     law = law_of(settings, name)
     _must_be_friction(path, settings, law)
     return fit_signed(law, path, settings)
 
 
 def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: FrictionLaw) -> None:
-    """Refuse a law that leaves all bounds, as III does in thin oil under high pressure."""
+    """Refuse a law with mu above 1, as law III has in thin oil under high pressure."""
     xi = _positions(path)
     with np.errstate(over="ignore", invalid="ignore"):
         largest = float(np.abs(law.signed(xi, path, settings)).max())
@@ -167,19 +170,19 @@ def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> t
     """Validity ranges that a contact leaves under a law."""
     law = law_of(settings, name)
     xi = _positions(path)
-    whole = [(law, np.full(xi.shape, True))]
-    found: list[RangeViolation] = []
-    for part, inside in whole if law.parts is None else law.parts(xi, path, settings):
+    single_part = [(law, np.full(xi.shape, True))]
+    violations: list[RangeViolation] = []
+    for part, inside in single_part if law.parts is None else law.parts(xi, path, settings):
         if inside.any():
             title = law.title if part is law else f"{law.title} ({part.title})"
-            found += _left(title, part, path, settings, xi[inside])
-    return tuple(found)
+            violations += _ranges_left(title, part, path, settings, xi[inside])
+    return tuple(violations)
 
 
-def _left(
+def _ranges_left(
     title: str, law: FrictionLaw, path: ContactPath, settings: FrictionSettings, xi: FloatArray
 ) -> tuple[RangeViolation, ...]:
-    """Ranges of a law that are left at positions, with the coefficient that it gives there."""
+    """Validity ranges that positions xi (n,) leave, with the friction coefficient of the law there."""
     try:
         with np.errstate(over="ignore", invalid="ignore"):
             mu = np.abs(law.signed(xi, path, settings))
@@ -209,7 +212,11 @@ def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
 
 
 def film_note(low: float, high: float) -> str:
-    """Which formula the film thickness has, and what another one gives, as shares of it from low to high."""
+    """Text on the formula of the film thickness.
+
+    ``low`` and ``high`` are the least and the largest ratio of Hamrock and Dowson's thickness to this
+    thickness.
+    """
     return (
         "central, Dowson and Toyoda (1978); "
         f"the formula of Hamrock and Dowson (1977) gives {low:.2f} to {high:.2f} times as much"
@@ -217,7 +224,7 @@ def film_note(low: float, high: float) -> str:
 
 
 def friction_profile(pair: AnyPair, points: int = 401) -> xr.Dataset:
-    """Compare all laws with friction over the path of contact, with the contact conditions they see.
+    """Compare all laws with friction over the path of contact, beside the conditions of the contact.
 
     Parameters
     ----------

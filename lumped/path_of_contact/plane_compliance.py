@@ -6,7 +6,7 @@ Sources: docs/theory/elasticity.md; method and checks in ``lumped.elasticity``.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, NamedTuple, get_args
 
 import numpy as np
 
@@ -73,25 +73,30 @@ def plane_compliance(
     teeth = elastic_teeth(pair, plane, support)
     phase = (np.arange(count) + 0.5) / count
     ahead = np.arange(g.pairs)
-    matrix, xi, total, apart = _sampled(pair, teeth, phase)
-    # Between the phases at which a pair leaves, everything is smooth.
+    sampled = _sampled(pair, teeth, phase)
+    # The compliances are smooth between the phases at which a pair leaves contact.
     leaves = math.fmod(g.contact_ratio, 1.0)
     x, w = np.polynomial.legendre.leggauss(_GAUSS)
-    at = np.concatenate([0.5 * leaves * (x + 1.0), leaves + 0.5 * (1.0 - leaves) * (x + 1.0)])
+    nodes = np.concatenate([0.5 * leaves * (x + 1.0), leaves + 0.5 * (1.0 - leaves) * (x + 1.0)])
     weight = 0.5 * np.concatenate([leaves * w, (1.0 - leaves) * w])
-    _, _, *means = _sampled(pair, teeth, at)
+    at_nodes = _sampled(pair, teeth, nodes)
     path = np.linspace(g.L_XA, g.L_XD, 201)
     return labelled_dataset(
         {
             "compliance": (
                 ("phase", "pair", "loaded_pair"),
-                matrix,
+                sampled.compliance,
                 "m/N",
                 "approach of a tooth pair by a unit load on a pair",
             ),
-            "position": (("phase", "pair"), xi, "m", "position from X along the line of action"),
-            "mesh_stiffness": ("phase", total, "N/m", "mesh stiffness, pairs move each other"),
-            "mesh_stiffness_alone": ("phase", apart, "N/m", "mesh stiffness, pairs alone"),
+            "position": (
+                ("phase", "pair"),
+                sampled.position,
+                "m",
+                "position from X along the line of action",
+            ),
+            "mesh_stiffness": ("phase", sampled.stiffness, "N/m", "mesh stiffness, pairs move each other"),
+            "mesh_stiffness_alone": ("phase", sampled.stiffness_alone, "N/m", "mesh stiffness, pairs alone"),
         },
         {
             "phase": (phase, "1", "mesh cycles after a pair was at A"),
@@ -102,8 +107,8 @@ def plane_compliance(
         | {
             "plane": plane,
             "support": support,
-            "mean": float(weight @ means[0]),
-            "mean_alone": float(weight @ means[1]),
+            "mean": float(weight @ at_nodes.stiffness),
+            "mean_alone": float(weight @ at_nodes.stiffness_alone),
             "largest_alone": float(np.max(1.0 / self_compliance(pair, teeth, path))),
             "iso_single": iso6336.single_of(pair),
             "iso_mean": iso6336.mean_of(pair),
@@ -113,22 +118,39 @@ def plane_compliance(
     )
 
 
-def _sampled(
-    pair: GearPair, teeth: tuple[ElasticTooth, ElasticTooth], phase: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Compliances (n, pairs, pairs), positions (n, pairs), mesh stiffness coupled and not (n,)."""
+class _Sampled(NamedTuple):
+    """Tooth pairs at n phases.
+
+    Attributes
+    ----------
+    compliance : (n, pairs, pairs) motion of each pair by a unit load on each pair [m/N]
+    position : (n, pairs) xi [m]
+    stiffness : (n,) of the mesh, where pairs move each other [N/m]
+    stiffness_alone : (n,) of the mesh, without the motion by other pairs [N/m]
+    """
+
+    compliance: FloatArray
+    position: FloatArray
+    stiffness: FloatArray
+    stiffness_alone: FloatArray
+
+
+def _sampled(pair: GearPair, teeth: tuple[ElasticTooth, ElasticTooth], phase: FloatArray) -> _Sampled:
+    """Return the tooth pairs at phases (n,)."""
     g = pair.geometry
     ahead = np.arange(g.pairs)
     xi = g.L_XA + (phase[:, None] + ahead) * g.base_pitch
     touching = xi < g.L_XD
     matrix = np.zeros((*xi.shape, g.pairs))
     for i in ahead:
-        at = touching[:, i]
-        matrix[at, i, i] = self_compliance(pair, teeth, xi[at, i])
+        touches = touching[:, i]
+        matrix[touches, i, i] = self_compliance(pair, teeth, xi[touches, i])
         for j in range(i):
-            matrix[at, i, j] = matrix[at, j, i] = cross_compliance(pair, teeth, int(i) - j, xi[at, j])
-    # A pair out of contact carries nothing, whatever its compliance.
-    held = matrix + np.where(touching, 0.0, 1.0)[:, :, None] * np.eye(g.pairs)
-    shares = np.linalg.solve(held, touching[..., None].astype(float))
-    own = np.where(touching, np.diagonal(matrix, axis1=1, axis2=2), np.inf)
-    return matrix, xi, shares[..., 0].sum(axis=1), (1.0 / own).sum(axis=1)
+            matrix[touches, i, j] = matrix[touches, j, i] = cross_compliance(
+                pair, teeth, int(i) - j, xi[touches, j]
+            )
+    # A pair out of contact has no load: any compliance will do.
+    regular = matrix + np.where(touching, 0.0, 1.0)[:, :, None] * np.eye(g.pairs)
+    shares = np.linalg.solve(regular, touching[..., None].astype(float))
+    alone = np.where(touching, np.diagonal(matrix, axis1=1, axis2=2), np.inf)
+    return _Sampled(matrix, xi, shares[..., 0].sum(axis=1), (1.0 / alone).sum(axis=1))

@@ -27,12 +27,12 @@ def pair_stiffness(pair: GearPair) -> PathFunction:
 
 
 def contact_softening(pair: GearPair) -> float:
-    """How the compliance of a tooth pair falls with load, D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]."""
+    """Return D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) of a pair [m/N]: the compliance falls with the load."""
     return pair.mesh.stiffness.softening(pair) / pair.mesh.stiffness_factor
 
 
 def cross_compliances(pair: GearPair) -> tuple[PathFunction, ...]:
-    """How far a unit load on a tooth pair moves the pair m base pitches ahead, m = 1, 2, ... [m/N]."""
+    """Return w_m(xi) [m/N], m = 1, 2, ...: how far a unit load on a pair moves the pair m pitches ahead."""
     return tuple(w.scaled(1.0 / pair.mesh.stiffness_factor) for w in pair.mesh.stiffness.neighbours(pair))
 
 
@@ -54,10 +54,13 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
     pair = load_gear_pair(pair)
     g = pair.geometry
     xi = np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000))
-    found = pair_compliance(pair, xi)
+    compliance = pair_compliance(pair, xi)
     parts = ("bending", "shear", "axial", "foundation")
-    names = ["contact"] + [f"{part} {which}" for which in ("pinion", "gear") for part in parts]
-    values = [found.hertz, *(getattr(tooth, part) for tooth in (found.pinion, found.gear) for part in parts)]
+    names = ["contact"] + [f"{part} {gear}" for gear in ("pinion", "gear") for part in parts]
+    values = [
+        compliance.hertz,
+        *(getattr(tooth, part) for tooth in (compliance.pinion, compliance.gear) for part in parts),
+    ]
     return labelled_dataset(
         {
             "compliance": (
@@ -66,16 +69,16 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
                 "m/N",
                 "compliance along the line of action",
             ),
-            "stiffness": ("position", found.stiffness, "N/m", "stiffness of a tooth pair"),
+            "stiffness": ("position", compliance.stiffness, "N/m", "stiffness of a tooth pair"),
         },
         {
             "component": (names, "1", "part of the tooth pair"),
-            "position": (found.position, "m", "position from X along the line of action"),
+            "position": (compliance.position, "m", "position from X along the line of action"),
         },
         provenance(pair)
         | {
             "iso_single_stiffness": iso6336.single_of(pair),
-            "quadrature_error": max(found.pinion.quadrature_error, found.gear.quadrature_error),
+            "quadrature_error": max(compliance.pinion.quadrature_error, compliance.gear.quadrature_error),
         },
     )
 

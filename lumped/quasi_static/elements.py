@@ -1,4 +1,4 @@
-"""The element laws of one tooth pair that every model of the pair shares, and what a form of contact is.
+"""The element laws of one tooth pair, which both models share, and the base class of the forms of contact.
 
 Sources: Abbas Al-Zubaidi 2008, eqs. 3 and 4; damping c_i = 2 zeta sqrt(k_i m_e), as He, Cho and Singh 2008.
 """
@@ -20,10 +20,10 @@ from lumped.schema.contact import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
-#: Speed [rad/s] and friction of the pairs by which static results are cached: any.
+#: Speed [rad/s] and friction of ``at_rest``. Any values do.
 _SPEED = 100.0
 _FRICTION = Friction.model_construct(law="none")
-#: Samples over the searched range between which contact begins or ends at most once.
+#: Samples over the searched range. Between two samples contact begins or ends at most once.
 _SAMPLES = 500
 
 
@@ -31,10 +31,10 @@ _SAMPLES = 500
 class MeshElements:
     """Element laws of one tooth pair over the interval of xi in which it can touch; zero outside.
 
-    That is [L_XA, L_XD] with prescribed contact, and reaches beyond with loaded contact.
+    The interval is [L_XA, L_XD] with prescribed contact, and longer with loaded contact.
 
     N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4). The compression
-    grows at the rate f (delta' - e'), so the damper takes f c (delta' - e')^2.
+    grows at the rate f (delta' - e'), so the power of the damper is f c (delta' - e')^2.
 
     Attributes
     ----------
@@ -42,11 +42,11 @@ class MeshElements:
     damping : c = 2 zeta sqrt(k m_e) [N s/m], with loaded contact times f and the share that acts
     friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
     error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
-    gap : that whose slope is the e' of the damper, where it is not that of e [m]
-    tilt : sine of the angle by which a tip corner beyond A and D turns the normal out of the line of action,
-        so that it pushes the gears apart [-]; None where teeth touch on that line alone
-    closing : f, by how much less than 1 the approach closes a tip corner, whose contact it moves outside [-];
-        None where it is 1
+    gap : gap whose slope is the e' of the damper; None where the slope of e is [m]
+    tilt : sine of the angle by which a tip corner beyond A and D turns the normal out of the line of action
+        [-]. A tilted force pushes the gears apart. None: teeth touch on the line of action only
+    closing : f, share of the approach that compresses the pair [-]. At a tip corner f is less than 1, because
+        the approach also moves the contact further outside. None: f is 1
     """
 
     stiffness: PathFunction
@@ -59,7 +59,7 @@ class MeshElements:
 
     @property
     def error_slope(self) -> PathFunction:
-        """E' over xi, that the damper sees: of the gap itself where e is the tangent's [-]."""
+        """Slope e' over xi for the damper [-]: the slope of ``gap``, or of ``error`` without a gap."""
         return (self.error if self.gap is None else self.gap).slope
 
 
@@ -69,30 +69,38 @@ class Contact(ABC):
     name: ClassVar[str]
     #: Whether the elastic energy of the teeth is conserved, so that the brake balances every loss.
     conservative: ClassVar[bool]
-    #: What must press in words: below zero load it has lost contact.
+    #: In words, whose load must not be negative: a negative load is contact loss.
     pressed: ClassVar[str]
     #: Whether the damping of a pair is 2 zeta sqrt(k m_e) wherever it touches.
     root_damping: ClassVar[bool]
 
     @abstractmethod
     def elements(self, pair: GearPair) -> MeshElements:
-        """Laws of one tooth pair."""
+        """Return the laws of one tooth pair."""
 
     @abstractmethod
     def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
-        """How far the load of a pair moves the one m pitches ahead, w_m(xi), m = 1, 2, ... [m/N]."""
+        """Return w_m(xi) [m/N], m = 1, 2, ...: how far the load of a pair moves the pair m pitches ahead."""
 
     @abstractmethod
     def unilateral_elements(self, pair: GearPair) -> MeshElements:
-        """Laws of one tooth pair that touches where its flanks meet, relief being clearance."""
+        """Return the laws of a tooth pair that touches where its flanks meet. Relief is clearance."""
 
     @abstractmethod
     def pressing(self, load: FloatArray, contact: BoolArray) -> tuple[FloatArray, BoolArray]:
-        """Loads that must not pull [N] and where they touch (n, k), of those of the pairs (pairs, k)."""
+        """Return the loads that must not be negative (n, k) [N], and whether each is in contact (n, k).
+
+        Parameters
+        ----------
+        load, contact : (pairs, k) load of each pair [N], and whether the pair can touch
+        """
 
 
 def at_rest(pair: GearPair) -> GearPair:
-    """The pair without speed, friction and dampers, which statics does not feel: the key of its results."""
+    """Return the pair without speed, friction and dampers, on which statics does not depend.
+
+    Static results are cached by this pair.
+    """
     pair = pair.healthy
     fields = {name: getattr(pair, name) for name in GearPair.model_fields}
     fields |= {
@@ -116,36 +124,41 @@ def mean_of_pairs(law: PathFunction, pitch: float) -> float:
 def positive_intervals(
     function: Callable[[FloatArray], FloatArray], low: float, high: float, kinks: FloatArray, pitch: float
 ) -> FloatArray:
-    """Intervals (n, 2) of [low, high] in which a function (n,) -> (n,) of positions is positive [m].
+    """Intervals (n, 2) of [low, high] in which a function of positions is positive [m].
 
-    ``kinks`` are where it jumps or has a kink, any shape; the base pitch is the scale of what is close.
+    Parameters
+    ----------
+    function : positions (n,) -> values (n,)
+    low, high : ends of the searched range [m]
+    kinks : positions at which the function jumps or has a kink, any shape [m]
+    pitch : base pitch, the scale for positions that are close to each other [m]
     """
     inside = 1e-12 * pitch
     marks = np.unique(kinks[(kinks > low + inside) & (kinks < high - inside)])
     ends: list[float] = []
-    for left, right in itertools.pairwise([low, *marks, high]):
-        if right - left <= 4 * inside:
+    for start, end in itertools.pairwise([low, *marks, high]):
+        if end - start <= 4 * inside:
             continue
-        count = max(3, int(_SAMPLES * (right - left) / (high - low)))
-        xi = np.linspace(left + inside, right - inside, count)
+        count = max(3, int(_SAMPLES * (end - start) / (high - low)))
+        xi = np.linspace(start + inside, end - inside, count)
         positive = function(xi) > 0.0
         roots = [
             float(brentq(lambda x: float(function(np.array([x]))[0]), xi[j], xi[j + 1], xtol=1e-16))
             for j in np.flatnonzero(np.diff(positive))
         ]
-        ends += [*([left] if positive[0] else []), *roots, *([right] if positive[-1] else [])]
+        ends += [*([start] if positive[0] else []), *roots, *([end] if positive[-1] else [])]
     meet = 2 * np.flatnonzero(np.diff(ends)[1::2] <= 4 * inside)  # intervals that meet at a mark are one
     return np.delete(ends, [*(meet + 1), *(meet + 2)]).reshape(-1, 2)
 
 
 def restricted(function: PathFunction, intervals: FloatArray) -> PathFunction:
-    """The function on the intervals (n, 2), zero between them; jumps are switches."""
+    """Return the function on the intervals (n, 2), and zero between them. Its jumps are switches."""
     low, high = function.interval
     function = function.split(intervals)
     ends = intervals.ravel()
     middle = 0.5 * (function.breaks[:-1] + function.breaks[1:])
-    kept = ((middle[:, None] > intervals[:, 0]) & (middle[:, None] < intervals[:, 1])).any(axis=1)
+    inside = ((middle[:, None] > intervals[:, 0]) & (middle[:, None] < intervals[:, 1])).any(axis=1)
     jumps = ends[(ends > low) & (ends < high)]
     return PathFunction(
-        function.breaks, np.where(kept, function.coefficients, 0.0), np.union1d(function.switches, jumps)
+        function.breaks, np.where(inside, function.coefficients, 0.0), np.union1d(function.switches, jumps)
     )

@@ -1,6 +1,6 @@
 """Static load sharing among tooth pairs that are linear springs with initial gaps.
 
-Where the stiffness model has it, the load of a pair moves its neighbours too, by the whole compliance matrix.
+If the stiffness model knows it, the load of a pair also moves the neighbours of the pair.
 
 Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error".
 """
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.errors import NumericalError
-from lumped.mesh.element import EXACT, FLANKS, ContactLaw
+from lumped.mesh.records import EXACT, FLANKS, ContactLaw
 from lumped.mesh.statics import Phases, static_approaches, workspace
 from lumped.path_function import PathFunction
 from lumped.typing import BoolArray, FloatArray
@@ -30,8 +30,8 @@ _SPRINGS = ContactLaw(
     converged=EXACT,
     full_damper=1.0,
     coupled=False,
-    apart=-np.inf,
-    windows=False,
+    apart_below=-np.inf,
+    prescribed=False,
     radius_pinion=1.0,
     radius_gear=1.0,
     rolling_speed=0.0,
@@ -67,10 +67,11 @@ def share_load(
     ------
     NumericalError : nowhere a pair that can carry the load
     """
-    k, e = real_array("stiffness", stiffness), real_array("error", error, finite=False)
+    k = real_array("stiffness", stiffness)
+    e = real_array("error", error, finite=False)
     applied = real_array("force", force)
-    moved = coupling is not None and bool(np.any(coupling))
-    w = real_array("coupling", coupling) if moved else np.zeros((1, 1))
+    is_coupled = coupling is not None and bool(np.any(coupling))
+    w = real_array("coupling", coupling) if is_coupled else np.zeros((1, 1))
     lead = np.broadcast_shapes(k.shape[:-1], e.shape[:-1], applied.shape, w.shape[:-2])
     pairs = max(k.shape[-1], e.shape[-1])
     reach = np.isfinite(e)
@@ -80,10 +81,10 @@ def share_load(
         position=np.zeros(gaps.shape),
         stiffness=_rows(np.where(reach, k, 0.0), lead, pairs),
         gap=gaps,
-        coupling=_rows(w, lead if moved else (1,), pairs, pairs),
+        coupling=_rows(w, lead if is_coupled else (1,), pairs, pairs),
         lengthening=0.0,
     )
-    law = _SPRINGS._replace(coupled=moved)
+    law = _SPRINGS._replace(coupled=is_coupled)
     approach = static_approaches(phases, _rows(applied, lead), _ENDLESS, law, load, workspace(phases))
     if not np.isfinite(approach).all():
         raise NumericalError(_NO_PAIR)
@@ -91,25 +92,29 @@ def share_load(
 
 
 def _rows(values: FloatArray, lead: tuple[int, ...], *inner: int) -> FloatArray:
-    """Values (lead, inner) by broadcasting, as (n, inner) of their own.
+    """Broadcast values to (lead, inner), and return a copy (n, inner).
 
-    Row by row in memory: the kernel would be compiled again for another order.
+    The copy is row by row in memory: for another order the kernel would be compiled again.
     """
-    wide = np.broadcast_to(values, (*lead, *inner)).reshape(-1, *inner)
-    return np.array(wide, dtype=np.float64, order="C")
+    broadcast = np.broadcast_to(values, (*lead, *inner)).reshape(-1, *inner)
+    return np.array(broadcast, dtype=np.float64, order="C")
 
 
 def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArray) -> FloatArray:
-    """How far pairs at xi (n, pairs) [m], whole pitches apart, move each other; (n, pairs, pairs) [m/N].
+    """Coupling w_ij (n, pairs, pairs) by which the load of pair j moves pair i [m/N].
 
-    ``neighbours`` are w_m(xi) of the stiffness model; the pair behind is first; ``near`` pairs are followed.
+    Parameters
+    ----------
+    neighbours : w_m(xi) of the stiffness model, m = 1, 2, ...
+    place : xi (n, pairs) of pairs that are whole pitches apart; the pair behind is first [m]
+    near : whether a pair is close enough to its path to be computed (n, pairs)
     """
     pairs = place.shape[1]
-    found = np.zeros((*place.shape, pairs))
-    for apart, moved in enumerate(neighbours, 1):
+    coupling = np.zeros((*place.shape, pairs))
+    for apart, compliance in enumerate(neighbours, 1):
         if apart < pairs:
             both = near[:, :-apart] & near[:, apart:]
             behind = np.arange(pairs - apart)
-            values = np.where(both, moved(place[:, :-apart]), 0.0)
-            found[:, behind, behind + apart] = found[:, behind + apart, behind] = values
-    return found
+            values = np.where(both, compliance(place[:, :-apart]), 0.0)
+            coupling[:, behind, behind + apart] = coupling[:, behind + apart, behind] = values
+    return coupling

@@ -1,9 +1,9 @@
-"""Contact of the tooth pairs in the statically loaded mesh: where it begins and ends, how stiff it is there.
+"""Contact of the tooth pairs in the statically loaded mesh: its beginning, its end and its stiffness.
 
-A pair touches where its gap closes under the mean load, also before A and behind D, where a tip corner meets
-the mate's flank. About that static state N_i = k_t,i (delta - e_i) is linear again: k_t is the tangent
-stiffness, all pairs approaching together, and e the approach at which the tangent would carry nothing. Where
-the stiffness model has it, the load of a pair moves its neighbours.
+A pair touches where its gap closes under the mean load. This happens also before A and behind D, where a tip
+corner meets the mate's flank. About the static state the load is linear, N_i = k_t,i (delta - e_i): k_t is
+the tangent stiffness when all pairs approach together, e the approach at which the tangent has no load. If
+the stiffness model knows it, the load of a pair moves the neighbours of the pair.
 
 Sources: docs/theory/contact_energy.md, "Loaded contact of the linear model".
 """
@@ -20,8 +20,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
-from lumped.mesh.element import CONTACT, EXACT, FLANKS, ContactLaw, Records
-from lumped.mesh.statics import Phases, deciding_ways, middle_contacts, static_approaches, workspace
+from lumped.mesh.damper import FULL_DAMPING, damping_law
+from lumped.mesh.records import CONTACT, EXACT, FLANKS, ContactLaw, Records
+from lumped.mesh.statics import Phases, middle_contacts, static_approaches, tips_minus_edges, workspace
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
@@ -32,39 +33,40 @@ from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
-#: Pairs are followed this fraction of a base pitch beyond A and D.
+#: Pairs are computed up to this fraction of a base pitch beyond A and D.
 _REACH = 0.4
 #: Breaks closer than this fraction of a base pitch are one.
 _SAME = 1e-9
-#: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
+#: Fit error over the largest value; rounding error of a length, which is a difference of positions [m].
 _TOLERANCE = 1e-11
 _LENGTH = 2e-17
 #: Fit error of a slope of the gap over the largest one.
 _SLOPE = 1e-8
-#: Fit error of the approach over that of the laws that follow from it.
+#: Fit error of the approach over the fit error of the laws that follow from the approach.
 _APPROACH = 1e-2
-#: Below this share of the mean load Hertz's contact is linear, see ``ContactLaw``.
+#: Share of the mean load below which Hertz's contact is linear, see ``ContactLaw.linear_below``.
 LEAST_LOAD = 1e-3
-#: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
+#: A ramp ends without stiffness. This share of the largest stiffness remains; it is below all fit errors.
 _LEAST_STIFFNESS = 1e-11
 #: Fit error of c over its largest value.
 _DAMPING_TOLERANCE = 1e-11
-#: Pairs whose contact is kept: the samples of an uncertainty, whose range over speed asks for them again.
+#: Pairs whose contact is cached: an uncertainty computes all its samples again at each speed.
 _KEPT = 256
-#: Largest load of a pair, over the mean load, for which ``ContactLaw.apart`` holds.
+#: Largest load of a pair, over the mean load, for which ``ContactLaw.apart_below`` holds.
 _MOST_LOAD = 10.0
-#: The damper is whole where a pair carries this share of the mean load.
-FULL_DAMPING = 1.0 / 15.0
 
 
 def _least(law: PathFunction) -> float:
-    """Least value at the breaks and halfway between."""
+    """Least value of a law at its breaks and halfway between."""
     breaks = law.breaks
     return float(law(np.concatenate([breaks[:-1], 0.5 * (breaks[1:] + breaks[:-1])])).min())
 
 
 class Loaded(Contact):
-    """A pair touches where its gap closes under the mean load; every loss is balanced by the brake."""
+    """Loaded contact: a pair touches where its gap closes under the mean load.
+
+    The brake balances every loss.
+    """
 
     name = "loaded"
     conservative = True
@@ -72,7 +74,7 @@ class Loaded(Contact):
     root_damping = False
 
     def elements(self, pair: GearPair) -> MeshElements:
-        """The laws about the static loaded motion; the damper takes hold as the load does."""
+        """Return the laws about the static state. The damper acts more, the more load the pair has."""
         rest = at_rest(pair)
         contact = loaded_contact(rest)
         return MeshElements(
@@ -86,44 +88,44 @@ class Loaded(Contact):
         )
 
     def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
-        """Those of the stiffness model."""
+        """Return the functions of the stiffness model."""
         return cross_compliances(pair)
 
     def unilateral_elements(self, pair: GearPair) -> MeshElements:
-        """The same laws: their error is the gap that closes under the mean load."""
+        """Return the same laws. Their error is a gap, which the mean load closes."""
         return self.elements(pair)
 
     def pressing(self, load: FloatArray, contact: BoolArray) -> tuple[FloatArray, BoolArray]:
-        """All pairs together: each begins and ends its contact gradually."""
+        """Return the sum over all pairs, because each pair begins and ends its contact gradually."""
         return np.atleast_2d(load.sum(axis=0)), np.atleast_2d(contact.any(axis=0))
 
 
 @dataclass(frozen=True, eq=False)
 class PairStiffness:
-    """k(xi) of a tooth pair at the mean load; its end values hold outside its path [N/m]."""
+    """k(xi) of a tooth pair at the mean load [N/m]. Beyond A and D the value at A or D holds."""
 
     law: PathFunction
 
     def extended(self, xi: FloatArray) -> FloatArray:
-        """K at positions of any shape, held beyond the ends of its path; never quite zero [N/m]."""
+        """Return k at positions of any shape, also beyond A and D; never quite zero [N/m]."""
         low, high = self.law.interval
-        found = self.law(np.clip(xi, low, np.nextafter(high, low)))
-        return np.maximum(found, _LEAST_STIFFNESS * self.largest)
+        stiffness = self.law(np.clip(xi, low, np.nextafter(high, low)))
+        return np.maximum(stiffness, _LEAST_STIFFNESS * self.largest)
 
     @cached_property
     def largest(self) -> float:
-        """Largest k at the breaks and halfway between [N/m]."""
+        """Largest k at the breaks and halfway between the breaks [N/m]."""
         breaks = self.law.breaks[:-1]
         return float(self.law(np.concatenate([breaks, breaks + 0.5 * np.diff(self.law.breaks)])).max())
 
 
 class TeethAtLoad(NamedTuple):
-    """What the stiffness model says of the teeth at the mean load.
+    """Stiffness of the teeth at the mean load, by the stiffness model.
 
     Attributes
     ----------
-    stiffness : of a tooth pair
-    neighbours : w_m(xi), how far the load of a pair moves the one m pitches ahead, m = 1, 2, ... [m/N]
+    stiffness : k(xi) of a tooth pair
+    neighbours : w_m(xi), m = 1, 2, ...: how far the load of a pair moves the pair m pitches ahead [m/N]
     softening : D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]
     """
 
@@ -134,15 +136,15 @@ class TeethAtLoad(NamedTuple):
 
 @lru_cache(maxsize=_KEPT)
 def teeth_at_load(pair: GearPair) -> TeethAtLoad:
-    """The teeth of a pair ``at_rest``: all forms of its motion read the same."""
+    """Return the stiffness of the teeth of a pair ``at_rest``. All forms of the motion use it."""
     return TeethAtLoad(PairStiffness(pair_stiffness(pair)), cross_compliances(pair), contact_softening(pair))
 
 
 class StaticPair(NamedTuple):
     """One pair in static equilibrium at n positions: the approach (n,) [m], and CONTACT records (n,).
 
-    The compression of ``contact`` is what gap and neighbours leave of the approach, negative where the pair
-    is apart.
+    The compression in ``contact`` is the approach less the gap and less the motion by neighbours. It is
+    negative where the pair is apart.
     """
 
     approach: FloatArray
@@ -155,7 +157,7 @@ class StaticPair(NamedTuple):
 
     @property
     def tangent(self) -> FloatArray:
-        """dN/dp, all pairs pressed further together [N/m]."""
+        """Slope dN/dp for a compression that all pairs share [N/m]."""
         return np.asarray(self.contact["tangent"], dtype=np.float64)
 
     @property
@@ -170,29 +172,30 @@ class StaticPair(NamedTuple):
 
     @property
     def compression(self) -> FloatArray:
-        """By the own load [m]."""
+        """Compression by the load of the pair alone [m]."""
         return np.asarray(self.contact["compression"], dtype=np.float64)
 
     @property
     def error(self) -> FloatArray:
-        """Approach at which the tangent would carry nothing, (n,) [m]."""
+        """Approach at which the tangent has no load, (n,) [m]."""
         return self.approach - self.load / np.where(self.tangent > 0.0, self.tangent, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
 class LoadedContact:
-    """One tooth pair in the statically loaded mesh, over the interval of xi in which it can touch.
+    """Laws of a tooth pair in the statically loaded mesh, over the interval of xi in which the pair can
+    touch.
 
     Attributes
     ----------
     stiffness : tangent stiffness k_t(xi), zero where the loaded pair is apart [N/m]
     error : e(xi) with N = k_t (delta - e) [m]
     gap : between flanks and tip corners without deflection [m]
-    damper_gap : that which grows, at a constant approach, as fast as the gap over ``closing`` [m]
-    closing : rate of the compression over that of the approach, at a constant xi [-]
+    damper_gap : gap whose slope over xi, at a constant approach, is the slope of ``gap`` over ``closing`` [m]
+    closing : share of the approach that compresses the pair, at a constant xi [-]
     tilt : sine of the angle between the normal at a tip corner and the line of action, 0 on the line [-]
-    engagement : share of its damper that acts, 0 at the first touch to 1 [-]
-    secant : k(xi) of the stiffness model, on which the damper is based [N/m]
+    engagement : share of the damper that acts, from 0 at the first touch to 1 [-]
+    secant : k(xi) of the stiffness model, from which the damping coefficient follows [N/m]
     contact : (n, 2) intervals of xi in which the pair carries load [m]
     """
 
@@ -224,36 +227,40 @@ class StaticMesh:
             converged=EXACT,
             full_damper=FULL_DAMPING * self.force,
             coupled=len(self.neighbours) > 0,
-            apart=_MOST_LOAD * self.force * min([0.0, *(_least(moved) for moved in self.neighbours)]),
-            windows=False,
+            apart_below=_MOST_LOAD * self.force * min([0.0, *(_least(law) for law in self.neighbours)]),
+            prescribed=False,
             radius_pinion=g.base_radius_pinion,
             radius_gear=g.base_radius_gear,
             rolling_speed=g.omega_pinion * g.base_radius_pinion,
         )
         compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
         self.lengthening = self.force * compliance  # of the line of action, by the bearings
-        # Pairs further from one that is followed are not.
+        # Pairs further away than this carry no load.
         reach = int(g.contact_ratio + 2.0 * _REACH)
         self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
         tips = (g.L_XY - g.tip_length_gear, g.tip_length_pinion)
         edges = (g.undercut_pinion, g.undercut_gear)
         self.flanks = np.array([(*tips, g.L_XY, *edges, 0.0, 0.0)], FLANKS)
-        self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
+        self.low = g.L_XA - _REACH * g.base_pitch
+        self.high = g.L_XD + _REACH * g.base_pitch
         self._fitted: PathFunction | None = None
 
     def relief(self, place: FloatArray) -> FloatArray:
-        """Material missing on both flanks at positions of any shape, held beyond A and D [m]."""
+        """Material missing on both flanks at positions of any shape.
+
+        Beyond A and D the value at A or D [m].
+        """
         if self.pair.mesh.relief != "static":
             return np.zeros(place.shape)
         return relief_error(self.pair, np.clip(place, self.geometry.L_XA, self.geometry.L_XD))
 
     def pairs(self, xi: FloatArray) -> tuple[FloatArray, BoolArray]:
-        """Places (n, pairs) [m] of all pairs, that at xi (n,) in the middle, and which are followed."""
+        """Positions (n, pairs) [m] of all pairs around a pair at xi (n,), and which pairs are computed."""
         place = np.asarray(xi, dtype=float)[:, None] + self.shifts
         return place, (place > self.low) & (place < self.high)
 
     def phases(self, xi: FloatArray) -> Phases:
-        """All pairs without load, with one at each position xi (n,) [m] in the middle."""
+        """Return all pairs without load. The middle pair is at xi (n,) [m]."""
         place, near = self.pairs(xi)
         stiffness = np.where(near, self.stiffness.extended(place), 0.0)
         coupling = coupled(self.neighbours, place, near)
@@ -270,17 +277,18 @@ class StaticMesh:
         """Static approach delta (n,) [m] by iteration."""
         force = np.full(len(phases.position), self.force)
         no_loads = np.empty((0, self.shifts.size))
-        found = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
-        if not np.isfinite(found).all():
+        approach = static_approaches(phases, force, self.flanks, self.law, no_loads, workspace(phases))
+        if not np.isfinite(approach).all():
             raise NumericalError("At a position no tooth pair carries the load: check stiffness and relief.")
-        return np.asarray(found, dtype=np.float64)
+        return np.asarray(approach, dtype=np.float64)
 
     def fit_approach(self, marks: FloatArray, tolerance: float) -> None:
-        """Fit the approach, which repeats with every pitch, once: all laws of a pair follow from it.
+        """Fit the static approach once, because all laws of a pair follow from it. It repeats with every
+        pitch.
 
         Parameters
         ----------
-        marks : positions of kinks of the approach, any whole number of pitches off [m]
+        marks : positions of kinks of the approach, plus or minus any number of pitches [m]
         tolerance : largest error [m]
         """
         start = self.geometry.L_XA
@@ -293,7 +301,7 @@ class StaticMesh:
         self._fitted = PathFunction.fit(self.approach, breaks, inside, tolerance=tolerance)
 
     def static(self, xi: FloatArray) -> StaticPair:
-        """The pair at xi (n,) [m] in equilibrium."""
+        """Return the pair at xi (n,) [m] in static equilibrium."""
         contact = np.zeros(np.size(xi), CONTACT)
         phases = self.phases(xi)
         approach = self._approach(phases) if self._fitted is None else self.approach(xi)
@@ -306,15 +314,15 @@ class StaticMesh:
         start = self._fitted.breaks[0]
         return self._fitted.slope(start + np.mod(xi - start, self.geometry.base_pitch))
 
-    def half(self, xi: FloatArray) -> FloatArray:
-        """How far the contact point of deflected teeth is beyond where the tips leave the line, (n,) [m]."""
+    def half_way_out(self, xi: FloatArray) -> FloatArray:
+        """Distance by which deflected teeth touch further out, (n,) [m]; see ``tip_corners.half_way_out``."""
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
 
-    def exchange(self, at_start: bool, xi: FloatArray) -> FloatArray:
-        """Changes its sign where edge and tip corner exchange at start or end of undercut flanks, (n,)."""
+    def tip_minus_edge(self, at_start: bool, xi: FloatArray) -> FloatArray:
+        """Quantity (n,) that is 0 where tip corner and edge exchange, at start or end of the flanks."""
         g = self.geometry
-        half = self.half(xi)
-        back = self.back(at_start, xi)
+        half = self.half_way_out(xi)
+        beyond_edge = self.beyond_edge(at_start, xi)
         radii = (g.base_radius_pinion, g.base_radius_gear)
         length = g.L_XY + self.lengthening
         if at_start:
@@ -326,25 +334,28 @@ class StaticMesh:
             tip = g.tip_length_pinion
             edge = g.undercut_gear
             radii = radii[::-1]
-        return np.asarray(deciding_ways(beyond, tip, back, edge, length, *radii), dtype=np.float64)
+        return np.asarray(tips_minus_edges(beyond, tip, beyond_edge, edge, length, *radii), dtype=np.float64)
 
-    def back(self, at_start: bool, xi: FloatArray) -> FloatArray:
-        """Way of the contact back from the edge at start or end of undercut flanks, (n,) [m]."""
+    def beyond_edge(self, at_start: bool, xi: FloatArray) -> FloatArray:
+        """Distance of the contact beyond the edge at start or end of undercut flanks, (n,) [m]."""
         g = self.geometry
-        half = self.half(xi)
+        half = self.half_way_out(xi)
         return g.undercut_pinion - xi - half if at_start else g.undercut_gear - (g.L_XY - xi) - half
 
 
 @lru_cache(maxsize=_KEPT)
 def _damping(pair: GearPair, ratio: float) -> PathFunction:
-    """C = 2 zeta sqrt(k m_e) of a pair ``at_rest``, taking hold with the load, with zeta = ``ratio``."""
+    """Damping coefficient that acts in the linear form: s f c, of a pair ``at_rest`` with zeta = ``ratio``.
+
+    c is ``lumped.mesh.damper.damping_law``, s the share of the damper at the static load, f the share of the
+    approach that compresses the pair.
+    """
     contact = loaded_contact(pair)
     low, high = contact.stiffness.interval
-    scale = 2.0 * ratio * np.sqrt(bodies_of(pair).effective_mass)
+    whole_damper = damping_law(ratio, contact.secant, bodies_of(pair).effective_mass)
 
     def damping(xi: FloatArray) -> FloatArray:
-        root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
-        return np.asarray(scale * root * contact.engagement(xi) * contact.closing(xi), dtype=np.float64)
+        return whole_damper(xi) * contact.engagement(xi) * contact.closing(xi)
 
     engaged = contact.engagement
     breaks = np.union1d(np.union1d(engaged.breaks, contact.secant.breaks), contact.closing.breaks)
@@ -357,7 +368,7 @@ def _damping(pair: GearPair, ratio: float) -> PathFunction:
 
 @lru_cache(maxsize=_KEPT)
 def loaded_contact(pair: GearPair) -> LoadedContact:
-    """Contact of a tooth pair in the mesh under the mean torque, of a pair ``at_rest``."""
+    """Return the laws of a tooth pair under the mean torque, of a pair ``at_rest``."""
     mesh = StaticMesh(pair)
     g = pair.geometry
     law = mesh.law
@@ -374,7 +385,8 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
             f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
             "pitches beyond its tips: lower the torque, check the stiffness."
         )
-    low, high = float(contact[0, 0]), float(contact[-1, 1])
+    low = float(contact[0, 0])
+    high = float(contact[-1, 1])
     corners = _corners(mesh, low, high)
     marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
     inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
@@ -385,30 +397,30 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     largest = float(stiffness_of.extended(np.linspace(low, high, 101)).max())
     deflection = mesh.force / largest
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
-    # Not below the rounding of positions, several times over: the approach is solved for by iteration.
+    # The approach is found by iteration: its error is several times the rounding of positions.
     exact = max(_APPROACH * relative * deflection, 5.0 * _LENGTH)
     mesh.fit_approach(np.concatenate([marks.ravel(), stiffness_of.law.breaks]), exact)
 
-    known: dict[bytes, StaticPair] = {}
+    static_pairs: dict[bytes, StaticPair] = {}
 
-    def static(xi: FloatArray) -> StaticPair:  # laws that are fitted alike ask for the same positions
-        if (key := xi.tobytes()) not in known:
-            known[key] = mesh.static(xi)
-        return known[key]
+    def static(xi: FloatArray) -> StaticPair:  # several fits ask for the same positions
+        if (key := xi.tobytes()) not in static_pairs:
+            static_pairs[key] = mesh.static(xi)
+        return static_pairs[key]
 
-    # With a linear law of pairs that stand alone the pieces are those of the stiffness.
+    # Without softening and neighbours the laws have the pieces of the stiffness.
     ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks
 
     def fitted(value: Callable[[FloatArray], FloatArray], scale: float) -> PathFunction:
         return PathFunction.fit(value, ends, inside, tolerance=relative * scale, by_length=True)
 
     stiffness = fitted(lambda xi: static(xi).tangent, largest)
-    # Only the damper bends where it is whole. Its pieces are cut where those of the stiffness are: laws that
-    # are cut at the same phases leave few pieces of a mesh cycle.
+    # Only the share of the damper has a kink where the whole damper begins to act. Its breaks are those of
+    # the stiffness too: laws with the same breaks leave few pieces in a mesh cycle.
     full = FULL_DAMPING * mesh.force
     bends = inside
-    for left, right in itertools.pairwise(breaks):
-        bends = np.union1d(bends, _roots(lambda x: static(x).load - full, left, right))
+    for start, end in itertools.pairwise(breaks):
+        bends = np.union1d(bends, _roots(lambda x: static(x).load - full, start, end))
     cuts = np.union1d(stiffness.breaks, bends)
 
     def engagement(xi: FloatArray) -> FloatArray:
@@ -422,7 +434,7 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
         return np.asarray(1.0 - static(xi).contact["gap_by_approach"], dtype=np.float64)
 
     def rolling(xi: FloatArray) -> FloatArray:
-        """Slope of the gap at a constant approach, without what the static approach moves the corner."""
+        """Slope of the gap at a constant approach: without the part by the change of the approach."""
         share = closing(xi)
         return np.asarray((gap.slope(xi) - (1.0 - share) * mesh.approach_slope(xi)) / share)
 
@@ -444,31 +456,31 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
 
 
 def _corners(mesh: StaticMesh, low: float, high: float) -> list[float]:
-    """Places where a tip corner or an edge begins to touch, or they exchange [m]."""
+    """Positions where a tip corner or an edge begins to touch, or where both exchange [m]."""
     g = mesh.geometry
-    found = []
-    # A tip leaves the line of action where the pair is half the approach inside the path of contact.
+    places = []
+    # Without an edge a tip leaves the flank where the pair is half the approach inside the path of contact.
     if g.undercut_pinion == 0.0:
-        found += _roots(lambda x: x - g.L_XA - mesh.half(x), g.L_XA, g.L_XP)
+        places += _roots(lambda x: x - g.L_XA - mesh.half_way_out(x), g.L_XA, g.L_XP)
     else:
-        found += _roots(partial(mesh.exchange, True), low, g.L_XP)
-        found += _roots(partial(mesh.back, True), low, g.L_XP)
+        places += _roots(partial(mesh.tip_minus_edge, True), low, g.L_XP)
+        places += _roots(partial(mesh.beyond_edge, True), low, g.L_XP)
     if g.undercut_gear == 0.0:
-        found += _roots(lambda x: g.L_XD - x - mesh.half(x), g.L_XP, g.L_XD)
+        places += _roots(lambda x: g.L_XD - x - mesh.half_way_out(x), g.L_XP, g.L_XD)
     else:
-        found += _roots(partial(mesh.exchange, False), g.L_XP, high)
-        found += _roots(partial(mesh.back, False), g.L_XP, high)
-    return found
+        places += _roots(partial(mesh.tip_minus_edge, False), g.L_XP, high)
+        places += _roots(partial(mesh.beyond_edge, False), g.L_XP, high)
+    return places
 
 
 def _roots(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[float]:
     """Sign changes of a function (n,) -> (n,) between ``low`` and ``high``, at most one in each 64th part."""
 
-    def at(x: float) -> float:
+    def value_at(x: float) -> float:
         return float(function(np.array([x]))[0])
 
     x = np.linspace(low, high, 65)
     x[[0, -1]] = np.nextafter(low, high), np.nextafter(high, low)
     values = function(x)
-    found = np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:]))
-    return [float(brentq(at, x[j], x[j + 1], xtol=1e-15)) for j in found]
+    changes = np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:]))
+    return [float(brentq(value_at, x[j], x[j + 1], xtol=1e-15)) for j in changes]

@@ -1,8 +1,9 @@
-"""Prescribed contact: every tooth pair touches from A to D, where the static load leaves it touching.
+"""Prescribed contact: a tooth pair touches from A to D, except where relief keeps it apart under the static
+load.
 
-The linear model keeps every pair in contact over a fixed interval. With relief that interval depends on the
-load: a pair takes part where delta(T) - e_i > 0. There its stiffness is k_i and its unloaded error e_i;
-elsewhere it carries nothing. Contact before A and behind D is left out.
+The linear model keeps every pair in contact over a fixed interval. With relief the interval depends on the
+load: a pair takes part where delta(T) - e_i > 0. There the stiffness is k_i and the unloaded error e_i;
+elsewhere the pair has no load. Contact before A and behind D is left out.
 
 Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error".
 """
@@ -15,6 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from lumped.errors import NumericalError
+from lumped.mesh.damper import damping_law
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
@@ -26,12 +28,15 @@ from lumped.typing import BoolArray, FloatArray
 
 #: Fit error of c over its largest value.
 _DAMPING_TOLERANCE = 1e-11
-#: The same where k starts from zero: rounding of k by 1e-16 of its peak is 1e-8 in its root.
+#: The same where k starts from zero: a rounding error of 1e-16 of the peak of k is 1e-8 in sqrt(k).
 _DAMPING_TOLERANCE_FROM_ZERO = 1e-7
 
 
 class Prescribed(Contact):
-    """Pairs stand alone; k has no potential over the path, so the brake balances sliding alone."""
+    """Prescribed contact.
+
+    No pair moves another; k(xi) delta has no potential, so the brake balances sliding only.
+    """
 
     name = "prescribed"
     conservative = False
@@ -39,7 +44,7 @@ class Prescribed(Contact):
     root_damping = True
 
     def elements(self, pair: GearPair) -> MeshElements:
-        """Stiffness of the model, and the error of the reliefs, from A to D."""
+        """Return the stiffness of the model and the error of the reliefs, from A to D."""
         if pair.mesh.relief == "static":
             stiffness, error = _loaded_mesh(at_rest(pair))
         else:
@@ -53,17 +58,17 @@ class Prescribed(Contact):
         )
 
     def neighbours(self, pair: GearPair) -> tuple[()]:
-        """None: pairs stand alone."""
+        """Return no functions: no pair moves another."""
         return ()
 
     def unilateral_elements(self, pair: GearPair) -> MeshElements:
-        """The whole stiffness, not what statics leave, and the error of the reliefs."""
+        """Return the stiffness from A to D, also where a pair is apart in statics, and the reliefs' error."""
         if pair.mesh.relief == "ignored":
             return self.elements(pair)
         return replace(self.elements(pair.with_(mesh__relief="ignored")), error=error_function(pair))
 
     def pressing(self, load: FloatArray, contact: BoolArray) -> tuple[FloatArray, BoolArray]:
-        """Every pair in contact."""
+        """Return the load of every pair in contact."""
         return load, contact
 
 
@@ -80,7 +85,7 @@ def _loaded_mesh(pair: GearPair) -> tuple[PathFunction, PathFunction]:
     shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
 
     def clearance(xi: FloatArray) -> FloatArray:
-        """Approach minus error of the pair at xi, with its neighbours a pitch apart; (n,) [m]."""
+        """Approach less error of the pair at xi (n,), whose neighbours are whole pitches away [m]."""
         place = xi[:, None] + shifts
         outside = (place < g.L_XA) | (place > g.L_XD)
         e = np.where(outside, np.inf, error(place))
@@ -98,15 +103,11 @@ def _loaded_mesh(pair: GearPair) -> tuple[PathFunction, PathFunction]:
 
 
 def _damping(stiffness: PathFunction, ratio: float, mass: float) -> PathFunction:
-    """c_i proportional to sqrt(k_i m_e) (He, Cho and Singh 2008)."""
+    """Fit the damping coefficient c(xi) of ``lumped.mesh.damper.damping_law``."""
     low, high = stiffness.interval
     if ratio == 0.0:
         return PathFunction.constant(0.0, low, high)
-    scale = 2.0 * ratio * np.sqrt(mass)
-
-    def damping(xi: FloatArray) -> FloatArray:
-        return np.asarray(scale * np.sqrt(np.maximum(stiffness(xi), 0.0)), dtype=np.float64)
-
+    damping = damping_law(ratio, stiffness, mass)
     values = damping(np.linspace(low, high, 401))
     from_zero = min(values[0], values[-1]) < 1e-3 * values.max()
     relative = _DAMPING_TOLERANCE_FROM_ZERO if from_zero else _DAMPING_TOLERANCE

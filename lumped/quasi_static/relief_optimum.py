@@ -55,9 +55,9 @@ class OptimalRelief:
 def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalRelief:
     """Linear tip relief of both gears for the least peak to peak static transmission error.
 
-    A map over amounts up to twice the largest deflection and over lengths finds the valley, a simplex search
-    its bottom (the objective has kinks). More relief over less length can be as good, as it only takes the
-    tips out of contact; among equals the least amount is taken.
+    A map over amounts up to twice the largest deflection and over lengths finds the valley. A simplex search
+    finds the bottom of the valley, because the objective has kinks. More relief over less length can be as
+    good: it only takes the tips out of contact. Among equal optima the one with the least amount is taken.
 
     Parameters
     ----------
@@ -74,8 +74,10 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
         allowed = "a model, or the curve of one tooth pair: that of the whole mesh has the profile in it"
         action = "Write kind = 'pair' with such a curve, or with_(stiffness='finite_elements')."
         raise refuse("mesh.stiffness.kind", "total", allowed, action)
-    given = pair.operating.pinion_torque if torque is None else torque
-    moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
+    design_torque = pair.operating.pinion_torque if torque is None else torque
+    moment = real_number(
+        "torque", design_torque, 0.0, above=True, unit="N m", action="Give the design torque."
+    )
     plain_tips = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
     g = pair.geometry
     bare = mesh_positions(plain_tips)
@@ -92,8 +94,8 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
     def objective(x: FloatArray) -> float:
         if not (0.0 <= x[0] <= 3.0 and 0.01 < x[1] < 0.95):
             return 10.0
-        found = _peak_to_peak(bare, g, force, np.array([x[0] * scale]), x[1] * path)
-        return float(found[0] / scale + _LEAST_MATERIAL * x[0])
+        swing = _peak_to_peak(bare, g, force, np.array([x[0] * scale]), x[1] * path)
+        return float(swing[0] / scale + _LEAST_MATERIAL * x[0])
 
     start = np.array([amounts[i] / scale, lengths[j] / path])
     simplex = start + np.array([[0.0, 0.0], [0.04, 0.0], [0.0, 0.015]])
@@ -142,5 +144,5 @@ def _peak_to_peak(
     xi = np.clip(mesh.xi, g.L_XA, g.L_XD)
     form = np.maximum((xi - g.L_XD) / length + 1.0, 0.0) + np.maximum((g.L_XA - xi) / length + 1.0, 0.0)
     error = mesh.error + amounts[:, None, None] * form
-    found = share_load(mesh.stiffness, error, force, mesh.coupling).transmission_error
-    return np.asarray(np.ptp(found, axis=1))
+    approach = share_load(mesh.stiffness, error, force, mesh.coupling).transmission_error
+    return np.asarray(np.ptp(approach, axis=1))

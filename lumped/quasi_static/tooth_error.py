@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.mesh.statics import end_gaps
+from lumped.mesh.statics import flank_end_gaps
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
@@ -44,7 +44,8 @@ def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
 
 def error_function(pair: GearPair) -> PathFunction:
     """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts."""
-    low, high = pair.geometry.L_XA, pair.geometry.L_XD
+    low = pair.geometry.L_XA
+    high = pair.geometry.L_XD
     switches = relief_starts(pair)
     breaks = np.array([low, *switches, high])
     # Each piece is a parabola: three values fix it.
@@ -56,7 +57,8 @@ def error_function(pair: GearPair) -> PathFunction:
 
 def relief_starts(pair: GearPair) -> FloatArray:
     """Positions strictly between A and D where a relief starts, increasing [m]."""
-    low, high = pair.geometry.L_XA, pair.geometry.L_XD
+    low = pair.geometry.L_XA
+    high = pair.geometry.L_XD
     starts = np.array([relief.start for relief in _reliefs(pair)])
     return np.asarray(np.unique(starts[(starts > low) & (starts < high)]), dtype=np.float64)
 
@@ -72,14 +74,14 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     """
     g = geometry
     place = np.asarray(xi, dtype=float)
-    at = place.ravel()
+    places = place.ravel()
     radii = (g.base_radius_pinion, g.base_radius_gear)
     tips = (g.tip_length_pinion, g.tip_length_gear)
     edges = (g.undercut_pinion, g.undercut_gear)
-    way = g.L_XY - at - tips[1], at - tips[0]
-    back = edges[0] - at, edges[1] - (g.L_XY - at)
-    before = end_gaps(way[0], tips[1], back[0], edges[0], g.L_XY, *radii)
-    behind = end_gaps(way[1], tips[0], back[1], edges[1], g.L_XY, *radii[::-1])
+    beyond_tip = g.L_XY - places - tips[1], places - tips[0]
+    beyond_edge = edges[0] - places, edges[1] - (g.L_XY - places)
+    before = flank_end_gaps(beyond_tip[0], tips[1], beyond_edge[0], edges[0], g.L_XY, *radii)
+    behind = flank_end_gaps(beyond_tip[1], tips[0], beyond_edge[1], edges[1], g.L_XY, *radii[::-1])
     return np.asarray((before + behind).reshape(place.shape), dtype=np.float64)
 
 
@@ -108,12 +110,12 @@ def _reliefs(pair: GearPair) -> list[_Relief]:
         ("pinion", pair.pinion, g.base_radius_pinion, g.tip_length_pinion, g.L_XA, 0.0, 1.0),
         ("gear", pair.gear, g.base_radius_gear, g.tip_length_gear, g.L_XY - g.L_XD, g.L_XY, -1.0),
     )
-    found = []
-    for which, gear, radius, tip, root, origin, sense in sides:
+    reliefs = []
+    for gear_name, gear, radius, tip, root, origin, sense in sides:
         for name, relief, end in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
             if relief is None or relief.amount == 0.0:
                 continue
             if not root < relief.start_roll_angle * radius < tip:
-                raise relief.off(pair.flank(int(which == "gear")), f"{which}.{name}_relief")
-            found.append(_Relief(relief, end / radius, radius, origin, sense))
-    return found
+                raise relief.off(pair.flank(int(gear_name == "gear")), f"{gear_name}.{name}_relief")
+            reliefs.append(_Relief(relief, end / radius, radius, origin, sense))
+    return reliefs

@@ -127,8 +127,8 @@ def static_transmission_error(
     NumericalError : contact reaches further beyond the path than the pairs are followed
     """
     pair = load_gear_pair(pair)
-    given = pair.operating.pinion_torque if torques is None else torques
-    torque = real_numbers("torques", given, 0.0, unit="N m", action="Give driving torques.")
+    torques_or_default = pair.operating.pinion_torque if torques is None else torques
+    torque = real_numbers("torques", torques_or_default, 0.0, unit="N m", action="Give driving torques.")
     g = pair.geometry
     mesh = mesh_positions(pair, phases=phases, extended=extended)
     force = torque / g.base_radius_pinion
@@ -164,12 +164,12 @@ def static_transmission_error(
 
 def _extended(pair: GearPair, extended: bool | None) -> bool:
     """Whether pairs are followed beyond A and D; a stiffness of the whole mesh has that contact in it."""
-    whole = pair.mesh.stiffness.whole_mesh
-    if whole and extended:
+    whole_mesh = pair.mesh.stiffness.whole_mesh
+    if whole_mesh and extended:
         allowed = "False where mesh.stiffness is that of the whole mesh"
         action = "Leave it out, or give the curve of one tooth pair: kind = 'pair' in mesh.stiffness."
         raise refuse("extended", True, allowed, action)
-    return not whole if extended is None else bool(extended)
+    return not whole_mesh if extended is None else bool(extended)
 
 
 def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair) -> FloatArray:

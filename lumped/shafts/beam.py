@@ -143,17 +143,17 @@ def _bending(piece: Piece, length: float) -> tuple[FloatArray, FloatArray, Float
             *_BUBBLES,
         ]
     )
-    whole = np.zeros((deflection.shape[0],) * 2)
-    whole[:4, :4] = flexural / (length**3 * (1.0 + phi)) * stiffness
+    element_stiffness = np.zeros((deflection.shape[0],) * 2)
+    element_stiffness[:4, :4] = flexural / (length**3 * (1.0 + phi)) * stiffness
     weight = _WEIGHTS * length
     curvature = np.vstack([none, _RATES]) / length
     shear = np.vstack([_RATES, -_BUBBLES])
-    whole[4:, 4:] = flexural * (curvature * weight) @ curvature.T
-    whole[4:, 4:] += piece.shear_rigidity * (shear * weight) @ shear.T
+    element_stiffness[4:, 4:] = flexural * (curvature * weight) @ curvature.T
+    element_stiffness[4:, 4:] += piece.shear_rigidity * (shear * weight) @ shear.T
     weight = weight * piece.density
     rotation = piece.second_moment * (slope * weight) @ slope.T
     mass = piece.area * (deflection * weight) @ deflection.T + rotation
-    return whole, mass, 2.0 * rotation
+    return element_stiffness, mass, 2.0 * rotation
 
 
 def _twist(piece: Piece, length: float) -> tuple[FloatArray, FloatArray]:
@@ -191,12 +191,12 @@ def beam(pieces: Sequence[Piece], places: Sequence[float], omega: float, angle: 
     stiffness, mass, spin = np.zeros((3, size, size))
     twist_stiffness, twist_mass = np.zeros((2, twist_size, twist_size))
     for j, ((k, m, g), twist) in enumerate(elements):
-        own = 2 * n + 2 * inside * j + np.arange(2 * inside)
-        at = np.ix_(*[np.append(np.arange(2 * j, 2 * j + 4), own)] * 2)
-        stiffness[at] += k
-        mass[at] += m
-        spin[at] += g
-        at = np.ix_(*[np.append([j, j + 1], n + inside * j + np.arange(inside))] * 2)
-        twist_stiffness[at] += twist[0]
-        twist_mass[at] += twist[1]
+        bubbles = 2 * n + 2 * inside * j + np.arange(2 * inside)
+        index = np.ix_(*[np.append(np.arange(2 * j, 2 * j + 4), bubbles)] * 2)
+        stiffness[index] += k
+        mass[index] += m
+        spin[index] += g
+        index = np.ix_(*[np.append([j, j + 1], n + inside * j + np.arange(inside))] * 2)
+        twist_stiffness[index] += twist[0]
+        twist_mass[index] += twist[1]
     return Beam(z, mass, stiffness, spin, twist_mass, twist_stiffness)

@@ -1,8 +1,8 @@
-"""What is read of a pair on its shafts: natural frequencies, and the springs that move like the shafts.
+"""Natural frequencies of a pair on its shafts, and springs that replace the shafts at one frequency.
 
-``condensed_bearings``: seen from its gear, a shaft with all that is on it has one dynamic stiffness D in each
-direction. At the chosen frequency a spring and a mass have the same D and the same slope over the square of
-the frequency: mass m = -dD/d(omega^2), stiffness k = D + omega^2 m. At zero this is static condensation.
+``condensed_bearings``: at its gear, a shaft has one dynamic stiffness D in each direction. A spring and a
+mass replace the shaft. At the chosen frequency they have the same D and the same slope of D over the square
+of the frequency: mass m = -dD/d(omega^2), stiffness k = D + omega^2 m. At zero this is static condensation.
 
 Sources: R. J. Guyan, AIAA J. 3 (1965) 380 (static condensation); docs/theory/shafts.md.
 """
@@ -39,15 +39,17 @@ PARTS = (
     "mesh",
     "bearings",
 )
+_TORSION = 4
 _MESH = 5
 _BEARINGS = 6
-#: From which share of the elastic energy a mode is the mesh's, and of the moving mass, of one shaft or plane.
+#: Share of the elastic energy above which a mode is named after the mesh; share of the kinetic energy above
+#: which it is named after one shaft or plane.
 _MUCH = 0.3
 _MOST = 0.75
 
 
 def condensed_bearings(pair: AnyPair, frequency: float = 0.0) -> GearPair:
-    """Return the pair with bearings, masses and inertias that stand for its shafts at one frequency.
+    """Return the pair with bearings, masses and inertias that replace the shafts at one frequency.
 
     Parameters
     ----------
@@ -71,12 +73,12 @@ def condensed_bearings(pair: AnyPair, frequency: float = 0.0) -> GearPair:
     shafted = shafted_pair(pair)
     omega = 2.0 * math.pi * frequency
     changes: dict[str, float | None] = {"shafts": None}
-    for which, name in enumerate(("pinion", "gear")):
-        inertia = _seen_inertia(shafted, which, omega)
-        along, mass, damping = _seen(shafted, 2 + which, omega)
-        off, own_mass, off_damping = _seen(shafted, 4 + which, omega)
-        off += omega**2 * (mass - own_mass)
-        values = {"along": along, "off": off, "inertia": inertia}
+    for gear, name in enumerate(("pinion", "gear")):
+        inertia = _inertia_at_rim(shafted, gear, omega)
+        along, mass, damping = _dynamic_spring(shafted, 2 + gear, omega)
+        across, across_mass, across_damping = _dynamic_spring(shafted, 4 + gear, omega)
+        across += omega**2 * (mass - across_mass)
+        values = {"along": along, "off": across, "inertia": inertia}
         wrong = [f"{key} {value:.3g}" for key, value in values.items() if not value > 0.0]
         if wrong:
             allowed = f"a frequency at which the {name}'s shaft resists like a spring and an inertia"
@@ -86,30 +88,32 @@ def condensed_bearings(pair: AnyPair, frequency: float = 0.0) -> GearPair:
             f"{name}.mass": mass,
             f"{name}.inertia": inertia,
             f"bearings.{name}.loa_stiffness": along,
-            f"bearings.{name}.oloa_stiffness": off,
+            f"bearings.{name}.oloa_stiffness": across,
             f"bearings.{name}.loa_damping_ratio": min(damping / (2.0 * math.sqrt(along * mass)), 2.0),
-            f"bearings.{name}.oloa_damping_ratio": min(off_damping / (2.0 * math.sqrt(off * mass)), 2.0),
+            f"bearings.{name}.oloa_damping_ratio": min(
+                across_damping / (2.0 * math.sqrt(across * mass)), 2.0
+            ),
         }
     return pair.with_(changes)
 
 
-def _seen(shafted: ShaftedPair, row: int, omega: float) -> tuple[float, float, float]:
-    """Stiffness [N/m], mass [kg] and damping [N s/m] that a gear's centre feels, teeth apart."""
+def _dynamic_spring(shafted: ShaftedPair, row: int, omega: float) -> tuple[float, float, float]:
+    """Stiffness [N/m], mass [kg], damping [N s/m] that replace a shaft at a gear's centre, teeth apart."""
     shape = shafted.gears[row]
-    own = np.flatnonzero(shape)
-    shape = shape[own]
-    squares = shafted.frequencies[own] ** 2
+    acting = np.flatnonzero(shape)
+    shape = shape[acting]
+    squares = shafted.frequencies[acting] ** 2
     receptance = float(np.sum(shape**2 / (squares - omega**2)))
     stiffness = 1.0 / receptance
     mass = stiffness**2 * float(np.sum((shape / (squares - omega**2)) ** 2))
-    moved = stiffness * shape / (squares - omega**2)
-    damping = float(moved @ shafted.damping[np.ix_(own, own)] @ moved)
+    response = stiffness * shape / (squares - omega**2)
+    damping = float(response @ shafted.damping[np.ix_(acting, acting)] @ response)
     return stiffness + omega**2 * mass, mass, damping
 
 
-def _seen_inertia(shafted: ShaftedPair, which: int, omega: float) -> float:
-    """Inertia that the rim of a gear feels [kg m^2], from all modes of its shaft's twist and its turn."""
-    shape = shafted.gears[which]
+def _inertia_at_rim(shafted: ShaftedPair, gear: int, omega: float) -> float:
+    """Inertia with the dynamic stiffness of twist at the rim of a gear, from all modes of twist [kg m^2]."""
+    shape = shafted.gears[gear]
     squares = shafted.frequencies**2
     elastic = squares > 0.0
     rigid = float(np.sum(shape[~elastic] ** 2))
@@ -119,10 +123,10 @@ def _seen_inertia(shafted: ShaftedPair, which: int, omega: float) -> float:
 
 
 def shaft_modes(pair: AnyPair) -> xr.Dataset:
-    """Natural frequencies of a pair on its shafts, by increasing frequency.
+    """Natural frequencies of a pair on its shafts, in increasing order.
 
-    The mesh has its mean stiffness and damping over the cycle and no friction; gyroscopic moments are those
-    of the operating speed.
+    The mesh has the mean stiffness and the mean damping of a mesh cycle, and no friction. Gyroscopic moments
+    are taken at the operating speed.
 
     Parameters
     ----------
@@ -153,19 +157,19 @@ def shaft_modes(pair: AnyPair) -> xr.Dataset:
     a[m:, :m] = -np.diag(squares) - k * np.multiply.outer(u, u)
     a[m:, m:] = -damping - c * np.multiply.outer(u, u)
     values, vectors = np.linalg.eig(a)
-    kept = np.flatnonzero(values.imag > 0.0)
-    kept = kept[np.argsort(np.abs(values[kept]), kind="stable")]
-    elastic, kinetic = _shares(shafts, k * np.abs(u @ vectors[:m, kept]) ** 2, vectors[:m, kept])
+    modes = np.flatnonzero(values.imag > 0.0)
+    modes = modes[np.argsort(np.abs(values[modes]), kind="stable")]
+    elastic, kinetic = _shares(shafts, k * np.abs(u @ vectors[:m, modes]) ** 2, vectors[:m, modes])
     names = [_name(*parts) for parts in zip(elastic, kinetic, strict=True)]
     order = ("mode", "part")
     return labelled_dataset(
         {
-            "natural_frequency": ("mode", np.abs(values[kept]) / (2.0 * math.pi), "Hz", "natural frequency"),
-            "damping_ratio": ("mode", -values[kept].real / np.abs(values[kept]), "1", "damping ratio"),
+            "natural_frequency": ("mode", np.abs(values[modes]) / (2.0 * math.pi), "Hz", "natural frequency"),
+            "damping_ratio": ("mode", -values[modes].real / np.abs(values[modes]), "1", "damping ratio"),
             "elastic_share": (order, elastic, "1", "share of the elastic energy"),
             "kinetic_share": (order, kinetic, "1", "share of the kinetic energy"),
         },
-        {"mode": (np.arange(1, kept.size + 1), "1", "mode")},
+        {"mode": (np.arange(1, modes.size + 1), "1", "mode")},
         provenance(pair) | {"model": "lumped", "supports": "shafts"},
     ).assign_coords(part=list(PARTS), name=("mode", names))
 
@@ -174,7 +178,7 @@ def _name(elastic: FloatArray, kinetic: FloatArray) -> str:
     """Plain name of a mode from its shares of energy."""
     if elastic[_MESH] >= _MUCH:
         return "tooth mesh"
-    if kinetic[4] > 0.5:
+    if kinetic[_TORSION] > 0.5:
         return "torsion"
     bending = kinetic[:4].reshape(2, 2) / kinetic[:4].sum()
     shafts = bending.sum(axis=1)
@@ -198,14 +202,14 @@ def _shares(shafted: ShaftedPair, in_mesh: FloatArray, shapes: FloatArray) -> tu
     squares = shafted.frequencies[1:, None] ** 2
     for shaft in (0, 1):
         for plane in (0, 1):
-            own = (owner == shaft) & (kind == plane)
+            of_plane = (owner == shaft) & (kind == plane)
             part = 2 * shaft + plane
-            kinetic[part] = size[own].sum(axis=0)
+            kinetic[part] = size[of_plane].sum(axis=0)
             in_bearings = springs[of_gear == bool(shaft), plane].sum(axis=0)
-            elastic[part] = np.maximum((squares[own] * size[own]).sum(axis=0) - in_bearings, 0.0)
+            elastic[part] = np.maximum((squares[of_plane] * size[of_plane]).sum(axis=0) - in_bearings, 0.0)
     twist = kind == 2
-    kinetic[4] = size[twist].sum(axis=0)
-    elastic[4] = (squares[twist] * size[twist]).sum(axis=0)
+    kinetic[_TORSION] = size[twist].sum(axis=0)
+    elastic[_TORSION] = (squares[twist] * size[twist]).sum(axis=0)
     elastic[_MESH] = in_mesh
     elastic[_BEARINGS] = springs.sum(axis=(0, 1))
     return (elastic / elastic.sum(axis=0)).T, (kinetic / kinetic.sum(axis=0)).T

@@ -1,8 +1,9 @@
-"""A gear pair on its shafts in modal coordinates of the shafts, teeth apart.
+"""A gear pair on its shafts in modal coordinates of the shafts, with the teeth apart.
 
-Every mode belongs to one shaft and to one plane or to twist. The two rigid rotations are exchanged for the
-common one, which no tooth feels, and the relative one. The mesh then couples all modes by one number, the
-dynamic transmission error; bearing dashpots, couplings and gyroscopic moments couple those of a shaft.
+Every mode belongs to one shaft, and to one plane or to twist. The rigid rotations of both shafts are replaced
+by the common rotation, which moves no tooth against its mate, and the relative rotation. The mesh then
+couples all modes by one number, the dynamic transmission error. Bearing dashpots, couplings and gyroscopic
+moments couple the modes of one shaft.
 
 Sources: docs/theory/shafts.md.
 """
@@ -23,11 +24,13 @@ from lumped.typing import FloatArray, IntArray
 
 #: Tooth stiffness of steel over face width [Pa], for the default of ``max_frequency``; ISO 6336-1, sec. 5.3.
 _TOOTH = 2e10
-#: Modes are kept up to this multiple of the frequency of the gears on such teeth.
+#: Modes are taken up to this multiple of the natural frequency of the gears on such teeth.
 _ABOVE = 3.0
-#: Most coordinates of a pair on shafts: seconds of work for a periodic motion.
+#: Most coordinates of a pair on shafts; a periodic motion then takes seconds.
 _MOST = 80
 _GEARS = ("pinion", "gear")
+#: Planes of a shaft: bending along x, bending along y, twist.
+_X, _Y, _TWIST = range(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,12 +74,12 @@ class ShaftedPair:
 
     @property
     def damping(self) -> FloatArray:
-        """All dissipation (m, m)."""
+        """Damping matrix of all parts together (m, m)."""
         return self.modal_damping + self.bearing_damping + self.coupling_damping
 
 
 def highest_frequency(pair: GearPair) -> float:
-    """Up to which modes of the shafts with the gears held are kept [rad/s]."""
+    """Frequency up to which modes of the shafts with fixed gears are taken [rad/s]."""
     assert pair.shafts is not None
     if pair.shafts.max_frequency is not None:
         return 2.0 * math.pi * pair.shafts.max_frequency
@@ -120,8 +123,8 @@ def shafted_pair(pair: GearPair) -> ShaftedPair:
     m = int(np.sum(counts))
     if m > _MOST:
         action = "Lower it: modes far above the mesh frequency follow statically."
-        given = f"{highest_frequency(pair) / (2.0 * math.pi):.4g} Hz"
-        raise refuse("shafts.max_frequency", given, f"at most {_MOST} modes, not {m}", action)
+        frequency = f"{highest_frequency(pair) / (2.0 * math.pi):.4g} Hz"
+        raise refuse("shafts.max_frequency", frequency, f"at most {_MOST} modes, not {m}", action)
     names = []
     owner = []
     kind = []
@@ -133,38 +136,42 @@ def shafted_pair(pair: GearPair) -> ShaftedPair:
     torques = np.zeros((2, m))
     first = 0
     # The pinion turns clockwise in (x, y), the gear counter-clockwise, z_p/z_g as fast.
-    for which, (shaft, turn) in enumerate(zip(both, (-1.0, g.omega_gear / g.omega_pinion), strict=True)):
-        at = []
+    for gear, (shaft, turn) in enumerate(zip(both, (-1.0, g.omega_gear / g.omega_pinion), strict=True)):
+        columns_of_plane = []
         row = len(bearing_names)
-        bearing_names += [f"{_GEARS[which]} {j + 1}" for j in range(len(shaft.bearings))]
+        bearing_names += [f"{_GEARS[gear]} {j + 1}" for j in range(len(shaft.bearings))]
         for number, (modes, label) in enumerate(zip(shaft.planes, ("x", "y", "twist"), strict=True)):
             count = modes.frequencies.size
             columns = slice(first, first + count)
-            at.append(columns)
+            columns_of_plane.append(columns)
             first = columns.stop
-            gears[(2 + which, 4 + which, which)[number], columns] = modes.shapes[shaft.gear[number]]
-            names += [f"{_GEARS[which]} {label} {j + (number < 2)}" for j in range(count)]
-            owner += [which] * count
+            gears[(2 + gear, 4 + gear, gear)[number], columns] = modes.shapes[shaft.gear[number]]
+            names += [f"{_GEARS[gear]} {label} {j + (number < 2)}" for j in range(count)]
+            owner += [gear] * count
             kind += [number] * count
             frequencies += modes.frequencies.tolist()
             if number < 2:
                 bearings[row : len(bearing_names), number, columns] = modes.shapes[list(shaft.bearings)]
-        gyroscopic[at[0], at[1]] = turn * shaft.spin
-        gyroscopic[at[1], at[0]] = -turn * shaft.spin.T
-        damper, turned = shaft.coupling
-        coupling[at[2], at[2]] = damper * np.multiply.outer(turned, turned)
-        torques[which, at[2]] = (1.0, -1.0)[which] * shaft.planes[2].shapes[shaft.driven]
+        gyroscopic[columns_of_plane[_X], columns_of_plane[_Y]] = turn * shaft.spin
+        gyroscopic[columns_of_plane[_Y], columns_of_plane[_X]] = -turn * shaft.spin.T
+        damper, turn_of_modes = shaft.coupling
+        coupling[columns_of_plane[_TWIST], columns_of_plane[_TWIST]] = damper * np.multiply.outer(
+            turn_of_modes, turn_of_modes
+        )
+        torques[gear, columns_of_plane[_TWIST]] = (1.0, -1.0)[gear] * shaft.planes[_TWIST].shapes[
+            shaft.driven
+        ]
     omega = np.array(frequencies)
     springs = [*shafts.pinion.bearings, *shafts.gear.bearings]
     dampers = np.array([[b.loa_damping, b.oloa_damping] for b in springs])
     dashpots = np.einsum("bdi,bd,bdj->ij", bearings, dampers, bearings)
     # The common and the relative rotation, in this order, instead of the rigid ones of both shafts.
-    rigid = [counts[0][0] + counts[0][1], m - counts[1][2]]
-    felt = np.array([g.base_radius_pinion, -g.base_radius_gear]) * gears[[0, 1], rigid]
-    felt /= np.linalg.norm(felt)
+    rigid = [counts[0][0] + counts[0][1], m - counts[1][_TWIST]]
+    relative = np.array([g.base_radius_pinion, -g.base_radius_gear]) * gears[[0, 1], rigid]
+    relative /= np.linalg.norm(relative)
     to = np.zeros((m, m))  # new coordinates as columns over the old ones
-    to[rigid, 0] = felt[1], -felt[0]
-    to[rigid, 1] = felt
+    to[rigid, 0] = relative[1], -relative[0]
+    to[rigid, 1] = relative
     rest = np.delete(np.arange(m), rigid)
     to[rest, np.arange(2, m)] = 1.0
     gears = gears @ to

@@ -17,8 +17,8 @@ from lumped.schema.shafts import CoupledInertia, Shaft
 from lumped.shafts.beam import Beam, Piece, beam
 from lumped.typing import FloatArray
 
-#: Most that a wave of the highest frequency turns in an element of the first mesh [rad], and in how many
-#: halvings the frequencies must have settled to this relative error.
+#: Largest phase angle of a wave of the highest frequency in an element of the first mesh [rad]; most halvings
+#: of the elements; relative change of the frequencies by a halving that is accepted.
 _ANGLE = 0.75
 _HALVINGS = 4
 _MESH_ERROR = 1e-5
@@ -34,7 +34,7 @@ class Modes:
     ----------
     frequencies : (k,) natural, increasing [rad/s]
     shapes : (n, k) over the coordinates of the whole structure, of unit modal mass
-    held : (k - 1,) natural frequencies with the boundary held [rad/s]
+    held : (k - 1,) natural frequencies with the boundary fixed [rad/s]
     """
 
     frequencies: FloatArray
@@ -45,10 +45,16 @@ class Modes:
 def reduced_modes(
     mass: FloatArray, stiffness: FloatArray, boundary: int, highest: float, *, floating: bool = False
 ) -> Modes:
-    """Modes of what remains of a structure: the static shape of a boundary coordinate, modes with it fixed.
+    """Modes of a structure that is reduced to a static shape and to modes with a fixed boundary.
 
-    Statics by forces on the boundary is kept exactly. Modes with the boundary fixed are kept up to
-    ``highest`` [rad/s]; nothing else holds a ``floating`` structure, whose first mode is rigid.
+    The static shape is that of a force on the boundary coordinate, so statics by such forces is exact.
+
+    Parameters
+    ----------
+    mass, stiffness : (n, n)
+    boundary : index of the boundary coordinate
+    highest : modes with the boundary fixed are taken up to this frequency [rad/s]
+    floating : whether nothing else supports the structure; its first mode is then rigid
     """
     n = mass.shape[0]
     inner = np.delete(np.arange(n), boundary)
@@ -63,12 +69,12 @@ def reduced_modes(
     reduced[1][0, 1:] = reduced[1][1:, 0] = 0.0
     if floating:
         reduced[1][0, 0] = 0.0
-    found, shapes = eigh(reduced[1], reduced[0])
-    whole = basis @ shapes
+    eigenvalues, shapes = eigh(reduced[1], reduced[0])
+    all_coordinates = basis @ shapes
     if floating:
-        found[0] = 0.0
-    signs = np.where(whole[boundary] < 0.0, -1.0, 1.0)
-    return Modes(np.sqrt(np.maximum(found, 0.0)), whole * signs, np.sqrt(squares))
+        eigenvalues[0] = 0.0
+    signs = np.where(all_coordinates[boundary] < 0.0, -1.0, 1.0)
+    return Modes(np.sqrt(np.maximum(eigenvalues, 0.0)), all_coordinates * signs, np.sqrt(squares))
 
 
 @dataclass(frozen=True)
@@ -110,7 +116,7 @@ class SupportedShaft:
     coupling: tuple[float, FloatArray]
 
 
-#: Variations of bearings and of what a shaft carries have one.
+#: Cached, because variations of bearings, gear and coupled inertia share one beam.
 _beam = lru_cache(maxsize=16)(beam)
 
 
@@ -134,16 +140,16 @@ def supported_shaft(
             f"A shaft has {waves / (2.0 * np.pi):.3g} waves at {highest / (2.0 * np.pi):.3g} Hz, more than "
             f"{_MOST_NODES * _ANGLE / (2.0 * np.pi):.3g}: lower shafts.max_frequency."
         )
-    before: SupportedShaft | None = None
+    coarser: SupportedShaft | None = None
     change = math.inf
     for halving in range(_HALVINGS + 1):
         mesh = _beam(pieces, tuple(places), highest, _ANGLE / 2**halving)
-        found = _on_mesh(mesh, shaft, disc, coupled, highest)
-        if before is not None:
-            change = _change(before, found)
+        finer = _on_mesh(mesh, shaft, disc, coupled, highest)
+        if coarser is not None:
+            change = _change(coarser, finer)
             if change < _MESH_ERROR:
-                return found
-        before = found
+                return finer
+        coarser = finer
     raise NumericalError(
         f"Frequencies of a shaft change by {change:.1e} when its elements are halved: check its segments."
     )
@@ -207,10 +213,10 @@ def _twist(
     driven = rim
     if coupled is not None:
         driven = size - 1
-        at = mesh.node(coupled.position)
+        node = mesh.node(coupled.position)
         mass[driven, driven] = coupled.inertia
-        _spring(stiffness, at, driven, coupled.coupling_stiffness)
-        coupling[[at, driven]] = 1.0, -1.0
+        _spring(stiffness, node, driven, coupled.coupling_stiffness)
+        coupling[[node, driven]] = 1.0, -1.0
     return mass, stiffness, rim, driven, coupling
 
 

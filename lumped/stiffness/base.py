@@ -1,4 +1,4 @@
-"""What stiffness models share: what they read of a gear pair, their section, smooth engagement, fits.
+"""The base of all stiffness models: what they read of a gear pair, their section, ramps and fits.
 
 Sources: docs/theory/mesh_physics.md, "Stiffness of a tooth pair".
 """
@@ -36,7 +36,7 @@ class Operation(Protocol):
 
 
 class MeshingPair(Protocol):
-    """What stiffness models read of a gear pair; a ``GearPair`` has it all."""
+    """The part of a gear pair that stiffness models read; a ``GearPair`` has all of it."""
 
     @property
     def pinion(self) -> Material:
@@ -72,45 +72,48 @@ TOOTH_FORM = frozenset(
 
 
 class StiffnessModel(Section):
-    """Base of the stiffness models: the section ``mesh.stiffness`` with the curve that it stands for."""
+    """Base of the stiffness models: the section ``mesh.stiffness``, which computes its curve k(xi)."""
 
     @property
     def reads(self) -> frozenset[str]:
-        """What the model depends on of ``TOOTH_FORM``, beside its own section, the circles and the torque."""
+        """Fields of ``TOOTH_FORM`` on which the model depends, beside section, circles and torque."""
         return TOOTH_FORM
 
     @property
     def whole_mesh(self) -> bool:
-        """Whether it is the stiffness of the whole mesh, which is used as given, and not of a tooth pair."""
+        """Whether the curve is the stiffness of the whole mesh, used as given, and not of one tooth pair."""
         return False
 
     @property
     def words(self) -> str:
-        """What is given, for a reader: the stiffness of a tooth pair by its model, or as given."""
+        """Words for a reader: whose stiffness it is, and by which model."""
         model: str = type(self).model_fields["model"].default
         return f"stiffness of one tooth pair, model {model}"
 
     @abstractmethod
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness k_i(xi) of one tooth pair from A to D [N/m]; parameters that do not fit are refused."""
+        """Return the stiffness k_i(xi) of one tooth pair from A to D [N/m].
+
+        Refuse parameters that do not fit.
+        """
 
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
-        """Validity ranges that a gear pair leaves under this model.
+        """Return the validity ranges of the model that a gear pair leaves.
 
-        They are returned, not warned about: ordinary gears leave the fit of the fillet foundation, and a
-        warning at every evaluation of a sweep would hide the others.
+        There is no warning: ordinary gears leave the range of the fillet foundation, and a warning at every
+        point of a sweep would hide other warnings.
         """
         return ()
 
     def neighbours(self, pair: MeshingPair) -> tuple[PathFunction, ...]:
-        """How far a unit load on a pair moves the pair m base pitches ahead, m = 1, 2, ... [m/N].
+        """Return w_m(xi) [m/N], m = 1, 2, ...: how far a unit load on a pair moves the pair m pitches ahead.
 
-        Functions of the position of the pair behind; none for stiffness in which pairs stand alone.
+        xi is the position of the pair behind. Without functions no pair moves another.
         """
         return ()
 
     def softening(self, pair: MeshingPair) -> float:
-        """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]; 0 for stiffness that does not depend on the load."""
+        """Return D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]; 0 where k does not depend on the load."""
         return 0.0
 
 

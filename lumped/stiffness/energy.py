@@ -322,14 +322,14 @@ class EnergyStiffness(StiffnessModel):
         return ramped(k, self.ramp_length)
 
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
-        """Ranges of the fillet foundation's fit, and of ISO 6336-1 where the curve is scaled to it."""
+        """Return the ranges left of the fillet foundation and, where the curve is scaled, of ISO 6336-1."""
         return foundation_violations(pair) + (iso6336.fit_violations(pair) if self.scale == "iso6336" else ())
 
     def neighbours(self, pair: MeshingPair) -> tuple[PathFunction, ...]:
-        """Motion of the next pairs by the load of one; a curve that is scaled to the standard has it."""
+        """Return the functions of the gear bodies. A curve that is scaled to the standard has none."""
         return neighbour_compliances(pair) if self.scale == "none" else ()
 
     def softening(self, pair: MeshingPair) -> float:
-        """Of Weber and Banaschek's contact; curves that are scaled or ramped keep the operating torque."""
+        """Return D of Weber and Banaschek's contact; 0 for curves that are scaled or ramped."""
         changed = self.scale != "none" or self.ramp_length > 0.0
         return 0.0 if self.hertz == "linear" or changed else contact_softening(pair)

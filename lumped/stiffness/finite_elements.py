@@ -36,10 +36,10 @@ Support = Literal["free", "clamped", "untwisted"]
 
 @dataclass(frozen=True, eq=False)
 class ElasticTooth:
-    """One gear of a pair: its plane body with the lengths and moduli that make its compliance one in m/N.
+    """One gear of a pair as a plane elastic body, with the lengths and moduli that give compliances in m/N.
 
-    Lengths of ``body`` are in modules. ``twist`` of the body, times modulus and face width [-], is taken off
-    the motion of all teeth.
+    Lengths of ``body`` are in modules. ``twist`` is the twist of the body, times modulus and face width [-];
+    it is subtracted from the motion of all teeth.
     """
 
     wheel: Wheel
@@ -72,11 +72,11 @@ class ElasticTooth:
         contact = (2.0 * np.log(2.0 * depth * module / half_width) - nu / (1.0 - nu)) / math.pi
         return tooth / self.modulus + contact * (1.0 - nu**2) / e
 
-    def moved(self, apart: int, loaded: FloatArray, length: FloatArray) -> FloatArray:
+    def neighbour_motion(self, apart: int, loaded: FloatArray, length: FloatArray) -> FloatArray:
         """Motion of the tooth ``apart`` >= 1 pitches ahead of a loaded one, times face width [m^2/N]."""
         module = self.wheel.tooth.module
-        moved = self.flank.moved(apart, loaded / module, length / module)
-        return (moved - self.twist) / self.modulus
+        motion = self.flank.neighbour_motion(apart, loaded / module, length / module)
+        return (motion - self.twist) / self.modulus
 
 
 def elastic_teeth(
@@ -129,7 +129,7 @@ def hertz_half_width(pair: MeshingPair, xi: FloatArray) -> FloatArray:
 def self_compliance(
     pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray
 ) -> FloatArray:
-    """Compliance of a tooth pair that carries the load self_compliance, at positions xi of any shape [m/N].
+    """Compliance of a tooth pair under the load of this pair, at positions xi of any shape [m/N].
 
     The contact is as wide as under the operating torque on a single pair.
     """
@@ -145,19 +145,21 @@ def cross_compliance(
     """Motion of the pair ``apart`` base pitches ahead of a loaded one, which is at xi, any shape [m/N]."""
     g = pair.geometry
     ahead = xi + apart * g.base_pitch
-    total = teeth[0].moved(apart, xi, ahead) + teeth[1].moved(apart, g.L_XY - ahead, g.L_XY - xi)
+    total = teeth[0].neighbour_motion(apart, xi, ahead) + teeth[1].neighbour_motion(
+        apart, g.L_XY - ahead, g.L_XY - xi
+    )
     return np.asarray(total / g.face_width, dtype=np.float64)
 
 
 def pair_error(pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> FloatArray:
     """Share of ``self_compliance`` by which a coarser mesh differs, at positions xi of any shape [-]."""
     g = pair.geometry
-    off = np.zeros(np.shape(xi))
+    difference = np.zeros(np.shape(xi))
     for tooth, length in zip(teeth, (xi, g.L_XY - xi), strict=True):
         place = length / tooth.wheel.tooth.module
         coarse = flank_compliance(tooth.body, COARSE)
-        off += abs(tooth.flank.deflection(place) - coarse.deflection(place)) / tooth.modulus
-    return np.asarray(off / g.face_width / self_compliance(pair, teeth, xi), dtype=np.float64)
+        difference += abs(tooth.flank.deflection(place) - coarse.deflection(place)) / tooth.modulus
+    return np.asarray(difference / g.face_width / self_compliance(pair, teeth, xi), dtype=np.float64)
 
 
 class FiniteElementStiffness(StiffnessModel):
@@ -174,20 +176,20 @@ class FiniteElementStiffness(StiffnessModel):
     )
 
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """By plane finite elements [N/m]."""
+        """Return k(xi) by plane finite elements [N/m]."""
         teeth = elastic_teeth(pair, self.plane, self.support)
         ends = pair.geometry.L_XA, pair.geometry.L_XD
         return fitted_series(lambda xi: 1.0 / self_compliance(pair, teeth, xi), ends)
 
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
-        """Rims so thin that what holds them decides."""
+        """Return the rims that are too thin: their deflection depends on the support of the bore."""
         return thin_rims(pair)
 
     def neighbours(self, pair: MeshingPair) -> tuple[PathFunction, ...]:
-        """Motion of the next pairs by the load of one [m/N]."""
+        """Return w_m(xi) by plane finite elements [m/N]."""
         teeth = elastic_teeth(pair, self.plane, self.support)
         return coupled_pairs(pair, lambda apart, xi: cross_compliance(pair, teeth, apart, xi))
 
     def softening(self, pair: MeshingPair) -> float:
-        """Of the contact [m/N]."""
+        """Return D of the contact [m/N]."""
         return contact_softening(pair)

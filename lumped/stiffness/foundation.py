@@ -104,9 +104,9 @@ def foundation_compliance(
     poisson: float,
 ) -> FloatArray:
     """Deflection by the gear body without its twist, times face width: the local part [m^2/N]."""
-    whole = published_compliance(base_radius, root_radius, LOCAL_RATIO, half_angle, load_angle, modulus)
+    published = published_compliance(base_radius, root_radius, LOCAL_RATIO, half_angle, load_angle, modulus)
     twist = torsional_stiffness(root_radius, root_radius / LOCAL_RATIO, modulus, poisson)
-    return whole - base_radius**2 / twist
+    return published - base_radius**2 / twist
 
 
 def body_twist(pair: MeshingPair) -> tuple[float, float]:

@@ -43,17 +43,17 @@ def theoretical_single_stiffness(z_1: float, z_2: float, x_1: float, x_2: float)
     >>> round(theoretical_single_stiffness(28, 28, 0.0, 0.0), 4)
     16.1303
     """
-    c = COEFFICIENTS
+    c1, c2, c3, c4, c5, c6, c7, c8, c9 = COEFFICIENTS
     flexibility = (
-        c[0]
-        + c[1] / z_1
-        + c[2] / z_2
-        + c[3] * x_1
-        + c[4] * x_1 / z_1
-        + c[5] * x_2
-        + c[6] * x_2 / z_2
-        + c[7] * x_1**2
-        + c[8] * x_2**2
+        c1
+        + c2 / z_1
+        + c3 / z_2
+        + c4 * x_1
+        + c5 * x_1 / z_1
+        + c6 * x_2
+        + c7 * x_2 / z_2
+        + c8 * x_1**2
+        + c9 * x_2**2
     )
     return 1.0 / flexibility
 
@@ -128,7 +128,7 @@ def mean_of(pair: MeshingPair) -> float:
 
 
 def violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
-    """Ranges of the standard that a pair at its operating point leaves, and rims too thin for its discs."""
+    """Return the ranges of the standard that a pair leaves, and the rims that are too thin."""
     return (*fit_violations(pair), *thin_rims(pair))
 
 

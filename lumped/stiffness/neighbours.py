@@ -24,6 +24,11 @@ from lumped.typing import FloatArray
 
 #: Harmonics of the ring; the terms fall as the third power of their order.
 _HARMONICS = 1000
+#: Of ``_ring``: row of order 1, column of the solution that is a logarithm there, and rows of the conditions
+#: on both tractions at the rim.
+_ORDER_ONE = 0
+_LOGARITHM = 2
+_RADIAL_AT_RIM, _TANGENTIAL_AT_RIM = 2, 3
 #: Pairs are coupled this fraction of a base pitch beyond A and D too.
 REACH = 0.45
 
@@ -36,29 +41,33 @@ def neighbour_compliances(pair: MeshingPair) -> tuple[PathFunction, ...]:
     """
     g = pair.geometry
 
-    def moved(apart: int, xi: FloatArray) -> FloatArray:
+    def motion(apart: int, xi: FloatArray) -> FloatArray:
         distance = apart * g.base_pitch
         pinion = _moved(pair.wheels[0], pair.pinion, xi, apart, distance)
         gear = _moved(pair.wheels[1], pair.gear, g.L_XY - xi - distance, apart, distance)
         return (pinion + gear) / g.face_width
 
-    return coupled_pairs(pair, moved)
+    return coupled_pairs(pair, motion)
 
 
 def coupled_pairs(
-    pair: MeshingPair, moved: Callable[[int, FloatArray], FloatArray]
+    pair: MeshingPair, motion: Callable[[int, FloatArray], FloatArray]
 ) -> tuple[PathFunction, ...]:
-    """Functions w_m(xi) for all m, as in ``neighbour_compliances``, from smooth (m, xi (n,)) -> w_m [m/N].
+    """Fit the functions w_m(xi) of ``neighbour_compliances`` for all m.
 
-    xi reaches beyond A and D.
+    Parameters
+    ----------
+    pair : the gear pair
+    motion : smooth function (m, xi (n,)) -> w_m (n,) [m/N]; xi reaches beyond A and D
     """
     g = pair.geometry
-    low, high = g.L_XA - REACH * g.base_pitch, g.L_XD + REACH * g.base_pitch
+    low = g.L_XA - REACH * g.base_pitch
+    high = g.L_XD + REACH * g.base_pitch
     result = []
     for apart in range(1, math.floor((high - low) / g.base_pitch) + 1):
         # Analytic and nearly constant: one polynomial for the whole path.
         ends = (low, high - apart * g.base_pitch)
-        series = Chebyshev.interpolate(partial(moved, apart), FIT_DEGREE, ends).convert(kind=Polynomial)
+        series = Chebyshev.interpolate(partial(motion, apart), FIT_DEGREE, ends).convert(kind=Polynomial)
         powers = np.asarray(series(Polynomial([low, 1.0])).coef, dtype=np.float64)
         result.append(PathFunction(np.array(ends), powers[::-1, None], np.empty(0)))
     return tuple(result)
@@ -72,8 +81,8 @@ def _moved(wheel: Wheel, material: Material, length: FloatArray, apart: int, dis
     )
     ratio = tooth.base_radius / tooth.root_radius
     behind, ahead = (
-        foot_loads(at / tooth.base_radius - tooth.base_half_angle, ratio, tooth.root_half_angle)
-        for at in (length, length + distance)
+        foot_loads(flank_length / tooth.base_radius - tooth.base_half_angle, ratio, tooth.root_half_angle)
+        for flank_length in (length, length + distance)
     )
     return np.asarray(np.einsum("ik,ij,jk->k", ahead, feet, behind) / material.youngs_modulus)
 
@@ -98,7 +107,8 @@ def foot_compliance(ratio: float, poisson: float, half_angle: float, apart: floa
     circle, ``apart`` the angle between the centre lines, positive towards the loaded flank. The matrix of
     -apart is the transpose.
     """
-    n, t = np.arange(1.0, _HARMONICS + 1.0), half_angle
+    n = np.arange(1.0, _HARMONICS + 1.0)
+    t = half_angle
 
     def even(k: int) -> FloatArray:  # integral of cos(k x) cos(n x) over the foot
         return np.asarray(t * (np.sinc((n - k) * t / np.pi) + np.sinc((n + k) * t / np.pi)))
@@ -120,12 +130,12 @@ def foot_compliance(ratio: float, poisson: float, half_angle: float, apart: floa
     other = work @ np.sin(n * apart)
     sine = np.array([1.0, 0.0, 1.0])  # whether the radial traction is odd
     sign = sine - sine[:, None]
-    found = np.where(sign == 0.0, same, sign * other)
+    motion = np.where(sign == 0.0, same, sign * other)
     # The ring under an even pressure.
     inner = ratio**-2
     breathing = (1.0 - inner) * (1.0 - poisson**2) / ((1.0 + inner) + poisson * (1.0 - inner))
-    found[1, 1] += breathing * (math.sin(t) / t) ** 2 / (2.0 * math.pi)
-    result = np.asarray(found, dtype=np.float64)
+    motion[1, 1] += breathing * (math.sin(t) / t) ** 2 / (2.0 * math.pi)
+    result = np.asarray(motion, dtype=np.float64)
     result.setflags(write=False)
     return result
 
@@ -156,8 +166,9 @@ def _ring(ratio: float, poisson: float) -> FloatArray:
     rim = np.stack([outside, b * outside], axis=1)
     d = -(shear + poisson * plane) / (plane + shear)
     deep = math.log(ratio)
-    conditions[0, :, 2] = [-deep, deep + d, plane * (1.0 + poisson * d), -shear * (1.0 + d)]
-    rim[0, :, 2] = 0.0, d
+    conditions[_ORDER_ONE, :, _LOGARITHM] = [-deep, deep + d, plane * (1.0 + poisson * d), -shear * (1.0 + d)]
+    rim[_ORDER_ONE, :, _LOGARITHM] = 0.0, d
     tractions = np.zeros((n.size, 4, 2))
-    tractions[:, 2, 0] = tractions[:, 3, 1] = 1.0
+    tractions[:, _RADIAL_AT_RIM, 0] = 1.0
+    tractions[:, _TANGENTIAL_AT_RIM, 1] = 1.0
     return np.asarray(rim @ np.linalg.solve(conditions, tractions))

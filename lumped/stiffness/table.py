@@ -134,15 +134,18 @@ class TableStiffness(StiffnessModel):
 
 
 def _pair_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PathFunction:
-    low, high = geometry.L_XA, geometry.L_XD
+    low = geometry.L_XA
+    high = geometry.L_XD
     if problem := uncovered(x, low, high, "mesh.stiffness.points"):
         raise ParameterError([problem])
     _check_gaps(np.diff(np.clip(x, low, high)).max(), geometry)
     poly = spline(x, y, model.interpolation)
     inner = x[(x > low) & (x < high)]
     breaks = np.array([low, *inner, high])
-    left = np.clip(np.searchsorted(poly.x, breaks[:-1], side="right") - 1, 0, poly.c.shape[1] - 1)
-    return _positive(PathFunction(breaks, shifted(poly.c[:, left], breaks[:-1] - poly.x[left]), np.empty(0)))
+    piece = np.clip(np.searchsorted(poly.x, breaks[:-1], side="right") - 1, 0, poly.c.shape[1] - 1)
+    return _positive(
+        PathFunction(breaks, shifted(poly.c[:, piece], breaks[:-1] - poly.x[piece]), np.empty(0))
+    )
 
 
 def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PPoly:
@@ -154,8 +157,8 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
     y = y[order]
     same = np.diff(phase, append=phase[0] + period) <= _SAME * period
     if same.any():  # several periods, or both ends of one: equal phases must agree
-        following = np.roll(y, -1)
-        if np.any(np.abs(y - following)[same] > 1e-3 * y[same]):
+        next_value = np.roll(y, -1)
+        if np.any(np.abs(y - next_value)[same] > 1e-3 * y[same]):
             raise refuse(
                 "mesh.stiffness.stiffness",
                 "different values at the same phase",
@@ -201,9 +204,9 @@ def _neighbour_breaks(
     shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
 
     def within(positions: ArrayLike) -> FloatArray:
-        moved = np.unique(np.add.outer(np.asarray(positions), shifts))
-        moved = moved[(moved > g.L_XA + same) & (moved < g.L_XD - same)]
-        return moved[np.diff(moved, prepend=-np.inf) > same]
+        copies = np.unique(np.add.outer(np.asarray(positions), shifts))
+        copies = copies[(copies > g.L_XA + same) & (copies < g.L_XD - same)]
+        return copies[np.diff(copies, prepend=-np.inf) > same]
 
     jumps = within(switches)
     joints = within(knots)

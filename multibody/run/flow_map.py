@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of, whole_number
 from lumped.errors import NumericalError
-from lumped.model.closing import close_period
+from lumped.model.period_closure import close_period
 from lumped.model.periodic_system import Supports, on_springs, supports_of
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -176,15 +176,15 @@ def find_orbit(
         most=_ITERATIONS,
         patience=_PATIENCE,
     )
-    if not best.left < _ACCEPTED:
+    if not best.mismatch < _ACCEPTED:
         raise NumericalError(
             f"No periodic multibody motion near the {'lumped one' if near_lumped else 'start'} (mismatch "
-            f"{best.left:.1e}): the pair may separate or sit on a stability boundary. Change the speed or "
-            "the torque, or run multibody.simulate."
+            f"{best.mismatch:.1e}): the pair may separate or sit on a stability boundary. Change the speed "
+            "or the torque, or run multibody.simulate."
         )
     flow = best.passed
     machine = replace(machine, torque_gear=float(best.unknowns[-1]))
-    return Orbit(best.unknowns[:-1], machine, flow, best.left, best.derivatives)
+    return Orbit(best.unknowns[:-1], machine, flow, best.mismatch, best.derivatives)
 
 
 def _first_matrix(

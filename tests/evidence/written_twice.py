@@ -20,9 +20,9 @@ from lumped import GearPair, bodies
 from lumped.errors import ParameterError
 from lumped.friction.registry import FRICTIONAL
 from lumped.gear_geometry.geometry import Wheel
+from lumped.mesh.damper import FULL_DAMPING
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.contacts import mesh_elements
-from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.quasi_static.tooth_error import relief_error
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray

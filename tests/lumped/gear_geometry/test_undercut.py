@@ -13,7 +13,7 @@ from lumped import ParameterError
 from lumped.gear_geometry.geometry import existence_problems
 from lumped.gear_geometry.interference import tip_clearance
 from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.mesh.statics import deciding_ways, end_gaps
+from lumped.mesh.statics import flank_end_gaps, tips_minus_edges
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.quasi_static.elements import at_rest
 from lumped.quasi_static.loaded import StaticMesh, loaded_contact
@@ -370,9 +370,9 @@ def test_the_sign_that_finds_kinks_says_whether_tip_or_edge_decides(teeth):
     radii = g.base_radius_pinion, g.base_radius_gear
     ways = g.L_XY - xi - g.tip_length_gear, g.undercut_pinion - xi
     sizes = g.tip_length_gear, g.undercut_pinion
-    both = end_gaps(ways[0], sizes[0], ways[1], sizes[1], g.L_XY, *radii)
-    without_tip = end_gaps(np.full(xi.size, -1.0), 1e-9, ways[1], sizes[1], g.L_XY, *radii)
-    sign = deciding_ways(ways[0], sizes[0], ways[1], sizes[1], g.L_XY, *radii)
+    both = flank_end_gaps(ways[0], sizes[0], ways[1], sizes[1], g.L_XY, *radii)
+    without_tip = flank_end_gaps(np.full(xi.size, -1.0), 1e-9, ways[1], sizes[1], g.L_XY, *radii)
+    sign = tips_minus_edges(ways[0], sizes[0], ways[1], sizes[1], g.L_XY, *radii)
     assert ((sign > 0.0) == (both > without_tip)).all()
     assert (np.diff(np.sign(sign)) != 0.0).sum() == 1
 

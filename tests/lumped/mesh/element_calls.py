@@ -5,21 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh import element, linear, tables
-from lumped.mesh.element import CONTACT, EXACT, FLANKS, LINE, PAIR, ContactLaw
+from lumped.mesh import element, linear, tables, tip_corners, unilateral_force
+from lumped.mesh.records import CONTACT, EXACT, FLANKS, FORCE, LINE, PAIR, ContactLaw
 
 
 @compiled
 def place(position, flanks, line, law, pairs):
     """Put every pair at its position (pairs,)."""
     for i in range(pairs.size):
-        element.place_pair(pairs[i], position[i], flanks[0], line[0], law)
+        tip_corners.place_pair(pairs[i], position[i], flanks[0], line[0], law)
 
 
 @compiled
 def corner_at(beyond, tip, length, flank_radius, tip_radius):
     """Gap of a tip corner, its slope and its tilt."""
-    return element.corner_gap(beyond, tip, length, flank_radius, tip_radius)
+    return tip_corners.corner_gap(beyond, tip, length, flank_radius, tip_radius)
 
 
 @compiled
@@ -36,11 +36,11 @@ def loads_at(approach, pairs, line, law, coupling, contacts):
 
 
 @compiled
-def force_at(approach, closing, pairs, line, law, coupling, contacts, normal):
+def force_at(approach, approach_rate, pairs, line, law, coupling, contacts, normal):
     """Force of the mesh at an approach and its rate."""
     matrix = np.empty((pairs.size, pairs.size))
     element.share_load(approach, pairs, line[0], law, coupling, matrix, contacts)
-    return element.mesh_force(closing, pairs, line[0], law, contacts, normal)
+    return unilateral_force.unilateral_force(approach_rate, pairs, line[0], law, contacts, normal)
 
 
 @compiled
@@ -65,7 +65,7 @@ class Mesh:
 
     LAW = ContactLaw(
         force=3000.0, softening=0.0, linear_below=3.0, converged=EXACT, full_damper=200.0, coupled=False,
-        apart=0.0, windows=False, radius_pinion=0.040, radius_gear=0.075, rolling_speed=6.0,
+        apart_below=0.0, prescribed=False, radius_pinion=0.040, radius_gear=0.075, rolling_speed=6.0,
     )  # fmt: skip
     ENDS = (0.0080, 0.0235, 0.0420, 0.0, 0.0, 0.0, 0.0)  # FLANKS [m]
 
@@ -91,10 +91,10 @@ class Mesh:
         loads_at(approach, self.pairs, self.line, self.law, self.coupling, self.contacts)
         return self.contacts["load"].copy()
 
-    def force(self, approach, closing):
+    def force(self, approach, approach_rate):
         """MeshForce; ``normal`` are the loads then."""
         arguments = self.pairs, self.line, self.law, self.coupling, self.contacts, self.normal
-        return force_at(approach, closing, *arguments)
+        return force_at(approach, approach_rate, *arguments)
 
     def static(self):
         """Static approach [m]."""
@@ -104,7 +104,7 @@ class Mesh:
     def linear(self):
         """FORCE (3,), STATE and PAIR_LOAD (pairs,) about the static approach."""
         static = self.static()
-        forces = np.zeros(3, element.FORCE)
+        forces = np.zeros(3, FORCE)
         states = np.zeros(1, linear.STATE)
         loads = np.zeros(self.pairs.size, linear.PAIR_LOAD)
         linear_about(static, self.pairs, self.line, self.law, self.contacts, forces, states, loads)

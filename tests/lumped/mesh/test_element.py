@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from lumped.mesh.element import AT_REST, BY_APPROACH, BY_RATE
+from lumped.mesh.records import AT_REST, BY_APPROACH, BY_RATE
 from lumped.model.equations import structure
 from tests.lumped.mesh.element_calls import Mesh, corner_at
 
@@ -48,10 +48,10 @@ def test_loads_are_the_slope_of_an_energy(approach):
     slope = (energy(mesh, approach + h) - energy(mesh, approach - h)) / (2.0 * h)
     loads = mesh.loads(approach)
     assert (loads > 0.0).all()
-    closing = 1.0 - mesh.contacts["gap_by_approach"]
-    assert np.abs(closing - 1.0).max() > 1e-3
+    compression_share = 1.0 - mesh.contacts["gap_by_approach"]
+    assert np.abs(compression_share - 1.0).max() > 1e-3
     # Central differences err with h^2: 1e-8, and by rounding of energies over h: 1e-12.
-    assert slope == pytest.approx(loads @ closing, rel=1e-7)
+    assert slope == pytest.approx(loads @ compression_share, rel=1e-7)
 
 
 def test_a_pair_moves_its_neighbour_as_this_one_moves_it():
@@ -201,21 +201,21 @@ class TestDampers:
     def test_they_act_on_the_rate_of_the_compression(self):
         """p' = d(delta - gap)/dt by differences of the gap, with approach and contact both moving."""
         rolling = 6.0
-        closing = 0.4
+        approach_rate = 0.4
         approach = 2e-5
         h = 1e-9
         gaps = []
         for s in (h, -h):
             mesh = coupled(np.array(WITH_CORNERS) + rolling * s)
-            mesh.loads(approach + closing * s)
+            mesh.loads(approach + approach_rate * s)
             gaps.append(mesh.contacts["gap"].copy())
-        rate = closing - (gaps[0] - gaps[1]) / (2.0 * h)
+        rate = approach_rate - (gaps[0] - gaps[1]) / (2.0 * h)
         mesh = coupled(damping=[3e3, 5e3, 2e3], rolling_speed=rolling)
         elastic = mesh.loads(approach)
-        found = mesh.force(approach, closing)
+        found = mesh.force(approach, approach_rate)
         assert mesh.normal - elastic == pytest.approx(mesh.pairs["damping"] * rate, rel=1e-5)
         assert found.damper_power == pytest.approx(mesh.pairs["damping"] @ rate**2, rel=1e-5)
-        assert np.abs(rate / closing - 1.0).max() > 0.04
+        assert np.abs(rate / approach_rate - 1.0).max() > 0.04
 
 
 def test_friction_is_mu_times_each_load_at_its_own_arm():
@@ -241,7 +241,7 @@ class TestLimits:
         assert state["approach"] == pytest.approx(1.5e-5, rel=1e-12)
 
     def test_in_its_window_a_pair_pulls_with_its_whole_damper(self):
-        mesh = Mesh([0.001], stiffness=2e8, damping=5e3, gap=2e-6, windows=True)  # far outside its flanks
+        mesh = Mesh([0.001], stiffness=2e8, damping=5e3, gap=2e-6, prescribed=True)  # far outside its flanks
         assert mesh.loads(-1e-5) == pytest.approx([-2400.0])
         assert mesh.force(1.2e-5, 0.1).normal == pytest.approx(2000.0 + 500.0)
         assert mesh.force(1e-6, 0.1).normal == pytest.approx(300.0)

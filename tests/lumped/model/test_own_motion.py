@@ -7,14 +7,14 @@ import pytest
 
 import lumped
 from lumped.gauss_legendre import gauss_tableau
-from lumped.mesh.element import FORCE, LINE
+from lumped.mesh.damper import FULL_DAMPING
 from lumped.mesh.linear import STATE, LinearForm
 from lumped.mesh.places import fill_linear_form, kinks, linear_form_at, static_loads
+from lumped.mesh.records import FORCE, LINE
 from lumped.mesh.tables import TURNING
 from lumped.model.cycle_maps import linear_motion
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.model.unilateral_motion import settled_motion
-from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.schema.bodies import bodies_of
 from tests.lumped.mesh.element_calls import line_at
 from tests.unlike_pairs import unlike_pair
@@ -324,7 +324,7 @@ class TestOfEveryPair:
 
     def test_sums_of_a_step_with_kinks_have_the_moments_of_what_is_there(self, loaded):
         laws = ToothLaws(loaded.with_({"pinion.deviations": steps(ERRORS)}))
-        own = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4)[2])
+        own = mesh_tables(laws, 1.0 / 16, 1, gauss_tableau(4).c)
         x = (np.arange(2000) + 0.5) / 2000
         shape = (28, *own.position.shape[:2])
         form = LinearForm(np.empty((*shape, 3), FORCE), np.empty(shape, STATE))

@@ -15,9 +15,10 @@ from lumped import (
     steady_state,
 )
 from lumped.labelling import parameters_hash
+from lumped.model.period_closure import balanced_start
 from lumped.model.propagation import step_maps
 from lumped.model.results import VARIABLES, cycle_peak_to_peak, peak_to_peak
-from lumped.model.steady import balanced_start, periodic_solution, sample_times
+from lumped.model.steady import periodic_solution, sample_times
 
 MOTION = ("dte", "x_p", "x_g", "y_p", "y_g")
 
