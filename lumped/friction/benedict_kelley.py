@@ -15,8 +15,6 @@ from lumped.friction.base import (
     ContactPath,
     FrictionLaw,
     FrictionSettings,
-    fit_signed,
-    mean_coefficient,
 )
 from lumped.friction.misfit import Ellipses, entraining
 from lumped.ranges import NOT_STATED, ValidityRange, checked
@@ -173,7 +171,7 @@ LAW = FrictionLaw(
     name="benedict_kelley",
     numeral="II",
     label="Benedict-Kelley",
-    signed=_signed,
+    formula=_signed,
     switches=_switches,
     ranges=RANGES,
     reads=frozenset({"viscosity", "roughness", "maximum"}),
@@ -181,11 +179,3 @@ LAW = FrictionLaw(
     shift=lambda path, settings: float(-3.0 * _factor(path.roughness * 1e6) * np.log10(path.omega_pinion)),
     analytic=_analytic,
 )
-
-
-@lru_cache(maxsize=256)
-def average_coefficient(path: ContactPath, settings: FrictionSettings) -> float:
-    """mu_avg of laws I and IV: as given, or as in the paper the mean of |mu| of law II over A..D."""
-    if settings.coefficient is not None:
-        return settings.coefficient
-    return mean_coefficient(fit_signed(LAW, path, settings))

@@ -22,7 +22,7 @@ from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 _NONE = FrictionLaw(
     name="none",
     label="no friction",
-    signed=lambda xi, path, settings: np.zeros_like(xi),
+    formula=lambda xi, path, settings: np.zeros_like(xi),
     switches=lambda path, settings: [],
     reads=frozenset(),
     varies=False,

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
+from lumped.friction.average_coefficient import AVERAGE_SLOPE, average_coefficient
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.misfit import Ellipses
 from lumped.ranges import checked
 from lumped.typing import FloatArray
@@ -67,9 +67,10 @@ LAW = FrictionLaw(
     name="smoothed_coulomb",
     numeral="IV",
     label="smoothed Coulomb",
-    signed=_signed,
+    formula=_signed,
     switches=lambda path, settings: [],
     coefficient=True,
+    average_slope=AVERAGE_SLOPE,
     reads=frozenset({"coefficient", "sharpness"}),
     factor=average_coefficient,
     analytic=_analytic,

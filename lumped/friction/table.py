@@ -110,7 +110,7 @@ def _law_of(table: FrictionTable) -> FrictionLaw:
     return FrictionLaw(
         name=TABLE,
         label=f"user's {table.name}",
-        signed=table.signed,
+        formula=table.signed,
         switches=lambda path, settings: [path.L_XP],
         joints=lambda path: table.positions(path).tolist(),
         ranges=tuple(

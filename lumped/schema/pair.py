@@ -48,6 +48,7 @@ from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
 from lumped.schema.contact import Friction, Lubricant, Mesh, without_assumed_defaults
+from lumped.schema.contact_path import nominal_contact
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
 from lumped.schema.shafts import Shafts
@@ -407,7 +408,7 @@ class GearPair(Section, metaclass=_InOurWords):
         """What friction laws see, see ``lumped.path_of_contact.contact_path``."""
         gears = (self.pinion, self.gear)
         torque = self.operating.pinion_torque
-        return own_laws.nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
+        return nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
 
     def flank(self, which: int) -> Flank:
         """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""

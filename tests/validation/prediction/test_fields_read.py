@@ -20,7 +20,8 @@ from lumped.friction.registry import LAWS
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.schema import fields_read as translation
 from lumped.schema.changes import fields_of
-from lumped.schema.fields_read import FRICTION, fields_read
+from lumped.schema.contact_path import FRICTION_FIELDS
+from lumped.schema.fields_read import fields_read
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness.base import TOOTH_FORM
 from tests.unlike_pairs import UNLIKE, unlike_pair
@@ -197,7 +198,9 @@ def test_a_law_reads_nothing_in_vain(law, name):
             changes |= {"friction.coefficient": 0.06} if name == "coefficient" else {}
             changes |= {"friction.composite_roughness": 0.5} if name == "composite_roughness" else {}
             varied = pair.with_(changes)
-            fields = {one for field in FRICTION[name] for one in fields_of(field)} & leaf_paths(varied).keys()
+            fields = {one for field in FRICTION_FIELDS[name] for one in fields_of(field)} & leaf_paths(
+                varied
+            ).keys()
             if name == "composite_roughness":
                 fields = {"friction.composite_roughness"}
             try:
@@ -221,9 +224,10 @@ def test_every_name_of_the_contact_and_the_settings_has_its_fields():
         "unit_load",
         "edge_pinion",
         "edge_gear",
+        "law_two_mean",
     }
     names = {*ContactPath.__dataclass_fields__} - always | {*FrictionSettings.__annotations__} - {"law"}
-    assert names == {*FRICTION}
+    assert names == {*FRICTION_FIELDS}
     assert all(law.reads is not None and law.reads <= names for law in registry.LAWS.values())
 
 
