@@ -26,8 +26,10 @@ from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
-from lumped.schema.meeting_teeth import OwnTeeth, first_teeth, own_teeth, period_of, ripples
+from lumped.schema.meeting_teeth import first_teeth, period_of
 from lumped.schema.pair import GearPair
+from lumped.schema.tooth_errors import ToothErrors, tooth_errors
+from lumped.schema.torque_ripples import ripples
 from lumped.typing import FloatArray, IntArray
 
 #: Nodes at the ends of a step lie this fraction of a cycle inside it, and phases closer than this are one.
@@ -196,7 +198,7 @@ class ToothLaws:
         """TURNING of both gears, then of each ripple of a torque; nothing swings yet."""
         first = first_teeth(self.pair)
         rows: list[tuple[float, ...]] = []
-        for which, one in enumerate(own_teeth(self.pair)):
+        for which, one in enumerate(tooth_errors(self.pair)):
             z = one.error.size
             rows.append((which, one.eccentricity, one.phase + 2.0 * np.pi * first[which] / z, z, 0.0))
         for ripple in torque_ripples(self.pair):
@@ -211,7 +213,7 @@ def torque_ripples(pair: GearPair) -> Records:
     return np.array([tuple(row) for row in ripples(pair)], RIPPLE)
 
 
-def _of_teeth(teeth: OwnTeeth) -> Records:
+def _of_teeth(teeth: ToothErrors) -> Records:
     """TOOTH of each tooth of a gear."""
     found = np.zeros(teeth.error.size, TOOTH)
     found["error"] = teeth.error
@@ -292,7 +294,7 @@ def mesh_tables(
         coupling = np.ascontiguousarray(found.reshape(edges.size - 1, at.size, ahead.size, ahead.size))
     turning = laws.turning()
     turn = 2.0 * np.pi / turning["cycles"] * tau[..., None]
-    pinion, gear = own_teeth(pair)
+    pinion, gear = tooth_errors(pair)
     return MeshTables(
         edges=edges,
         nodes=at,

@@ -27,7 +27,7 @@ def pair_stiffness(pair: GearPair) -> PathFunction:
 
 
 def contact_softening(pair: GearPair) -> float:
-    """How the compliance of a tooth pair falls with load, D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]."""
+    """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0), with ``mesh.stiffness_factor`` [m/N]: how k rises with load."""
     return pair.mesh.stiffness.softening(pair) / pair.mesh.stiffness_factor
 
 
@@ -38,6 +38,9 @@ def cross_compliances(pair: GearPair) -> tuple[PathFunction, ...]:
 
 def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
     """Components of the potential-energy stiffness over the path of contact, contact by Weber and Banaschek.
+
+    The components are those of the method, without ``mesh.stiffness_factor``, which is a factor on the
+    stiffness of the pair's own model.
 
     Parameters
     ----------
@@ -58,7 +61,7 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
     parts = ("bending", "shear", "axial", "foundation")
     names = ["contact"] + [f"{part} {which}" for which in ("pinion", "gear") for part in parts]
     values = [found.hertz, *(getattr(tooth, part) for tooth in (found.pinion, found.gear) for part in parts)]
-    return labelled_dataset(
+    result = labelled_dataset(
         {
             "compliance": (
                 ("component", "position"),
@@ -78,6 +81,9 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
             "quadrature_error": max(found.pinion.quadrature_error, found.gear.quadrature_error),
         },
     )
+    for name in ("compliance", "stiffness"):
+        result[name].attrs["note"] = "of the method, without mesh.stiffness_factor"
+    return result
 
 
 def mesh_stiffness(pair: AnyPair, samples: int = 512) -> xr.Dataset:

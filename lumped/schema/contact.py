@@ -81,7 +81,9 @@ class Mesh(Section):
         discriminator="model", description="stiffness of a tooth pair over the path of contact"
     )
     stiffness_factor: Annotated[float, Quantity("1", at_least=0.1, at_most=10)] = Field(
-        1.0, description="factor on the stiffness of a tooth pair that the model gives"
+        1.0,
+        description="factor on the stiffness of a tooth pair that the model gives; not on the stiffness of "
+        "ISO 6336-1 in K_v",
     )
     damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
         description="zeta in c_i = 2 zeta sqrt(k_i m_e)"

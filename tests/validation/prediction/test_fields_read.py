@@ -198,9 +198,8 @@ def test_a_law_reads_nothing_in_vain(law, name):
             changes |= {"friction.coefficient": 0.06} if name == "coefficient" else {}
             changes |= {"friction.composite_roughness": 0.5} if name == "composite_roughness" else {}
             varied = pair.with_(changes)
-            fields = {one for field in FRICTION_FIELDS[name] for one in fields_of(field)} & leaf_paths(
-                varied
-            ).keys()
+            paths = {path for field in FRICTION_FIELDS[name] for path in fields_of(field)}
+            fields = paths & leaf_paths(varied).keys()
             if name == "composite_roughness":
                 fields = {"friction.composite_roughness"}
             try:
