@@ -18,6 +18,9 @@ from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 #: the mean of law II.
 AVERAGE_SLOPE = 1.25
 
+#: `FrictionLaw.reads` of a law with mu_avg: names of what `average_coefficient` itself reads.
+AVERAGE_READS = frozenset({"coefficient"})
+
 
 def average_coefficient(path: ContactPath, settings: FrictionSettings) -> float:
     """Coefficient mu_avg [-] of laws I and IV.

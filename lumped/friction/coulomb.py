@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
-from lumped.friction.average_coefficient import AVERAGE_SLOPE, average_coefficient
+from lumped.friction.average_coefficient import AVERAGE_READS, AVERAGE_SLOPE, average_coefficient
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.misfit import constant
 from lumped.ranges import checked
@@ -49,7 +49,7 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [path.L_XP],
     coefficient=True,
     average_slope=AVERAGE_SLOPE,
-    reads=frozenset({"coefficient"}),
+    reads=AVERAGE_READS,
     factor=average_coefficient,
     analytic=constant(average_coefficient),
 )

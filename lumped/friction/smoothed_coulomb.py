@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
-from lumped.friction.average_coefficient import AVERAGE_SLOPE, average_coefficient
+from lumped.friction.average_coefficient import AVERAGE_READS, AVERAGE_SLOPE, average_coefficient
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.misfit import Ellipses
 from lumped.ranges import checked
@@ -71,7 +71,7 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [],
     coefficient=True,
     average_slope=AVERAGE_SLOPE,
-    reads=frozenset({"coefficient", "sharpness"}),
+    reads=AVERAGE_READS | {"sharpness"},
     factor=average_coefficient,
     analytic=_analytic,
 )

@@ -21,19 +21,28 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+def stiffness_factor(pair: GearPair) -> float:
+    """Factor on the stiffness k_i of a tooth pair that the model gives: the product of all factors of a file.
+
+    A further factor on k belongs here. Stiffness, contact and coupling of tooth pairs then have it, in
+    the multibody model too, which reads these three.
+    """
+    return pair.mesh.stiffness_factor
+
+
 def pair_stiffness(pair: GearPair) -> PathFunction:
     """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m]."""
-    return pair.mesh.stiffness.curve(pair).scaled(pair.mesh.stiffness_factor)
+    return pair.mesh.stiffness.curve(pair).scaled(stiffness_factor(pair))
 
 
 def contact_softening(pair: GearPair) -> float:
     """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0), with ``mesh.stiffness_factor`` [m/N]: how k rises with load."""
-    return pair.mesh.stiffness.softening(pair) / pair.mesh.stiffness_factor
+    return pair.mesh.stiffness.softening(pair) / stiffness_factor(pair)
 
 
 def cross_compliances(pair: GearPair) -> tuple[PathFunction, ...]:
     """How far a unit load on a tooth pair moves the pair m base pitches ahead, m = 1, 2, ... [m/N]."""
-    return tuple(w.scaled(1.0 / pair.mesh.stiffness_factor) for w in pair.mesh.stiffness.neighbours(pair))
+    return tuple(w.scaled(1.0 / stiffness_factor(pair)) for w in pair.mesh.stiffness.neighbours(pair))
 
 
 def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:

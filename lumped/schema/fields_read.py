@@ -12,8 +12,8 @@ from lumped.friction.registry import law_of
 from lumped.friction.table import TABLE
 from lumped.schema.assumed import WORDS, within
 from lumped.schema.changes import fields_of
-from lumped.schema.contact_path import FRICTION_FIELDS
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.friction import FRICTION_FIELDS
 from lumped.schema.pair import GearPair, field_values
 from lumped.stiffness.base import TOOTH_FORM
 

@@ -47,8 +47,8 @@ from lumped.schema.advice import Changes, advised
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
-from lumped.schema.contact import Friction, Lubricant, Mesh, without_assumed_defaults
-from lumped.schema.contact_path import nominal_contact
+from lumped.schema.contact import Lubricant, Mesh, without_assumed_defaults
+from lumped.schema.friction import Friction, nominal_contact
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
 from lumped.schema.shafts import Shafts

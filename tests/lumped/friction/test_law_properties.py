@@ -14,8 +14,8 @@ import pytest
 from lumped.friction.average_coefficient import average_coefficient, longer_path, mean_of_law_two
 from lumped.friction.base import fit_signed, mean_coefficient
 from lumped.friction.registry import LAWS
+from lumped.friction.table import FrictionTable
 from lumped.path_of_contact.friction import friction_misfit, friction_path_function
-from lumped.schema.contact import FrictionTable
 from tests.unlike_pairs import UNLIKE, unlike_pair
 
 PAIRS = {name: unlike_pair(name) for name in UNLIKE}

@@ -20,8 +20,8 @@ from lumped.friction.registry import LAWS
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.schema import fields_read as translation
 from lumped.schema.changes import fields_of
-from lumped.schema.contact_path import FRICTION_FIELDS
 from lumped.schema.fields_read import fields_read
+from lumped.schema.friction import FRICTION_FIELDS
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness.base import TOOTH_FORM
 from tests.unlike_pairs import UNLIKE, unlike_pair
