@@ -187,14 +187,32 @@ def _laws_of(pair: lumped.GearPair) -> bytes:
     return law.coefficients.tobytes() + law.breaks.tobytes()
 
 
+#: Oils that are thin to thick at any temperature, and that are cold or warm.
+OILS = (
+    *({"lubricant.viscosity": value, "lubricant.viscosity_law": None} for value in (3.0, 12.0, 60.0, 400.0)),
+    *(
+        {"lubricant.viscosity": None, "lubricant.viscosity_law": {"iso_vg": 100, "temperature": celsius}}
+        for celsius in (20.0, 80.0)
+    ),
+)
+
+
 @pytest.mark.parametrize(("law", "name"), [
     (law.name, name) for law in LAWS.values() for name in sorted(law.reads)
 ])  # fmt: skip
 def test_a_law_reads_nothing_in_vain(law, name):
-    """At least one pair, in thin or thick oil, has another mu with another value."""
+    """At least one pair, in thin or thick, cold or warm oil, has another mu with another value.
+
+    Parameters that are 0, and so without effect, are 0.005 here.
+    """
     for pair in PAIRS.values():
-        for oil in (3.0, 12.0, 60.0, 400.0):
-            changes = {"friction.law": law, "lubricant.viscosity": oil}
+        without_effect = {
+            path: 0.005
+            for path, value in leaf_paths(pair).items()
+            if path.startswith("friction.") and isinstance(value, float) and value == 0.0
+        }
+        for oil in OILS:
+            changes = {"friction.law": law} | oil | without_effect
             changes |= {"friction.coefficient": 0.06} if name == "coefficient" else {}
             changes |= {"friction.composite_roughness": 0.5} if name == "composite_roughness" else {}
             varied = pair.with_(changes)
