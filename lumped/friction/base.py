@@ -121,7 +121,7 @@ class ContactPath:
         return tuple(xi for xi, length in zip(positions, lengths, strict=True) if length)
 
     def sliding_velocity(self, xi: FloatArray) -> FloatArray:
-        """v_s = |v_rp - v_rg| [m/s], equation (13); written in xi - L_XP so that it is 0 exactly at P."""
+        """v_s = |v_rp - v_rg| [m/s], equation (13). The factor xi - L_XP makes v_s exactly 0 at P."""
         return (self.omega_pinion + self.omega_gear) * np.abs(xi - self.L_XP)
 
     def entraining_velocity(self, xi: FloatArray) -> FloatArray:

@@ -150,11 +150,11 @@ def _switches(path: ContactPath, settings: FrictionSettings) -> list[float]:
 def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
-    """Constant where the law is held; else each complex logarithm is at most |log10| and pi/ln 10."""
+    """Constant at the bounds of the law. Else each complex logarithm is at most |log10| plus pi/ln 10."""
     centre = 0.5 * (low + high)
     cap = max(_cap(path, settings), 0.0)
     level = _level(centre, path)
-    held = (level <= 0.0) | (level >= cap)
+    constant = (level <= 0.0) | (level >= cap)
     around = Ellipses.clear_of(low, high, [p for p in (path.L_XP, path.still) if p is not None])
     d = around.distances(path.L_XP)
     v_e = entraining(around, path)
@@ -164,7 +164,7 @@ def _analytic(
             for v, v_0 in ((d, np.abs(centre - path.L_XP)), (v_e, path.entraining_velocity(centre)))
         ]
     size = np.abs(level) + _factor(path.roughness * 1e6) * (logs[0] + 2.0 * logs[1])
-    return np.where(held, Ellipses.clear_of(low, high).ratio, around.ratio), np.where(held, cap, size)
+    return np.where(constant, Ellipses.clear_of(low, high).ratio, around.ratio), np.where(constant, cap, size)
 
 
 LAW = FrictionLaw(

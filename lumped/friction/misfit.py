@@ -67,7 +67,7 @@ class Ellipses:
 
     @property
     def clear(self) -> BoolArray:
-        """Which pieces (k,) are clear of what is singular; of the others the law itself is the bound."""
+        """Whether a piece (k,) is clear of singular points. If not, the law itself is the bound."""
         return np.asarray(self.ratio >= _CLEAR)
 
     @property
@@ -119,11 +119,11 @@ def fit_misfit(
     width = high - low
     xi = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
     mu = law.signed(xi.ravel(), path, settings).reshape(xi.shape)
-    left = np.abs((mu - function(xi)) @ _TO_SERIES).sum(axis=1)
+    remainder = np.abs((mu - function(xi)) @ _TO_SERIES).sum(axis=1)
     powers = np.arange(len(function.coefficients))[::-1, None]
     terms = (np.abs(function.coefficients) * width**powers).sum(axis=0)
     r = np.maximum(ratio, _CLEAR)
     slope = most / (0.5 * half * (r + 1.0 / r - 2.0))
     rounding = law.roundings * _U * np.abs(mu).max(axis=1) + 20.0 * _U * terms + _PLACE * path.L_XY * slope
-    clear = left + 4.0 * most * r**-_DEGREE / (r - 1.0) + _LEBESGUE * rounding
+    clear = remainder + 4.0 * most * r**-_DEGREE / (r - 1.0) + _LEBESGUE * rounding
     return np.asarray(np.where(ratio >= _CLEAR, clear, most + terms))

@@ -49,9 +49,9 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
-    """Poles at P +- i/Phi, over which the derivative of arctan is bounded from the middle of a piece on.
+    """The poles are P +- i/Phi. The derivative of arctan is bounded from the middle of a piece outwards.
 
-    On a piece that holds a transition too short for its polynomial, |mu| is at most mu_avg.
+    Where a piece contains a transition that is too short for a polynomial, |mu| is at most mu_avg.
     """
     phi = settings.sharpness
     pole = path.L_XP + 1j / settings.sharpness

@@ -43,7 +43,7 @@ Tooth = Annotated[int, Field(ge=1, le=1000, strict=True)]
 
 
 def without_assumed_defaults(data: Any, defaults: Mapping[str, str]) -> Any:
-    """Plain data of a pair without those values of its mesh that are assumed and are a default.
+    """Plain data of a pair, without values of the section ``mesh`` that are assumed defaults.
 
     Parameters
     ----------
@@ -118,10 +118,10 @@ class Mesh(Section):
 
     @property
     def by_stiffness(self) -> dict[str, str]:
-        """Contact and relief that hold where a file does not say them.
+        """Defaults of ``contact`` and ``relief``, which the stiffness decides.
 
-        A stiffness of the whole mesh is load over transmission error: early contact, load sharing gaps and
-        relief are in it already.
+        A stiffness of the whole mesh is load over transmission error. Early contact, gaps that share the load
+        and relief are part of such a stiffness.
         """
         whole = self.stiffness.whole_mesh
         return (

@@ -366,7 +366,7 @@ class GearPair(Section, metaclass=_InOurWords):
                 yield FieldProblem(f"{name}.{field}", f"{value:g} {unit}", allowed, action)
 
     def _teeth_that_are_not(self, name: Literal["pinion", "gear"], which: int) -> Iterator[FieldProblem]:
-        """A first tooth that the gear does not have, and faults that do not fit its teeth."""
+        """Problems: a first tooth that the gear does not have, faults that do not fit the teeth."""
         gear: Gear = getattr(self, name)
         if self.mesh.first_teeth is not None and self.mesh.first_teeth[which] > gear.teeth:
             value = f"{list(self.mesh.first_teeth)}"
@@ -421,7 +421,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @property
     def healthy(self) -> GearPair:
-        """The pair with like teeth, centred gears and steady torques; itself where it is that already."""
+        """The pair with like teeth, centred gears and steady torques; the same object if nothing changes."""
         if not (self.pinion.has_own_teeth or self.gear.has_own_teeth or self.operating.torque_ripple):
             return self  # not cached: pairs are compared by what they hold, and would hold themselves
         return self._with_like_teeth

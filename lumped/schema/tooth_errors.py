@@ -91,9 +91,10 @@ def _of_gear(pair: GearPair, which: int) -> ToothErrors:
 
 
 def without_first_harmonic(error: FloatArray) -> tuple[FloatArray, complex]:
-    """Errors (z,) less their first harmonic, and this harmonic: it turns continuously, as an eccentric gear.
+    """Errors (z,) less the first harmonic, and the first harmonic.
 
-    Equal steps of a list would make a staircase of it, with sidebands that are several times too large.
+    The first harmonic turns continuously, as an eccentric gear does. As equal steps of a list it would be a
+    staircase, with sidebands that are several times too large.
     """
     teeth = error.size
     turn = 2.0 * np.pi * np.arange(teeth) / teeth
