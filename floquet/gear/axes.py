@@ -18,12 +18,12 @@ from lumped.arguments import one_of, real_array
 from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
 from lumped.friction import mean_coefficient
+from lumped.friction.average_coefficient import longer_path
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.registry import law_of
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import Supports, supports_of
-from lumped.path_of_contact.friction import contact_path, fit_law, reads_average, violations_of
+from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
 from lumped.ranges import warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
@@ -343,17 +343,12 @@ class _Law:
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
         """Mu at the positions, and the positions of its switches, at a speed."""
         there, settings = self._where_friction_acts(rpm)
-        mu = self.law.signed(there.held(self.positions), there, settings)
+        mu = self.law.signed(self.positions, there, settings)
         return mu, np.sort(self.law.switches(there, settings))
 
     def _where_friction_acts(self, rpm: float) -> tuple[ContactPath, FrictionSettings]:
         """The contact at a speed from the first to the last position of loaded teeth, and settings there."""
-        there = self.at(rpm)
-        settings = self.settings
-        longer = replace(there, L_XA=self.ends[0], L_XD=self.ends[1])
-        if reads_average(self.law, longer, settings):  # mu_avg stays the mean from A to D
-            settings = settings.model_copy(update={"coefficient": average_coefficient(there, settings)})
-        return longer, settings
+        return longer_path(self.at(rpm), self.ends, self.law, self.settings), self.settings
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""

@@ -58,7 +58,7 @@ def made_of(root: type[Model], data: Mapping[str, Any], source: str, folder: Pat
 
 
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
-    """Return one problem per field that pydantic refused while it made the model ``root``."""
+    """Return the problems, one for each field that pydantic refused when it built the model ``root``."""
     items = error.errors(include_url=False)[:MOST_PROBLEMS]
     result = [problem for item in items for problem in _problems(item, root)]
     first: dict[str, FieldProblem] = {}
@@ -112,7 +112,7 @@ def unknown_key(path: str, known: list[str], part: str, root: type[BaseModel] | 
 
 
 def _below(root: type[BaseModel], path: str) -> str:
-    """Ask whether a field one section further down has this name, or as a word of it, or nearly so."""
+    """Whether a field of the next inner section has a name, nearly a name, or a name with this word."""
     fields: dict[str, list[str]] = {}
     *parents, part = path.split(".")
     owners = [root]

@@ -270,7 +270,7 @@ def _about_kinematic(text: str, viscosity: float) -> str:
 
 
 def to_file(value: float, unit: str) -> float | str:
-    """Write an SI number so that reading gives the same bits: in the stated unit where that is exact."""
+    """Write an SI number so that reading gives the same bits: in the stated unit if this is exact."""
     stated = to_stated(value, unit)
     return stated if to_si(stated, unit) == value else f"{float(value)!r} {UNITS[unit][0]}"
 

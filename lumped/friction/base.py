@@ -20,9 +20,9 @@ from lumped.path_function import PathFunction
 from lumped.ranges import ValidityRange
 from lumped.typing import BoolArray, FloatArray
 
-#: Distance from the pitch point [m] below which laws are held constant. A position xi near 0.01 m is known to
-#: 2e-18 m, so xi - L_XP is known to 2e-10 of this distance and log10 of the sliding velocity to 1e-10; the
-#: contact band is four orders wider.
+#: Distance from the pitch point [m] below which law II is constant. A position xi near 0.01 m is known to
+#: 2e-18 m. So xi - L_XP is known to 2e-10 of this distance, and log10 of the sliding velocity to 1e-10. The
+#: contact band is wider by four orders of magnitude.
 PITCH_RESOLUTION = 1e-8
 
 #: Range of the mean |mu| over the path that fits of lubricated contacts must not leave.
@@ -34,7 +34,10 @@ MEAN_COEFFICIENT = ValidityRange(
     "steel under boundary lubrication, 0.1 to 0.12; measured means of gears are 0.02 to 0.07",
 )
 _SEARCH_POINTS = 400
+_SAMPLED_POSITIONS = 201
 _ROOT_TOLERANCE = 1e-14  # relative, of the distance from the pitch point
+#: `FrictionLaw.roundings` of a law: the exponent of law III is near 9, and each power adds 20.
+ROUNDINGS = 400.0
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,9 @@ class ContactPath:
     composite_roughness : R_comp [m]
     film_length : L_x [m]
     edge_pinion, edge_gear : lengths on the base tangents at which an undercut ends the flank [m]; 0 without
-        one. An edge that touches further outside keeps the friction of the involute that ends there.
+        an undercut. A contact of the edge further outside has the friction of the end of the involute.
+    law_two_mean : mean of |mu| of law II from A to D [-], where the path is longer than from A to D, see
+        `lumped.friction.average_coefficient`. None: the mean is that over this path.
     """
 
     L_XA: float
@@ -74,12 +79,13 @@ class ContactPath:
     film_length: float
     edge_pinion: float = 0.0
     edge_gear: float = 0.0
+    law_two_mean: float | None = None
 
     def at_speed(self, omega_pinion: float) -> ContactPath:
         """The same contact at another speed of the pinion [rad/s].
 
-        The ratio follows from the pitch point, where both flanks roll alike: it has the same digits whatever
-        the speed.
+        The speed of the gear follows from the pitch point, where both flanks roll with the same velocity. So
+        the ratio of the speeds has the same digits at every speed. ``law_two_mean`` does not change.
         """
         return replace(
             self,
@@ -97,19 +103,25 @@ class ContactPath:
         """Reduced radius of curvature rho_r = rho_p rho_g/(rho_p + rho_g) [m], equations (11) and (15)."""
         return xi * (self.L_XY - xi) / self.L_XY
 
-    def held(self, xi: FloatArray) -> FloatArray:
-        """Positions at which laws are evaluated: those beyond an edge are at the edge [m]."""
+    @property
+    def sampled_positions(self) -> FloatArray:
+        """Positions (201,) evenly spaced inside the path, at which mu and its ranges are checked [m]."""
+        return self.between_edges(np.linspace(self.L_XA, self.L_XD, _SAMPLED_POSITIONS + 2)[1:-1])
+
+    def between_edges(self, xi: FloatArray) -> FloatArray:
+        """Positions [m] on the involutes: a position beyond the edge of an undercut becomes the edge."""
         low = self.edge_pinion or -math.inf
         return np.asarray(np.clip(xi, low, self.L_XY - (self.edge_gear or -math.inf)), dtype=np.float64)
 
     @property
     def edges(self) -> tuple[float, ...]:
         """Positions of the edges that undercuts leave [m]."""
-        found = (self.edge_pinion, self.L_XY - self.edge_gear)
-        return tuple(xi for xi, edge in zip(found, (self.edge_pinion, self.edge_gear), strict=True) if edge)
+        positions = (self.edge_pinion, self.L_XY - self.edge_gear)
+        lengths = (self.edge_pinion, self.edge_gear)
+        return tuple(xi for xi, length in zip(positions, lengths, strict=True) if length)
 
     def sliding_velocity(self, xi: FloatArray) -> FloatArray:
-        """v_s = |v_rp - v_rg| [m/s], equation (13); written in xi - L_XP so that it is 0 exactly at P."""
+        """v_s = |v_rp - v_rg| [m/s], equation (13). The factor xi - L_XP makes v_s exactly 0 at P."""
         return (self.omega_pinion + self.omega_gear) * np.abs(xi - self.L_XP)
 
     def entraining_velocity(self, xi: FloatArray) -> FloatArray:
@@ -118,9 +130,9 @@ class ContactPath:
 
     @property
     def still(self) -> float | None:
-        """Where v_e would be 0, beyond the path [m]; None where it is the same everywhere."""
-        apart = self.omega_gear - self.omega_pinion
-        return self.omega_gear * self.L_XY / apart if apart else None
+        """Position at which v_e would be 0, beyond the path [m]. None: v_e is the same everywhere."""
+        difference = self.omega_gear - self.omega_pinion
+        return self.omega_gear * self.L_XY / difference if difference else None
 
     def slide_to_roll(self, xi: FloatArray) -> FloatArray:
         """SR = 2 v_s/v_e [-], equation (17)."""
@@ -164,33 +176,33 @@ class ContactPath:
         """Positions strictly inside A..D where a continuous function of xi changes sign [m].
 
         The search runs over distances from the pitch point that grow geometrically, because bounded laws may
-        leave their bounds close to P. Two roots within four per cent of the same distance would be missed:
-        the function then touches its level without consequence.
+        leave their bounds close to P. The search does not see two roots within four per cent of the same
+        distance. Such a function touches its level without consequence.
         """
-        result = []
+        roots = []
         for side, reach in ((-1.0, self.L_XP - self.L_XA), (1.0, self.L_XD - self.L_XP)):
             distances = np.geomspace(PITCH_RESOLUTION, reach * (1.0 - 1e-12), _SEARCH_POINTS)
             values = function(self.L_XP + side * distances)
 
-            def at(distance: float, side: float = side) -> float:
+            def value(distance: float, side: float = side) -> float:
                 return float(function(np.array(self.L_XP + side * distance)))
 
             for j in np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:])):
                 low, high = float(distances[j]), float(distances[j + 1])
-                if at(low) * at(high) > 0.0:  # a root on the grid, taken by its neighbour
+                if value(low) * value(high) > 0.0:  # a root on the grid: the next interval has it
                     continue
-                root = brentq(at, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
-                result.append(self.L_XP + side * float(root))
-        return sorted(xi for xi in result if self.L_XA < xi < self.L_XD)
+                root = brentq(value, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
+                roots.append(self.L_XP + side * float(root))
+        return sorted(xi for xi in roots if self.L_XA < xi < self.L_XD)
 
 
 class FrictionSettings(Protocol):
-    """Parameters of the friction laws, the fields of ``friction`` in a parameter file.
+    """Parameters of the friction laws, fields of ``friction`` in a parameter file (``schema.contact``).
 
     Attributes
     ----------
-    law : name of the pair's own law
-    coefficient : mu_avg of laws I and IV [-]; None takes law II's average over the path, as in the paper
+    law : name of the law of the pair, as in parameter files
+    coefficient : mu_avg of laws I and IV [-]. None: the mean of law II over the path, as in the paper
     sharpness : Phi of law IV [1/m]
     maximum : upper bound of law II [-]
     thresholds : film parameters at which law V changes over
@@ -204,10 +216,10 @@ class FrictionSettings(Protocol):
 
     @property
     def own_law(self) -> FrictionLaw | None:
-        """The law of the user's table, where one is given."""
+        """The law of the user's table. None: the pair has no table."""
 
     def __hash__(self) -> int:
-        """Results are kept by the settings."""
+        """Fits are cached by path and settings."""
 
 
 Analytic = Callable[[FloatArray, FloatArray, ContactPath, FrictionSettings], tuple[FloatArray, FloatArray]]
@@ -216,34 +228,41 @@ Analytic = Callable[[FloatArray, FloatArray, ContactPath, FrictionSettings], tup
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """Everything that is particular to one law. Files, commands, charts and legends read it from here.
+    """Everything that is particular to one law; files, commands, charts and legends read this record.
+
+    The rest of the program assumes nothing about a law but what this record says. Each property has a test
+    over all registered laws, ``tests/lumped/friction/test_law_properties.py``.
 
     Attributes
     ----------
     name : as in parameter files
     label : for tables and legends
-    signed : (xi [m], path, settings) -> signed mu [-], vectorised over xi
+    formula : (xi [m], path, settings) -> signed mu [-], vectorised over xi, at positions on the involutes
     switches : (path, settings) -> positions where mu jumps or has a kink [m]
     numeral : Roman number in the paper's order; empty for a law that the paper does not have
     ranges : validity ranges of the law's arguments
-    parts : for a law made of others, (xi, path, settings) -> pairs of a law and where it is in force
-    coefficient : whether |mu| far from the pitch point is one number, ``friction.coefficient``
-    reads : what mu depends on beside places, speeds and load, by the names of ``ContactPath`` and
-        ``FrictionSettings``; a mean of law II where no coefficient is given is added. None: on all of them
-    varies : whether mu depends on speed, load, oil or flanks (a law with a coefficient: where none is given)
+    parts : for a law made of others, (xi, path, settings) -> pairs of a law and where that law is in force
+    coefficient : whether |mu| far from the pitch point is one number, mu_avg
+    average_slope : bound on |d mu/d mu_avg|; 0 for a law that does not read mu_avg
+    reads : what mu depends on beside positions, speeds and load, by the names of ``ContactPath`` and
+        ``FrictionSettings``. A law that reads "coefficient" also depends on what law II reads, where the pair
+        has no coefficient. None: mu depends on all of them
+    varies : whether mu depends on speed, load, oil or flanks; of a law with mu_avg, where the pair has no
+        coefficient
     fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
-    factor : (path, settings) -> number to which mu is proportional over speed, all else equal; None: speed
-        changes the shape of mu too
+    factor : (path, settings) -> number to which mu is proportional over speed, all else equal. None: speed
+        also changes the shape of mu
     shift : (path, settings) -> number by which |mu| rises as a whole over speed, as long as no switch moves
+    roundings : bound on the relative error of the formula by rounding, in units of 2^-53
     analytic : (low [m], high [m], path, settings) -> for pieces (k,) between switches the ratio r of ellipses
-        in which the formula is analytic, and a bound on |mu| there, see `lumped.friction.misfit`; None: there
-        is no formula, and the fit is the law
+        in which the formula is analytic, and a bound on |mu| in these ellipses, see `lumped.friction.misfit`.
+        None: there is no formula, and the fit is the law
     joints : path -> positions where polynomials of a table meet, without jump or kink [m]
     """
 
     name: str
     label: str
-    signed: Callable[[FloatArray, ContactPath, FrictionSettings], FloatArray]
+    formula: Callable[[FloatArray, ContactPath, FrictionSettings], FloatArray]
     switches: Callable[[ContactPath, FrictionSettings], list[float]]
     numeral: str = ""
     ranges: tuple[ValidityRange, ...] = ()
@@ -251,11 +270,13 @@ class FrictionLaw:
         Callable[[FloatArray, ContactPath, FrictionSettings], list[tuple[FrictionLaw, BoolArray]]] | None
     ) = None
     coefficient: bool = False
+    average_slope: float = 0.0
     reads: frozenset[str] | None = None
     varies: bool = True
     fluid_film: bool = False
     factor: Callable[[ContactPath, FrictionSettings], float] | None = None
     shift: Callable[[ContactPath, FrictionSettings], float] | None = None
+    roundings: float = ROUNDINGS
     analytic: Analytic | None = None
     joints: Callable[[ContactPath], list[float]] = lambda path: []
 
@@ -264,20 +285,33 @@ class FrictionLaw:
         """Number and label, for tables and legends."""
         return f"{self.numeral} {self.label}".lstrip()
 
+    def signed(self, xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
+        """Signed mu at positions [-]. Beyond the edge of an undercut mu is the value at the edge."""
+        return self.formula(path.between_edges(xi), path, settings)
+
+    def reads_average(self, path: ContactPath, settings: FrictionSettings) -> bool:
+        """Whether mu_avg acts somewhere on a path. A law made of others: in a part that is in force."""
+        if self.parts is None:
+            return self.coefficient
+        parts = self.parts(path.sampled_positions, path, settings)
+        return any(part.coefficient and bool(inside.any()) for part, inside in parts)
+
     def is_constant(self, settings: FrictionSettings) -> bool:
         """Whether mu(xi) is the same at every speed and load."""
         return not self.varies or (self.coefficient and settings.coefficient is not None)
 
     def over_speed(self, path: ContactPath, settings: FrictionSettings) -> tuple[ContactPath, float] | None:
-        """The contact at ``FIT_SPEED`` and the factor from mu there to mu here; None: the shapes differ."""
-        there = path.at_speed(FIT_SPEED)
-        unit = 0.0 if self.factor is None else self.factor(there, settings)
-        return None if self.factor is None or unit == 0.0 else (there, self.factor(path, settings) / unit)
+        """The contact at ``FIT_SPEED``, and mu over mu at ``FIT_SPEED``. None: the shapes differ."""
+        if self.factor is None:
+            return None
+        at_fit_speed = path.at_speed(FIT_SPEED)
+        divisor = self.factor(at_fit_speed, settings)
+        return None if divisor == 0.0 else (at_fit_speed, self.factor(path, settings) / divisor)
 
 
 #: Absolute error of mu in the piecewise polynomials.
 FIT_TOLERANCE = 1e-10
-#: Pinion speed [rad/s] at which laws are fitted that speed only scales: near 1000 rpm, in the middle of use.
+#: Pinion speed [rad/s], near 1000 rpm, at which laws are fitted that speed only scales.
 FIT_SPEED = 100.0
 #: Breaks closer than this share of the path of contact are one.
 _SAME = 1e-9
@@ -292,7 +326,10 @@ def fit_signed(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) 
     speeds rest on the same polynomials.
     """
     scaled = law.over_speed(path, settings)
-    return _fit(law, path, settings) if scaled is None else _fit(law, scaled[0], settings).scaled(scaled[1])
+    if scaled is None:
+        return _fit(law, path, settings)
+    at_fit_speed, factor = scaled
+    return _fit(law, at_fit_speed, settings).scaled(factor)
 
 
 @lru_cache(maxsize=256)
@@ -308,7 +345,7 @@ def _fit(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> Pat
     joints = [xi for xi in (*law.joints(path), *path.edges) if path.L_XA < xi < path.L_XD]
     breaks = sorted([*breaks, *(xi for xi in joints if min(abs(xi - b) for b in breaks) > near)])
     return PathFunction.fit(
-        lambda xi: law.signed(path.held(xi), path, settings),
+        lambda xi: law.signed(xi, path, settings),
         breaks,
         switches,
         tolerance=FIT_TOLERANCE,
@@ -317,7 +354,15 @@ def _fit(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> Pat
 
 
 def graded_breaks(pitch: float) -> Callable[[FloatArray, FloatArray], FloatArray]:
-    """How to cut pieces: nearer to a point [m] the longer a piece is against its distance from it."""
+    """A rule that cuts pieces (low, high), (k,), in two.
+
+    A piece is cut in the middle, or nearer to the pitch point where the piece is long against its distance
+    from the pitch point.
+
+    Parameters
+    ----------
+    pitch : position of the pitch point [m]
+    """
 
     def cut(low: FloatArray, high: FloatArray) -> FloatArray:
         side = np.where(0.5 * (low + high) >= pitch, 1.0, -1.0)

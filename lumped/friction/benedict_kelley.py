@@ -15,8 +15,6 @@ from lumped.friction.base import (
     ContactPath,
     FrictionLaw,
     FrictionSettings,
-    fit_signed,
-    mean_coefficient,
 )
 from lumped.friction.misfit import Ellipses, entraining
 from lumped.ranges import NOT_STATED, ValidityRange, checked
@@ -152,11 +150,11 @@ def _switches(path: ContactPath, settings: FrictionSettings) -> list[float]:
 def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
-    """Constant where the law is held; else each complex logarithm is at most |log10| and pi/ln 10."""
+    """Constant at the bounds of the law. Else each complex logarithm is at most |log10| plus pi/ln 10."""
     centre = 0.5 * (low + high)
     cap = max(_cap(path, settings), 0.0)
     level = _level(centre, path)
-    held = (level <= 0.0) | (level >= cap)
+    constant = (level <= 0.0) | (level >= cap)
     around = Ellipses.clear_of(low, high, [p for p in (path.L_XP, path.still) if p is not None])
     d = around.distances(path.L_XP)
     v_e = entraining(around, path)
@@ -166,14 +164,14 @@ def _analytic(
             for v, v_0 in ((d, np.abs(centre - path.L_XP)), (v_e, path.entraining_velocity(centre)))
         ]
     size = np.abs(level) + _factor(path.roughness * 1e6) * (logs[0] + 2.0 * logs[1])
-    return np.where(held, Ellipses.clear_of(low, high).ratio, around.ratio), np.where(held, cap, size)
+    return np.where(constant, Ellipses.clear_of(low, high).ratio, around.ratio), np.where(constant, cap, size)
 
 
 LAW = FrictionLaw(
     name="benedict_kelley",
     numeral="II",
     label="Benedict-Kelley",
-    signed=_signed,
+    formula=_signed,
     switches=_switches,
     ranges=RANGES,
     reads=frozenset({"viscosity", "roughness", "maximum"}),
@@ -181,11 +179,3 @@ LAW = FrictionLaw(
     shift=lambda path, settings: float(-3.0 * _factor(path.roughness * 1e6) * np.log10(path.omega_pinion)),
     analytic=_analytic,
 )
-
-
-@lru_cache(maxsize=256)
-def average_coefficient(path: ContactPath, settings: FrictionSettings) -> float:
-    """mu_avg of laws I and IV: as given, or as in the paper the mean of |mu| of law II over A..D."""
-    if settings.coefficient is not None:
-        return settings.coefficient
-    return mean_coefficient(fit_signed(LAW, path, settings))

@@ -65,7 +65,7 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
     mu = np.empty_like(positions)
     for law, inside in _parts(positions, path, settings):
         if inside.any():
-            mu[inside] = law.signed(positions[inside], path, settings)
+            mu[inside] = law.formula(positions[inside], path, settings)
     return mu.reshape(np.shape(xi))
 
 
@@ -124,10 +124,11 @@ LAW = FrictionLaw(
     name="composite",
     numeral="V",
     label="composite",
-    signed=_signed,
+    formula=_signed,
     switches=_switches,
     ranges=(*BENEDICT_KELLEY.ranges, *XU_KAHRAMAN.ranges, *RANGES),
     parts=_parts,
+    average_slope=max(law.average_slope for law in (BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB)),
     reads=frozenset().union(
         _OF_FILM, *(law.reads or () for law in (BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB))
     ),

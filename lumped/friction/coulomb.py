@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
+from lumped.friction.average_coefficient import AVERAGE_READS, AVERAGE_SLOPE, average_coefficient
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.misfit import constant
 from lumped.ranges import checked
 from lumped.typing import FloatArray
@@ -45,10 +45,11 @@ LAW = FrictionLaw(
     name="coulomb",
     numeral="I",
     label="Coulomb",
-    signed=_signed,
+    formula=_signed,
     switches=lambda path, settings: [path.L_XP],
     coefficient=True,
-    reads=frozenset({"coefficient"}),
+    average_slope=AVERAGE_SLOPE,
+    reads=AVERAGE_READS,
     factor=average_coefficient,
     analytic=constant(average_coefficient),
 )

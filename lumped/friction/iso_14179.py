@@ -85,7 +85,7 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 LAW = FrictionLaw(
     name="iso_14179",
     label="ISO/TR 14179-2",
-    signed=_signed,
+    formula=_signed,
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
     reads=frozenset({"viscosity", "roughness"}),

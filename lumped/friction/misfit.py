@@ -30,8 +30,6 @@ _LEBESGUE = 4.0
 #: Largest r; smallest one with which a piece counts as clear of what is singular.
 _LARGEST = 2.5
 _CLEAR = 1.1
-#: Roundings in the formula of a law, relative to it: the exponent of law III is near 9, each power adds 20.
-_ROUNDINGS = 400.0 * _U
 #: The same of a position, relative to L_XY, with the search of switches, see `ContactPath.crossings`.
 _PLACE = 4.0 * _U + 1e-14
 
@@ -69,7 +67,7 @@ class Ellipses:
 
     @property
     def clear(self) -> BoolArray:
-        """Which pieces (k,) are clear of what is singular; of the others the law itself is the bound."""
+        """Whether a piece (k,) is clear of singular points. If not, the law itself is the bound."""
         return np.asarray(self.ratio >= _CLEAR)
 
     @property
@@ -120,12 +118,12 @@ def fit_misfit(
     half = 0.5 * (high - low)
     width = high - low
     xi = 0.5 * (low + high)[:, None] + half[:, None] * _NODES
-    mu = law.signed(path.held(xi.ravel()), path, settings).reshape(xi.shape)
-    left = np.abs((mu - function(xi)) @ _TO_SERIES).sum(axis=1)
+    mu = law.signed(xi.ravel(), path, settings).reshape(xi.shape)
+    remainder = np.abs((mu - function(xi)) @ _TO_SERIES).sum(axis=1)
     powers = np.arange(len(function.coefficients))[::-1, None]
     terms = (np.abs(function.coefficients) * width**powers).sum(axis=0)
     r = np.maximum(ratio, _CLEAR)
     slope = most / (0.5 * half * (r + 1.0 / r - 2.0))
-    rounding = _ROUNDINGS * np.abs(mu).max(axis=1) + 20.0 * _U * terms + _PLACE * path.L_XY * slope
-    clear = left + 4.0 * most * r**-_DEGREE / (r - 1.0) + _LEBESGUE * rounding
+    rounding = law.roundings * _U * np.abs(mu).max(axis=1) + 20.0 * _U * terms + _PLACE * path.L_XY * slope
+    clear = remainder + 4.0 * most * r**-_DEGREE / (r - 1.0) + _LEBESGUE * rounding
     return np.asarray(np.where(ratio >= _CLEAR, clear, most + terms))

@@ -1,4 +1,9 @@
-"""The friction laws by name."""
+"""The friction laws by name: "none" and six laws in `LAWS`, and the table of a user (``friction.table``).
+
+A further law is a file beside this one, and its ``LAW`` in `LAWS`. The second, optional place is
+``multibody/contact/friction.py``. Where the multibody model has no formula of a law, it reads mu(xi) of the
+lumped model, and no independent formula checks the law. CONTRIBUTING.md, "Add a friction law", has the steps.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +27,7 @@ from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 _NONE = FrictionLaw(
     name="none",
     label="no friction",
-    signed=lambda xi, path, settings: np.zeros_like(xi),
+    formula=lambda xi, path, settings: np.zeros_like(xi),
     switches=lambda path, settings: [],
     reads=frozenset(),
     varies=False,
@@ -37,13 +42,13 @@ LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
 )
 
 
-#: Names of the laws with friction that every pair has.
+#: Names of the laws with friction that need no table.
 FRICTIONAL = tuple(name for name in LAWS if name != _NONE.name)
 #: Every name of ``friction.law``.
 NAMES = (*LAWS, TABLE)
 
 
-#: What to do where the law is the table and there is none.
+#: What to do where the law is "table" and the pair has no table.
 NO_TABLE = "Give friction.table, or in Python pair.with_(law=...) a function, an array or columns."
 
 
@@ -62,23 +67,23 @@ _SPELLINGS = {
 def file_name(spelling: object) -> object:
     """Return the name in parameter files of a law by number or label: "II", "Coulomb", "law III".
 
-    Anything else is returned unchanged.
+    A value that names no law is returned unchanged.
     """
     return _SPELLINGS.get(_plain(spelling), spelling) if isinstance(spelling, str) else spelling
 
 
 def law_of(settings: FrictionSettings, name: str | None = None) -> FrictionLaw:
-    """Return a law by its name in parameter files, or as tables call it; default the pair's own."""
-    known = file_name(settings.law if name is None else name)
-    one_of("friction.law", known, NAMES)
-    if known != TABLE:
-        return LAWS[str(known)]
+    """Return a law by name in parameter files, number or label; default: the law of the pair."""
+    law_name = file_name(settings.law if name is None else name)
+    one_of("friction.law", law_name, NAMES)
+    if law_name != TABLE:
+        return LAWS[str(law_name)]
     if settings.own_law is None:
         raise refuse("friction.table", None, "a table of mu over the path of contact", NO_TABLE)
     return settings.own_law
 
 
 def laws_with_friction(settings: FrictionSettings) -> dict[str, FrictionLaw]:
-    """Return the laws that a pair can be computed with: those with a formula, and its table."""
-    own = {} if settings.own_law is None else {TABLE: settings.own_law}
-    return {name: LAWS[name] for name in FRICTIONAL} | own
+    """Return the laws with which a pair can be computed: all with a formula, and the table of the pair."""
+    table = {} if settings.own_law is None else {TABLE: settings.own_law}
+    return {name: LAWS[name] for name in FRICTIONAL} | table

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
+from lumped.friction.average_coefficient import AVERAGE_READS, AVERAGE_SLOPE, average_coefficient
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.benedict_kelley import average_coefficient
 from lumped.friction.misfit import Ellipses
 from lumped.ranges import checked
 from lumped.typing import FloatArray
@@ -49,9 +49,9 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 def _analytic(
     low: FloatArray, high: FloatArray, path: ContactPath, settings: FrictionSettings
 ) -> tuple[FloatArray, FloatArray]:
-    """Poles at P +- i/Phi, over which the derivative of arctan is bounded from the middle of a piece on.
+    """The poles are P +- i/Phi. The derivative of arctan is bounded from the middle of a piece outwards.
 
-    On a piece that holds a transition too short for its polynomial, |mu| is at most mu_avg.
+    Where a piece contains a transition that is too short for a polynomial, |mu| is at most mu_avg.
     """
     phi = settings.sharpness
     pole = path.L_XP + 1j / settings.sharpness
@@ -67,10 +67,11 @@ LAW = FrictionLaw(
     name="smoothed_coulomb",
     numeral="IV",
     label="smoothed Coulomb",
-    signed=_signed,
+    formula=_signed,
     switches=lambda path, settings: [],
     coefficient=True,
-    reads=frozenset({"coefficient", "sharpness"}),
+    average_slope=AVERAGE_SLOPE,
+    reads=AVERAGE_READS | {"sharpness"},
     factor=average_coefficient,
     analytic=_analytic,
 )

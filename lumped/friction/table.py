@@ -92,13 +92,15 @@ class FrictionTable(Section):
         """
         x = self.positions(path)
         y = np.array(self.coefficient)
-        at = np.clip(xi, *self.positions(path)[[0, -1]])
+        positions = np.clip(xi, *self.positions(path)[[0, -1]])
         corner = [i for i in range(1, x.size - 1) if abs(x[i] - path.L_XP) <= _AT_PITCH * (x[-1] - x[0])]
-        magnitude = np.empty_like(at)
+        magnitude = np.empty_like(positions)
         ends = [0, *corner, x.size - 1]
         for first, last in itertools.pairwise(ends):
-            inside = (at >= x[first]) & (at <= x[last])
-            magnitude[inside] = spline(x[first : last + 1], y[first : last + 1], "monotone")(at[inside])
+            inside = (positions >= x[first]) & (positions <= x[last])
+            magnitude[inside] = spline(x[first : last + 1], y[first : last + 1], "monotone")(
+                positions[inside]
+            )
         return np.asarray(magnitude * np.sign(xi - path.L_XP), dtype=np.float64)
 
 
@@ -110,7 +112,7 @@ def _law_of(table: FrictionTable) -> FrictionLaw:
     return FrictionLaw(
         name=TABLE,
         label=f"user's {table.name}",
-        signed=table.signed,
+        formula=table.signed,
         switches=lambda path, settings: [path.L_XP],
         joints=lambda path: table.positions(path).tolist(),
         ranges=tuple(

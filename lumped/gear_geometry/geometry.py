@@ -145,7 +145,7 @@ def build_geometry(
 ) -> Geometry:
     """Return the geometry of two gears cut by racks of the same module and pressure angle.
 
-    Whether they can mesh is for ``existence_problems``; only what has no geometry is refused
+    ``existence_problems`` says whether the gears can mesh; only what has no geometry is refused
     here, under the names of the schema.
 
     Parameters

@@ -351,7 +351,7 @@ def _measured(
 
 
 def _measuring_radius(tooth: ToothProfile, form: float, tip: float) -> float:
-    """Radius on which flanks are measured: r + x m, or, where that is off the involute, its middle."""
+    """Radius on which flanks are measured: r + x m, or the middle of the involute if r + x m is outside."""
     shifted = tooth.reference_radius + tooth.profile_shift * tooth.module
     return shifted if form < shifted < tip else 0.5 * (form + tip)
 

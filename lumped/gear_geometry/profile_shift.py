@@ -50,7 +50,7 @@ def shift_sum(teeth: int, module: float, pressure_angle: float, centre_distance:
 
 
 def distance_without_backlash(teeth: int, module: float, pressure_angle: float, shift: float) -> float:
-    """Return the centre distance [m] at which profile shifts of this sum have no backlash.
+    """Return the centre distance [m] at which gears with a sum of profile shifts have no backlash.
 
     The inverse of `shift_sum`. A sum so negative that the base circles would overlap is refused.
     """
@@ -81,7 +81,7 @@ def resolved_shifts(
     pressure_angle: float,
     distance: float | None,
 ) -> tuple[float, float]:
-    """Return both profile shift coefficients: those that are given, the others from the centre distance.
+    """Return both profile shift coefficients: of the file, or else from the centre distance.
 
     Parameters
     ----------

@@ -44,7 +44,11 @@ class IsoDynamicFactor:
 
 
 def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -> IsoDynamicFactor:
-    """Return K_v by ISO 6336-1 method B, for a tolerance class of ISO 1328-1, 1 to 11."""
+    """Return K_v by ISO 6336-1 method B, for a tolerance class of ISO 1328-1, 1 to 11.
+
+    The stiffness is that of the standard: neither the pair's stiffness model nor ``mesh.stiffness_factor``
+    changes K_v.
+    """
     g = pair.geometry
     b = bodies_of(pair)
     width = 1e3 * g.face_width  # mm; the formulas are in N, mm, um

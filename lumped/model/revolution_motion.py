@@ -21,7 +21,7 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import labelled, peak_to_peak, response
 from lumped.model.swing import swing
 from lumped.quasi_static.contacts import contact_of
-from lumped.schema.meeting_teeth import numbers
+from lumped.schema.meeting_teeth import teeth_of_pairs
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray, IntArray
 
@@ -133,7 +133,7 @@ class RevolutionMotion:
     @cached_property
     def teeth(self) -> tuple[IntArray, IntArray]:
         """Teeth of pinion and gear in each place at each output, counted from 0, (places, k)."""
-        return numbers(self.pair, self.number)
+        return teeth_of_pairs(self.pair, self.number)
 
     @cached_property
     def touches(self) -> BoolArray:

@@ -15,7 +15,7 @@ from lumped.mesh.places import static_loads
 from lumped.model.revolution_motion import default_samples
 from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.meeting_teeth import numbers, period_of
+from lumped.schema.meeting_teeth import period_of, teeth_of_pairs
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,9 +56,9 @@ def static_sharing(pair: AnyPair, *, samples_per_cycle: int | None = None) -> xr
     outputs = np.flatnonzero(tables.outputs)
     places = tables.ahead.size
     load = loads[:, :, outputs].reshape(places, -1)
-    pinion, gear = numbers(pair, np.repeat(np.arange(period), count) - tables.ahead[:, None])
+    pinion, gear = teeth_of_pairs(pair, np.repeat(np.arange(period), count) - tables.ahead[:, None])
     largest = np.full((pair.pinion.teeth, pair.gear.teeth), np.nan)
-    meeting = numbers(pair, np.arange(period) - tables.ahead[:, None])
+    meeting = teeth_of_pairs(pair, np.arange(period) - tables.ahead[:, None])
     largest[meeting] = 0.0
     np.maximum.at(largest, meeting, loads.max(axis=2))
     phase = (np.arange(period)[:, None] + np.arange(count) / count).ravel()

@@ -29,8 +29,10 @@ from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 from lumped.quasi_static.tooth_error import flank_relief, relief_starts
 from lumped.schema.bodies import bodies_of
-from lumped.schema.meeting_teeth import OwnTeeth, first_teeth, own_teeth, period_of, ripples
+from lumped.schema.meeting_teeth import first_teeth, period_of
 from lumped.schema.pair import GearPair
+from lumped.schema.tooth_errors import ToothErrors, tooth_errors
+from lumped.schema.torque_ripples import ripples
 from lumped.typing import FloatArray, IntArray
 
 #: Distance in mesh cycles of the nodes at the ends of a step from these ends; closer phases count as one.
@@ -201,7 +203,7 @@ class ToothLaws:
         """Return TURNING of both gears, then of each ripple of a torque; the swing is still 0."""
         first = first_teeth(self.pair)
         rows: list[tuple[float, ...]] = []
-        for shaft, teeth in enumerate(own_teeth(self.pair)):
+        for shaft, teeth in enumerate(tooth_errors(self.pair)):
             z = teeth.error.size
             rows.append((shaft, teeth.eccentricity, teeth.phase + 2.0 * np.pi * first[shaft] / z, z, 0.0))
         for ripple in torque_ripples(self.pair):
@@ -216,7 +218,7 @@ def torque_ripples(pair: GearPair) -> Records:
     return np.array([tuple(row) for row in ripples(pair)], RIPPLE)
 
 
-def _of_teeth(teeth: OwnTeeth) -> Records:
+def _of_teeth(teeth: ToothErrors) -> Records:
     """Return TOOTH of each tooth of a gear: the errors of the schema are gaps here."""
     numbers = np.zeros(teeth.error.size, TOOTH)
     numbers["gap"] = teeth.error
@@ -338,7 +340,7 @@ def mesh_tables(
         slopes["friction"] = 0.0
     turning = laws.turning()
     angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
-    pinion, gear = own_teeth(laws.pair)
+    pinion, gear = tooth_errors(laws.pair)
     return MeshTables(
         edges=steps.edges,
         nodes=in_step,

@@ -15,9 +15,10 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import ParameterError, refuse
+from lumped.friction.average_coefficient import average_coefficient, longer_path
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings, fit_signed, mean_coefficient
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
-from lumped.friction.benedict_kelley import average_coefficient, friction_number
+from lumped.friction.benedict_kelley import friction_number
 from lumped.friction.misfit import fit_misfit
 from lumped.friction.registry import law_of, laws_with_friction
 from lumped.labelling import labelled_dataset, provenance
@@ -30,8 +31,6 @@ from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_CHECKED_POSITIONS = 201
 
 
 def contact_path(pair: GearPair) -> ContactPath:
@@ -70,8 +69,8 @@ def friction_path_function(
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
-    path, settings, record = _contact(pair, law, interval)
-    function = fit_law(path, settings, record.name)
+    path, record = _contact(pair, law, interval)
+    function = fit_law(path, pair.friction, record.name)
     if warn:
         warn_violations(violations_of(path, pair.friction, record.name))
     return function
@@ -79,42 +78,33 @@ def friction_path_function(
 
 def _contact(
     pair: GearPair, law: str | None, interval: tuple[float, float] | None
-) -> tuple[ContactPath, FrictionSettings, FrictionLaw]:
-    """Contact, settings and law of `friction_path_function`."""
+) -> tuple[ContactPath, FrictionLaw]:
+    """Contact and law of `friction_path_function`."""
     record = law_of(pair.friction, law)
     path = contact_path(pair)
-    settings: FrictionSettings = pair.friction
-    if interval not in (None, (path.L_XA, path.L_XD)):
-        longer = replace(path, L_XA=interval[0], L_XD=interval[1])
-        if reads_average(record, longer, settings):  # mu_avg stays the mean from A to D
-            settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
-        path = longer
-    return path, settings, record
+    if interval is None or interval == (path.L_XA, path.L_XD):
+        return path, record
+    return longer_path(path, interval, record, pair.friction), record
 
 
 def friction_misfit(pair: GearPair, interval: tuple[float, float] | None = None) -> FloatArray:
     """Bound on the error of `friction_path_function` on each of its pieces (m,), see `fit_misfit`.
 
-    If mu_avg is the mean of law II, the mean bound of law II is added, times 1.25: law IV reaches 1.22
-    mu_avg.
+    Where mu_avg is the mean of law II, the bound includes the error of this mean times the law's
+    ``average_slope``.
     """
-    path, settings, law = _contact(pair, None, interval)
-    _, bounds_of_pieces = _bounded(path, settings, law)
-    if pair.friction.coefficient is None and reads_average(law, path, settings):
+    path, law = _contact(pair, None, interval)
+    settings: FrictionSettings = pair.friction
+    bounds = fit_misfit(fit_law(path, settings, law.name), law, path, settings)
+    if settings.coefficient is None and law.reads_average(path, settings):
         nominal = contact_path(pair)
-        mean, bounds = _bounded(nominal, pair.friction, BENEDICT_KELLEY)
-        bounds_of_pieces = bounds_of_pieces + 1.25 * float(bounds @ np.diff(mean.breaks)) / (
-            nominal.L_XD - nominal.L_XA
-        )
-    return bounds_of_pieces
-
-
-def _bounded(
-    path: ContactPath, settings: FrictionSettings, law: FrictionLaw
-) -> tuple[PathFunction, FloatArray]:
-    """A law over the path, and the bound on the error of each piece."""
-    function = fit_law(path, settings, law.name)
-    return function, fit_misfit(function, law, path, settings)
+        law_two = fit_signed(BENEDICT_KELLEY, nominal, settings)
+        of_pieces = fit_misfit(law_two, BENEDICT_KELLEY, nominal, settings)
+        of_mean = float(of_pieces @ np.diff(law_two.breaks)) / (nominal.L_XD - nominal.L_XA)
+        # mu_avg is proportional to the mean of law II: the error of the mean gives the error of mu_avg.
+        of_average = average_coefficient(replace(nominal, law_two_mean=of_mean), settings)
+        bounds = bounds + law.average_slope * of_average
+    return bounds
 
 
 def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
@@ -130,14 +120,6 @@ def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeV
     return violations_of(contact_path(pair), pair.friction, law_of(pair.friction, law).name)
 
 
-def reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> bool:
-    """Whether a law uses mu_avg somewhere on a path; of law V, one of the laws that are in force there."""
-    if law.parts is None:
-        return law.coefficient
-    parts = law.parts(_positions(path), path, settings)
-    return any(part.coefficient and bool(inside.any()) for part, inside in parts)
-
-
 @lru_cache(maxsize=256)
 def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
     """Fit mu(xi) of one law. The fit is cached: charts over damping or stiffness need it at every node."""
@@ -148,7 +130,7 @@ def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFun
 
 def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: FrictionLaw) -> None:
     """Refuse a law with mu above 1, as law III has in thin oil under high pressure."""
-    xi = _positions(path)
+    xi = path.sampled_positions
     with np.errstate(over="ignore", invalid="ignore"):
         largest = float(np.abs(law.signed(xi, path, settings)).max())
     if not largest <= 1.0:
@@ -161,15 +143,11 @@ def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: Fricti
         )
 
 
-def _positions(path: ContactPath) -> FloatArray:
-    return path.held(np.linspace(path.L_XA, path.L_XD, _CHECKED_POSITIONS + 2)[1:-1])
-
-
 @lru_cache(maxsize=256)
 def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> tuple[RangeViolation, ...]:
     """Validity ranges that a contact leaves under a law."""
     law = law_of(settings, name)
-    xi = _positions(path)
+    xi = path.sampled_positions
     single_part = [(law, np.full(xi.shape, True))]
     violations: list[RangeViolation] = []
     for part, inside in single_part if law.parts is None else law.parts(xi, path, settings):

@@ -21,23 +21,38 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+def stiffness_factor(pair: GearPair) -> float:
+    """Factor on the stiffness k_i of a tooth pair that the model gives: the product of all factors of a file.
+
+    A further factor on k belongs here. Stiffness, contact and coupling of tooth pairs then have it, in
+    the multibody model too, which reads these three.
+    """
+    return pair.mesh.stiffness_factor
+
+
 def pair_stiffness(pair: GearPair) -> PathFunction:
     """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m]."""
-    return pair.mesh.stiffness.curve(pair).scaled(pair.mesh.stiffness_factor)
+    return pair.mesh.stiffness.curve(pair).scaled(stiffness_factor(pair))
 
 
 def contact_softening(pair: GearPair) -> float:
-    """Return D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) of a pair [m/N]: the compliance falls with the load."""
-    return pair.mesh.stiffness.softening(pair) / pair.mesh.stiffness_factor
+    """Return D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) of a pair [m/N]: the compliance falls with the load.
+
+    ``mesh.stiffness_factor`` divides the compliance and so D.
+    """
+    return pair.mesh.stiffness.softening(pair) / stiffness_factor(pair)
 
 
 def cross_compliances(pair: GearPair) -> tuple[PathFunction, ...]:
     """Return w_m(xi) [m/N], m = 1, 2, ...: how far a unit load on a pair moves the pair m pitches ahead."""
-    return tuple(w.scaled(1.0 / pair.mesh.stiffness_factor) for w in pair.mesh.stiffness.neighbours(pair))
+    return tuple(w.scaled(1.0 / stiffness_factor(pair)) for w in pair.mesh.stiffness.neighbours(pair))
 
 
 def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
     """Components of the potential-energy stiffness over the path of contact, contact by Weber and Banaschek.
+
+    The components are those of the method, without ``mesh.stiffness_factor``, which is a factor on the
+    stiffness of the pair's own model.
 
     Parameters
     ----------
@@ -61,7 +76,7 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
         compliance.hertz,
         *(getattr(tooth, part) for tooth in (compliance.pinion, compliance.gear) for part in parts),
     ]
-    return labelled_dataset(
+    result = labelled_dataset(
         {
             "compliance": (
                 ("component", "position"),
@@ -81,6 +96,9 @@ def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
             "quadrature_error": max(compliance.pinion.quadrature_error, compliance.gear.quadrature_error),
         },
     )
+    for name in ("compliance", "stiffness"):
+        result[name].attrs["note"] = "of the method, without mesh.stiffness_factor"
+    return result
 
 
 def mesh_stiffness(pair: AnyPair, samples: int = 512) -> xr.Dataset:

@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 
 from lumped.path_function import PathFunction
 from lumped.schema.assumed import Assumed
-from lumped.schema.contact import Friction
+from lumped.schema.friction import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 

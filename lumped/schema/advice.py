@@ -44,7 +44,7 @@ _MOST_TEETH = 1000
 
 
 def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
-    """The problems of a pair, with what would solve those of its teeth, unless they wedge as well."""
+    """The problems of a pair; a problem of teeth says what would solve it, unless the teeth also wedge."""
     if any(one.field == "centre_distance" for one in problems):
         return problems
     return [
@@ -56,17 +56,18 @@ def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
 
 
 def what_would_mesh(pair: Tried, name: Name, sense: int = 1) -> str:
-    """Values, each on its own, with which the pair meshes: "pinion.profile_shift = 0.24 would do."
+    """Values with which the pair meshes, each by itself: "pinion.profile_shift = 0.24 would do."
 
-    They are the first that do in steps of 0.01 modules and of a tooth, by bisection; empty where none does.
+    The search goes in steps of 0.01 modules and of one tooth, and returns the first value of a field that
+    meshes. Empty: no value meshes.
 
     Parameters
     ----------
     name : gear whose profile shift and teeth are tried first
     sense : of the profile shift that is tried first, 1 to raise it
     """
-    found = list(_alone(pair, name, sense)) or list(_beside_the_mate(pair, name, sense))
-    return f"{', or '.join(found)} would do." if found else ""
+    values = list(_alone(pair, name, sense)) or list(_beside_the_mate(pair, name, sense))
+    return f"{', or '.join(values)} would do." if values else ""
 
 
 def _alone(pair: Tried, name: Name, sense: int) -> Iterator[str]:
@@ -76,13 +77,13 @@ def _alone(pair: Tried, name: Name, sense: int) -> Iterator[str]:
     def toothed(step: int) -> Changes:
         return {name: {"teeth": teeth + step}}
 
-    for way in (sense, -sense):
+    for direction in (sense, -sense):
 
-        def shifted(step: int, way: int = way) -> Changes:
-            return {name: {"profile_shift": _hundredth(shift, way * step)}}
+        def shifted(step: int, direction: int = direction) -> Changes:
+            return {name: {"profile_shift": _hundredth(shift, direction * step)}}
 
         if step := _first(pair, shifted, _HUNDREDTHS, _STRIDE):
-            yield f"{name}.profile_shift = {_hundredth(shift, way * step):g}"
+            yield f"{name}.profile_shift = {_hundredth(shift, direction * step):g}"
             break
     free = pair.centre_distance is None and getattr(pair, name).tip_diameter is None
     if free and (step := _first(pair, toothed, _TEETH, _TEETH_STRIDE)):
@@ -91,12 +92,12 @@ def _alone(pair: Tried, name: Name, sense: int) -> Iterator[str]:
 
 def _beside_the_mate(pair: Tried, name: Name, sense: int) -> Iterator[str]:
     mate = MATE[name]
-    own = _shift(pair, name)
-    others = _shift(pair, mate)
+    shift = _shift(pair, name)
+    shift_of_mate = _shift(pair, mate)
     for opposite in (-1, 1):  # the first keeps the sum of the shifts, and so a given centre distance
 
         def both(step: int, opposite: int = opposite) -> Changes:
-            shifts = _hundredth(own, sense * step), _hundredth(others, opposite * sense * step)
+            shifts = _hundredth(shift, sense * step), _hundredth(shift_of_mate, opposite * sense * step)
             return {name: {"profile_shift": shifts[0]}, mate: {"profile_shift": shifts[1]}}
 
         if step := _first(pair, both, _HUNDREDTHS, _STRIDE):
@@ -128,9 +129,10 @@ def _hundredth(value: float, steps: int) -> float:
 
 
 def _first(pair: Tried, changes: Callable[[int], Changes], most: int, stride: int) -> int:
-    """First number of steps >= 1 with which the pair meshes, 0 where none does.
+    """First number of steps >= 1 with which the pair meshes. 0: the pair meshes with no number of steps.
 
-    Every ``stride`` steps are tried; between the first that mesh and those before, by bisection.
+    Multiples of ``stride`` are tried first, then bisection between the first multiple that meshes and the
+    multiple before.
     """
     for high in range(stride, most + stride, stride):
         if _meshes(pair, changes(high)):

@@ -161,7 +161,7 @@ def recorded(pair: Section, written: Assumed, derived: Mapping[str, Value]) -> A
 
 
 def _defaults_taken(section: Section, prefix: str) -> Iterator[tuple[str, None]]:
-    """Paths of the fields of a section and those inside it that no file or caller gave."""
+    """Paths of all fields of a section, and of sections inside, that neither file nor caller gave."""
     for name in type(section).model_fields:
         path = f"{prefix}{name}"
         value = getattr(section, name)

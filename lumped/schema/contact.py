@@ -1,4 +1,4 @@
-"""Schema of the contact between the teeth: stiffness, damping and backlash, lubricant, friction."""
+"""Schema of the elastic mesh: stiffness, damping, backlash; and of the lubricant."""
 
 from __future__ import annotations
 
@@ -11,11 +11,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from lumped.errors import refuse
-from lumped.fields.section import OneOf, Section
+from lumped.fields.section import Section
 from lumped.fields.units import Quantity
-from lumped.friction.base import FrictionLaw
-from lumped.friction.registry import LAWS, NAMES, NO_TABLE, file_name
-from lumped.friction.table import TABLE, FrictionTable
 from lumped.lubrication.viscosity import (
     ZERO_CELSIUS,
     grade_viscosity,
@@ -46,7 +43,7 @@ Tooth = Annotated[int, Field(ge=1, le=1000, strict=True)]
 
 
 def without_assumed_defaults(data: Any, defaults: Mapping[str, str]) -> Any:
-    """Plain data of a pair without those values of its mesh that are assumed and are a default.
+    """Plain data of a pair, without values of the section ``mesh`` that are assumed defaults.
 
     Parameters
     ----------
@@ -81,7 +78,9 @@ class Mesh(Section):
         discriminator="model", description="stiffness of a tooth pair over the path of contact"
     )
     stiffness_factor: Annotated[float, Quantity("1", at_least=0.1, at_most=10)] = Field(
-        1.0, description="factor on the stiffness of a tooth pair that the model gives"
+        1.0,
+        description="factor on the stiffness of a tooth pair that the model gives; not on the stiffness of "
+        "ISO 6336-1 in K_v",
     )
     damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
         description="zeta in c_i = 2 zeta sqrt(k_i m_e)"
@@ -119,10 +118,10 @@ class Mesh(Section):
 
     @property
     def by_stiffness(self) -> dict[str, str]:
-        """Contact and relief that hold where a file does not say them.
+        """Defaults of ``contact`` and ``relief``, which the stiffness decides.
 
-        A stiffness of the whole mesh is load over transmission error: early contact, load sharing gaps and
-        relief are in it already.
+        A stiffness of the whole mesh is load over transmission error. Early contact, gaps that share the load
+        and relief are part of such a stiffness.
         """
         whole = self.stiffness.whole_mesh
         return (
@@ -223,52 +222,3 @@ class Lubricant(Section):
             return self.viscosity_law.dynamic_viscosity
         assert self.viscosity is not None  # the section has exactly one of them
         return self.viscosity
-
-
-def _increasing(value: object) -> object:
-    """Three increasing positive numbers; pydantic alone would take booleans and text for numbers."""
-    numbers = list(value) if isinstance(value, (list, tuple)) else []
-    real = all(isinstance(n, (int, float)) and not isinstance(n, bool) for n in numbers)
-    if len(numbers) == 3 and real and 0 < numbers[0] < numbers[1] < numbers[2] < math.inf:
-        return tuple(float(n) for n in numbers)
-    raise refuse("", value, "three increasing positive numbers", "Correct the list.")
-
-
-class Friction(Section):
-    """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
-
-    law: Annotated[str, OneOf(NAMES, file_name)] = Field(
-        description=", ".join(f"{law.numeral or law.label} {law.name}" for law in LAWS.values())
-        + ", table: of the user"
-    )
-    coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(
-        None, description="mean coefficient of laws I and IV; default the mean of law II over the path"
-    )
-    sharpness: Annotated[float, Quantity("1/mm", above=0)] = Field(
-        50.0, description="Phi of law IV, the steepness of the sign change at the pitch point"
-    )
-    maximum: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
-        0.2, description="upper bound of law II, which is infinite at the pitch point"
-    )
-    thresholds: Annotated[tuple[float, float, float], BeforeValidator(_increasing)] = Field(
-        (1.0, 4.0, 10.0), description="film parameters at which law V changes: IV | II | III | III"
-    )
-    composite_roughness: Annotated[float | None, Quantity("um", above=0, optional=True)] = Field(
-        None,
-        description="composite roughness R_comp of the film parameter; default root sum square of both Ra",
-    )
-    film_length: Annotated[float, Quantity("mm", above=0)] = Field(
-        0.8, description="cut-off length L_x of the roughness filter in the film parameter"
-    )
-    table: FrictionTable | None = Field(None, description="mu of the user over the path of contact")
-
-    @model_validator(mode="after")
-    def _has_its_table(self) -> Self:
-        if self.law == TABLE and self.table is None:
-            raise refuse("table", None, "a table of mu over the path of contact", NO_TABLE)
-        return self
-
-    @property
-    def own_law(self) -> FrictionLaw | None:
-        """The law of the user's table, where one is given."""
-        return None if self.table is None else self.table.law

@@ -13,29 +13,15 @@ from lumped.friction.table import TABLE
 from lumped.schema.assumed import WORDS, within
 from lumped.schema.changes import fields_of
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.friction import FRICTION_FIELDS
 from lumped.schema.pair import GearPair, field_values
 from lumped.stiffness.base import TOOTH_FORM
 
-#: What a friction law reads, by the names of ``ContactPath`` and ``FrictionSettings`` -> fields that it comes
-#: from, see ``own_laws.nominal_contact``; "gears" are both gears.
-FRICTION: dict[str, tuple[str, ...]] = {
-    "coefficient": ("friction.coefficient",),
-    "sharpness": ("friction.sharpness",),
-    "maximum": ("friction.maximum",),
-    "thresholds": ("friction.thresholds",),
-    "effective_modulus": ("gears.youngs_modulus", "gears.poisson_ratio"),
-    "viscosity": ("lubricant.viscosity", "lubricant.viscosity_law"),
-    "pressure_viscosity_k": ("lubricant.pressure_viscosity_k",),
-    "pressure_viscosity_s": ("lubricant.pressure_viscosity_s",),
-    "roughness": ("gears.roughness",),
-    "composite_roughness": ("friction.composite_roughness", "gears.roughness"),
-    "film_length": ("friction.film_length",),
-}
 #: The profile of the flanks, beside their involutes.
 _PROFILE = ("mesh.relief", "gears.tip_relief", "gears.root_relief")
 #: Fields that laws, models or the rest of a pair may leave unread.
 _CONDITIONAL = {
-    *(field for fields in FRICTION.values() for field in fields),
+    *(field for fields in FRICTION_FIELDS.values() for field in fields),
     *TOOTH_FORM,
     "friction.table",
     "gears.density",
@@ -94,10 +80,10 @@ def _of_friction(pair: GearPair) -> set[str]:
     if friction.law == TABLE:
         return {"friction.table"}
     law = law_of(friction)
-    names = set(FRICTION) if law.reads is None else set(law.reads)
+    names = set(FRICTION_FIELDS) if law.reads is None else set(law.reads)
     if "coefficient" in names and friction.coefficient is None:
         names |= BENEDICT_KELLEY.reads or set()
-    fields = {field for name in names for field in FRICTION[name]}
+    fields = {field for name in names for field in FRICTION_FIELDS[name]}
     if friction.composite_roughness is not None and "roughness" not in names:
         fields.discard("gears.roughness")  # the film has its own
     return fields

@@ -60,7 +60,7 @@ def preset_text(name: str) -> str:
 def load_gear_pair(source: AnyPair) -> GearPair:
     """Read a gear pair from a preset name, a TOML file or a mapping, and validate it.
 
-    Every function that takes a gear pair calls this first, so each takes these.
+    Every function that takes a gear pair calls this function first, and so takes all three forms.
 
     Parameters
     ----------

@@ -156,7 +156,7 @@ class Gear(Section):
         return self.deviations is not None or self.eccentricity > 0.0 or bool(self.faults)
 
     def with_relief_on(self, flank: Flank) -> Self:
-        """The gear with the roll angles at which its reliefs start on a flank; itself where it states them.
+        """The gear with the roll angles at which the reliefs start on a flank; unchanged if all are stated.
 
         Raises
         ------

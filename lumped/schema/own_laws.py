@@ -15,9 +15,6 @@ from lumped.fields.tables import table_of
 from lumped.friction.base import ContactPath
 from lumped.friction.table import COEFFICIENT, TABLE
 from lumped.gear_geometry.geometry import Geometry
-from lumped.lubrication import film
-from lumped.schema.contact import Friction, Lubricant
-from lumped.schema.gear import Gear
 from lumped.stiffness.table import STIFFNESS
 from lumped.typing import FloatArray
 
@@ -37,38 +34,6 @@ _GEOMETRY = ("xi", "radius", "slide_to_roll")
 _SIDE = 60
 _CYCLE = 240
 _GIVE = "a name, a function, a 1-D array, or columns with units in their names"
-
-
-def nominal_contact(
-    g: Geometry, gears: tuple[Gear, Gear], lubricant: Lubricant, friction: Friction, torque: float
-) -> ContactPath:
-    """The nominal contact of a pair from its sections, see ``lumped.path_of_contact.contact_path``."""
-    pinion, gear = gears
-    composite = friction.composite_roughness
-    if composite is None:
-        # The surfaces are independent: variances add.
-        composite = math.hypot(pinion.roughness, gear.roughness)
-    return ContactPath(
-        L_XA=g.L_XA,
-        L_XP=g.L_XP,
-        L_XD=g.L_XD,
-        L_XY=g.L_XY,
-        omega_pinion=g.omega_pinion,
-        omega_gear=g.omega_gear,
-        pitch_line_velocity=g.pitch_line_velocity,
-        unit_load=torque / (g.face_width * g.base_radius_pinion),
-        effective_modulus=film.effective_modulus(
-            pinion.youngs_modulus, pinion.poisson_ratio, gear.youngs_modulus, gear.poisson_ratio
-        ),
-        viscosity=lubricant.dynamic_viscosity,
-        pressure_viscosity_k=lubricant.pressure_viscosity_k,
-        pressure_viscosity_s=lubricant.pressure_viscosity_s,
-        roughness=0.5 * (pinion.roughness + gear.roughness),
-        composite_roughness=composite,
-        film_length=friction.film_length,
-        edge_pinion=g.undercut_pinion,
-        edge_gear=g.undercut_gear,
-    )
 
 
 def is_own(path: str, value: object) -> bool:

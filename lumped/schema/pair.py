@@ -47,7 +47,8 @@ from lumped.schema.advice import Changes, advised
 from lumped.schema.assumed import ABOUT, Assumed, AssumedTable, State, problems_of, recorded
 from lumped.schema.bearings import Bearings
 from lumped.schema.changes import SHORT_NAMES, by_fields, changed
-from lumped.schema.contact import Friction, Lubricant, Mesh, without_assumed_defaults
+from lumped.schema.contact import Lubricant, Mesh, without_assumed_defaults
+from lumped.schema.friction import Friction, nominal_contact
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.old_formats import FORMAT, upgraded
 from lumped.schema.shafts import Shafts
@@ -365,7 +366,7 @@ class GearPair(Section, metaclass=_InOurWords):
                 yield FieldProblem(f"{name}.{field}", f"{value:g} {unit}", allowed, action)
 
     def _teeth_that_are_not(self, name: Literal["pinion", "gear"], which: int) -> Iterator[FieldProblem]:
-        """A first tooth that the gear does not have, and faults that do not fit its teeth."""
+        """Problems: a first tooth that the gear does not have, faults that do not fit the teeth."""
         gear: Gear = getattr(self, name)
         if self.mesh.first_teeth is not None and self.mesh.first_teeth[which] > gear.teeth:
             value = f"{list(self.mesh.first_teeth)}"
@@ -407,7 +408,7 @@ class GearPair(Section, metaclass=_InOurWords):
         """What friction laws see, see ``lumped.path_of_contact.contact_path``."""
         gears = (self.pinion, self.gear)
         torque = self.operating.pinion_torque
-        return own_laws.nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
+        return nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
 
     def flank(self, which: int) -> Flank:
         """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""
@@ -420,7 +421,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @property
     def healthy(self) -> GearPair:
-        """The pair with like teeth, centred gears and steady torques; itself where it is that already."""
+        """The pair with like teeth, centred gears and steady torques; the same object if nothing changes."""
         if not (self.pinion.has_own_teeth or self.gear.has_own_teeth or self.operating.torque_ripple):
             return self  # not cached: pairs are compared by what they hold, and would hold themselves
         return self._with_like_teeth

@@ -91,7 +91,7 @@ class ProfileRelief(Section):
         return self.model_copy(update={"start_roll_angle": SIValue(roll, "rad")})
 
     def off(self, flank: Flank, kind: str) -> ParameterError:
-        """The refusal of a relief that does not start on the active flank, by the field that states it."""
+        """The refusal of a relief that does not start on the active flank; names the field of the start."""
         radius = flank.wheel.tooth.base_radius
         ends = (flank.start, flank.tip)
         if self.length is not None:

@@ -85,9 +85,9 @@ def flank_tolerances(teeth: int, module: float, tolerance_class: int) -> dict[st
     slope = 0.4 * m + 0.001 * d + 4.0
     form = 0.55 * m + 5.0
     cumulative = 0.002 * d + 0.55 * math.sqrt(d) + 0.7 * m + 12.0
-    found = {"f_p": 0.001 * d + 0.4 * m + 5.0, "F_p": cumulative, "f_Ha": slope, "f_fa": form}
-    found |= {"F_a": math.hypot(slope, form), "F_r": 0.9 * cumulative}
-    return {name: value * step for name, value in found.items()}
+    tolerances = {"f_p": 0.001 * d + 0.4 * m + 5.0, "F_p": cumulative, "f_Ha": slope, "f_fa": form}
+    tolerances |= {"F_a": math.hypot(slope, form), "F_r": 0.9 * cumulative}
+    return {name: value * step for name, value in tolerances.items()}
 
 
 def drawn_index(teeth: int, module: float, tolerance_class: int, seed: int) -> FloatArray:

@@ -238,8 +238,12 @@ def _elastic(pair: MeshingPair) -> tuple[tuple[float, float], tuple[float, float
     return moduli, (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
 
 
-def contact_softening(pair: MeshingPair) -> float:
-    """D of Weber and Banaschek's contact in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]."""
+def weber_banaschek_softening(pair: MeshingPair) -> float:
+    """D of Weber and Banaschek's contact in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
+
+    D is without ``mesh.stiffness_factor``; `lumped.path_of_contact.stiffness.contact_softening` applies the
+    factor.
+    """
     return softening(*_elastic(pair)) / pair.geometry.face_width
 
 
@@ -332,4 +336,4 @@ class EnergyStiffness(StiffnessModel):
     def softening(self, pair: MeshingPair) -> float:
         """Return D of Weber and Banaschek's contact; 0 for curves that are scaled or ramped."""
         changed = self.scale != "none" or self.ramp_length > 0.0
-        return 0.0 if self.hertz == "linear" or changed else contact_softening(pair)
+        return 0.0 if self.hertz == "linear" or changed else weber_banaschek_softening(pair)

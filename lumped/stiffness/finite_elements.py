@@ -25,7 +25,7 @@ from lumped.gear_geometry.geometry import Wheel
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
 from lumped.stiffness.base import Material, MeshingPair, StiffnessModel, fitted_series
-from lumped.stiffness.energy import contact_softening
+from lumped.stiffness.energy import weber_banaschek_softening
 from lumped.stiffness.foundation import thin_rims
 from lumped.stiffness.neighbours import REACH, coupled_pairs
 from lumped.typing import FloatArray
@@ -192,4 +192,4 @@ class FiniteElementStiffness(StiffnessModel):
 
     def softening(self, pair: MeshingPair) -> float:
         """Return D of the contact [m/N]."""
-        return contact_softening(pair)
+        return weber_banaschek_softening(pair)

@@ -251,14 +251,14 @@ def signed_friction(
 
 def fill_friction(pair: GearPair, p: FloatArray) -> None:
     """Write a pair's friction parameters behind its geometry and speeds."""
-    law = pair.friction
+    friction = pair.friction
     f = p[kn.FRICTION :]
     width = min(pair.pinion.face_width, pair.gear.face_width)
     roughness = (pair.pinion.roughness, pair.gear.roughness)
-    composite = law.composite_roughness
-    f[SHARPNESS] = law.sharpness
-    f[MAXIMUM] = law.maximum
-    f[BOUNDARY], f[MIXED], _ = law.thresholds
+    composite = friction.composite_roughness
+    f[SHARPNESS] = friction.sharpness
+    f[MAXIMUM] = friction.maximum
+    f[BOUNDARY], f[MIXED], _ = friction.thresholds
     # The load of the paper's laws: the whole torque on one face width (docs/theory/friction.md).
     f[NOMINAL_LOAD] = pair.operating.pinion_torque / p[kn.RADIUS_P] / width
     f[FACE_WIDTH] = width
@@ -268,14 +268,14 @@ def fill_friction(pair: GearPair, p: FloatArray) -> None:
     f[PRESSURE_S] = pair.lubricant.pressure_viscosity_s
     f[ROUGHNESS] = sum(roughness) / 2.0
     f[COMPOSITE_ROUGHNESS] = math.sqrt(sum(r * r for r in roughness)) if composite is None else composite
-    f[FILM_LENGTH] = law.film_length
+    f[FILM_LENGTH] = friction.film_length
     f[SLOWEST] = _CLOSEST * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
     f[SLOWEST_ROLLING] = _ROLLING * 2.0 * p[kn.OMEGA_P] * p[kn.L_XP]
-    name = law.law
+    name = friction.law  # the field is called so in parameter files
     if name == "iso_14179":
         f[MEAN] = _iso_14179(p)
-    elif law.coefficient is not None:
-        f[MEAN] = law.coefficient
+    elif friction.coefficient is not None:
+        f[MEAN] = friction.coefficient
     elif name in ("coulomb", "smoothed_coulomb", "composite"):
         f[MEAN] = _mean_of_law_two(p)
     f[LAW] = LAWS.get(name, TABLE)

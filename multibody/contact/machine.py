@@ -29,9 +29,10 @@ from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.gear import Gear
-from lumped.schema.meeting_teeth import first_teeth, own_teeth
+from lumped.schema.meeting_teeth import first_teeth
 from lumped.schema.pair import GearPair
 from lumped.schema.relief import ProfileRelief
+from lumped.schema.tooth_errors import tooth_errors
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
@@ -257,7 +258,7 @@ def own_block(pair: GearPair) -> FloatArray:
     """Teeth that differ, as numbers behind the parameters (see ``kinematics``); empty for like teeth."""
     if pair.healthy is pair:
         return np.zeros(0)
-    teeth = own_teeth(pair)
+    teeth = tooth_errors(pair)
     firsts = first_teeth(pair)
     turned = [2.0 * math.pi * first / one.error.size for one, first in zip(teeth, firsts, strict=True)]
     rows = [

@@ -17,8 +17,8 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
-from lumped.schema.meeting_teeth import ripples
 from lumped.schema.pair import GearPair
+from lumped.schema.torque_ripples import ripples
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction

@@ -254,6 +254,7 @@ def _one_segment(long: bool) -> Callable[[GearPair, str, float], Changes]:
 _PAIR = "lumped/schema/pair.py"
 _GEAR = "lumped/schema/gear.py"
 _CONTACT = "lumped/schema/contact.py"
+_FRICTION = "lumped/schema/friction.py"
 _SHAFTS = "lumped/schema/shafts.py"
 _TEETH = "lumped/schema/teeth.py"
 _BEARINGS = "lumped/schema/bearings.py"
@@ -342,10 +343,10 @@ SCHEMA = (
              {"lubricant": {"viscosity_law": {"iso_vg": 100, "temperature": 60.0}}})
       for law in ({}, {"iso_vg": 90}, {"iso_vg": 100, "kinematic_viscosity_40": 100.0},
                   {"kinematic_viscosity_40": 100.0}, {"kinematic_viscosity_100": 10.0})),
-    Choice(_CONTACT, "friction.table", RACK_25, "the law 'table' has one", {"friction.law": "table"},
+    Choice(_FRICTION, "friction.table", RACK_25, "the law 'table' has one", {"friction.law": "table"},
            {"friction.law": "table", "friction.table": {"points": [0, 9, 18, 50],
            "coefficient": [0.05] * 4}}),
-    *(Choice(_CONTACT, "friction.thresholds", RELIEVED, "regimes follow each other over the film parameter",
+    *(Choice(_FRICTION, "friction.thresholds", RELIEVED, "regimes follow each other over the film parameter",
              {"friction.thresholds": wrong}, {"friction.thresholds": right})
       for wrong, right in (([0.0, 4.0, 10.0], [1e-9, 4.0, 10.0]), ([4.0, 4.0, 10.0], [4.0, 4.0 + 1e-9, 10.0]),
                            ([1.0, 10.0, 10.0], [1.0, 10.0, 10.0 + 1e-9]), ([1.0, 4.0], [1.0, 4.0, 10.0]),

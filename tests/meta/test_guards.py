@@ -51,7 +51,7 @@ NAMES_ELSEWHERE = {
     (
         "lumped/friction/registry.py",
         "table",
-    ): "the law without its table: the row of lumped/schema/contact.py",
+    ): "the law without its table: the row of lumped/schema/friction.py",
     ("lumped/friction/table.py", "points"): "rows of lumped/fields/tables.py, tests/lumped/fields",
     (
         "lumped/quasi_static/relief_optimum.py",

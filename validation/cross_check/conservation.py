@@ -21,6 +21,7 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
 from lumped.model.results import corner_force, response
 from lumped.model.steady import PeriodicSolution, periodic_solution
+from lumped.path_of_contact.stiffness import stiffness_factor
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.transmission_error import static_transmission_error
 from lumped.stiffness.table import TableStiffness
@@ -236,7 +237,7 @@ def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
     p = m.parameters
     static = static_transmission_error(pair, phases=_PHASES)
     phase = static["phase"].to_numpy()
-    given = pair.mesh.stiffness_factor * table.total(pair.geometry, phase)
+    given = stiffness_factor(pair) * table.total(pair.geometry, phase)
     force = m.torque_pinion / p[kn.RADIUS_P]
     # Not at A and D themselves, on which rounding decides whether a pair is there.
     between = phase + 0.5 / _PHASES
@@ -247,7 +248,7 @@ def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
         "lumped": (static["transmission_error"].to_numpy()[0], force / given),
         "exact": (
             force / second,
-            force / (pair.mesh.stiffness_factor * table.total(pair.geometry, between)),
+            force / (stiffness_factor(pair) * table.total(pair.geometry, between)),
         ),
     }
     limit = _SHARES * float(given.max() / given.min())

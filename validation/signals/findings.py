@@ -16,9 +16,9 @@ from lumped.errors import refuse
 from lumped.fields.units import to_stated
 from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import Supports, supports_of
-from lumped.schema.meeting_teeth import own_teeth
 from lumped.schema.pair import GearPair
 from lumped.schema.tolerances import flank_tolerances
+from lumped.schema.tooth_errors import tooth_errors
 from lumped.typing import FloatArray
 from validation.signals.averages import Gear, indicators, sidebands
 from validation.signals.orders import order_spectrum
@@ -149,7 +149,7 @@ def deviations_table(pair: GearPair) -> xr.Dataset:
     ``eccentricity`` [m]; ``tolerance_class``, the least class whose F_p and f_p hold, 12 for none
     """
     rows = []
-    for teeth in own_teeth(pair):
+    for teeth in tooth_errors(pair):
         cumulative = float(np.ptp(teeth.index))
         pitch = float(np.abs(np.diff(teeth.index, prepend=teeth.index[-1])).max())
         # A drawn gear meets one of its tolerances to rounding.

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lumped import ParameterError, flank_tolerances, meeting_teeth, revolution, tooth_gaps
-from lumped.schema.meeting_teeth import ripples
 from lumped.schema.tolerances import drawn_index
+from lumped.schema.torque_ripples import ripples
 from tests.unlike_pairs import unlike_pair
 
 LIST = [round(math.sin(3.0 * j) + 0.1 * j, 3) for j in range(28)]

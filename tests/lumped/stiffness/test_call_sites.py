@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumped.stiffness import iso6336
-from lumped.stiffness.energy import contact_softening, pair_compliance
+from lumped.stiffness.energy import pair_compliance, weber_banaschek_softening
 from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width
 from lumped.stiffness.foundation import body_twist
 from tests.guards.by_hand import ByHand, Contact
@@ -69,7 +69,7 @@ def test_the_contact_between_unlike_materials(unlike):
         expected += 2.0 / math.pi * flexible * shape / by_hand.width
     found = pair_compliance(unlike, xi, hertz="weber_banaschek").hertz
     np.testing.assert_allclose(found, expected, rtol=1e-9)
-    assert contact_softening(unlike) == pytest.approx(sum(plane) / math.pi / by_hand.width, rel=1e-12)
+    assert weber_banaschek_softening(unlike) == pytest.approx(sum(plane) / math.pi / by_hand.width, rel=1e-12)
 
 
 def test_each_body_twists_with_its_own_bore_width_and_material(unlike):

@@ -19,8 +19,10 @@ from lumped.friction.base import ContactPath, FrictionSettings
 from lumped.friction.registry import LAWS
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.schema import fields_read as translation
+from lumped.schema.assumed import within
 from lumped.schema.changes import fields_of
-from lumped.schema.fields_read import FRICTION, fields_read
+from lumped.schema.fields_read import fields_read
+from lumped.schema.friction import FRICTION_FIELDS
 from lumped.schema.pair import leaf_paths
 from lumped.stiffness.base import TOOTH_FORM
 from tests.unlike_pairs import UNLIKE, unlike_pair
@@ -186,18 +188,37 @@ def _laws_of(pair: lumped.GearPair) -> bytes:
     return law.coefficients.tobytes() + law.breaks.tobytes()
 
 
+#: Oils that are thin to thick at any temperature, and that are cold or warm.
+OILS = (
+    *({"lubricant.viscosity": value, "lubricant.viscosity_law": None} for value in (3.0, 12.0, 60.0, 400.0)),
+    *(
+        {"lubricant.viscosity": None, "lubricant.viscosity_law": {"iso_vg": 100, "temperature": celsius}}
+        for celsius in (20.0, 80.0)
+    ),
+)
+
+
 @pytest.mark.parametrize(("law", "name"), [
     (law.name, name) for law in LAWS.values() for name in sorted(law.reads)
 ])  # fmt: skip
 def test_a_law_reads_nothing_in_vain(law, name):
-    """At least one pair, in thin or thick oil, has another mu with another value."""
+    """At least one pair, in thin or thick, cold or warm oil, has another mu with another value.
+
+    Parameters that are 0, and so without effect, are 0.005 here.
+    """
     for pair in PAIRS.values():
-        for oil in (3.0, 12.0, 60.0, 400.0):
-            changes = {"friction.law": law, "lubricant.viscosity": oil}
+        without_effect = {
+            path: 0.005
+            for path, value in leaf_paths(pair).items()
+            if path.startswith("friction.") and isinstance(value, float) and value == 0.0
+        }
+        for oil in OILS:
+            changes = {"friction.law": law} | oil | without_effect
             changes |= {"friction.coefficient": 0.06} if name == "coefficient" else {}
             changes |= {"friction.composite_roughness": 0.5} if name == "composite_roughness" else {}
             varied = pair.with_(changes)
-            fields = {one for field in FRICTION[name] for one in fields_of(field)} & leaf_paths(varied).keys()
+            paths = {path for field in FRICTION_FIELDS[name] for path in fields_of(field)}
+            fields = {leaf for leaf in leaf_paths(varied) if any(within(leaf, path) for path in paths)}
             if name == "composite_roughness":
                 fields = {"friction.composite_roughness"}
             try:
@@ -221,9 +242,10 @@ def test_every_name_of_the_contact_and_the_settings_has_its_fields():
         "unit_load",
         "edge_pinion",
         "edge_gear",
+        "law_two_mean",
     }
     names = {*ContactPath.__dataclass_fields__} - always | {*FrictionSettings.__annotations__} - {"law"}
-    assert names == {*FRICTION}
+    assert names == {*FRICTION_FIELDS}
     assert all(law.reads is not None and law.reads <= names for law in registry.LAWS.values())
 
 

@@ -34,6 +34,9 @@ def write(results: Results) -> Content:
     ]
     iso = iso_dynamic_factor(pair, max(classes)) if classes else iso_dynamic_factor(pair)
     of_class = f"tolerances of class {iso.tolerance_class}{'' if classes else ' assumed'}"
+    # K_v has the stiffness of the standard, which no factor on the model's stiffness changes.
+    if pair.mesh.stiffness_factor != 1.0:
+        of_class += ", without mesh.stiffness_factor"
     numbers = quantities(
         "motion",
         "The motion at the operating point.",
