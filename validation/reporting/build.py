@@ -23,8 +23,9 @@ from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
+from validation.measurements.channel_comparison import Record
 from validation.measurements.record import load_measurement
-from validation.measurements.record_comparison import Record, RecordComparison
+from validation.measurements.record_comparison import RecordComparison
 from validation.measurements.record_orders import check_record
 from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain

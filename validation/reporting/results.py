@@ -31,8 +31,9 @@ from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.verdict import Verdict
 from validation.cross_check.words import loss_difference, share
 from validation.files.formatting import quantity
+from validation.measurements.comparing import compare_record
 from validation.measurements.record import Measurement
-from validation.measurements.record_comparison import RecordComparison, compare_record
+from validation.measurements.record_comparison import RecordComparison
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (

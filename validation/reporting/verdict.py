@@ -8,7 +8,7 @@ from enum import Enum
 
 from floquet.gear.response import Jump
 from validation.files.formatting import number, quantity
-from validation.measurements.record_comparison import Record
+from validation.measurements.channel_comparison import Record
 from validation.prediction.motion import Prediction
 from validation.prediction.resonance import Resonance
 from validation.reporting.facts import Fact, rpm, spread_words

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tests.validation.measurements.dynamic_records import dynamic_record
 from validation.exchange.new_pair_file import new_pair
-from validation.measurements.record_comparison import Record
+from validation.measurements.channel_comparison import Record
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import sampled_predictions, uncertainty
 from validation.reporting.blocks import Picture, Quantity, Table, Text, chapter_data
