@@ -23,6 +23,10 @@ from lumped.model.averaged import modes
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from lumped.path_of_contact import pair_stiffness
 from tests.validation.reporting import recomputed as own
+from tests.validation.reporting.columns import NAMED_NUMBERS, RECOMPUTED, recomputes
+from tests.validation.reporting.written import known
+from validation.cross_check.conservation import worst_of_each
+from validation.exchange.drawing_table import HEADINGS, drawing_rows
 from validation.prediction.motion import predicted
 from validation.validity.flags import validity_flags
 
@@ -190,6 +194,7 @@ def test_the_loudest_orders_of_page_1(written):
     )
 
 
+@recomputes("motion", **NAMED_NUMBERS)
 def test_the_table_of_the_motion(written):
     cycle = written.data("prediction")
     iso = iso_dynamic_factor(pair_of(written))
@@ -208,6 +213,9 @@ def test_the_table_of_the_motion(written):
     )
 
 
+@recomputes(
+    "orders", order="order", frequency="frequency", dte="transmission error", bearing="pinion bearings"
+)
 def test_the_table_of_orders(written):
     cycle = written.data("prediction")
     table = written.table("orders")
@@ -221,6 +229,7 @@ def test_the_table_of_orders(written):
         assert one["frequency"] == {"value": close(frequency), "unit": "Hz"}
 
 
+@recomputes("modes", frequency="frequency", damping="damping ratio", speed="speed at which order 1 meets it")
 def test_the_table_of_modes(written):
     found = modes(pair_of(written))
     assert len(found) == len(written.table("modes"))
@@ -231,6 +240,7 @@ def test_the_table_of_modes(written):
         assert one["speed"] == {"value": close(speed), "unit": "rpm"}
 
 
+@recomputes("forces", **NAMED_NUMBERS)
 def test_the_table_of_forces(written):
     cycle = written.data("prediction")
     parameters = written.parameters
@@ -267,6 +277,15 @@ def test_the_table_of_forces(written):
         own.assert_says(one["note"].replace("\u00a0", " "), r"rms about it (.*)", (force.std(), "N"))
 
 
+@recomputes(
+    "jumps",
+    speed="speed",
+    way="running",
+    before="transmission error before, rms",
+    after="after, rms",
+    load="largest tooth load after",
+    motion="motion after",
+)
 def test_the_table_of_jumps(written):
     found = nearest_hazard(written)
     if found is None:
@@ -290,6 +309,7 @@ def test_the_table_of_jumps(written):
         assert motions.attrs["speed_low_rpm"] <= one["speed"]["value"] <= motions.attrs["speed_high_rpm"]
 
 
+@recomputes("stability", **NAMED_NUMBERS)
 def test_the_table_of_stability(written):
     linear = written.data("linear")
     chart = written.data("stability")
@@ -317,6 +337,7 @@ def test_the_table_of_stability(written):
 LOSS_PARTS = ["sliding", "tooth damping", "bearing damping"]
 
 
+@recomputes("losses", **NAMED_NUMBERS)
 def test_the_table_of_losses(written):
     parameters = written.parameters
     start, _, end, _ = own.path_of_contact(parameters)
@@ -347,6 +368,15 @@ def test_the_parts_of_the_loss_add_up_to_it(written):
     assert sum(rows[name] for name in LOSS_PARTS) == pytest.approx(rows["loss, all places"], rel=1e-6)
 
 
+@recomputes(
+    "error_budget",
+    error="error",
+    dte="transmission error",
+    share="% of peak to peak",
+    tooth_force="tooth load",
+    bearing_force="bearing force, rms",
+    note="",
+)
 def test_the_error_budget(written):
     budget = written.data("budget")
     table = written.table("error_budget")
@@ -367,6 +397,7 @@ def test_the_error_budget(written):
     estimate = (linear | written.data("prediction").attrs)["error_estimate"]
     assert rows["numerics"] == pytest.approx(estimate * span, rel=1e-9)
     assert [one["error"] for one in table] == [_ERRORS[key] for key in rows]
+    assert "; ".join(one["note"] for one in table) == budget.attrs["notes"]
     force = own.static_force(written.parameters)
     second = of_motion(written, "second_program")
     first = of_motion(written, "prediction")
@@ -381,7 +412,8 @@ def test_the_error_budget(written):
         assert one["share"] == (close(share) if np.isfinite(share) else None)
 
 
-def test_the_tables_of_the_inputs_that_are_varied(written):
+@recomputes("ranges", result="result", given="as given", low="5 %", middle="50 %", high="95 %")
+def test_the_table_of_ranges(written):
     samples = written.data("uncertainty")
     names = [
         n for n in samples.data_vars if samples[n].dims == ("sample",) and not n.startswith("bearing_order")
@@ -394,6 +426,19 @@ def test_the_tables_of_the_inputs_that_are_varied(written):
         unit, times = ("%", 100.0) if name == "efficiency" else (samples[name].attrs["units"], 1.0)
         for key, value in zip(("given", "low", "middle", "high"), values, strict=True):
             assert one[key] == {"value": close(times * value), "unit": unit}, (name, key)
+
+
+@recomputes(
+    "inputs_varied",
+    field="input",
+    spread="range",
+    low="smallest",
+    high="largest",
+    correlation="rank corr.",
+    reason="why this range",
+)
+def test_the_table_of_the_inputs_that_are_varied(written):
+    samples = written.data("uncertainty")
     swing = samples["dte_peak_to_peak_swing"].to_numpy()
     width = np.abs(swing[:, 1] - swing[:, 0])
     table = written.table("inputs_varied")
@@ -417,7 +462,15 @@ def test_the_tables_of_the_inputs_that_are_varied(written):
     assert found == pytest.approx(order[0, 1], abs=0.00501)
 
 
-def test_the_tables_of_the_second_program(written):
+@recomputes(
+    "agreement",
+    quantity="quantity",
+    fidelity="second program",
+    difference="difference",
+    limit="limit",
+    state="",
+)
+def test_the_table_of_agreement(written):
     first = written.data("prediction")
     second = written.data("second_program")
     limits = {("same equations", False): 1e-6, ("same equations", True): 1e-5}
@@ -435,14 +488,79 @@ def test_the_tables_of_the_second_program(written):
     name = "dynamic transmission error"
     assert found[name, "exact contact, finite motions"] == pytest.approx(size, rel=0.25)
     assert found[name, "same equations"] < 1e-6
+    again = known(written.document["gear_pair"]).check.agreements  # tests of the cross-check compute them
+    assert [one["quantity"] for one in written.table("agreement")] == [one.long_name for one in again]
+    assert list(found.values()) == [close(one.difference) for one in again]
+
+
+@recomputes("conservation", check="check", value="residual", limit="limit", state="")
+def test_the_table_of_conservation_laws(written):
+    """One row a law: the check that uses most of its limit. Tests of the cross-check compute residuals."""
+    worst = worst_of_each(known(written.document["gear_pair"]).check.conservation)
+    assert [(one["check"], one["value"], one["limit"]) for one in written.table("conservation")] == [
+        (law.check, close(law.value), close(law.limit)) for law in worst
+    ]
     for one in written.table("conservation"):
         assert one["state"]["text"] == ("ok" if one["value"] <= one["limit"] else "failed"), one
         assert one["state"]["state"] == one["state"]["text"]
 
 
-def test_the_tables_of_inputs(written):
+@recomputes("losses_of_both", place="place", lumped="lumped model", second="second program")
+def test_the_table_of_the_losses_of_both_programs(written):
+    """The lumped losses are those of page 1, the sum of the second program is its power balance."""
+    rows = {one["place"]: one for one in written.table("losses_of_both")}
+    assert list(rows) == [*LOSS_PARTS, "all places"]
+    page_1 = {one["name"]: one["value"]["value"] for one in written.table("losses")}
+    loss = known(written.document["gear_pair"]).check.loss
+    for column, total in (("lumped", page_1["loss, all places"]), ("second", balanced_loss(written))):
+        assert {one[column]["unit"] for one in rows.values()} == {"W"}
+        parts = [rows[name][column]["value"] for name in LOSS_PARTS]
+        assert sum(parts) == close(rows["all places"][column]["value"])
+        assert rows["all places"][column]["value"] == pytest.approx(total, rel=2e-2)
+    assert [one["second"]["value"] for one in rows.values()][:3] == [
+        close(loss.multibody[place]) for place in loss.lumped
+    ]
+
+
+@recomputes("gears", **{heading: heading for heading in HEADINGS})
+def test_the_table_of_both_gears(written):
+    rows = [tuple(one.values()) for one in written.table("gears")]
+    assert rows == drawing_rows(pair_of(written))  # tests of the drawing's table compute them
+    teeth = next(one for one in written.table("gears") if one["symbol"] == "z")
+    assert [teeth[gear] for gear in ("pinion", "gear")] == [
+        str(written.parameters[gear]["teeth"]) for gear in ("pinion", "gear")
+    ]
+
+
+@recomputes("derived", **NAMED_NUMBERS)
+def test_the_table_of_derived_quantities(written):
     parameters = written.parameters
     pair = pair_of(written)
+    start, _, end, _ = own.path_of_contact(parameters)
+    rack = parameters["basic_rack"]
+    pitch = 1e-3 * math.pi * rack["module"] * math.cos(math.radians(rack["pressure_angle"]))
+    # Of the operating pitch circles, of which a pitch is longer than the base pitch by 1/cos of the angle.
+    velocity = own.mesh_frequency(parameters) * pitch / math.cos(own.operating_angle(parameters))
+    ratio = (end - start) / pitch
+    assert_rows(
+        written,
+        "derived",
+        {
+            "contact ratio": (ratio, "1"),
+            "base pitch": (pitch, "m"),
+            "operating pressure angle": (math.degrees(own.operating_angle(parameters)), "°"),
+            "path of contact, A to D": (end - start, "m"),
+            "mesh frequency": (own.mesh_frequency(parameters), "Hz"),
+            "pitch line velocity": (velocity, "m/s"),
+            "mean mesh stiffness": (pair_stiffness(pair).mean() * ratio, "N/m", pair.stiffness_words),
+            "effective mass": (lumped.bodies(pair).effective_mass, "kg", "of both gears"),
+        },
+    )
+
+
+@recomputes("parameters", field="field", value="value", unit="unit", source="source", range="range", state="")
+def test_the_table_of_parameters(written):
+    parameters = written.parameters
     sources = parameters["sources"]
     spreads = written.data("uncertainty")
     written_as = dict(
@@ -484,29 +602,10 @@ def test_the_tables_of_inputs(written):
         f"All values: {given} known, {assumed} assumed, {unread} that the chosen laws and models do not read."
     )
     assert written.sentences["inputs"] == f"{assumed} of {given + assumed} values are assumed."
-    start, _, end, _ = own.path_of_contact(parameters)
-    rack = parameters["basic_rack"]
-    pitch = 1e-3 * math.pi * rack["module"] * math.cos(math.radians(rack["pressure_angle"]))
-    # Of the operating pitch circles, of which a pitch is longer than the base pitch by 1/cos of the angle.
-    velocity = own.mesh_frequency(parameters) * pitch / math.cos(own.operating_angle(parameters))
-    ratio = (end - start) / pitch
-    assert_rows(
-        written,
-        "derived",
-        {
-            "contact ratio": (ratio, "1"),
-            "base pitch": (pitch, "m"),
-            "operating pressure angle": (math.degrees(own.operating_angle(parameters)), "°"),
-            "path of contact, A to D": (end - start, "m"),
-            "mesh frequency": (own.mesh_frequency(parameters), "Hz"),
-            "pitch line velocity": (velocity, "m/s"),
-            "mean mesh stiffness": (pair_stiffness(pair).mean() * ratio, "N/m"),
-            "effective mass": (lumped.bodies(pair).effective_mass, "kg"),
-        },
-    )
 
 
-def test_the_tables_of_evidence(written):
+@recomputes("evidence", kind="kind", checks="checks", use="largest error / limit", state="")
+def test_the_table_of_evidence(written):
     stored = json.loads(resources.files("validation").joinpath("evidence.json").read_text("utf-8"))
     assert [one["kind"] for one in written.table("evidence")] == [kind["title"] for kind in stored["kinds"]]
     for one, kind in zip(written.table("evidence"), stored["kinds"], strict=True):
@@ -520,14 +619,27 @@ def test_the_tables_of_evidence(written):
     )
     assert chapter["tables"]["evidence"]["note"] == note
     assert ("They are of this source." in chapter["text"][1][0]) == (stored["source_sha256"] == source_hash())
+
+
+@recomputes("assumptions", name="assumption", state="", detail="found", action="what to do")
+def test_the_table_of_assumptions(written):
     flags = validity_flags(pair_of(written), written.data("linear"), gear_pair_multipliers(pair_of(written)))
     assert [(one["name"], one["detail"], one["action"]) for one in written.table("assumptions")] == [
         (flag.name, flag.detail, flag.action) for flag in flags
     ]
+    assert [one["state"]["state"] for one in written.table("assumptions")] == [flag.state for flag in flags]
     states = {one["name"]: one["state"]["text"] for one in written.table("assumptions")}
     total = written.data("linear")["normal_load"].sum("pair").min().item()
     assert states["Teeth stay in contact"] == ("ok" if total > 0.0 else "violated")
+
+
+@recomputes("relations", relation="", state="")
+def test_the_table_of_relations(written):
     assert written.table("relations") == [{"relation": "all hold", "state": {"state": "ok", "text": "ok"}}]
+
+
+@recomputes("made_from", name="", value="")
+def test_the_table_of_the_origin_of_the_report(written):
     text = (written.folder / "data" / "parameters.toml").read_bytes()
     made = {one["name"]: one["value"] for one in written.table("made_from")}
     assert made["parameters, SHA-256"] == hashlib.sha256(text).hexdigest()
@@ -566,25 +678,11 @@ def test_the_tables_on_the_page_are_those_of_report_json(written):
         assert shown.caption.startswith(about["caption"][:20])
 
 
-#: Columns of a table that their headings tell apart.
-_HEADINGS = {
-    "orders": "order: order, frequency: frequency, dte: transmission error, bearing: pinion bearings",
-    "ranges": "given: as given, low: 5 %, middle: 50 %, high: 95 %",
-    "error_budget": "dte: transmission error, share: % of peak to peak, tooth_force: tooth load",
-    "inputs_varied": "low: smallest, high: largest, correlation: rank corr.",
-    "agreement": "difference: difference, limit: limit",
-    "conservation": "value: residual, limit: limit",
-    "modes": "frequency: frequency, damping: damping ratio, speed: speed at which order 1 meets it",
-    "jumps": "speed: speed, way: running, before: transmission error before; rms, after: after; rms",
-}
-
-
 def test_headings_name_their_columns(written):
-    for name, text in _HEADINGS.items():
+    """The headings on the page are those that stand above the recomputation of each column."""
+    for name, recomputation in RECOMPUTED.items():
         if name in written.printed:
-            found = dict(zip(written.table(name)[0], written.printed[name].headings, strict=True))
-            expected = dict(part.split(": ", 1) for part in text.split(", "))
-            assert {key: found[key].replace(",", ";") for key in expected} == expected
+            assert written.headings(name) == recomputation.headings, f"{name}: {recomputation.place}"
 
 
 def test_tables_as_csv_have_the_numbers_in_si(written):

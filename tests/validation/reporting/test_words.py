@@ -13,6 +13,7 @@ from lumped.losses import losses_of_laws
 from lumped.schema.pair import field_values
 from tests.unlike_pairs import known_sizes
 from tests.validation.reporting import recomputed as own
+from tests.validation.reporting.columns import recomputes
 from tests.validation.reporting.test_numbers import motions_of, nearest_hazard, of_motion, pair_of
 from tests.validation.reporting.written import SMALL, known, pair, plain
 from validation.exchange import new_pair
@@ -325,6 +326,7 @@ def test_a_form_of_the_model_outside_the_range_is_named():
     )  # fmt: skip
 
 
+@recomputes("claims", claim="claim", scope="scope", computed_by="by")
 def test_the_claims(written):
     """Each fact of report.json, and its row in the table of claims, against the saved data."""
     found = written.document["facts"]
@@ -332,9 +334,13 @@ def test_the_claims(written):
     assert [plain(one["claim"]).lower() for one in table] == [
         f"{plain(one['claim'])}.".lower() for one in found.values()
     ]
-    assert [one["by"] if "by" in one else one["computed_by"] for one in table] == [
-        one["computed_by"] for one in found.values()
-    ]
+    assert [one["computed_by"] for one in table] == [one["computed_by"] for one in found.values()]
+    for one, fact in zip(table, found.values(), strict=True):
+        scope = fact["scope"]
+        words = (scope["motion"], scope["supports"], f"teeth {scope['teeth']}", f"inputs {scope['inputs']}")
+        speeds = [plain(f"{end:.5g}") for end in scope["speeds_rpm"]]
+        start = f"at {speeds[0]} rpm" if speeds[0] == speeds[1] else f"from {speeds[0]} to {speeds[1]} rpm"
+        assert plain(one["scope"]) == "; ".join([start, *words, scope["effort"]])
     (speed, _), lost = speed_of(written), of_motion(written, "prediction")["least_force"] == 0.0
     assert found["contact"]["claim"] == ("the teeth lose contact" if lost else "contact is kept")
     here = [speed, speed]

@@ -90,6 +90,10 @@ class Written:
         """A table of report.json."""
         return next(c[name] for c in self.document["chapters"].values() if name in c.get("tables", {}))
 
+    def headings(self, name: str) -> dict[str, str]:
+        """Column of a table -> heading on the page."""
+        return dict(zip(self.table(name)[0], self.printed[name].headings, strict=True))
+
     def curves(self, name: str, number: int = 1) -> pd.DataFrame:
         """What a figure draws, from its CSV; ``number`` of its datasets."""
         suffix = f"_{number}" if number > 1 else ""
