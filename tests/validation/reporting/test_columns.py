@@ -15,7 +15,9 @@ def tables_of(written):
 
 
 def test_every_column_is_recomputed(written):
-    assert [text for name in tables_of(written) for text in complaints(written, name)] == []
+    missing = [text for name in tables_of(written) for text in complaints(written, name)]
+    if missing:
+        pytest.fail("\n".join(missing), pytrace=False)
 
 
 def test_every_number_has_a_unit_or_a_heading_that_says_what_it_is(written):
@@ -24,6 +26,14 @@ def test_every_number_has_a_unit_or_a_heading_that_says_what_it_is(written):
         for column, heading in written.headings(name).items():
             bare = [row[column] for row in written.table(name) if isinstance(row[column], float)]
             assert not bare or heading, (name, column)
+
+
+def test_every_variable_of_every_dataset_has_its_unit(written):
+    """Variables are in SI or in the unit of their attribute: rpm, degrees and per cent are allowed there."""
+    for file in sorted((written.folder / "data").glob("*.nc")):
+        data = written.data(file.stem)
+        numbers = [name for name in data.variables if data[name].dtype.kind in "fiub"]
+        assert [name for name in numbers if not data[name].attrs.get("units")] == [], file.name
 
 
 def test_a_column_without_a_recomputation_is_told_with_what_to_add(written, monkeypatch):

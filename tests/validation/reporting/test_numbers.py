@@ -682,7 +682,10 @@ def test_headings_name_their_columns(written):
     """The headings on the page are those that stand above the recomputation of each column."""
     for name, recomputation in RECOMPUTED.items():
         if name in written.printed:
-            assert written.headings(name) == recomputation.headings, f"{name}: {recomputation.place}"
+            assert written.headings(name) == recomputation.headings, (
+                f"The headings of the table {name} on the page are not those of @recomputes in "
+                f"{recomputation.place}: give each column there its heading."
+            )
 
 
 def test_tables_as_csv_have_the_numbers_in_si(written):

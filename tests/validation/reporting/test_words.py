@@ -23,9 +23,12 @@ from validation.prediction.uncertainty import LONG_STEP, _peaks
 from validation.reporting.blocks import Badge
 from validation.reporting.build import findings
 from validation.reporting.chapters import contact_loss, inputs, second_program, stability
+from validation.reporting.effort import QUICK
 from validation.reporting.first_figures import plain_name
+from validation.reporting.hazards import Hazard
 from validation.reporting.page_one import _remark, page_one
-from validation.reporting.results import QUICK, Hazard, Results
+from validation.reporting.results import Results
+from validation.reporting.second_program_words import second_program_words
 from validation.reporting.verdict import Verdict
 
 _ADVICE = read_table("validation.reporting", "advice.toml")
@@ -265,7 +268,7 @@ def test_where_the_second_program_differs(written):
     }
     name = "pinion displacement off the line of action"
     own.assert_says(
-        plain(results.second_words),
+        plain(second_program_words(results)),
         r"Yes, but the second program, with exact contact, differs: (.*), (.*) beside (.*), by (.*) %\. "
         r"Its .*",
         name,
@@ -509,7 +512,7 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts():
     vars(results)["like"] = like
     for factor, words in ((1.1, "by 10 %"), (0.8, "by 20 %")):
         vars(results)["second"] = replace(like, peak_to_peak=factor * like.peak_to_peak)
-        said = plain(results.second_words)
+        said = plain(second_program_words(results))
         assert said.startswith("Yes: a second program agrees, on the springs of [bearings]. Its transmission")
         assert said.endswith(f"{words} on the shafts.")
 
@@ -517,7 +520,10 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts():
 def test_a_pair_too_slow_for_the_second_program_has_a_report():
     """A mesh cycle of 607 swings of the fastest mode is refused there: nothing but that motion is missing."""
     results = Results(new_pair("16/32", 1.5, 12.8, 114, 12.2), SMALL)
-    assert results.second_words == "Not checked: the second program does not run here; its chapter says why."
+    assert (
+        second_program_words(results)
+        == "Not checked: the second program does not run here; its chapter says why."
+    )
     (why,) = second_program.write(results).blocks
     assert why.text.startswith("operating.pinion_speed = 114 rpm: allowed at least")
     assert (str(results.second), results.same_equations) == (str(results.check), None)

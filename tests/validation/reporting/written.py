@@ -19,7 +19,8 @@ import lumped
 from validation.exchange.new_pair_file import new_pair_text
 from validation.plots.style import save
 from validation.reporting import build
-from validation.reporting.results import Effort, Results
+from validation.reporting.effort import Effort
+from validation.reporting.results import Results
 
 #: Few samples and speeds: what is tested is what is done with them.
 SMALL = Effort(16, 4, 9, 32, 101, 21, 9, 30.0, 0, "small report")

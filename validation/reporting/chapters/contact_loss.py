@@ -16,14 +16,14 @@ from validation.plots.prediction import over_speed_figure
 from validation.plots.style import WIDTH
 from validation.reporting.blocks import Block, Column, Content, Picture, Table, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.facts import facts
+from validation.reporting.facts import facts_of
 from validation.reporting.results import Results
 
 
 def write(results: Results) -> Content:
     """Write the chapter."""
     search = results.jump_search
-    left_open = facts(results).get("jumps_left_open")
+    left_open = facts_of(results).get("jumps_left_open")
     unsearched = () if left_open is None else (Text(f"{left_open.claim[0].upper()}{left_open.claim[1:]}."),)
     if not search.branches:
         words = f"Contact is never lost {_over(results)}{results.on_springs}."

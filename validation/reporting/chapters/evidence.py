@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 from lumped.labelling import provenance, source_hash
 from validation.reporting.blocks import Badge, Block, Column, Content, Table, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.facts import Fact, facts
-from validation.reporting.results import Results, broken_relations, failed_checks
+from validation.reporting.facts import Fact, facts_of
+from validation.reporting.relations import broken_relations, failed_checks
+from validation.reporting.results import Results
 from validation.validity.flags import Flag
 
 
@@ -48,7 +49,7 @@ def _claims_table(results: Results) -> Table:
     return table_of(
         "claims",
         "What page 1 says, and over what it was computed.",
-        facts(results).values(),
+        facts_of(results).values(),
         (
             Column[Fact]("claim", "claim", lambda fact: f"{fact.claim[0].upper()}{fact.claim[1:]}."),
             Column[Fact]("scope", "scope", lambda fact: fact.scope.words),

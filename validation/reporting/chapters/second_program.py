@@ -20,6 +20,7 @@ from validation.prediction.motion import PLACES
 from validation.reporting.blocks import Badge, Block, Column, Content, Picture, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.second_program_words import second_program_words
 
 
 def write(results: Results) -> Content:
@@ -44,7 +45,7 @@ def write(results: Results) -> Content:
     blocks.append(_conservation_table(check, results.in_place_of_shafts))
     if isinstance(second, Absent):
         blocks.append(Text(str(second)))
-    return Content(results.second_words, tuple(blocks))
+    return Content(second_program_words(results), tuple(blocks))
 
 
 def _agreement_table(check: CrossCheck, springs: str) -> Table:
