@@ -104,7 +104,7 @@ class Prediction:
 
     @cached_property
     def _curves(self) -> dict[str, tuple[FloatArray, FloatArray]]:
-        """Quantity -> mesh cycles and values: over one mesh cycle, or over the life of one tooth pair.
+        """Quantity -> mesh cycles and values: over a mesh cycle, or over the life of a tooth pair.
 
         A tooth pair that is n pitches ahead is n mesh cycles after A. Behind the last sample the last value
         holds.

@@ -45,7 +45,7 @@ def label_axis(ax: Axes, axis: str, *arrays: xr.DataArray, text: str = "") -> fl
 
 
 def draw_curves(ax: Axes, data: xr.Dataset, names: list[str], text: str = "", **style: Any) -> None:
-    """Draw variables of one unit over their coordinate, with their names. ``text`` labels the y axis."""
+    """Draw variables of one unit over their common coordinate. ``text`` labels the y axis."""
     curves = [data[name] for name in names]
     x = data[str(curves[0].dims[0])]
     across = label_axis(ax, "x", x)

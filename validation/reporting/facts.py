@@ -359,6 +359,6 @@ def _record(results: Results) -> Fact | None:
 
 
 def _inputs(results: Results) -> Fact:
-    known, assumed = results.inputs
-    claim = f"{assumed} of {known + assumed} inputs are assumed"
+    known_count, assumed = results.inputs
+    claim = f"{assumed} of {known_count + assumed} inputs are assumed"
     return Fact("inputs", claim, float(assumed), "1", _scope(results), "given_and_assumed")

@@ -73,7 +73,7 @@ def _single(value: object) -> object:
 
 
 class Axis(Section):
-    """One parameter that varies, or several fields that vary together, for example both face widths."""
+    """A parameter that varies, or several fields that vary together, for example both face widths."""
 
     name: str = Field("", max_length=80, pattern=r"^\w*$", description="label; default the field's name")
     field: Annotated[

@@ -96,7 +96,7 @@ class CaseList:
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of the parameters of all cases, so that a resumed sweep has the same samples."""
+        """Hash of the parameters of all cases: a resumed sweep must have the same samples."""
         digest = hashlib.sha256(repr((self.shape, self.grid)).encode())
         if self.grid is None:
             digest.update(np.ascontiguousarray(self._shares).tobytes())

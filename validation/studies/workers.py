@@ -79,7 +79,7 @@ def _evaluate(evaluator: StudyEvaluator, values: tuple[Any, ...]) -> tuple[Statu
 
 @contextmanager
 def workers_of(workers: int, executor: Executor | None, limit: float | None) -> Iterator[tuple[Submit, int]]:
-    """Give the function that submits a call, and the number of calls that run at the same time."""
+    """Give the function that submits a call, and the number of parallel calls."""
     if not 0 <= workers <= 1024:
         raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
     if limit is not None and executor is not None:

@@ -231,7 +231,7 @@ def film_regime(pair: GearPair) -> Flag:
 
 
 def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
-    """Check that the torques keep the mean speed, so that a periodic motion exists."""
+    """Check that the torques keep the mean speed: otherwise there is no periodic motion."""
     needed = float(motion.attrs["pinion_torque"])
     operating_torque = pair.operating.pinion_torque
     excess = abs(needed - operating_torque) / operating_torque

@@ -68,10 +68,10 @@ def _sizes(pair: GearPair) -> Iterator[str]:
     for pattern, (unit, factor, low, high, words) in _SIZES.items():
         for gear in ("pinion", "gear"):
             path = pattern.format(gear)
-            whole: Any = pair
+            value_at_path: Any = pair
             for key in path.split("."):
-                whole = getattr(whole, key, None)  # no relief, no amount
-            value = factor * (whole or 0.0)
+                value_at_path = getattr(value_at_path, key, None)  # no relief, no amount
+            value = factor * (value_at_path or 0.0)
             if value and not low <= value <= high:
                 yield f"{path} = {value:g} {unit} {words.format(value)}"
 

@@ -22,7 +22,7 @@ from lumped.losses import iso_14179_mesh_loss
 from lumped.model.averaged import modes
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from lumped.path_of_contact import pair_stiffness
-from tests.validation.reporting import recomputed as own
+from tests.validation.reporting import recomputed
 from tests.validation.reporting.columns import NAMED_NUMBERS, RECOMPUTED, recomputes
 from tests.validation.reporting.written import known
 from validation.cross_check.conservation import worst_of_each
@@ -71,7 +71,7 @@ def assert_rows(written, name, expected):
 def of_motion(written, name):
     """The five numbers of a saved motion, but for the efficiency."""
     cycle = written.data(name)
-    force = own.static_force(written.parameters)
+    force = recomputed.static_force(written.parameters)
     total = cycle["normal_load"].sum("pair").to_numpy()
     x, y = (cycle[f"bearing_force_{line}_p"].to_numpy() for line in "xy")
     return {
@@ -144,14 +144,14 @@ def test_the_efficiency_is_that_of_the_power_balance_of_the_second_program(writt
     number = written.document["numbers"]["efficiency"]
     samples = written.data("uncertainty")
     assert number["unit"] == "%"  # a share, printed times 100
-    loss = (1.0 - number["value"]) * own.power(written.parameters)
+    loss = (1.0 - number["value"]) * recomputed.power(written.parameters)
     assert loss == pytest.approx(balanced_loss(written), rel=0.01)
     low, high = np.percentile(samples["efficiency"].to_numpy(), [5.0, 95.0])
     assert (number["low"], number["high"]) == (close(low), close(high))
 
 
 def test_the_efficiency_of_the_second_program_is_that_of_its_own_power_balance(written):
-    power = own.power(written.parameters)
+    power = recomputed.power(written.parameters)
     loss = (1.0 - written.document["numbers"]["efficiency"]["second"]) * power
     # Integration at 1e-8 over the ten steps or so of a vibration leaves 1e-7 of the driving power.
     assert loss == pytest.approx(balanced_loss(written), abs=1e-7 * power)
@@ -164,7 +164,7 @@ def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
     assert number["unit"] == "rpm"
     if found is None:
         assert number["value"] is None
-        own.assert_says(
+        recomputed.assert_says(
             number["note"],
             r"none found from (.*) to (.*) rpm",
             (0.1 * speed, "1"),
@@ -173,7 +173,9 @@ def test_the_distance_to_a_hazard_is_that_of_the_nearest_jump(written):
         )
         return
     assert number["value"] == close(found[0] - speed)
-    own.assert_says(number["note"], r"jump, running (\w+) at (.*)", found[1], (found[0], "rpm"), digits=5)
+    recomputed.assert_says(
+        number["note"], r"jump, running (\w+) at (.*)", found[1], (found[0], "rpm"), digits=5
+    )
 
 
 def test_the_loudest_orders_of_page_1(written):
@@ -181,10 +183,10 @@ def test_the_loudest_orders_of_page_1(written):
     if number is None:
         pytest.skip("where contact is lost another number takes its place")
     cycle = written.data("prediction")
-    frequency = own.mesh_frequency(written.parameters)
-    size = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
+    frequency = recomputed.mesh_frequency(written.parameters)
+    size = np.hypot(*(recomputed.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
     one, two = sorted(np.argsort(size)[-2:] + 1)
-    own.assert_says(
+    recomputed.assert_says(
         number["note"].replace("\u00a0", " "),
         r"largest orders (\d+) and (\d+) × mesh \((.*) and (.*)\): (.*) and (.*)",
         *(str(one), str(two)),
@@ -208,7 +210,7 @@ def test_the_table_of_the_motion(written):
             "transmission error, mean": (cycle["dte"].mean().item(), "m"),
             "dynamic factor": (numbers["dynamic_factor"]["value"], "1"),
             "K_v of ISO 6336-1, method B": (iso.factor, "1", note),
-            "mesh frequency": (own.mesh_frequency(written.parameters), "Hz"),
+            "mesh frequency": (recomputed.mesh_frequency(written.parameters), "Hz"),
         },
     )
 
@@ -219,13 +221,13 @@ def test_the_table_of_the_motion(written):
 def test_the_table_of_orders(written):
     cycle = written.data("prediction")
     table = written.table("orders")
-    dte = own.amplitudes(cycle["dte"].to_numpy())
-    bearing = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
+    dte = recomputed.amplitudes(cycle["dte"].to_numpy())
+    bearing = np.hypot(*(recomputed.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
     assert [one["order"] for one in table] == list(range(1, 11))
     for one, a, b in zip(table, dte, bearing, strict=True):
         assert one["dte"] == {"value": close(a), "unit": "m"}
         assert one["bearing"] == {"value": close(b), "unit": "N"}
-        frequency = one["order"] * own.mesh_frequency(written.parameters)
+        frequency = one["order"] * recomputed.mesh_frequency(written.parameters)
         assert one["frequency"] == {"value": close(frequency), "unit": "Hz"}
 
 
@@ -247,12 +249,12 @@ def test_the_table_of_forces(written):
     total = cycle["normal_load"].sum("pair").to_numpy()
     xi = cycle["position"].to_numpy()
     load = cycle["normal_load"].to_numpy()
-    start, _, end, _ = own.path_of_contact(parameters)
-    modulus, radius, _, _ = own.contact(parameters, np.clip(xi, start, end))
+    start, _, end, _ = recomputed.path_of_contact(parameters)
+    modulus, radius, _, _ = recomputed.contact(parameters, np.clip(xi, start, end))
     width = 1e-3 * min(parameters[gear]["face_width"] for gear in ("pinion", "gear"))
     pressure = np.sqrt(np.maximum(load, 0.0) * modulus / (2.0 * math.pi * width * radius)).max()
     expected = {
-        "static mesh force": (own.static_force(parameters), "N"),
+        "static mesh force": (recomputed.static_force(parameters), "N"),
         "largest mesh force": (total.max(), "N"),
         "smallest mesh force": (max(total.min(), 0.0), "N", "0 is contact loss"),
         "largest load of one tooth pair": (load.max(), "N"),
@@ -274,7 +276,7 @@ def test_the_table_of_forces(written):
     for one in written.table("forces")[5:]:
         _, gear, line, _ = one["name"].split(", ")
         force = cycle[f"bearing_force_{'x' if line.startswith('along') else 'y'}_{gear[0]}"].to_numpy()
-        own.assert_says(one["note"].replace("\u00a0", " "), r"rms about it (.*)", (force.std(), "N"))
+        recomputed.assert_says(one["note"].replace("\u00a0", " "), r"rms about it (.*)", (force.std(), "N"))
 
 
 @recomputes(
@@ -325,7 +327,7 @@ def test_the_table_of_stability(written):
         expected["nearest hazard"] = (hazard[0], "rpm", f"jump, running {hazard[1]}")
     share = float((chart["spectral_radius"].to_numpy() > 1.0).mean())
     caption = written.document["chapters"]["stability"]["captions"]["stability_chart"]
-    own.assert_says(
+    recomputed.assert_says(
         caption, r".*instability\. (.*) % of the nodes.*", (100.0 * chart["known"].mean().item(), "1")
     )
     expected["unstable share of the chart"] = (share, "1")
@@ -340,9 +342,9 @@ LOSS_PARTS = ["sliding", "tooth damping", "bearing damping"]
 @recomputes("losses", **NAMED_NUMBERS)
 def test_the_table_of_losses(written):
     parameters = written.parameters
-    start, _, end, _ = own.path_of_contact(parameters)
-    film, other, parameter = own.films(parameters, np.linspace(start, end, 201))
-    supply = own.power(parameters)
+    start, _, end, _ = recomputed.path_of_contact(parameters)
+    film, other, parameter = recomputed.films(parameters, np.linspace(start, end, 201))
+    supply = recomputed.power(parameters)
     share = written.document["numbers"]["efficiency"]["value"]
     parts = {one["name"]: (one["value"]["value"], "W") for one in written.table("losses")[2:5]}
     assert list(parts) == LOSS_PARTS  # their values: the next test
@@ -398,7 +400,7 @@ def test_the_error_budget(written):
     assert rows["numerics"] == pytest.approx(estimate * span, rel=1e-9)
     assert [one["error"] for one in table] == [_ERRORS[key] for key in rows]
     assert "; ".join(one["note"] for one in table) == budget.attrs["notes"]
-    force = own.static_force(written.parameters)
+    force = recomputed.static_force(written.parameters)
     second = of_motion(written, "second_program")
     first = of_motion(written, "prediction")
     at = list(rows).index("second")
@@ -481,7 +483,7 @@ def test_the_table_of_agreement(written):
         assert one["state"]["text"] == ("ok" if one["difference"] <= one["limit"] else "differs"), one
     found = {(one["quantity"], one["fidelity"]): one["difference"] for one in written.table("agreement")}
     assert len(found) == 14
-    period = 1.0 / own.mesh_frequency(written.parameters)
+    period = 1.0 / recomputed.mesh_frequency(written.parameters)
     curve = np.interp(second["time"] % period, first["time"], first["dte"], period=period)
     size = np.abs(second["dte"].to_numpy() - curve).max() / np.ptp(first["dte"].to_numpy())
     # Samples of the prediction lie between those of the second program.
@@ -536,11 +538,13 @@ def test_the_table_of_both_gears(written):
 def test_the_table_of_derived_quantities(written):
     parameters = written.parameters
     pair = pair_of(written)
-    start, _, end, _ = own.path_of_contact(parameters)
+    start, _, end, _ = recomputed.path_of_contact(parameters)
     rack = parameters["basic_rack"]
     pitch = 1e-3 * math.pi * rack["module"] * math.cos(math.radians(rack["pressure_angle"]))
     # Of the operating pitch circles, of which a pitch is longer than the base pitch by 1/cos of the angle.
-    velocity = own.mesh_frequency(parameters) * pitch / math.cos(own.operating_angle(parameters))
+    velocity = (
+        recomputed.mesh_frequency(parameters) * pitch / math.cos(recomputed.operating_angle(parameters))
+    )
     ratio = (end - start) / pitch
     assert_rows(
         written,
@@ -548,9 +552,9 @@ def test_the_table_of_derived_quantities(written):
         {
             "contact ratio": (ratio, "1"),
             "base pitch": (pitch, "m"),
-            "operating pressure angle": (math.degrees(own.operating_angle(parameters)), "°"),
+            "operating pressure angle": (math.degrees(recomputed.operating_angle(parameters)), "°"),
             "path of contact, A to D": (end - start, "m"),
-            "mesh frequency": (own.mesh_frequency(parameters), "Hz"),
+            "mesh frequency": (recomputed.mesh_frequency(parameters), "Hz"),
             "pitch line velocity": (velocity, "m/s"),
             "mean mesh stiffness": (pair_stiffness(pair).mean() * ratio, "N/m", pair.stiffness_words),
             "effective mass": (lumped.bodies(pair).effective_mass, "kg", "of both gears"),
@@ -574,7 +578,7 @@ def test_the_table_of_parameters(written):
         section, _, name = one["field"].rpartition(".")
         value = parameters
         if follows := name == "tip_alteration" and name not in parameters[section]:
-            value = pytest.approx(own.tip_alteration(parameters), abs=1e-9)
+            value = pytest.approx(recomputed.tip_alteration(parameters), abs=1e-9)
         else:
             for part in one["field"].split("."):
                 value = value[part]
@@ -665,10 +669,10 @@ def test_the_tables_on_the_page_are_those_of_report_json(written):
                     assert (
                         text == "n/a"
                         if number is None
-                        else own.assert_printed(text, number, value["unit"]) is None
+                        else recomputed.assert_printed(text, number, value["unit"]) is None
                     )
                 elif isinstance(value, (int, float)) and not isinstance(value, bool):
-                    own.assert_printed(text, float(value), "1")
+                    recomputed.assert_printed(text, float(value), "1")
                 elif isinstance(value, bool):
                     assert text == ("yes" if value else "no")
                 elif isinstance(value, dict):

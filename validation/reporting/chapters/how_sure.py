@@ -95,10 +95,10 @@ def _range(samples: xr.Dataset, name: str) -> _Range:
     """Range of one result. An efficiency is in per cent."""
     unit, words = QUANTITIES[name]
     low, middle, high = samples[f"{name}_percentile"].to_numpy()
-    given = float(samples.attrs[f"given_{name}"])
+    nominal = float(samples.attrs[f"given_{name}"])
     factor = 100.0 if name == "efficiency" else 1.0
     unit = "%" if name == "efficiency" else unit
-    return _Range(words, *(Quantity(factor * float(value), unit) for value in (given, low, middle, high)))
+    return _Range(words, *(Quantity(factor * float(value), unit) for value in (nominal, low, middle, high)))
 
 
 def _ranges_table(samples: xr.Dataset) -> Table:

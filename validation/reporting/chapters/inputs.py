@@ -31,8 +31,8 @@ from validation.reporting.results import Results
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair = results.given
-    known, assumed = results.inputs
-    words = f"{assumed} of {known + assumed} values are assumed. {pair.stiffness_note}"
+    known_count, assumed = results.inputs
+    words = f"{assumed} of {known_count + assumed} values are assumed. {pair.stiffness_note}"
     return Content(words.rstrip(), (_gears_table(pair), _derived_table(results), _parameters_table(results)))
 
 
@@ -40,15 +40,17 @@ def _parameters_table(results: Results) -> Table:
     """Every field of the parameter file with its source, its range and whether the value is assumed."""
     pair = results.given
     values = {path: value for path, value in field_values(pair).items() if path not in WORDS}
-    ranges = {part.field: given.written for given in uncertain_inputs(pair) for part in given.parts}
-    known, assumed = results.inputs
+    ranges = {
+        part.field: uncertain.written for uncertain in uncertain_inputs(pair) for part in uncertain.parts
+    }
+    known_count, assumed = results.inputs
     read = read_values(pair, contact_lost=results.like.contact_lost)
     reason_of = reasons(pair)
     unread = len(values) - len(read)
     return table_of(
         "parameters",
-        f"All values: {known} known, {assumed} assumed, {unread} that the chosen laws and models do not "
-        "read.",
+        f"All values: {known_count} known, {assumed} assumed, {unread} that the chosen laws and models do "
+        "not read.",
         list(values),
         (
             Column[str]("field", "field", lambda path: path),
