@@ -1,4 +1,4 @@
-"""A measured record: the TOML file that describes it, and its samples in SI read from CSV."""
+"""A measured record: the TOML description, and the samples in SI from the CSV file."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ BIN = 1.0 / 32.0
 def check_record(measurement: Measurement, pair: GearPair) -> None:
     """Refuse a record with another speed or torque than the pair, or with too few samples.
 
-    The speed is compared as the record states it and as the mesh orders of the samples show it.
+    The stated speed is compared, and the speed that the mesh orders of the samples show.
     """
     spec = measurement.spec
     for name, recorded in (("pinion_speed", spec.pinion_speed), ("pinion_torque", spec.pinion_torque)):

@@ -40,7 +40,7 @@ class Compared(Protocol):
 
 
 class BudgetResults(Protocol):
-    """Results that the budget reads. The shared results of the report have all of them."""
+    """Results that the budget reads. The shared results of the report are of this kind."""
 
     pair: GearPair
 

@@ -1,7 +1,7 @@
-"""Is a variant better? All variants run in the same possible machines; the result is the share of machines.
+"""Is a variant better? All variants run in the same possible machines; the answer is a share of machines.
 
-A possible machine has one value of every uncertain input. An input that the variants share has the same
-value in all of them. A difference between two variants is therefore a difference in one machine.
+A possible machine has one value of every uncertain input. A shared input has the same value in all
+variants. The difference between two variants is therefore a difference in one machine.
 
 Sources: common random numbers, A. M. Law, Simulation Modeling and Analysis, 2015, section 11.2; interval of a
 share, C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404.
@@ -104,10 +104,10 @@ def compare(
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return in which share of all possible machines one variant of a gear pair is better than another.
+    """Return the share of all possible machines in which one variant of a gear pair is better than another.
 
-    Each sample is one machine, in which every variant runs: an input that the variants share has the same
-    value in all of them. docs/how_to/compare.md says which inputs these are.
+    Each sample is one machine, in which every variant runs. A shared input has the same value in all
+    variants; docs/how_to/compare.md lists the shared inputs.
 
     Parameters
     ----------
@@ -115,25 +115,30 @@ def compare(
     others : one to 25 further variants, B, C, ...; teeth, speed and everything else may differ
     names : a text for each variant; default the names of the pairs
     samples : number of machines, 16 to 65536; powers of two fill the space most evenly
-    seed : of the scrambled Sobol points
+    seed : seed of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a variant that has them
-    seconds : processor time after which no further machine begins [s], a third of it for the inputs alone;
-        ``LEAST_SAMPLES`` machines are taken whatever they cost. None: all are taken
+    seconds : processor time after which no further machine begins [s]; a third of the time is for the inputs
+        alone. ``LEAST_SAMPLES`` machines are always computed. None: all machines are computed
     progress : called with the finished fraction
 
     Returns
     -------
-    xarray.Dataset over ``variant`` and ``other``, letters, ``result`` and ``sample``. Shares of the samples:
-    ``holds`` (result), in which all variants rank as with the values given, with ``holds_interval`` (result,
-    end), in which it lies with a probability of 0.9; ``better`` (result, variant, other), ``equal`` alike;
-    ``best`` (result, variant), in which no other variant is better. ``place`` (result, variant) is the rank
-    as given, and ``sentence`` (result) says it in words. Each result q in SI: ``q`` (variant, sample),
-    ``q_given`` (variant), ``q_difference`` (variant, other, percentile) of the paired differences. Smaller is
-    better, of the efficiency larger. Also shares of contact loss, instability and stand-ins by variant, and
-    ``share`` (input, sample), the drawn numbers. Attributes: ``taken`` of the machines ``asked`` for,
-    ``seconds``, the limit; ``refused`` (samples without a prediction in
-    some variant, which count in none), ``remarks`` (inputs that vary in some variants only, or whose range
-    hides a difference), ``parameters`` of A and ``parameters_B``, ...
+    xarray.Dataset over ``variant`` and ``other``, letters, ``result`` and ``sample``. Smaller is better,
+    for the efficiency larger. These variables are shares of the machines. ``holds`` (result): all variants
+    rank as with the values as given. ``holds_interval`` (result, end): interval of this share with a
+    probability of 0.9. ``better`` and ``equal`` (result, variant, other): the variant is better than the
+    other, or equal. ``best`` (result, variant): no other variant is better. ``contact_lost``, ``unstable``
+    and ``linear`` (variant): contact is lost, the motion is unstable, the linear motion stands in.
+
+    ``place`` (result, variant) is the rank with the values as given; ``sentence`` (result) has the answer
+    in words. Each result q is in SI: ``q`` (variant, sample), ``q_given`` (variant), and ``q_difference``
+    (variant, other, percentile), the differences in the same machine. ``share`` (input, sample) has the
+    drawn numbers.
+
+    Attributes: ``asked`` and ``taken``, the numbers of requested and of computed machines; ``seconds``, the
+    time limit; ``refused``, the number of samples in which a variant has no prediction, which do not count;
+    ``remarks`` on inputs that vary in some variants only, and on ranges that hide a difference;
+    ``parameters`` of A, ``parameters_B``, ...
 
     Raises
     ------
@@ -156,7 +161,7 @@ def compare(
     done = 0
 
     def row(k: int, shares: Mapping[int, float]) -> FloatArray | None:
-        """Numbers of variant k with some draws, by their place, at these shares."""
+        """Numbers of variant k. ``shares``: number of a draw -> share of the distribution."""
         nonlocal done
         done += 1
         if progress is not None:

@@ -1,9 +1,10 @@
-"""Inputs of a pair that are not known exactly, and what each may be: as stated, or by documented defaults.
+"""Uncertain inputs of a pair and their ranges: as the file states them, or documented defaults.
 
-A range is log-uniform where factors state it, or where both ends are positive and one is at least twice the
-other, else uniform. So a value is the median of factors up and down, and of as much up as down. Fields
-that one cause moves are one input: both directions of a bearing, the flanks of both gears, mass and inertia.
-A tip takes a few values of its range, so that the finite elements of a gear are solved for these alone.
+A range is log-uniform where factors state the range, or where both ends are positive and the upper end is
+at least twice the lower end; every other range is uniform. The stated value is therefore the median of "*
+0.5 .. * 2" and of "+- 2 um". Fields with one cause are one input: both directions of a bearing, the flanks
+of both gears, mass and inertia. A tip takes a few values of the range: each value needs its own finite
+elements.
 """
 
 from __future__ import annotations
@@ -134,10 +135,10 @@ class Input:
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
     """Return every uncertain input of a pair.
 
-    These are the inputs of ``[uncertainty]`` and, with documented default ranges, the assumed values that
-    the pair reads, or would read with another law or model among the choices. For random teeth of a
-    tolerance class the seed is an input. A range is refused that cannot be read, or that has values which
-    the field cannot take.
+    The inputs are those of ``[uncertainty]`` and, with documented default ranges, the assumed values. An
+    assumed value counts where the pair reads the value, or would read the value with another law or model
+    among the choices. For random teeth of a tolerance class the seed is an input. An unreadable range is
+    refused, and a range with values outside the limits of the field.
     """
     stated = dict(pair.uncertainty)
     stated_inputs = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
@@ -256,10 +257,10 @@ def _tips(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
 
 
 def forms_beside(pair: GearPair) -> dict[str, dict[str, Any]]:
-    """Return other forms of the model, which the range does not contain: name -> changes of the pair.
+    """Return other forms of the model, outside the range of the inputs: name -> changes of the pair.
 
-    These are the other contact and, where the stiffness model is uncertain, the models outside its choices.
-    A given stiffness of the whole mesh has its contact inside: there is no other contact.
+    Other forms are the other contact and, for an uncertain stiffness model, the models outside the choices.
+    A given stiffness of the whole mesh includes the contact: then there is no other contact.
     """
     other = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
     forms: dict[str, dict[str, Any]] = {}

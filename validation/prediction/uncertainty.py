@@ -123,27 +123,34 @@ def uncertainty(
     pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where a
         value is assumed
     samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
-    seed : of the scrambled Sobol points
+    seed : seed of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
-    seconds : processor time after which no further sample begins [s], a third of it for the inputs alone;
-        None: all samples are taken
+    seconds : processor time after which no further sample begins [s]; a third of the time is for the inputs
+        alone. None: all samples are computed
     progress : called with the finished fraction
 
     Returns
     -------
-    xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the prediction,
-    in SI: ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it
-    lies with a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of
-    a choice the smallest and largest result; ``q_rank_correlation`` (input), Spearman's; ``q_form`` (form),
-    the result with the inputs as given in a form of the model that the range does not hold. ``value``
-    (input, sample) holds the inputs, a choice by its number; of fields that move together, the first. Of
-    teeth that differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every
-    sample. Attributes: ``taken`` of the samples ``asked`` for; of these ``refused``, which have no prediction
-    and are left out; ``contact_lost``, ``unstable``, ``lost_or_unstable``, and ``linear``, in which the
-    linear motion stands in (counts of samples); ``alone``, how many inputs were moved alone; ``seconds``, the
-    limit; ``seed``; and the result with the inputs as given, ``given_q``. Where the time is used up, inputs
-    that were not moved alone and forms have NaN, and with less than ``LEAST_SAMPLES`` samples, or half of
-    those asked for where that is fewer, percentiles, intervals and rank correlations are NaN: no range
+    xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the
+    prediction is in SI. ``q`` (sample) has the samples. ``q_percentile`` (percentile) has the percentiles,
+    ``q_interval`` (percentile, end) the interval of each percentile with a probability of 0.9. ``q_swing``
+    (input, end) is the result with one input alone at 5 % and 95 %, for a choice the smallest and the
+    largest result. ``q_rank_correlation`` (input) is Spearman's coefficient. ``q_form`` (form) is the
+    result in another form of the model, with the inputs as given.
+
+    ``value`` (input, sample) has the value of each input in the unit of its field; for a choice the number
+    of the choice, for fields that move together the value of the first field. Unlike teeth also have the
+    quantities ``TEETH``; the teeth of a tolerance class are drawn anew in every sample.
+
+    Attributes: ``given_q``, the result with the inputs as given; ``asked`` and ``taken``, the numbers of
+    requested and of computed samples; ``refused``, the number of samples without a prediction, which are
+    left out; the numbers of samples with ``contact_lost``, ``unstable``, ``lost_or_unstable``, and
+    ``linear``, where the linear motion stands in; ``alone``, the number of inputs that were varied alone;
+    ``seconds``, the time limit; ``seed``.
+
+    Where the time limit ended the computation, the missing swings and forms are NaN. With fewer than
+    ``LEAST_SAMPLES`` samples, or half of the requested samples if that is fewer, there is no range:
+    percentiles, intervals and rank correlations are NaN
 
     Raises
     ------
@@ -248,9 +255,11 @@ def speed_band(
     step_angle : largest angle of the fastest vibration in a step [rad]
     seconds : processor time after which no further sample begins [s]
 
-    Returns ------- xarray.Dataset with ``low`` and ``high``; NaN: fewer samples than ``least_samples`` of
-    ``LEAST_BAND`` have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the
-    number of requested samples
+    Returns
+    -------
+    xarray.Dataset with ``low`` and ``high``; NaN: fewer samples than ``least_samples`` of ``LEAST_BAND``
+    have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the number of requested
+    samples
     """
     sampled = _each_sample(
         pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds

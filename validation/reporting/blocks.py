@@ -113,7 +113,7 @@ class Table:
 def table_of(
     key: str, caption: str, items: Iterable[T], columns: Sequence[Column[T]], note: str = ""
 ) -> Table:
-    """Return the table with one row per item; every cell is read off the item by its column."""
+    """Return the table with one row for each item. Each column reads its cell from the item."""
     headings = {column.name: column.heading for column in columns}
     rows = tuple(tuple(column.cell(item) for column in columns) for item in items)
     return Table(key, caption, headings, rows, note)

@@ -1,7 +1,7 @@
-"""Facts: the claims of a report about the pair, each with value, scope and the function that computed it.
+"""Facts: the claims of a report about the pair, each with value, scope and computing function.
 
-Page 1, the terminal and report.json take their sentences from here. A report claims nothing that was not
-computed: the fact then says that the computation is missing, over the same scope.
+Page 1, the terminal and report.json take their sentences from here. Without a computation there is no
+claim: the fact then says, over the same scope, that the computation is missing.
 """
 
 from __future__ import annotations

@@ -62,10 +62,10 @@ def nearest_of(results: Results) -> Hazard | None:
 
 
 def beats_and_chaos(search: JumpSearch, operating_rpm: float) -> tuple[Hazard, ...]:
-    """Return the speeds of beats and chaos that a search found.
+    """Return the speeds of beats and chaos.
 
-    Beats and chaos appear in runs that settle, over a range of speeds, and where a motion loses its
-    stability. Of a range this is the speed nearest to the operating speed.
+    Beats and chaos appear in settled runs, over a range of speeds, and at a loss of stability of a motion.
+    From a range of speeds the speed nearest to the operating speed is taken.
     """
     settled = [
         Hazard(

@@ -1,4 +1,4 @@
-"""Page 1 of the report: the verdict, one number a row, what to do next, how sure the numbers are."""
+"""Page 1 of the report: the verdict, one number a row, actions, and the certainty of the numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The list "Do next" of page 1: what the user can do, and what the user gains."""
+"""The list "Do next" of page 1: actions of the user, with the gain of each."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def actions_of(results: Results, verdict: Verdict) -> tuple[Action, ...]:
 
 
 def _open_searches(results: Results) -> list[Action]:
-    """Command that continues the search for jumps in the nearest range that the time limit left open."""
+    """Command to continue the search for jumps, in the nearest range behind the time limit."""
     speed = results.operating_rpm
     open_ranges = sorted(results.jump_search.open, key=lambda ends: min(abs(end - speed) for end in ends))
     return [
@@ -74,7 +74,7 @@ def _open_searches(results: Results) -> list[Action]:
 
 
 def _further_samples(results: Results) -> list[Action]:
-    """Command that computes the samples which the time limit left out."""
+    """Command to compute the samples behind the time limit."""
     samples = results.uncertainty
     if not isinstance(samples, xr.Dataset) or samples.attrs["taken"] == samples.attrs["asked"]:
         return []

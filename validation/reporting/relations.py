@@ -1,4 +1,4 @@
-"""Relations between the results of a report that must hold, and the checks of the program that failed."""
+"""Relations that must hold between the results of a report, and the failed checks of the program."""
 
 from __future__ import annotations
 

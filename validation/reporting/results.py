@@ -1,4 +1,4 @@
-"""Results that the chapters of the report share. Each is computed at its first use."""
+"""Shared results of the chapters of the report. Each result is computed at the first use."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An axis of a study: what it varies, and its values in the unit of the field."""
+"""An axis of a study: the fields that vary, and their values in the unit of the field."""
 
 from __future__ import annotations
 

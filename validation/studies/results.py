@@ -1,4 +1,4 @@
-"""The labelled results of a study, compiled from its store, with Sobol indices where it asks for them."""
+"""The labelled results of a study, compiled from the store, with Sobol indices on request."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A study: one gear pair, the axes that vary, the analysis and the outputs; its file and its refusals."""
+"""A study: gear pair, axes, analysis and outputs; the study file and the refusals."""
 
 from __future__ import annotations
 

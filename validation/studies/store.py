@@ -41,7 +41,7 @@ _COMPILER = ("NUMBA_DISABLE_JIT", "NUMBA_OPT", "NUMBA_CPU_NAME", "NUMBA_CPU_FEAT
 
 
 class StoreError(StorageError):
-    """The store cannot be read or written; what it holds is kept, and the text says how to go on."""
+    """The store cannot be read or written. Stored results are kept, and the text says how to continue."""
 
 
 class Status(IntEnum):

@@ -146,10 +146,10 @@ def chunks_of(
     slots: int,
     limit: float | None,
 ) -> Iterator[Chunk]:
-    """Yield the outcomes of cases as they finish, in any order, each case once.
+    """Yield the outcomes of cases in the order of their completion, each case once.
 
-    A chunk that took longer than a case may take (``limit`` [s]), or whose worker died, is divided into
-    single cases. ``submit`` and ``slots`` come from ``workers_of``.
+    A chunk is divided into single cases if it takes longer than one case may take (``limit`` [s]), or if
+    its worker dies. ``submit`` and ``slots`` come from ``workers_of``.
     """
     # seconds: mean time of a case, 0 where it is not known yet
     remaining = count

@@ -1,4 +1,4 @@
-"""Where contact is lost, the motions there, and the speeds at which the pair jumps from one to another."""
+"""Contact loss: the motions beyond contact loss, and the speeds at which the pair jumps between motions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How sure the prediction is: what its inputs do, and the error budget."""
+"""How sure the prediction is: effect of the uncertain inputs, and the error budget."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Inputs of the pair with source and range, and what follows from them."""
+"""Inputs of the pair with source and range, and the quantities that follow from the inputs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def write(results: Results) -> Content:
 
 
 def _parameters_table(results: Results) -> Table:
-    """Every field of the parameter file with its source, its range and whether the value is assumed."""
+    """Every field of the parameter file with source, range and state."""
     pair = results.given
     values = {path: value for path, value in field_values(pair).items() if path not in WORDS}
     ranges = {

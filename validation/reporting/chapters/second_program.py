@@ -1,4 +1,4 @@
-"""The prediction beside the second program, and what both must conserve."""
+"""The prediction beside the second program, and the conservation laws of both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Teeth that differ: what they do to loads, orders and indicators, beside the twin with like teeth."""
+"""Teeth that differ: effect on loads, orders and indicators, beside the twin with like teeth."""
 
 from __future__ import annotations
 
