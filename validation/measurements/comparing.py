@@ -4,6 +4,8 @@ The motion of the record is its mesh orders, fitted to all samples: the fit aver
 everything that differs from tooth to tooth. The motion of the prediction is the mean mesh cycle of its
 period; where teeth differ, this is the average over all teeth. All channels have the same shift in time,
 the shift with the best correlation. Means are not compared: encoders and accelerometers have no zero.
+
+Terms: ASME V&V 20-2009, eqs. 1-5-2 to 1-5-5; docs/how_to/measured_data.md.
 """
 
 from __future__ import annotations

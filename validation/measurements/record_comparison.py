@@ -1,6 +1,7 @@
 """A measured record beside the prediction: the verdict over all channels, sentences, tables and curves.
 
-The comparison is made in `comparing`; one channel is judged in `channel_comparison`.
+The comparison is made in `comparing`; one channel is judged in `channel_comparison`. Terms: ASME V&V 20-2009,
+eqs. 1-5-2 to 1-5-5.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _BY_CHANNEL = "SI, by channel"
 
 @dataclass(frozen=True, eq=False)
 class RecordComparison:
-    """A record beside the prediction.
+    """A record beside the prediction. Each channel is in its SI unit.
 
     Attributes
     ----------

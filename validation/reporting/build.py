@@ -34,11 +34,11 @@ from validation.reporting.chapters import CHAPTERS
 from validation.reporting.effort import FULL, QUICK
 from validation.reporting.facts import Fact
 from validation.reporting.first_figures import first_figures
+from validation.reporting.first_numbers import Number, first_numbers
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
 from validation.reporting.page_one import PageOne, page_one, title
-from validation.reporting.page_one_numbers import Number, first_numbers
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
 from validation.reporting.tables import write_tables

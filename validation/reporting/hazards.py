@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import xarray as xr
+
+from floquet import GearPairMultipliers
 from floquet.gear.jump_search import JumpSearch
-
-if TYPE_CHECKING:
-    from validation.reporting.results import Results
 
 #: Kind of a hazard -> the hazard with its article.
 _NOUNS = {
@@ -46,18 +45,21 @@ class Hazard:
         return f"{kind}{',' if self.kind == 'jump' else ''} {self.how}".strip()
 
 
-def nearest_of(results: Results) -> Hazard | None:
-    """Return the unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none."""
-    edge = float(results.chart.attrs["nearest_edge_speed_rpm"])
-    operating_rpm = results.operating_rpm
+def nearest_of(
+    chart: xr.Dataset, multipliers: GearPairMultipliers, search: JumpSearch, operating_rpm: float
+) -> Hazard | None:
+    """Return the unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none.
+
+    ``chart``: stability over speed; ``multipliers``: of the linear motion at the operating speed.
+    """
+    edge = float(chart.attrs["nearest_edge_speed_rpm"])
     hazards = [] if math.isnan(edge) else [Hazard(edge, "unstable speed")]
-    if results.multipliers.verdict == "unstable":
+    if multipliers.verdict == "unstable":
         hazards = [Hazard(operating_rpm, "unstable speed")]
     hazards += [
-        Hazard(jump.speed_rpm, "jump", f"running {'up' if jump.rising else 'down'}")
-        for jump in results.jump_search.jumps
+        Hazard(jump.speed_rpm, "jump", f"running {'up' if jump.rising else 'down'}") for jump in search.jumps
     ]
-    hazards += results.roaming
+    hazards += beats_and_chaos(search, operating_rpm)
     return min(hazards, key=lambda hazard: abs(hazard.speed_rpm - operating_rpm), default=None)
 
 

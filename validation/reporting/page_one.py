@@ -10,9 +10,9 @@ import xarray as xr
 
 from lumped.outcomes import Absent
 from validation.files.formatting import quantity
+from validation.reporting.actions import Action, actions_of
 from validation.reporting.facts import RANGES, Fact, facts_of, rpm, samples_matter
-from validation.reporting.page_one_actions import Action, actions_of
-from validation.reporting.page_one_numbers import Number, numbers_of
+from validation.reporting.first_numbers import Number, numbers_of
 from validation.reporting.results import Results
 from validation.reporting.verdict import Verdict, verdict_of
 

@@ -463,4 +463,4 @@ class Results:
     @property
     def nearest_hazard(self) -> Hazard | None:
         """The unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none."""
-        return nearest_of(self)
+        return nearest_of(self.chart, self.multipliers, self.jump_search, self.operating_rpm)

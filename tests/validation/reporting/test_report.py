@@ -14,9 +14,9 @@ import xarray as xr
 import lumped
 from tests.validation.reporting.written import PAIRS, SMALL, known, write_report
 from validation.reporting import build
+from validation.reporting.actions import advice_on_inputs
 from validation.reporting.blocks import plain
 from validation.reporting.chapters import contact_loss
-from validation.reporting.page_one_actions import advice_on_inputs
 from validation.reporting.relations import broken_relations
 from validation.reporting.verdict import Verdict
 
