@@ -9,7 +9,7 @@ from typing import Any
 from unittest import mock
 
 from validation.reporting import verdict
-from validation.reporting.results import Hazard
+from validation.reporting.hazards import Hazard
 from validation.reporting.verdict import Verdict
 
 _WHERE = "validation/reporting/verdict.py"
@@ -69,7 +69,7 @@ def _of(*, half: float = 0.01, **changed: Any) -> Verdict:
     one: Any = SimpleNamespace(claim="a claim", value=0.0, scope=SimpleNamespace(speeds="over speeds"))
     named = ("contact", "stable", "unstable_speeds", "jumps", "resonance", "levels", "inputs")
     with mock.patch.object(verdict, "failed_checks", return_value=()):
-        return verdict.verdict_of(results, dict.fromkeys(named, one))[0]
+        return verdict.verdict_of(results, dict.fromkeys(named, one)).verdict
 
 
 def _jump(apart: float) -> Hazard:

@@ -89,12 +89,12 @@ assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
 CHAPTER = {
     "validation/reporting/chapters/loudness.py": """
 from validation.plots.loudness import loudness_figure
-from validation.reporting.blocks import Content, Picture, quantities
+from validation.reporting.blocks import Content, NamedNumber, Picture, named_numbers
 from validation.reporting.chapter import Chapter
 
 def write(results):
     history = results.prediction.cycle[["dte"]]
-    table = quantities("level", "How loud.", ("mean", float(history["dte"].mean()), "m"))
+    table = named_numbers("level", "How loud.", [NamedNumber("mean", float(history["dte"].mean()), "m")])
     return Content("It is quiet.", (table, Picture("loudness", "The sound.", history, loudness_figure)))
 
 CHAPTER = Chapter("loudness", "Loudness", write)

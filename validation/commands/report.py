@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from validation.cross_check.comparison import CrossCheck
     from validation.cross_check.verdict import Judgement
+    from validation.reporting.first_numbers import Number
     from validation.reporting.gate import Comparison
-    from validation.reporting.page_one import Number
 
 #: Changes listed in the terminal.
 _MOST = 30

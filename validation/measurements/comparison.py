@@ -1,12 +1,13 @@
-"""A record beside its prediction: read by mesh phase, aligned by it, sample by sample, and as metrics.
+"""A record beside its prediction over the mesh phase: alignment, samples, metrics.
 
-Sources: docs/theory/equations.md, "Frame", for what the phase is, "Periodic motion and the brake torque".
+Sources: docs/theory/equations.md, "Frame", for the mesh phase, and "Periodic motion and the brake torque".
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -22,12 +23,17 @@ from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray, IntArray
 from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
 
-_SAMPLES = 1024  # of a prediction per mesh cycle
-_COARSE = 32  # trial shifts per mesh cycle
+#: Samples of a prediction in a mesh cycle.
+_SAMPLES = 1024
+#: Trial shifts in a mesh cycle, and the most samples that they are tried with.
+_COARSE = 32
 _COARSE_SAMPLES = 2000
+#: Factor between the steps of two searches for the shift.
 _ZOOM = 4
-_FINEST = 1e-6  # mesh cycles
-_FARTHEST = 1e9  # mesh cycles, where double precision still resolves the finest shift
+#: Last step of the search for the shift [mesh cycles].
+_FINEST = 1e-6
+#: Largest mesh cycle of a record: double precision still resolves the finest shift there.
+_FARTHEST = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,23 +53,23 @@ class Prediction:
 
     @property
     def geometry(self) -> Geometry:
-        """Of the pair."""
+        """Geometry of the pair."""
         return self.pair.geometry
 
     def age(self, cycles: ArrayLike, label: str) -> FloatArray:
-        """Mesh cycles since the labelled pair was last at A; in contact while below the contact ratio."""
+        """Return the mesh cycles since the labelled pair was last at A."""
         u = np.asarray(cycles, dtype=float) - PAIR_LABELS.index(label)
         return np.asarray(np.mod(u, self.recurrence), dtype=np.float64)
 
     def contact(self, cycles: ArrayLike, label: str) -> BoolArray:
-        """Whether the labelled pair is in contact."""
+        """Return whether the labelled pair is in contact."""
         return np.asarray(self.age(cycles, label) < self.geometry.contact_ratio, dtype=np.bool_)
 
     @cached_property
     def ahead(self) -> IntArray:
-        """Whole pitches by which each tooth pair of ``cycle`` is ahead of the one that is at A at the start.
+        """Whole base pitches from the pair at A at the start to each tooth pair of ``cycle``.
 
-        With loaded contact pairs touch before A and behind D, so the last is below 0.
+        With loaded contact pairs touch before A and behind D, so the last number is negative.
         """
         g = self.geometry
         place = self.cycle["position"].to_numpy()[:, 0] - g.L_XA
@@ -71,44 +77,48 @@ class Prediction:
 
     @property
     def life(self) -> tuple[float, float]:
-        """Mesh cycles since A between which a tooth pair can carry load: wider than A to D if loaded."""
+        """First and last mesh cycle since A at which a tooth pair can carry load.
+
+        With loaded contact this is more than the path from A to D.
+        """
         if self.pair.mesh.contact == "loaded":
             return float(self.ahead.min()), float(self.ahead.max()) + 1.0
         return 0.0, self.geometry.contact_ratio
 
     def since(self, cycles: ArrayLike, label: str) -> FloatArray:
-        """``age``, negative before A where a pair can touch there."""
+        """Return ``age``, but negative numbers before A where a pair can touch there."""
         age = self.age(cycles, label)
         first = self.life[0]
         return np.asarray(np.where(age >= self.recurrence + first, age - self.recurrence, age))
 
     def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
-        """A predicted quantity [SI] at mesh cycles u; of one labelled pair where it has pairs."""
+        """Return a predicted quantity [SI] at mesh cycles u; ``label``: tooth pair of the quantity."""
         places, values = self._curves[quantity]
         if label is None:
             u = np.mod(np.asarray(cycles, dtype=float), 1.0)
             return np.asarray(np.interp(u, places, values, period=1.0), dtype=np.float64)
-        age, (first, last) = self.since(cycles, label), self.life
+        age = self.since(cycles, label)
+        first, last = self.life
         inside = (age >= first) & (age < last)
         return np.asarray(np.where(inside, np.interp(age, places, values), 0.0), dtype=np.float64)
 
     @cached_property
     def _curves(self) -> dict[str, tuple[FloatArray, FloatArray]]:
-        """Quantity -> mesh cycles and values: over one cycle, or of one tooth pair over its life.
+        """Quantity -> mesh cycles and values: over a mesh cycle, or over the life of a tooth pair.
 
-        Whole cycles after A a tooth pair is that many places ahead. Past the last sample of its life its
-        value holds.
+        A tooth pair that is n pitches ahead is n mesh cycles after A. Behind the last sample the last value
+        holds.
         """
         grid = self.cycle["time"].to_numpy() / self.geometry.mesh_period
         young = np.argsort(self.ahead)
         life = (self.ahead[young][:, None] + grid).ravel()
         first, last = self.life
         inside = (life >= first) & (life < last)
-        found = {}
+        curves = {}
         for name, (_, paired) in QUANTITIES.items():
             values = self.cycle[name].to_numpy()
-            found[name] = (life[inside], values[young].ravel()[inside]) if paired else (grid, values)
-        return found
+            curves[name] = (life[inside], values[young].ravel()[inside]) if paired else (grid, values)
+        return curves
 
 
 def predict(pair: AnyPair, *, recurrence: int | None = None, supports: Supports | None = None) -> Prediction:
@@ -149,7 +159,7 @@ class Alignment:
 
 
 def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
-    """Mesh cycles of the samples before alignment, (k,) [-]: u = t/T_m at the record's speed."""
+    """Return the mesh cycles (k,) of the samples before alignment, u = t/T_m at the speed of the record."""
     g = pair.with_({"operating.pinion_speed": measurement.spec.pinion_speed}).geometry
     return np.asarray(measurement.abscissa / g.mesh_period, dtype=np.float64)
 
@@ -157,12 +167,15 @@ def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
 def align(measurement: Measurement, prediction: Prediction, *, shift: float | None = None) -> Alignment:
     """Find the mesh phase of a record by least squares against the prediction.
 
-    For every trial shift each channel may have its own gain and zero, so that a calibration error does not
-    move the phase. Normal loads hardly depend on friction, so where a record has them they alone are aligned:
-    a friction coefficient found afterwards is not built into the alignment.
+    Each channel has its own gain and zero at every trial shift: a calibration error does not move the
+    phase. Normal loads hardly depend on friction. Where a record has normal loads, only these are aligned:
+    the alignment then does not contain the friction that is identified later.
 
-    ``shift``: a known one [mesh cycles], with which nothing is searched. A NumericalError says that the
-    channels do not vary, or that the best shift explains less than half of their variation.
+    ``shift``: known shift [mesh cycles]; then there is no search.
+
+    Raises
+    ------
+    NumericalError : the channels do not vary, or the best shift explains less than half of their variation
     """
     raw = mesh_cycles(measurement, prediction.pair)
     advice = "Check its unit."
@@ -224,18 +237,21 @@ def align(measurement: Measurement, prediction: Prediction, *, shift: float | No
 def overlay(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, *, bins: int = 64
 ) -> xr.Dataset:
-    """Measured and predicted values over one engagement (pair channels) or one mesh cycle, in phase bins.
+    """Return measured and predicted values in phase bins, over one engagement or one mesh cycle.
 
-    Returns a dataset over ``channel`` and ``bin``; empty bins are NaN with count 0. Metrics of
-    all samples are over ``channel``; the relative one is NaN where the prediction is constant.
+    The dataset is over ``channel`` and ``bin``; empty bins are NaN with count 0. A channel is in the SI
+    unit that the variable ``units`` names. Metrics of all samples are over ``channel``; the relative metric
+    is NaN where the prediction is constant.
     """
     rows = []
     metrics = []
     one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
     for channel in measurement.spec.channel:
-        age, y, p = _samples(measurement, prediction, alignment, channel)
+        samples = _samples(measurement, prediction, alignment, channel)
+        y = samples.measured
+        p = samples.predicted
         reach = prediction.geometry.contact_ratio if channel.pair else 1.0
-        place = np.minimum((age / reach * bins).astype(np.int64), bins - 1)
+        place = np.minimum((samples.phase / reach * bins).astype(np.int64), bins - 1)
         count = np.bincount(place, minlength=bins)
         sums = np.stack([np.bincount(place, weights=v, minlength=bins) for v in (y, p, y - p, (y - p) ** 2)])
         with np.errstate(invalid="ignore"):  # an empty bin has no mean
@@ -250,18 +266,18 @@ def overlay(
     measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
     bias, rms, relative, correlation = map(list, zip(*metrics, strict=True))
     dims = ("channel", "bin")
-    own = "SI, by channel"
+    by_channel = "SI, by channel"
     units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
     return labelled_dataset(
         {
-            "measured": (dims, measured, own, "mean of the measured values"),
-            "predicted": (dims, predicted, own, "mean of the predicted values"),
-            "scatter": (dims, scatter, own, "standard deviation of measured - predicted in the bin"),
+            "measured": (dims, measured, by_channel, "mean of the measured values"),
+            "predicted": (dims, predicted, by_channel, "mean of the predicted values"),
+            "scatter": (dims, scatter, by_channel, "standard deviation of measured - predicted in the bin"),
             "phase": (dims, phase, "1", "middle of the bin, mesh cycles since A"),
             "count": (dims, count, "1", "samples in the bin"),
             "units": ("channel", units, "1", "SI unit of the channel"),
-            "bias": ("channel", bias, own, "mean of measured - predicted"),
-            "rms": ("channel", rms, own, "root mean square of measured - predicted"),
+            "bias": ("channel", bias, by_channel, "mean of measured - predicted"),
+            "rms": ("channel", rms, by_channel, "root mean square of measured - predicted"),
             "relative_rms": ("channel", relative, "1", "rms over the prediction's peak to peak"),
             "correlation": ("channel", correlation, "1", "Pearson correlation of measured and predicted"),
         },
@@ -272,11 +288,26 @@ def overlay(
     )
 
 
+class _Samples(NamedTuple):
+    """Samples (k,) of one channel.
+
+    Attributes
+    ----------
+    phase : mesh cycles since A
+    measured, predicted : values in the SI unit of the channel
+    """
+
+    phase: FloatArray
+    measured: FloatArray
+    predicted: FloatArray
+
+
 def _samples(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, channel: Channel
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Phase since A, measured and predicted of a channel's samples (pairs: in contact only)."""
-    u, y = alignment.cycles, measurement.channels[channel.name]
+) -> _Samples:
+    """Samples of one channel; for a channel of one tooth pair only the samples in contact."""
+    u = alignment.cycles
+    measured = measurement.channels[channel.name]
     if channel.pair is None:
         age = np.mod(u, 1.0)
         inside = np.ones(u.shape, dtype=bool)
@@ -287,5 +318,5 @@ def _samples(
         raise NumericalError(
             f"No sample of {channel.name} is in contact; check the abscissae, the shift and the pair labels."
         )
-    p = prediction.value(channel.quantity, u, channel.pair)
-    return age[inside], y[inside], p[inside]
+    predicted = prediction.value(channel.quantity, u, channel.pair)
+    return _Samples(age[inside], measured[inside], predicted[inside])

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -38,7 +39,7 @@ from validation.measurements.record import PAIR_LABELS, Measurement
 
 #: Level of the confidence interval.
 LEVEL = 0.95
-#: What may be identified besides a scale on a friction law.
+#: Name of the constant coefficient among the quantities to identify.
 CONSTANT = "mu"
 _FEWEST = 20
 _FEWEST_BLOCKS = 8
@@ -54,8 +55,9 @@ class Identification:
     estimate, standard_error : [-]
     low, high : ends of the 95 % confidence interval [-]
     mean_mu : mean of |mu| over the path of contact that the estimate means [-]
-    samples, blocks : number of samples, and of the engagements between which noise is independent
-    normal : where N was taken from, "measured" or "predicted"
+    samples : number of samples
+    blocks : number of engagements; noise is independent between engagements
+    normal : origin of N, "measured" or "predicted"
     """
 
     parameter: str
@@ -70,7 +72,7 @@ class Identification:
 
     @property
     def text(self) -> str:
-        """One sentence for a report."""
+        """The result in one sentence."""
         return (
             f"{self.parameter} = {self.estimate:.4g}, {100 * LEVEL:.3g} % interval {self.low:.4g} to "
             f"{self.high:.4g} (standard error {self.standard_error:.2g}, {self.samples} samples in "
@@ -89,7 +91,7 @@ class Evaluation:
     alignment : mesh phase of the record
     points : over ``channel`` and ``bin`` of one engagement or one mesh cycle: phase, measured and predicted
         means, scatter, count; over ``channel``: bias, rms, relative_rms, correlation
-    found : identified friction, in the order asked for
+    found : identified friction, in the order of the arguments
     """
 
     measurement: Measurement
@@ -107,7 +109,7 @@ def evaluate(
     shift: float | None = None,
     supports: Supports | None = None,
 ) -> Evaluation:
-    """Align a record, compare it with its prediction, and identify friction from it.
+    """Align a record, compare the record with the prediction, and identify friction from the record.
 
     Parameters
     ----------
@@ -129,23 +131,23 @@ def evaluate(
     recurrence = measurement.spec.recurrence
     prediction = predict(measurement.at(pair), recurrence=recurrence, supports=supports)
     phase = align(measurement, prediction, shift=shift)
-    found = (
+    identified = (
         identify_friction(measurement, prediction, phase, law=None if name == CONSTANT else name)
         for name in wanted
     )
     points = overlay(measurement, prediction, phase)
-    return Evaluation(measurement, prediction, phase, points, tuple(found))
+    return Evaluation(measurement, prediction, phase, points, tuple(identified))
 
 
 def identify_friction(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, *, law: str | None = None
 ) -> Identification:
-    """Identify the friction coefficient, constant (``law`` None) or as a scale on a law, by least squares.
+    """Identify a friction coefficient by least squares: constant (``law`` None) or as a scale on a law.
 
-    N is ``normal_load`` of the same tooth pairs; of the prediction where the record has no normal loads.
-    Where all channels state their noise it weights the samples and keeps noise on N from biasing the result.
-    Samples closer to the pitch point than three standard errors of the alignment and one sample are left out:
-    their sign is not certain.
+    N is ``normal_load`` of the same tooth pairs, measured or, in a record without normal loads, predicted.
+    Where all channels state their noise, the noise weights the samples, and noise on N does not bias the
+    result. Samples near the pitch point are left out, because their sign is not certain: nearer than three
+    standard errors of the alignment and one sample.
     """
     s = _collected(measurement, prediction, alignment, law)
     beta = _estimate(s)
@@ -165,10 +167,16 @@ def identify_friction(
     )
 
 
-@dataclass(frozen=True)
-class _Samples:
-    """Samples of all friction channels one after the other, each array (k,): friction F [N], regressor g N
-    [N], shape g, standard deviations of F and N [N], and block, the number of the engagement.
+class _Samples(NamedTuple):
+    """Samples (k,) of all friction channels, one channel after the other.
+
+    Attributes
+    ----------
+    friction : friction force F [N]
+    regressor : g N [N]
+    shape : g, the sign of sliding or the friction law
+    noise_friction, noise_normal : standard deviations of F and of N [N]
+    block : number of the engagement
     """
 
     friction: FloatArray
@@ -179,23 +187,26 @@ class _Samples:
     block: FloatArray
 
     def variance(self, beta: float) -> FloatArray:
+        """Variance of F - beta g N."""
         return np.asarray(self.noise_friction**2 + (beta * self.shape * self.noise_normal) ** 2)
 
 
 def _collected(
     measurement: Measurement, prediction: Prediction, alignment: Alignment, law: str | None
 ) -> _Samples:
+    """Samples of all friction channels with the normal loads of the same tooth pairs."""
     frictions = measurement.named("friction_force")
     if not frictions:
         raise refuse("channel", "none", "a channel of friction_force", "Add it to the description.")
     loads = {label: name for name, label in measurement.named("normal_load")}
     law_shape = None if law is None else friction_path_function(prediction.pair, law=law)
-    g, u = prediction.geometry, alignment.cycles
+    g = prediction.geometry
+    u = alignment.cycles
     guard = (3.0 * alignment.standard_error + float(np.median(np.diff(u)))) * g.base_pitch
     noises = {name: value for name, value in measurement.noise.items() if value is not None}
     # All or none: weights compare the channels with each other.
-    known = all(name in noises for name in [*(name for name, _ in frictions), *loads.values()])
-    parts: list[tuple[FloatArray, ...]] = []
+    noise_known = all(name in noises for name in [*(name for name, _ in frictions), *loads.values()])
+    parts: list[_Samples] = []
     for number, (name, label) in enumerate(frictions):
         assert label is not None  # the description asks for it
         if loads and label not in loads:
@@ -204,20 +215,28 @@ def _collected(
         xi = g.L_XA + prediction.age(u, label) * g.base_pitch
         inside = prediction.contact(u, label) & (np.abs(xi - g.L_XP) > guard)
         load = measurement.channels[loads[label]] if loads else prediction.value("normal_load", u, label)
-        of_friction = noises[name] if known else 1.0
-        of_load = noises[loads[label]] if known and loads else 0.0
+        friction_noise = noises[name] if noise_known else 1.0
+        load_noise = noises[loads[label]] if noise_known and loads else 0.0
         xi = xi[inside]
         full = np.ones(np.count_nonzero(inside))
         shape = np.sign(xi - g.L_XP) if law_shape is None else law_shape(xi)
         engagement = np.floor((u[inside] - PAIR_LABELS.index(label)) / prediction.recurrence)
-        own = (of_friction * full, of_load * full, engagement + 1e9 * number)
-        parts.append((measurement.channels[name][inside], shape * load[inside], shape, *own))
-    found = _Samples(*map(np.concatenate, zip(*parts, strict=True)))
-    if found.friction.size < _FEWEST:
-        raise NumericalError(
-            f"Only {found.friction.size} samples are in contact; check the alignment and the labels."
+        parts.append(
+            _Samples(
+                friction=measurement.channels[name][inside],
+                regressor=shape * load[inside],
+                shape=shape,
+                noise_friction=friction_noise * full,
+                noise_normal=load_noise * full,
+                block=engagement + 1e9 * number,
+            )
         )
-    return found
+    samples = _Samples(*map(np.concatenate, zip(*parts, strict=True)))
+    if samples.friction.size < _FEWEST:
+        raise NumericalError(
+            f"Only {samples.friction.size} samples are in contact; check the alignment and the labels."
+        )
+    return samples
 
 
 def _estimate(s: _Samples) -> float:
@@ -244,7 +263,8 @@ def _standard_error(s: _Samples, beta: float) -> tuple[float, int]:
 
     def scores(beta: float) -> FloatArray:
         """Slope of every sample's term r^2 / (2 v) over beta."""
-        r, v = s.friction - beta * s.regressor, s.variance(beta)
+        r = s.friction - beta * s.regressor
+        v = s.variance(beta)
         slope_v = 2.0 * beta * (s.shape * s.noise_normal) ** 2
         return np.asarray(-r * s.regressor / v - 0.5 * (r / v) ** 2 * slope_v)
 

@@ -1,4 +1,4 @@
-"""A measured record: the TOML file that describes it, and its samples in SI read from CSV."""
+"""A measured record: the TOML description, and the samples in SI from the CSV file."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _LARGEST = 1e100
 
 
 class Abscissa(Section):
-    """Where the samples lie: a column of times, or a constant sampling rate."""
+    """Times of the samples: a column of times, or a constant sampling rate."""
 
     kind: Literal["time", "sampled"] = Field(description="a column of times, or equidistant samples in time")
     column: str | None = Field(None, description="column of the times")
@@ -51,12 +51,12 @@ class Abscissa(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        given = {name for name in ("column", "unit", "sampling_rate") if getattr(self, name) is not None}
+        stated = {name for name in ("column", "unit", "sampling_rate") if getattr(self, name) is not None}
         wanted = {"sampling_rate"} if self.kind == "sampled" else {"column", "unit"}
-        if given != wanted:
+        if stated != wanted:
             allowed = f"{' and '.join(sorted(wanted))} for kind '{self.kind}'"
-            first = sorted(given ^ wanted)[0]
-            raise refuse(first, ", ".join(sorted(given)), allowed, "Correct the abscissa.")
+            first = sorted(stated ^ wanted)[0]
+            raise refuse(first, ", ".join(sorted(stated)), allowed, "Correct the abscissa.")
         return self
 
 
@@ -135,13 +135,13 @@ class Measurement:
     noise: dict[str, float | None]
 
     def at(self, pair: GearPair) -> GearPair:
-        """The pair at the record's speed and torque."""
+        """Return the pair at the speed and the torque of the record."""
         speed = f"{float(self.spec.pinion_speed)!r} rad/s"
         torque = self.spec.pinion_torque
         return pair.with_({"operating.pinion_speed": speed, "operating.pinion_torque": torque})
 
     def named(self, quantity: str) -> list[tuple[str, str | None]]:
-        """Names and pair labels of the channels of a quantity."""
+        """Return names and pair labels of the channels of a quantity."""
         return [(c.name, c.pair) for c in self.spec.channel if c.quantity == quantity]
 
 
@@ -188,8 +188,8 @@ def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
         wanted.append((spec.abscissa.column, "abscissa.column"))
     for column, field in wanted:
         if column not in columns:
-            known = ", ".join(map(shown, columns))
-            raise refuse(field, shown(column), f"one of {known}", "Correct the column's name.")
+            headings = ", ".join(map(shown, columns))
+            raise refuse(field, shown(column), f"one of {headings}", "Correct the column's name.")
     table = _numbers(spec, cells.iloc[:, [columns[column] for column, _ in wanted]])
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
@@ -215,7 +215,7 @@ def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
 
 
 def _cells(spec: MeasurementSpec, text: str) -> pd.DataFrame:
-    """Read the table; a column that holds anything but numbers stays one of texts."""
+    """Read the table. A column with anything but numbers stays a column of texts."""
     import pandas as pd
 
     try:
@@ -238,7 +238,7 @@ def _cells(spec: MeasurementSpec, text: str) -> pd.DataFrame:
 
 
 def _numbers(spec: MeasurementSpec, cells: pd.DataFrame) -> FloatArray:
-    """Numbers of the named columns (rows, columns); the first cell that is none is refused by its place."""
+    """Numbers of the named columns (rows, columns). A cell without a number is refused with its place."""
     import pandas as pd
 
     def numbers(column: pd.Series[Any]) -> pd.Series[Any]:

@@ -1,7 +1,7 @@
-"""Mesh orders of a record, and those of the prediction at the same orders.
+"""Mesh orders of a record, and of the prediction at the same orders.
 
-A channel of one tooth pair is taken over the mesh cycles of each engagement: as many as the motion has places
-for tooth pairs. So its orders are parts of mesh orders.
+A channel of one tooth pair is taken over the mesh cycles of each engagement, one for each place of a tooth
+pair in the motion. The orders of such a channel are therefore fractions of mesh orders.
 """
 
 from __future__ import annotations
@@ -22,43 +22,45 @@ from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Mea
 from validation.prediction.motion import Prediction
 from validation.signals.complex_orders import ComplexOrders, complex_orders, orders_of_period
 
-#: Most mesh orders of a record, most per different phase of its samples, and how many phases of a mesh cycle
-#: are different.
+#: Most mesh orders of a record.
 _ORDERS = 40
+#: Most mesh orders for each different phase of the samples.
 _PER_PHASE = 0.3
+#: Number of phases of a mesh cycle that count as different.
 _DIFFERENT = 1000
-#: Samples for each number that is fitted.
+#: Least samples for each fitted number.
 _PER_NUMBER = 4
-#: Speed and torque of the record may be this share off those of the pair.
+#: Largest difference of speed and torque between record and pair, as a share.
 _SAME = 0.01
 #: Samples of the prediction in a mesh cycle.
 _SAMPLES = 512
-#: The mesh frequency of a record may be this share off that of its stated speed. So many orders find it, with
-#: so many trials in a wave of the last of them, over so many mesh cycles at first and then over more.
+#: Largest difference between the mesh frequency of the samples and that of the stated speed, as a share.
 _OFF = 0.005
+#: Mesh orders by which the mesh frequency is found.
 _FIRST = 6
+#: Trials in a wave of the last of these orders.
 _TRIALS = 4.0
+#: Mesh cycles of the first search; later searches take four times as many each.
 _SHORT = 64.0
-#: Share of the stated speed within which another one is looked for.
+#: Another speed is searched within this share of the stated speed.
 _FAR = 0.05
-#: Share by which the orders must carry more at another frequency than at the stated one.
+#: The orders must carry this share more at another frequency than at the stated frequency.
 _BETTER = 1e-3
-#: Mesh cycles in a bin of a record for its coarse shift.
+#: Mesh cycles in a bin of the search for the coarse shift.
 BIN = 1.0 / 32.0
 
 
 def check_record(measurement: Measurement, pair: GearPair) -> None:
-    """Refuse a record of another speed or torque than the pair's, or of too few samples.
+    """Refuse a record with another speed or torque than the pair, or with too few samples.
 
-    Another speed is one that is stated, or one at which the mesh orders of the samples are.
+    The stated speed is compared, and the speed that the mesh orders of the samples show.
     """
     spec = measurement.spec
-    own = pair.operating
-    for name, there in (("pinion_speed", spec.pinion_speed), ("pinion_torque", spec.pinion_torque)):
-        here = float(getattr(own, name))
-        if abs(there / here - 1.0) > _SAME:
+    for name, recorded in (("pinion_speed", spec.pinion_speed), ("pinion_torque", spec.pinion_torque)):
+        operating = float(getattr(pair.operating, name))
+        if abs(recorded / operating - 1.0) > _SAME:
             action = "Give the speed and the torque of the record to the pair."
-            raise refuse(f"measurement.{name}", f"{there:.5g}", f"{here:.5g} within 1 %, SI", action)
+            raise refuse(f"measurement.{name}", f"{recorded:.5g}", f"{operating:.5g} within 1 %, SI", action)
     if _resolved(mesh_cycles(measurement, pair)) < 1:
         refused = f"{measurement.abscissa.size} samples"
         raise refuse("data", refused, "several in each mesh cycle", "Sample faster, or longer.")
@@ -66,11 +68,12 @@ def check_record(measurement: Measurement, pair: GearPair) -> None:
 
 
 def cycles_in_step(measurement: Measurement, pair: GearPair) -> FloatArray:
-    """Mesh cycles (k,) of the samples, at the mesh frequency that the record has itself.
+    """Return the mesh cycles (k,) of the samples, at the mesh frequency of the samples.
 
-    A speed that is stated 0.1 % too high makes the orders of 500 mesh cycles average out. So the frequency is
-    the one within 0.5 % at which the first mesh orders of all channels carry most; of a record whose samples
-    the stated speed explains as well it is that of the stated speed.
+    A speed that is stated 0.1 % too high makes the orders average out over 500 mesh cycles. The mesh
+    frequency is therefore the frequency within 0.5 % of the stated speed at which the first mesh orders of
+    all channels carry most. If the stated speed explains the samples as well, the frequency of the stated
+    speed is taken.
     """
     carried = _Carried.of(measurement, pair)
     cycles = mesh_cycles(measurement, pair)
@@ -93,26 +96,26 @@ def cycles_in_step(measurement: Measurement, pair: GearPair) -> FloatArray:
 
 
 def _refuse_other_speed(measurement: Measurement, pair: GearPair) -> None:
-    """Refuse a record most of whose motion is at the mesh orders of another speed."""
+    """Refuse a record whose motion is mostly at the mesh orders of another speed."""
     carried = _Carried.of(measurement, pair)
     if carried is None:
         return
     length = min(_SHORT, carried.reach)
-    there, _ = carried.strongest(1.0, _FAR, length)
-    here, _ = carried.strongest(1.0, _OFF, length)
-    most = carried(there, length)
-    if most > 0.5 and most > 4.0 * carried(here, length):
+    other, _ = carried.strongest(1.0, _FAR, length)
+    near, _ = carried.strongest(1.0, _OFF, length)
+    most = carried(other, length)
+    if most > 0.5 and most > 4.0 * carried(near, length):
         stated = to_stated(measurement.spec.pinion_speed, "rpm")
         raise refuse(
             "measurement.pinion_speed", f"{stated:.5g} rpm",
-            f"the speed of the samples, whose mesh orders are those of about {stated * there:.4g} rpm",
+            f"the speed of the samples, whose mesh orders are those of about {stated * other:.4g} rpm",
             "Correct the speed in the description.",
         )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class _Carried:
-    """Share of a record's variation that the first mesh orders carry, over a factor on its mesh frequency."""
+    """Share of the variation that the first mesh orders carry, over a factor on the mesh frequency."""
 
     cycles: FloatArray
     values: FloatArray
@@ -120,7 +123,7 @@ class _Carried:
 
     @classmethod
     def of(cls, measurement: Measurement, pair: GearPair) -> _Carried | None:
-        """Of the channels that are no tooth pair's; None where there is none."""
+        """Return the share for the channels that belong to no tooth pair. None: there is no such channel."""
         cycles = mesh_cycles(measurement, pair)
         values = [measurement.channels[one.name] for one in measurement.spec.channel if one.pair is None]
         if not values:
@@ -133,23 +136,23 @@ class _Carried:
         return float(self.cycles[-1])
 
     def __call__(self, factor: float, length: float) -> float:
-        """The share, mean over the channels, over the first mesh cycles."""
+        """Return the mean share of all channels over the first ``length`` mesh cycles."""
         count = int(np.searchsorted(self.cycles, length, side="right"))
         part = self.values[:, :count] - self.values[:, :count].mean(axis=1, keepdims=True)
         power = np.maximum(np.sum(part**2, axis=1), 1e-300)
         first = np.exp(-2j * np.pi * factor * self.cycles[:count])
-        found = sum(np.abs(part @ first**m) ** 2 for m in self.orders)
-        return float(np.mean(2.0 * found / (count * power)))
+        power_of_orders = sum(np.abs(part @ first**m) ** 2 for m in self.orders)
+        return float(np.mean(2.0 * power_of_orders / (count * power)))
 
     def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
-        """The factor within ``about`` +- ``width`` at which most is carried, and the step of the trials."""
+        """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""
         step = 1.0 / (_TRIALS * float(self.orders[-1]) * length)
         trials = about + step * np.arange(-np.floor(width / step), np.floor(width / step) + 1)
         return float(trials[int(np.argmax([self(float(one), length) for one in trials]))]), step
 
 
 def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Curves:
-    """The motion averaged over the mesh cycles of its period, readable at any mesh cycle."""
+    """Return the motion averaged over the mesh cycles of its period."""
     count = prediction.mesh_cycles
     cycle = prediction.cycle
     size = cycle.sizes["time"] // count
@@ -162,7 +165,7 @@ def mean_mesh_cycle(prediction: Prediction, recurrence: int | None = None) -> Cu
 
 
 def _resolved(cycles: FloatArray, period: int = 1) -> int:
-    """Mesh orders that samples at these cycles show, of a signal that repeats after ``period`` cycles."""
+    """Number of mesh orders that the samples resolve. ``period``: mesh cycles in a period of the signal."""
     # Samples that are no whole number in a mesh cycle fill in its phases.
     phases = np.unique(np.round(_DIFFERENT * cycles) % _DIFFERENT).size
     enough = (cycles.size / _PER_NUMBER - 1.0) / (2 * period)
@@ -170,44 +173,44 @@ def _resolved(cycles: FloatArray, period: int = 1) -> int:
 
 
 def measured_orders(
-    values: FloatArray, cycles: FloatArray, curves: Curves, own: Channel, shift: float
+    values: FloatArray, cycles: FloatArray, curves: Curves, channel: Channel, shift: float
 ) -> ComplexOrders:
-    """Orders of a channel; of one tooth pair over as many mesh cycles as pairs are in contact at once."""
-    if own.pair is None:
+    """Return the orders of a channel, of one tooth pair over as many mesh cycles as pairs are in contact."""
+    if channel.pair is None:
         return complex_orders(cycles, values, np.arange(1, _resolved(cycles) + 1))
     period = curves.ahead.size
     first = int(curves.ahead.min())
     if curves.recurrence < period:
         action = "Count the mesh cycles until the same labelled pair is in contact again."
         raise refuse("measurement.recurrence", curves.recurrence, f">= {period}", action)
-    since = curves.since(cycles + shift, own.pair)
+    since = curves.since(cycles + shift, channel.pair)
     inside = since < first + period
     most = _resolved(cycles[inside], period)
     if most < 1:
-        allowed = f"a record in which pair {own.pair} is in contact for many samples"
+        allowed = f"a record in which pair {channel.pair} is in contact for many samples"
         refused = f"{np.count_nonzero(inside)} samples in contact"
-        raise refuse(f"channel.{own.name}", refused, allowed, "Record longer; check pair and recurrence.")
-    passed = cycles[inside] + shift - PAIR_LABELS.index(own.pair) - first
+        raise refuse(f"channel.{channel.name}", refused, allowed, "Record longer; check pair and recurrence.")
+    passed = cycles[inside] + shift - PAIR_LABELS.index(channel.pair) - first
     engagement = np.floor(passed / curves.recurrence).astype(np.int64)
     # Less the shift, so that one shift puts the prediction in the phase of every channel.
     orders = np.arange(1, most * period + 1) / period
     return complex_orders(since[inside] - shift, values[inside], orders, period=period, blocks=engagement)
 
 
-def predicted_orders(curves: Curves, own: Channel, like: ComplexOrders) -> ComplexOrders:
-    """Orders of the prediction that are those of a measured channel."""
+def predicted_orders(curves: Curves, channel: Channel, like: ComplexOrders) -> ComplexOrders:
+    """Return the orders of the prediction at the orders ``like`` of a measured channel."""
     phases = np.arange(_SAMPLES * like.period) / _SAMPLES
-    label = None if own.pair is None else PAIR_LABELS[0]  # all labels have the same life
+    label = None if channel.pair is None else PAIR_LABELS[0]  # all labels have the same life
     if label is not None:  # the end of the period is before A
         phases -= like.period * (phases >= int(curves.ahead.min()) + like.period)
-    values = curves.value(own.quantity, phases, label)
+    values = curves.value(channel.quantity, phases, label)
     return orders_of_period(values, round(like.orders.size / like.period), like.period)
 
 
 def coarse_shift(
     measurement: Measurement, cycles: FloatArray, curves: Curves, channels: Sequence[Channel]
 ) -> float:
-    """Shift at which a record with channels of tooth pairs correlates best, to a bin; 0 of other records."""
+    """Return the shift with the best correlation, to a bin; 0 for a record without tooth pairs."""
     if all(one.pair is None for one in channels):
         return 0.0
     count = round(curves.recurrence / BIN)

@@ -1,4 +1,4 @@
-"""Axes, curves and bars whose labels and units come from the result that is drawn."""
+"""Axes, curves and bars with labels and units from the result that is drawn."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from matplotlib.figure import Figure
 from lumped.typing import FloatArray
 from validation.plots.style import GREY, WIDTH, legend_above, look, new_figure, one_panel, scaled
 
-#: Characters that fit in a row of a legend as wide as a page, and those that a curve's sample takes.
+#: Characters in a row of a legend that is as wide as a page.
 _ROW = 100
+#: Width of the sample of a curve in a legend, in characters.
 _HANDLE = 9
 #: Units that take no prefix.
 _AS_IS = frozenset({"rpm", "%", "1/rev", "mesh cycles"})
 
 
 def unit_of(*arrays: xr.DataArray) -> str:
-    """The one unit that results share."""
+    """Return the unit of results that share an axis."""
     units = {str(array.attrs["units"]) for array in arrays}
     if len(units) != 1:
         raise ValueError(f"one axis for different units: {', '.join(sorted(units))}")
@@ -28,23 +29,23 @@ def unit_of(*arrays: xr.DataArray) -> str:
 
 
 def scale_of(*arrays: xr.DataArray) -> tuple[float, str]:
-    """Divisor and unit as printed of results that share an axis; "-" for a ratio."""
+    """Return divisor and printed unit of results that share an axis; the unit is "-" for a ratio."""
     unit = unit_of(*arrays)
     if unit in _AS_IS or unit == "1":
         return 1.0, "-" if unit == "1" else unit
     return scaled(*(array.to_numpy() for array in arrays), unit=unit)
 
 
-def label_axis(ax: Axes, which: str, *arrays: xr.DataArray, text: str = "") -> float:
-    """Label the axis "x" or "y" by ``text`` or name, and unit of results; return their divisor."""
+def label_axis(ax: Axes, axis: str, *arrays: xr.DataArray, text: str = "") -> float:
+    """Label the axis "x" or "y" with ``text``, or the name, and the unit of results. Return the divisor."""
     factor, unit = scale_of(*arrays)
     name = text or str(arrays[0].attrs["long_name"])
-    ax.set(**{f"{which}label": f"{name} [{unit}]"})
+    ax.set(**{f"{axis}label": f"{name} [{unit}]"})
     return factor
 
 
 def draw_curves(ax: Axes, data: xr.Dataset, names: list[str], text: str = "", **style: Any) -> None:
-    """Draw variables of one unit over their coordinate, labelled by themselves; ``text`` names several."""
+    """Draw variables of one unit over their common coordinate. ``text`` labels the y axis."""
     curves = [data[name] for name in names]
     x = data[str(curves[0].dims[0])]
     across = label_axis(ax, "x", x)
@@ -60,7 +61,7 @@ def draw_curves(ax: Axes, data: xr.Dataset, names: list[str], text: str = "", **
 
 
 def drawn(ax: Axes, name: str) -> FloatArray:
-    """Values (2, n) of the curve that ``draw_curves`` made of a variable, as drawn."""
+    """Return the values (2, n) of the curve of a variable, as ``draw_curves`` has drawn it."""
     line = next(line for line in ax.lines if line.get_gid() == name)
     return np.asarray(line.get_xydata(), dtype=np.float64).T
 
@@ -68,7 +69,7 @@ def drawn(ax: Axes, name: str) -> FloatArray:
 def cycle_figure(
     data: xr.Dataset, names: list[str], text: str = "", size: tuple[float, float] = (2.7, WIDTH)
 ) -> Figure:
-    """Curves of one unit over their coordinate; ``text`` labels several; ``size`` in inches."""
+    """Draw curves of one unit over their coordinate. ``text`` labels the y axis; ``size`` [inch]."""
     figure, ax = one_panel(*size)
     draw_curves(ax, data, names, text=text)
     x = data[str(data[names[0]].dims[0])].to_numpy()
@@ -80,7 +81,7 @@ def cycle_figure(
 
 
 def two_panels_figure(data: xr.Dataset, top: list[str], bottom: list[str], texts: tuple[str, str]) -> Figure:
-    """Curves of two units over a common coordinate, one panel each; ``texts`` label the vertical axes."""
+    """Draw curves of two units over a common coordinate, one panel each. ``texts`` label the y axes."""
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     for ax, names, text in zip(axes[:, 0], (top, bottom), texts, strict=True):
         draw_curves(ax, data, names, text=text)
@@ -94,7 +95,10 @@ def two_panels_figure(data: xr.Dataset, top: list[str], bottom: list[str], texts
 
 
 def losses_figure(data: xr.Dataset) -> Figure:
-    """Loss of the mesh [%] by friction law; attributes ``titles``, and ``own``, the place of the own law."""
+    """Draw the loss of the mesh [%] by friction law.
+
+    Attributes of ``data``: ``titles`` of the laws, and ``own``, the number of the law of the pair.
+    """
     loss = data["loss"]
     figure, ax = one_panel(0.8 + 0.35 * loss.size)
     label_axis(ax, "x", loss)

@@ -26,7 +26,7 @@ _BAR_WIDTH = 44
 def map_figure(
     values: xr.DataArray, x: str, y: str, *, log: bool = False, height: float = 3.4
 ) -> tuple[Figure, Axes]:
-    """Return a figure of a result over two of its coordinates, and its panel; ``height`` [inch]."""
+    """Return the figure of a result over two of its coordinates, and its axes. ``height`` [inch]."""
     figure, ax = one_panel(height)
     values = values.transpose(y, x).sortby([x, y])
     factor, unit = scale_of(values)
@@ -54,9 +54,11 @@ def map_figure(
 
 
 def orders_map_figure(data: xr.Dataset, operating_rpm: float, resonances: list[float]) -> Figure:
-    """Orders of the bearing force over speed, with the speeds at which an order meets a natural frequency.
+    """Draw orders of the bearing force over speed, and the speeds at which an order meets a natural
+    frequency.
 
-    ``data``: ``amplitude`` over ``speed_rpm`` and ``order``; ``resonances``: of the first order [rpm].
+    ``data``: ``amplitude`` over ``speed_rpm`` and ``order``; ``resonances``: resonant speeds of order 1
+    [rpm].
     """
     figure, ax = map_figure(data["amplitude"], "speed_rpm", "order", log=True)
     low, high = ax.get_xlim()
@@ -71,7 +73,9 @@ def orders_map_figure(data: xr.Dataset, operating_rpm: float, resonances: list[f
 
 
 def waterfall_figure(data: xr.Dataset, frequencies: Iterable[float] = ()) -> Figure:
-    """Amplitudes of a run-up over frequency and speed; mesh orders are rays, natural frequencies upright.
+    """Draw the amplitudes of a run-up over frequency and speed.
+
+    Mesh orders are rays, natural frequencies vertical lines.
 
     Parameters
     ----------

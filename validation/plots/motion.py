@@ -16,9 +16,9 @@ from lumped.model.steady import UNSTABLE
 from validation.plots.style import (
     BLACK,
     BLUE,
-    DASHES,
+    DOTTED,
+    GREEN,
     GREY,
-    LINES,
     RED,
     legend_above,
     legend_outside,
@@ -34,7 +34,7 @@ _SHOWN_CYCLES = 2
 
 
 def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
-    """Transmission error, and normal load per tooth pair, over the time of a run.
+    """Draw the transmission error, and the normal load of each tooth pair, over the time of a run.
 
     ``result``: dataset of ``simulate`` or ``steady_state`` of either model.
     """
@@ -54,10 +54,10 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
 
 
 def sweep_figure(sweep: xr.Dataset, operating_rpm: float, static_load: float) -> Figure:
-    """Peak to peak of the transmission error, and largest and smallest tooth load, over pinion speed.
+    """Draw the peak to peak of the transmission error, and the largest and smallest tooth load, over speed.
 
-    Crosses mark unstable motions. ``sweep`` is of ``lumped.speed_sweep``; loads are over ``static_load``,
-    T_p/r_bp [N].
+    Crosses mark unstable motions. ``sweep``: result of ``lumped.speed_sweep``; ``static_load``: T_p/r_bp
+    [N], by which loads are divided.
     """
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     top, bottom = axes[:, 0]
@@ -71,7 +71,7 @@ def sweep_figure(sweep: xr.Dataset, operating_rpm: float, static_load: float) ->
     top.set_ylim(0.0, None)
     low = sweep["normal_load_min"].to_numpy() / static_load
     bottom.plot(speed, sweep["normal_load_max"].to_numpy() / static_load, color=BLUE, label="largest")
-    bottom.plot(speed, low, color=LINES[2], linestyle="--", label="smallest")
+    bottom.plot(speed, low, color=GREEN, linestyle="--", label="smallest")
     apart = np.nan_to_num(low) < 0.0
     if apart.any():
         shade: dict[str, Any] = {"color": RED, "alpha": 0.3, "linewidth": 0}
@@ -86,7 +86,7 @@ def sweep_figure(sweep: xr.Dataset, operating_rpm: float, static_load: float) ->
 
 
 def overlay_figure(points: xr.Dataset) -> Figure:
-    """Measured means per phase bin with their scatter, and the prediction: ``points`` of an Evaluation."""
+    """Draw ``points`` of an Evaluation: measured means with their scatter, and the prediction."""
     names = [str(name) for name in points["channel"].to_numpy()]
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)
@@ -114,10 +114,10 @@ def overlay_figure(points: xr.Dataset) -> Figure:
 def cross_check_figure(
     g: Geometry, reference: xr.Dataset, others: Mapping[str, xr.Dataset], keep: NDArray[np.bool_]
 ) -> Figure:
-    """Transmission error of all models over the last mesh cycles, and the differences to the lumped one.
+    """Draw the transmission error of all models over the last mesh cycles, and the differences to ``lumped``.
 
-    ``others``: fidelity -> multibody motion at the times of ``reference``; ``keep``: which times lie off the
-    switches. The others belong to either side of a jump, so no difference is drawn.
+    ``others``: fidelity -> multibody motion at the times of ``reference``; ``keep``: whether a time is off
+    the switches. A time at a switch may belong to either side of a jump: no difference is drawn there.
     """
     figure, axes = new_figure(2, 1, height=3.9, sharex=True, height_ratios=(1.6, 1.0))
     top, bottom = axes[:, 0]
@@ -128,15 +128,17 @@ def cross_check_figure(
     factor = scale_y(top, "transmission error", "m", base)
     top.plot(x, base / factor, color=BLACK, linewidth=2.6, alpha=0.35, label="lumped")
     colours = {"linear": BLUE, "exact": RED}
-    dashes = {"linear": DASHES[2], "exact": DASHES[0]}
+    dashes = {"linear": DOTTED, "exact": "-"}
     for name, result in others.items():
         look_of: dict[str, Any] = {"color": colours[name], "linestyle": dashes[name], "linewidth": 1.2}
         top.plot(x, result["dte"].to_numpy()[shown] / factor, **look_of, label=f"multibody {name}")
     # The linear difference is integration error, nine decades down: it is a number in the table, not a curve.
     drawn = [name for name in others if name != "linear"] or list(others)
-    off = [np.where(keep[shown], others[name]["dte"].to_numpy()[shown] - base, np.nan) for name in drawn]
-    factor = scale_y(bottom, f"{' and '.join(drawn)} -\nlumped", "m", *off)
-    for name, difference in zip(drawn, off, strict=True):
+    differences = [
+        np.where(keep[shown], others[name]["dte"].to_numpy()[shown] - base, np.nan) for name in drawn
+    ]
+    factor = scale_y(bottom, f"{' and '.join(drawn)} -\nlumped", "m", *differences)
+    for name, difference in zip(drawn, differences, strict=True):
         bottom.plot(x, difference / factor, color=colours[name], linewidth=1.0)
     bottom.axhline(0.0, color=BLACK, linewidth=0.5)
     bottom.set(xlabel="time, last cycles of the run [mesh cycles]", xlim=(0.0, _SHOWN_CYCLES))

@@ -1,4 +1,4 @@
-"""The figure of a result: one name for all results of the main functions."""
+"""The figure of a result: one function for the results of all main functions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from validation.signals.orders import waterfall
 
 
 def _pair(result: xr.Dataset) -> GearPair:
-    """Gear pair that a run was made with."""
+    """Gear pair of a run."""
     return load_gear_pair(parse_toml(result.attrs["parameters"], "parameters of the result"))
 
 
@@ -80,7 +80,7 @@ def _spectrum(result: xr.Dataset) -> Figure:
 
 #: Mesh orders in the figure of a spectrum.
 _MESH_ORDERS = 10
-#: Variable that no kind of result below has -> its figure.
+#: Variable -> figure of a result with this variable. The first variable that a result has decides.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "holds": compare_figure,
     "contact_kept": jump_map_figure,
@@ -100,7 +100,7 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
 }
 
 
-#: Variable -> its coordinate, words and units: what one curve of a result shows, the first that it has.
+#: Variable -> coordinate, words and unit of the main curve. The first variable that a result has decides.
 _CURVES = {
     "dte": ("time", "transmission error", "m"),
     "dte_peak_to_peak": ("speed", "transmission error,\npeak to peak", "m"),
@@ -138,20 +138,20 @@ def plot(result: Any, *, ax: Axes | None = None, labels: Sequence[str] = ()) -> 
     results = [one.cycle if isinstance(one, Prediction) else one for one in (result if several else [result])]
     for one in results:
         if not isinstance(one, xr.Dataset):
-            known = "a dataset, as simulate returns it, or a list of them"
+            allowed = "a dataset, as simulate returns it, or a list of them"
             action = "Call it: plot(mesh_stiffness(pair))." if callable(one) else "Draw plot(predict(pair))."
-            raise refuse("result", one, known, action)
+            raise refuse("result", one, allowed, action)
     if several or ax is not None:
         return _curves(results, ax, labels)
     for variable, draw in _FIGURES.items():
         if variable in results[0] and _is_main(results[0], variable):
             return draw(results[0])
-    known = "a result of simulate, steady_state, speed_sweep, stability_chart or campbell"
-    raise refuse("result", ", ".join(map(str, one.data_vars)), known, "Draw it with xarray's own .plot().")
+    allowed = "a result of simulate, steady_state, speed_sweep, stability_chart or campbell"
+    raise refuse("result", ", ".join(map(str, one.data_vars)), allowed, "Draw it with xarray's own .plot().")
 
 
 def _is_main(result: xr.Dataset, variable: str) -> bool:
-    """Whether a variable is over what its figure shows it over: samples of a number are no sweep."""
+    """Whether a variable has the coordinate of its figure. Samples of a number, for example, are no sweep."""
     if variable not in _CURVES:
         return True
     return set(result[variable].dims) <= {_CURVES[variable][0], "torque"}

@@ -25,19 +25,23 @@ from validation.plots.style import (
     write_beside,
 )
 
-#: Height and width of a figure of page 1, three of which stand side by side [inch].
+#: Height and width of a figure of page 1 [inch]. Three figures stand side by side.
 SMALL = (3.0, 4.2)
 _COLUMN = 26
 
 
 def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float, float] = SMALL) -> Figure:
-    """Peak to peak of the transmission error over speed, with its range and the motions beyond contact loss.
+    """Draw the peak to peak of the transmission error over speed, with range and motions beyond contact loss.
 
-    ``data`` has over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``pulling`` (the same motion
-    where a tooth pair pulls, NaN elsewhere), ``low`` and ``high`` where the inputs were varied; over
-    ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over ``jump_speed_rpm``:
-    ``jump_from``, ``jump_to``; over ``roaming_speed_rpm``: ``roaming``, what does not repeat. ``size``:
-    height and width [inch].
+    Parameters
+    ----------
+    data : over ``speed_rpm`` the linear motion ``linear`` and, where a tooth pair pulls, ``pulling``;
+        ``low`` and ``high`` where the inputs were varied. Over ``motion_speed_rpm`` the motions with
+        unilateral contact ``motion`` with ``motion_stable``; over ``jump_speed_rpm`` the jumps
+        ``jump_from`` and ``jump_to``; over ``roaming_speed_rpm`` beats and chaos ``roaming``. NaN: there is
+        no such motion at the speed
+    operating_rpm : operating speed, which is marked [rpm]
+    size : height and width [inch]
     """
     figure, ax = one_panel(*size)
     speed = data["speed_rpm"]
@@ -47,7 +51,8 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     factor = label_axis(ax, "y", *shared, text="transmission error, p-p")
     x = speed.to_numpy()
     if "low" in data:
-        low, high = data["low"].to_numpy() / factor, data["high"].to_numpy() / factor
+        low = data["low"].to_numpy() / factor
+        high = data["high"].to_numpy() / factor
         ax.fill_between(x, low, high, color=SKY, alpha=0.4, linewidth=0.0, label="5 to 95 % of the samples")
     if not linear.isnull().all():
         ax.plot(x, linear.to_numpy() / factor, color=BLUE, linewidth=1.6, gid="linear", label="as given")
@@ -69,7 +74,7 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
             look_of: Any = {"linestyle": "none", "marker": "x", "markersize": 3.5, "color": ORANGE}
             roams = data["roaming"].to_numpy() / factor
             ax.plot(data["roaming_speed_rpm"].to_numpy(), roams, label="beats or chaos", **look_of)
-        for at, start, end in zip(
+        for jump_speed, start, end in zip(
             data["jump_speed_rpm"].to_numpy(),
             data["jump_from"].to_numpy() / factor,
             data["jump_to"].to_numpy() / factor,
@@ -77,7 +82,10 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
         ):
             if np.isfinite(end):
                 ax.annotate(
-                    "", (at, end), xytext=(at, start), arrowprops={"arrowstyle": "->", "color": ORANGE}
+                    "",
+                    (jump_speed, end),
+                    xytext=(jump_speed, start),
+                    arrowprops={"arrowstyle": "->", "color": ORANGE},
                 )
     ax.axvline(operating_rpm, color=BLACK, linewidth=0.9, linestyle="--")
     write_beside(ax, f"{operating_rpm:.5g} rpm", (operating_rpm, 1.0), (0, 2), IN_X, ha="center")
@@ -90,7 +98,7 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
 
 
 def orders_figure(data: xr.Dataset) -> Figure:
-    """Amplitudes of a force by mesh order; ``low`` and ``high`` where the inputs were varied."""
+    """Draw the amplitudes of a force by mesh order, with ``low`` and ``high`` of varied inputs."""
     figure, ax = one_panel(*SMALL)
     order = data["order"]
     amplitude = data["amplitude"]
@@ -110,15 +118,17 @@ def orders_figure(data: xr.Dataset) -> Figure:
 
 
 def swings_figure(data: xr.Dataset) -> Figure:
-    """How far each input alone moves the result: bars from its 5 to its 95 % value, the largest on top."""
+    """Draw the swing of the result with each input alone, from its 5 % to its 95 % value."""
     figure, ax = one_panel(*SMALL)
-    low, high = data["low"], data["high"]
+    low = data["low"]
+    high = data["high"]
     factor = label_axis(ax, "x", low, high, text=str(data.attrs["quantity"]))
     place = np.arange(low.size)[::-1]
-    start, end = low.to_numpy() / factor, high.to_numpy() / factor
-    given = float(data.attrs["given"]) / factor
+    start = low.to_numpy() / factor
+    end = high.to_numpy() / factor
+    nominal = float(data.attrs["given"]) / factor
     ax.barh(place, end - start, left=start, height=0.6, color=BLUE)
-    ax.axvline(given, color=BLACK, linewidth=1.0)
+    ax.axvline(nominal, color=BLACK, linewidth=1.0)
     ax.set_yticks(place, [textwrap.fill(name, _COLUMN) for name in data.attrs["names"]])
     ax.set_ylabel("input")
     ax.grid(False, axis="y")
@@ -126,22 +136,22 @@ def swings_figure(data: xr.Dataset) -> Figure:
 
 
 def budget_figure(data: xr.Dataset) -> Figure:
-    """Every error of the prediction as a bar on a logarithmic axis: ``share`` [%] over ``row``."""
+    """Draw every error of the prediction as a bar on a logarithmic axis: ``share`` [%] over ``row``."""
     share = data["share"]
     figure, ax = one_panel(0.6 + 0.32 * share.size)
     label_axis(ax, "x", share)
     place = np.arange(share.size)[::-1]
     values = share.to_numpy()
-    known = np.isfinite(values) & (values > 0.0)
-    floor = 10.0 ** np.floor(np.log10(values[known].min(initial=1e-3)) - 0.5)
+    is_known = np.isfinite(values) & (values > 0.0)
+    floor = 10.0 ** np.floor(np.log10(values[is_known].min(initial=1e-3)) - 0.5)
     largest = list(data["row"].to_numpy()).index(data.attrs["largest"])
     colours = [RED if i == largest else BLUE for i in range(values.size)]
-    ax.barh(place, np.where(known, values, floor), left=0.0, height=0.6, color=colours)
+    ax.barh(place, np.where(is_known, values, floor), left=0.0, height=0.6, color=colours)
     ax.set_xscale("log")
-    ax.set_xlim(floor, max(200.0, 2.0 * float(values[known].max(initial=0.0))))
-    for at, value, fine in zip(place, values, known, strict=True):
+    ax.set_xlim(floor, max(200.0, 2.0 * float(values[is_known].max(initial=0.0))))
+    for bar, value, fine in zip(place, values, is_known, strict=True):
         words = f"{number(value, 2)} %" if fine else "0" if value == 0.0 else "not known"
-        write_beside(ax, words, (value if fine else floor, at), (3, 0), va="center")
+        write_beside(ax, words, (value if fine else floor, bar), (3, 0), va="center")
     ax.set_yticks(place, list(data.attrs["names"]))
     ax.set_ylabel("error")
     ax.grid(False, axis="y")
@@ -149,7 +159,7 @@ def budget_figure(data: xr.Dataset) -> Figure:
 
 
 def overlay_figure(data: xr.Dataset) -> Figure:
-    """One quantity by two programs over a mesh cycle, and their difference below."""
+    """Draw one quantity by two programs over a mesh cycle, and their difference below."""
     from validation.plots.axes import draw_curves
     from validation.plots.style import new_figure
 

@@ -37,7 +37,7 @@ from validation.plots.style import (
 )
 
 UNSTABLE = "#f2a26b"
-"""Fill of what is unstable."""
+"""Colour of unstable regions."""
 #: Behind text that lies on a picture.
 WHITE_BOX: dict[str, Any] = {
     "boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85,
@@ -51,28 +51,29 @@ _GAP = 1.25 * _FONT / (72.0 * WIDTH * 5.0 / 6.0)
 
 def stability_figure(
     chart: xr.Dataset,
-    at: Mapping[str, float] | None = None,
+    operating_point: Mapping[str, float] | None = None,
     regions: Sequence[LabelledRegion | TongueMargin] = (),
     lines: Mapping[str, float] | None = None,
 ) -> Figure:
-    """How fast disturbances decay over the two axes of a chart, edges of instability as lines; or over one.
+    """Draw how fast disturbances decay over the axes of a chart, with the edges of instability as lines.
 
-    Unstable regions are hatched, undecided nodes dotted; a cross marks a region that is at most two nodes
-    wide, beside which thinner ones may exist. A red dot marks a cell that a proof was tried for in vain.
+    Unstable regions are hatched, undecided nodes dotted. A cross marks a region that is at most two nodes
+    wide: thinner regions may exist beside it. A red dot marks a cell that a proof could not decide. A chart
+    of one axis is drawn as a line.
 
     Parameters
     ----------
     chart : dataset of ``floquet.stability_chart``
-    at : name of an axis -> value at the operating point, which is marked
-    regions : over the speed and a second axis, unstable regions to name, of
-        ``floquet.gear.chart.label_regions``; over mesh damping also traced tongues, of
-        ``stability_margins``, whose edges are then drawn
-    lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
+    operating_point : name of each axis -> value at the operating point, which is marked
+    regions : unstable regions over speed and a second axis, from ``floquet.gear.chart.label_regions``,
+        which are named; over mesh damping also traced tongues from ``stability_margins``, whose edges are
+        drawn
+    lines : label of a tongue -> predicted speed (omega_i +- omega_j)/k [rpm], drawn dotted for named tongues
     """
     dims = map(str, chart["spectral_radius"].dims)
     x, *rest = sorted(dims, key=lambda name: name != "speed_rpm")  # speed runs to the right
     if not rest:
-        return _line_figure(chart, x, (at or {}).get(x))
+        return _line_figure(chart, x, (operating_point or {}).get(x))
     y = rest[0]
     figure, ax = one_panel(3.4)
     chart = chart.sortby([x, y])
@@ -96,7 +97,7 @@ def stability_figure(
     )
     ax.grid(False)
     if xs.size > 1 and ys.size > 1:
-        # What is undecided counts as far below 0 as its neighbours are above: the edge lies between.
+        # An undecided node counts as far below 0 as its neighbours are above: the edge lies between.
         excess = np.where(undecided, 0.0, np.maximum(values, 0.0))
         decided = np.where(undecided, -1e-9 - maximum_filter(excess, size=3), values)
         if (decided > 0.0).any():
@@ -109,15 +110,15 @@ def stability_figure(
         i, j = np.nonzero(chart["cell_verdict"].transpose(f"{x}_cell", f"{y}_cell").to_numpy() == 0)
         places = chart[f"{x}_cell"].to_numpy()[i], chart[f"{y}_cell"].to_numpy()[j]
         ax.plot(*places, ".", color=RED, markersize=1.5, markeredgewidth=0.0, zorder=3, label="not proven")
-    if at is not None:
-        mark_operating_point(ax, (at[x], at[y]))
+    if operating_point is not None:
+        mark_operating_point(ax, (operating_point[x], operating_point[y]))
     if x == "speed_rpm":
         _name_regions(ax, regions, lines or {})
     return figure
 
 
 def _growth(chart: xr.Dataset) -> tuple[xr.DataArray, str]:
-    """Growth rate of the worst disturbance and its unit: 1/s of a gear pair, else of one period."""
+    """Growth rate of the worst disturbance and the unit: 1/s for a gear pair, else per period."""
     radius = chart["spectral_radius"].clip(min=1e-12)
     each = radius.copy(data=np.log(radius.to_numpy()))
     if "mesh_cycles_per_revolution" not in chart.attrs:
@@ -127,7 +128,7 @@ def _growth(chart: xr.Dataset) -> tuple[xr.DataArray, str]:
 
 
 def _mark_thin(ax: Axes, chart: xr.Dataset, x: str, y: str) -> None:
-    """Mark unstable regions of at most two nodes, over speed or else the first axis."""
+    """Mark unstable regions that are at most two nodes wide, over speed or else the first axis."""
     if "region_width" not in chart:
         return
     along = "speed_rpm" if x == "speed_rpm" else str(chart["spectral_radius"].dims[0])
@@ -138,7 +139,7 @@ def _mark_thin(ax: Axes, chart: xr.Dataset, x: str, y: str) -> None:
 
 
 def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
-    """Spectral radius along the one axis of a chart."""
+    """Spectral radius over the single axis of a chart."""
     figure, ax = one_panel(2.9)
     radius = chart["spectral_radius"].sortby(x)
     xs = radius[x].to_numpy()
@@ -158,7 +159,7 @@ def _line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
 
 
 def _certificate(chart: xr.Dataset) -> str:
-    """What the errors behind a chart are, in words."""
+    """Words on the error bounds of a chart."""
     kind = str(chart.attrs["certificate"])
     words = f"error bounds: {'partly proven' if kind == 'mixed' else kind}"
     share = float(chart["known"].mean()) if "known" in chart else 1.0
@@ -168,17 +169,18 @@ def _certificate(chart: xr.Dataset) -> str:
 def _field(
     ax: Axes, xs: FloatArray, ys: FloatArray, values: FloatArray, norm: Normalize
 ) -> AxesImage | QuadMesh:
-    """Draw values (y, x) at their nodes: an image on an even grid, however large, or else a mesh of cells."""
+    """Draw values (y, x) at their nodes: an image on an even grid, else a mesh of cells."""
     style: dict[str, Any] = {"cmap": COLOURS, "norm": norm}
-    # A node that was moved onto the operating point by less than half a step leaves a grid even enough.
+    # A grid is even enough if a node was moved onto the operating point by less than half a step.
     steps = [np.abs(v - np.linspace(v[0], v[-1], v.size)) for v in (xs, ys)]
     even = (
-        v.size > 1 and off.max() <= 0.5 * (v[-1] - v[0]) / (v.size - 1)
-        for v, off in zip((xs, ys), steps, strict=True)
+        v.size > 1 and distance.max() <= 0.5 * (v[-1] - v[0]) / (v.size - 1)
+        for v, distance in zip((xs, ys), steps, strict=True)
     )  # fmt: skip
     if not all(even):
         return ax.pcolormesh(xs, ys, values, **style, shading="nearest", rasterized=True, zorder=0)
-    dx, dy = 0.5 * (xs[-1] - xs[0]) / (xs.size - 1), 0.5 * (ys[-1] - ys[0]) / (ys.size - 1)
+    dx = 0.5 * (xs[-1] - xs[0]) / (xs.size - 1)
+    dy = 0.5 * (ys[-1] - ys[0]) / (ys.size - 1)
     extent = (xs[0] - dx, xs[-1] + dx, ys[0] - dy, ys[-1] + dy)
     return ax.imshow(values, **style, extent=extent, origin="lower", aspect="auto")
 
@@ -200,8 +202,9 @@ def _hatch(
 def _name_regions(
     ax: Axes, regions: Sequence[LabelledRegion | TongueMargin], lines: Mapping[str, float]
 ) -> None:
-    """Name each tongue at its largest region; fill traced tongues, which may be thinner than the grid."""
-    (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    """Name each tongue at its largest region. Fill traced tongues, which may be thinner than the grid."""
+    low, high = ax.get_xlim()
+    bottom, top = ax.get_ylim()
     largest: dict[str, tuple[float, float]] = {}
     for region in regions:
         if isinstance(region, TongueMargin):
@@ -226,17 +229,17 @@ def _name_regions(
             ax.axvline(speed, color=GREY, linewidth=0.7, linestyle=(0, (1, 2)))
 
 
-def boundaries_figure(found: xr.Dataset) -> Figure:
-    """Unstable speeds over another parameter, every tongue named.
+def boundaries_figure(boundaries: xr.Dataset) -> Figure:
+    """Draw unstable speeds over another parameter, with the name of every tongue.
 
-    ``found``: dataset of ``floquet.stability_boundaries`` with one more axis.
+    ``boundaries``: dataset of ``floquet.stability_boundaries`` with one more axis.
     """
-    (name,) = (str(dim) for dim in found.dims if dim not in ("tongue", "interval", "speed_rpm"))
+    (name,) = (str(dim) for dim in boundaries.dims if dim not in ("tongue", "interval", "speed_rpm"))
     figure, ax = one_panel(3.4)
-    values = found[name].to_numpy()
+    values = boundaries[name].to_numpy()
     rows: list[tuple[str, float, float]] = []
-    for row in range(found.sizes["tongue"]):
-        tongue = found.isel(tongue=row)
+    for row in range(boundaries.sizes["tongue"]):
+        tongue = boundaries.isel(tongue=row)
         lower, upper = (
             tongue[f"interval_{edge}"].transpose(name, ...).to_numpy() for edge in ("lower", "upper")
         )
@@ -249,19 +252,20 @@ def boundaries_figure(found: xr.Dataset) -> Figure:
         rows.append((str(tongue["label"].item()), float(tongue["peak"][last]), np.nanmax(upper - lower)))
     ax.set_ylim(values.min(), values.max())
     if rows:
-        low, high = float(found["lower"].min()), float(found["upper"].max())
+        low = float(boundaries["lower"].min())
+        high = float(boundaries["upper"].max())
         aside = 0.05 * (high - low)
         ax.set_xlim(low - aside, high + aside)
         label_above(ax, *zip(*rows, strict=True))
     else:
         ax.set_xticks([])
         ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
-    ax.set(xlabel="pinion speed [rpm]", ylabel=axis_label(found, name))
+    ax.set(xlabel="pinion speed [rpm]", ylabel=axis_label(boundaries, name))
     return figure
 
 
 def campbell_figure(diagram: xr.Dataset, operating_rpm: float | None = None) -> Figure:
-    """Frequencies of the Floquet solutions and their growth over pinion speed.
+    """Draw the frequencies of the Floquet solutions, and their decay rates, over pinion speed.
 
     ``diagram``: dataset of ``floquet.gear.tongues.campbell``.
     """
@@ -306,14 +310,15 @@ def campbell_figure(diagram: xr.Dataset, operating_rpm: float | None = None) -> 
 
 
 def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
-    """Circle at the point and its name beside it, on the side where there is room; nothing when outside."""
-    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
-    if not (left <= point[0] <= right and bottom <= point[1] <= top):
+    """Draw a circle at the point, with words on the side with more space; nothing for a point outside."""
+    lowest_x, highest_x = ax.get_xlim()
+    lowest_y, highest_y = ax.get_ylim()
+    if not (lowest_x <= point[0] <= highest_x and lowest_y <= point[1] <= highest_y):
         return
     style: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": BLACK, "markeredgewidth": 1.6}
     ax.plot(*point, marker="o", markersize=8, **style, clip_on=False, zorder=5)
-    east = point[0] < 0.5 * (left + right)
-    height = (point[1] - bottom) / (top - bottom)
+    east = point[0] < 0.5 * (lowest_x + highest_x)
+    height = (point[1] - lowest_y) / (highest_y - lowest_y)
     north = height < 0.5
     shift = 7 if north else -7
     aside = (8, "left") if east else (-8, "right")
@@ -324,7 +329,7 @@ def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
 
 
 def mark_operating_value(ax: Axes, value: float | None, words: str = "operating point") -> None:
-    """Dashed line at the operating point's value on the x axis, named beside it; nothing when outside."""
+    """Draw a dashed line at a value on the x axis, with words; nothing for a value outside."""
     low, high = sorted(ax.get_xlim())
     if value is None or not low <= value <= high:
         return
@@ -333,7 +338,7 @@ def mark_operating_value(ax: Axes, value: float | None, words: str = "operating 
 
 
 def axis_label(chart: xr.Dataset, name: str) -> str:
-    """Plain name and unit of an axis of a chart, in lines that fit the height of a figure."""
+    """Return plain name and unit of an axis of a chart, in lines that fit the height of a figure."""
     attrs = chart[name].attrs
     unit = attrs.get("units", "1")
     return textwrap.fill(f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]", 40)
@@ -342,28 +347,27 @@ def axis_label(chart: xr.Dataset, name: str) -> str:
 def spread(places: Sequence[float] | FloatArray, gap: float, low: float, high: float) -> FloatArray:
     """Move increasing places apart to at least ``gap``, within [low, high], by the least sum of squares.
 
-    With p_i = place_i - i gap the wanted positions minimise sum (q_i - p_i)^2 for increasing q_i, which is
-    isotonic regression. The gap shrinks where they do not fit otherwise.
+    The new positions q_i + i gap minimise sum (q_i - p_i)^2 for increasing q_i, with p_i = place_i - i gap:
+    this is isotonic regression. The gap is smaller where the places do not fit otherwise.
     """
     wanted = np.asarray(places, dtype=float)
     if wanted.size == 0:
         return wanted
     step = min(gap, (high - low) / max(wanted.size - 1, 1))
     offsets = step * np.arange(wanted.size)
-    moved = isotonic_regression(wanted - offsets).x
-    return np.asarray(np.clip(moved, low, high - offsets[-1]) + offsets)
+    increasing = isotonic_regression(wanted - offsets).x
+    return np.asarray(np.clip(increasing, low, high - offsets[-1]) + offsets)
 
 
 def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights: Sequence[float]) -> None:
     """Write names upright above the axes, joined to their places by thin lines.
 
-    The limits along x must be set. Where there are more names than fit, those of the largest weights are
-    written.
+    The limits along x must be set. Where not all names fit, the names with the largest weights are written.
     """
     low, high = sorted(ax.get_xlim())
     gap = _GAP * (high - low)
-    room = int((high - low) / gap)
-    shown = sorted(sorted(range(len(names)), key=lambda i: -weights[i])[:room], key=lambda i: places[i])
+    most = int((high - low) / gap)
+    shown = sorted(sorted(range(len(names)), key=lambda i: -weights[i])[:most], key=lambda i: places[i])
     upper = ax.get_xaxis_transform()
     thin: dict[str, Any] = {"color": GREY, "linewidth": 0.6, "transform": upper, "clip_on": False}
     words: dict[str, Any] = {"ha": "center", "va": "bottom", "rotation": 90, "fontsize": _FONT}
@@ -373,7 +377,7 @@ def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights
 
 
 def pretty(label: str) -> str:
-    """Label as written in text, with omega and indices: 2w3/5 -> 2ω₃/5."""
+    """Return a label as in a text, with omega and indices: 2w3/5 -> 2ω₃/5."""
     digits = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
     indexed = re.sub(r"w(\d*)", lambda found: "ω" + found[1].translate(digits), label)
     return indexed.removesuffix("/1").replace("-", "−")

@@ -1,4 +1,4 @@
-"""What all figures share: palette, axes, units, letters of the path of contact, and how they are written."""
+"""Common style of all figures: palette, axes, units, marks, and writing to a file."""
 
 from __future__ import annotations
 
@@ -19,16 +19,26 @@ from lumped.typing import FloatArray
 from validation.files.output import whole_file
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
-BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
-    "#000000", "#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7",
-)  # fmt: skip
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+GREEN = "#009E73"
+YELLOW = "#F0E442"
+BLUE = "#0072B2"
+RED = "#D55E00"
+PURPLE = "#CC79A7"
 #: Colours of lines in order; yellow is too pale for a line on white.
 LINES = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK)
+#: Line style of short dots.
+DOTTED = (0, (1.2, 1.2))
 #: Line styles that go with ``LINES``, so that colour is never the only difference.
-DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)), (0, (3, 1, 1, 1, 1, 1)), "-", ":")
+DASHES = ("-", (0, (5, 1.5)), DOTTED, (0, (6, 1.5, 1.2, 1.5)), (0, (3, 1, 1, 1, 1, 1)), "-", ":")
 GREY = "#6b6b6b"
-#: Coordinates of a place: one in data, the other as a share of the axes.
-IN_X, IN_Y = ("data", "axes fraction"), ("axes fraction", "data")
+#: Coordinates of a place: x in data, y as a share of the axes.
+IN_X = ("data", "axes fraction")
+#: Coordinates of a place: x as a share of the axes, y in data.
+IN_Y = ("axes fraction", "data")
+#: Width of a figure [inch].
 WIDTH = 7.2
 Point = tuple[float, float]
 _PREFIXES = (
@@ -64,10 +74,10 @@ def new_figure(
         figure = Figure(figsize=(width, height), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, **options)
     for ax in axes.flat:
-        wide = width * ax.get_position().width
-        tall = height * ax.get_position().height
-        ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * wide), 9)), steps=(1, 2, 5, 10))
-        ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * tall), 6)), steps=(1, 2, 5, 10))
+        panel_width = width * ax.get_position().width
+        panel_height = height * ax.get_position().height
+        ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * panel_width), 9)), steps=(1, 2, 5, 10))
+        ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * panel_height), 6)), steps=(1, 2, 5, 10))
         ax.tick_params(width=0.6, length=3, grid_color="#d9d9d9", grid_linewidth=0.5)
     return figure, axes
 
@@ -97,18 +107,18 @@ def legend_outside(figure: Figure, handles: Sequence[Artist], columns: int) -> N
 
 
 def look(index: int) -> dict[str, Any]:
-    """Colour and dashes of the line with this number, so that colour is never the only difference."""
+    """Return colour and dashes of the line with this number: colour is never the only difference."""
     return {"color": LINES[index % len(LINES)], "linestyle": DASHES[index % len(DASHES)]}
 
 
 def prefix(largest: float) -> tuple[float, str]:
-    """Factor and SI prefix that bring a number of this size between 1 and 1000."""
+    """Return factor and SI prefix that bring a number of this size between 1 and 1000."""
     smallest = (1.0, "") if largest == 0.0 else _PREFIXES[-1]
     return next((one for one in _PREFIXES if largest >= one[0]), smallest)
 
 
 def scaled(*values: Any, unit: str) -> tuple[float, str]:
-    """Divisor and prefixed unit for arrays that share an axis."""
+    """Return divisor and prefixed unit of arrays that share an axis."""
     finite = [np.asarray(v, dtype=float)[np.isfinite(np.asarray(v, dtype=float))] for v in values]
     largest = max((float(np.abs(v).max()) for v in finite if v.size), default=0.0)
     factor, name = prefix(largest)
@@ -116,20 +126,20 @@ def scaled(*values: Any, unit: str) -> tuple[float, str]:
 
 
 def scale_y(ax: Axes, words: str, unit: str, *values: Any) -> float:
-    """Label the y axis with words and the prefixed unit of what is drawn on it; return the divisor."""
+    """Label the y axis with words and the prefixed unit of the values. Return the divisor."""
     factor, name = scaled(*values, unit=unit)
     ax.set_ylabel(f"{words} [{name}]")
     return factor
 
 
 def mesh_cycles(result: xr.Dataset, g: Geometry) -> FloatArray:
-    """Time in mesh cycles from the start of the data."""
+    """Return the time in mesh cycles from the start of the data."""
     time = result["time"].to_numpy()
     return np.asarray((time - time[0]) / g.mesh_period, dtype=np.float64)
 
 
 def mark_operation(ax: Axes, place: float, words: str) -> None:
-    """Red line at the operating condition, named above the axes; nothing when outside."""
+    """Draw a red line at the operating condition, with words above the axes; nothing for a place outside."""
     low, high = sorted(ax.get_xlim())
     if not low <= place <= high:
         return
@@ -138,15 +148,15 @@ def mark_operation(ax: Axes, place: float, words: str) -> None:
 
 
 def write_beside(ax: Axes, words: str, place: Point, shift: Point, axes: Any = "data", **look: Any) -> None:
-    """Write words beside a place, shifted by points; ``axes``: its coordinates, data, IN_X or IN_Y."""
+    """Write words beside a place, shifted by points. ``axes``: coordinates, "data", IN_X or IN_Y."""
     look = {"fontsize": 8.0} | look
     ax.annotate(words, place, xycoords=axes, xytext=shift, textcoords="offset points", **look)
 
 
 def save(figure: Figure, path: Path, *, new: bool = False) -> None:
-    """Write a figure whole as SVG, PDF or PNG; the same figure gives the same bytes, without dates.
+    """Write a complete figure as SVG, PDF or PNG, without dates: the same figure gives the same bytes.
 
-    ``path``: its suffix names the format; ``new``: as for ``validation.files.output.whole_file``.
+    The suffix of ``path`` names the format; ``new`` as in ``validation.files.output.whole_file``.
     """
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}

@@ -10,7 +10,7 @@ from validation.plots.style import BLUE, RED, legend_above, new_figure, scale_y
 
 
 def turn_figure(data: xr.Dataset) -> Figure:
-    """Transmission error over the turns of the pinion, of the pair and of its twin with like teeth.
+    """Draw the transmission error over turns of the pinion, with unlike teeth and with like teeth.
 
     ``data``: ``dte`` and ``healthy`` over ``turn``.
     """
@@ -26,7 +26,7 @@ def turn_figure(data: xr.Dataset) -> Figure:
 
 
 def loads_figure(data: xr.Dataset) -> Figure:
-    """Largest load of each meeting pair, or of each tooth, over the mean mesh force.
+    """Draw the largest load of each meeting pair, or of each tooth, over the mean mesh force.
 
     ``data``: ``share`` over ``pinion_tooth`` and ``gear_tooth``, NaN for teeth that never meet; or over
     ``tooth``, with the attributes ``shaft`` and ``healthy``, the value of like teeth.

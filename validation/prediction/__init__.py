@@ -1,1 +1,1 @@
-"""The prediction for a pair, how its inputs move it, and how large each error is."""
+"""The prediction for a pair, the range with the uncertain inputs, and the size of each error."""

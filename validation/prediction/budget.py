@@ -21,13 +21,17 @@ from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from validation.prediction.motion import Motion, Prediction, measured, predicted, pulls
 
+#: Errors of ``COLUMNS`` [m, 1, N].
 Sizes = tuple[float, float, float]
-#: Quantities that a row tells: the first is the one of the bars.
+#: Quantities of a row. The bars of the figure show the first.
 COLUMNS = ("dte_peak_to_peak", "tooth_load", "bearing_rms")
 
 
 class Compared(Protocol):
-    """What the budget reads of a record: E of the transmission error [m], NaN where it was not measured."""
+    """Comparison with a record, as the budget reads it.
+
+    ``dte_error``: E of the peak to peak of the transmission error [m]; NaN: the record has no such channel.
+    """
 
     @property
     def dte_error(self) -> float: ...
@@ -35,8 +39,8 @@ class Compared(Protocol):
     def words(self) -> str: ...
 
 
-class Known(Protocol):
-    """What the budget reads; the report's shared results have it all."""
+class BudgetResults(Protocol):
+    """Results that the budget reads. The shared results of the report are of this kind."""
 
     pair: GearPair
 
@@ -56,10 +60,17 @@ class Known(Protocol):
 
 @dataclass(frozen=True)
 class Row:
-    """One error of the prediction: its sizes of ``COLUMNS`` [m, 1, N], NaN where they are not known.
+    """One error of the prediction.
 
-    ``kind`` is "numerics", "form", "inputs" or "measurement"; ``note`` what it is, or why it is not known.
-    ``form`` names another form of the model that is no poorer, ``result`` is its transmission error [m].
+    Attributes
+    ----------
+    key : name of the row
+    name : words of the row
+    kind : "numerics", "form", "inputs" or "measurement"
+    sizes : error of each of ``COLUMNS`` [m, 1, N]; NaN: not known
+    note : what the error is, or why the error is not known
+    form : name of another form of the model that is as good as the prediction; empty: there is none
+    result : transmission error in this form [m]
     """
 
     key: str
@@ -76,7 +87,7 @@ _UNKNOWN: Sizes = (np.nan, np.nan, np.nan)
 _POORER = ("linear", "contact", "supports")
 
 
-def error_budget(known: Known) -> xr.Dataset:
+def error_budget(results: BudgetResults) -> xr.Dataset:
     """Return the error budget of a pair at its operating point.
 
     Returns
@@ -86,22 +97,25 @@ def error_budget(known: Known) -> xr.Dataset:
     another form of the model; attributes ``names``, ``kinds``, ``notes``, ``forms``, the names of other forms
     that are no poorer, and ``largest``, the key of the largest row that is an error of the prediction itself
     """
-    prediction = known.like
-    rows = list(_rows(known))
+    prediction = results.like
+    rows = list(_rows(results))
     sizes = np.array([row.sizes for row in rows])
-    # Of a mesh that does not vibrate no error has a share.
-    share = 100.0 * sizes[:, 0] / (prediction.peak_to_peak or np.nan)
+    # In a mesh that does not vibrate no error has a share.
+    dte, tooth_load, bearing_force = sizes.T
+    share = 100.0 * dte / (prediction.peak_to_peak or np.nan)
     texts = ("transmission error, peak to peak", "largest tooth load", "bearing force, rms")
     columns = zip(
         ("dte", "tooth_force", "bearing_force"),
-        (sizes[:, 0], sizes[:, 1] * prediction.static_force, sizes[:, 2]),
+        (dte, tooth_load * prediction.static_force, bearing_force),
         ("m", "N", "N"),
         texts,
         strict=True,
     )
-    # The linear model and the other contact are poorer than the prediction: no errors of it.
-    own = np.array([np.nan if row.key in _POORER else size for row, size in zip(rows, share, strict=True)])
-    largest = rows[0 if np.isnan(own).all() else int(np.nanargmax(own))]
+    # The linear model and the other contact are poorer than the prediction: their rows are not its errors.
+    own_errors = np.array(
+        [np.nan if row.key in _POORER else size for row, size in zip(rows, share, strict=True)]
+    )
+    largest = rows[0 if np.isnan(own_errors).all() else int(np.nanargmax(own_errors))]
     return labelled_dataset(
         {
             "share": ("row", share, "%", "error, share of the transmission error's peak to peak"),
@@ -121,7 +135,7 @@ def error_budget(known: Known) -> xr.Dataset:
 
 
 def _apart(one: Prediction, other: Prediction | Absent) -> Sizes:
-    """Differences of ``COLUMNS``, not known where there is no other motion."""
+    """Differences of ``COLUMNS`` between two motions; NaN where there is no other motion."""
     if isinstance(other, Absent):
         return _UNKNOWN
     first = one.numbers
@@ -129,37 +143,37 @@ def _apart(one: Prediction, other: Prediction | Absent) -> Sizes:
     return tuple(abs(first[name] - second[name]) for name in COLUMNS)  # type: ignore[return-value]
 
 
-def _varied(known: Known, changes: dict[str, object] | str) -> Prediction | Absent:
-    """The prediction of a variation of the pair; a text says why there is none."""
+def _varied(results: BudgetResults, changes: dict[str, object] | str) -> Prediction | Absent:
+    """Prediction of a changed pair. ``changes`` is a text: the reason why there is no such prediction."""
     if isinstance(changes, str):
         return Absent(Outcome.FAILED, changes)
-    return _predicted(lambda pair: pair.with_(changes), known.pair)
+    return _predicted(lambda pair: pair.with_(changes), results.pair)
 
 
 def _predicted(vary: Callable[[GearPair], GearPair], pair: GearPair) -> Prediction | Absent:
-    """The prediction of a pair that is varied; absent where that is refused or has no motion."""
+    """Prediction of a varied pair. Absent: the variation is refused, or has no motion."""
     try:
         return predicted(vary(pair))
     except SpurcheckError as error:
         return Absent(Outcome.FAILED, str(error))
 
 
-def _rows(known: Known) -> Iterator[Row]:
-    """The errors in their order."""
-    own = known.like
-    pair = known.pair
-    linear = known.linear
-    found = known.uncertainty
+def _rows(results: BudgetResults) -> Iterator[Row]:
+    """All errors, in the order of the table."""
+    prediction = results.like
+    pair = results.pair
+    linear = results.linear
+    samples = results.uncertainty
     share = np.nan
-    same = known.same_equations
+    same = results.same_equations
     poorer: Prediction | Absent = (
         linear if isinstance(linear, Absent) else measured(pair, linear, Motion.LINEAR)
     )
-    for motion in (own.cycle, linear):  # an orbit has no steps
+    for motion in (prediction.cycle, linear):  # an orbit has no steps
         if not isinstance(motion, Absent) and "error_estimate" in motion.attrs:
             share = float(motion.attrs["error_estimate"])  # of every quantity
             break
-    sizes = share * own.peak_to_peak, share * own.tooth_load, share * own.bearing_rms
+    sizes = share * prediction.peak_to_peak, share * prediction.tooth_load, share * prediction.bearing_rms
     yield Row(
         "numerics",
         "numerical error",
@@ -167,16 +181,18 @@ def _rows(known: Known) -> Iterator[Row]:
         sizes,
         "estimated, by steps of another length" if np.isfinite(share) else _note(linear, ""),
     )
-    size, note = (np.nan, "the second program did not run") if same is None else (same * own.peak_to_peak, "")
+    size, note = (
+        (np.nan, "the second program did not run") if same is None else (same * prediction.peak_to_peak, "")
+    )
     yield Row("programs", "same equations in two programs", "numerics", (size, np.nan, np.nan), note)
     notes = [
         _linear_contact(pair, linear),
         *([] if pair.shafts is None else ["on springs, not on the shafts"]),
     ]
-    if own.motion is Motion.LINEAR:
+    if prediction.motion is Motion.LINEAR:
         notes[0] = "the prediction is this motion"
     note = _note(linear, "; ".join(notes))
-    yield Row("linear", "linear model, for charts", "form", _apart(own, poorer), note)
+    yield Row("linear", "linear model, for charts", "form", _apart(prediction, poorer), note)
     has_finite_elements = pair.mesh.stiffness.model == "finite_elements"
     stiffness: dict[str, object] | str = {"mesh.stiffness": {"model": "finite_elements"}}
     if has_finite_elements:
@@ -191,26 +207,26 @@ def _rows(known: Known) -> Iterator[Row]:
         stiffness = other_contact = "the stiffness of the whole mesh is given, with its contact"
     others: tuple[tuple[str, str, str, Prediction | Absent, str], ...] = (
         ("contact", "form of the contact", "prescribed from A to D, or following the load",
-         _varied(known, other_contact), form),
-        ("second", "exact contact and finite motions", "by the multibody model", known.second,
+         _varied(results, other_contact), form),
+        ("second", "exact contact and finite motions", "by the multibody model", results.second,
          "second program"),
         ("supports", "springs in place of shafts", "without the modes of the shafts",
          Absent(Outcome.FAILED, "no shafts are given") if pair.shafts is None else
          _predicted(without_shafts, pair), ""),
         ("stiffness", "tooth stiffness by finite elements", "plane finite elements of the whole gears",
-         _varied(known, stiffness),
+         _varied(results, stiffness),
          "tooth stiffness by finite elements"),
     )  # fmt: skip
     for key, name, note, other, form in others:
         result = np.nan if isinstance(other, Absent) else other.peak_to_peak
-        yield Row(key, name, "form", _apart(own, other), _note(other, note), form, result)
+        yield Row(key, name, "form", _apart(prediction, other), _note(other, note), form, result)
     half = _UNKNOWN
-    if isinstance(found, xr.Dataset):
-        ends = np.array([found[f"{name}_percentile"].to_numpy()[[0, -1]] for name in COLUMNS])
+    if isinstance(samples, xr.Dataset):
+        ends = np.array([samples[f"{name}_percentile"].to_numpy()[[0, -1]] for name in COLUMNS])
         half = tuple(0.5 * np.ptp(ends, axis=1))
-    note = "not computed" if isinstance(found, Absent) else "half the range of the samples"
+    note = "not computed" if isinstance(samples, Absent) else "half the range of the samples"
     yield Row("inputs", "inputs, 5 to 95 %", "inputs", half, note)
-    record = known.measured_error
+    record = results.measured_error
     size = np.nan
     note = "no measurement is given"
     if record is not None:
@@ -220,12 +236,12 @@ def _rows(known: Known) -> Iterator[Row]:
 
 
 def _linear_contact(pair: GearPair, linear: xr.Dataset | Absent) -> str:
-    """In what the contact of the linear motion differs from that of the prediction."""
+    """Sentence on the difference between the contact of the linear motion and of the prediction."""
     if isinstance(linear, Absent) or pulls(pair, linear):
         return "teeth pull in the linear motion"
     return "its contact and dampers are those of the mean load"
 
 
 def _note(motion: object, text: str) -> str:
-    """Why a motion is absent, else a text."""
+    """The reason why a motion is absent, else the text."""
     return (motion.detail or str(motion)) if isinstance(motion, Absent) else text

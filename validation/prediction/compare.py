@@ -1,7 +1,7 @@
-"""Is a variant better? Every variant runs in the same possible machines, and the share of them is counted.
+"""Is a variant better? All variants run in the same possible machines; the answer is a share of machines.
 
-A possible machine is one value of every uncertain input. What the variants have in common has the same value
-in all of them, so that a difference between two variants is that of the same machine.
+A possible machine has one value of every uncertain input. A shared input has the same value in all
+variants. The difference between two variants is therefore a difference in one machine.
 
 Sources: common random numbers, A. M. Law, Simulation Modeling and Analysis, 2015, section 11.2; interval of a
 share, C. J. Clopper and E. S. Pearson, Biometrika 26 (1934) 404.
@@ -56,23 +56,23 @@ RESULTS = {
     "bearing_rms": "bearing force",
     "efficiency": "efficiency",
 }
-#: The same of a result that is added where a variant has teeth that differ.
+#: Further result where a variant has unlike teeth -> short name.
 OF_TEETH = {"revolution_dte_peak_to_peak": "transmission error over all teeth"}
-#: Of these a larger one is better; of all others a smaller one.
+#: Results of which a larger value is better; of all others a smaller value is better.
 LARGER = frozenset({"efficiency"})
-#: Probability with which the interval of a share holds it.
+#: Probability that a share lies in its interval.
 SURE = 0.9
-#: A share of the machines from which on a variant counts as better, of two variants of the machines in which
-#: they differ; below it the inputs show no difference.
+#: A variant counts as better from this share of the machines; of two variants only machines in which they
+#: differ count. Below this share the inputs show no difference.
 CLEAR = 0.8
 #: Two results are equal where they differ by no more than this share of the larger one.
 _EQUAL = 1e-9
-#: Samples of which most must be left after refusals.
+#: Share of the samples that must have a prediction in every variant.
 _LEAST = 0.5
-#: Fields of the machine round the gears and of the model: their deviation is common to variants whose values
-#: differ, while a part of another size is another part, with a deviation of its own.
+#: Fields of the machine round the gears and of the model. Variants share their deviation even where the
+#: values differ. All other fields belong to a part: another value is another part with its own deviation.
 _COMMON = ("operating.*", "lubricant.*", "friction.*", "mesh.stiffness*", "mesh.damping_ratio", "*.inertia")
-#: What happens in some machines -> its short name.
+#: Flag of a machine -> short name.
 FLAGS = {
     "contact_lost": "contact is lost",
     "unstable": "unstable",
@@ -82,7 +82,13 @@ FLAGS = {
 
 @dataclass
 class _Draw:
-    """One random number of a machine: the inputs, by place of the variant, that take their values from it."""
+    """One random number of a machine.
+
+    Attributes
+    ----------
+    path : field of the input
+    inputs : number of each variant that uses the random number -> the input of the variant
+    """
 
     path: str
     inputs: dict[int, Input] = field(default_factory=dict)
@@ -98,10 +104,10 @@ def compare(
     seconds: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Return in which share of all possible machines one variant of a gear pair is better than another.
+    """Return the share of all possible machines in which one variant of a gear pair is better than another.
 
-    Each sample is one machine, in which every variant runs: an input that the variants share has the same
-    value in all of them. docs/how_to/compare.md says which inputs these are.
+    Each sample is one machine, in which every variant runs. A shared input has the same value in all
+    variants; docs/how_to/compare.md lists the shared inputs.
 
     Parameters
     ----------
@@ -109,25 +115,30 @@ def compare(
     others : one to 25 further variants, B, C, ...; teeth, speed and everything else may differ
     names : a text for each variant; default the names of the pairs
     samples : number of machines, 16 to 65536; powers of two fill the space most evenly
-    seed : of the scrambled Sobol points
+    seed : seed of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a variant that has them
-    seconds : processor time after which no further machine begins [s], a third of it for the inputs alone;
-        ``LEAST_SAMPLES`` machines are taken whatever they cost. None: all are taken
+    seconds : processor time after which no further machine begins [s]; a third of the time is for the inputs
+        alone. ``LEAST_SAMPLES`` machines are always computed. None: all machines are computed
     progress : called with the finished fraction
 
     Returns
     -------
-    xarray.Dataset over ``variant`` and ``other``, letters, ``result`` and ``sample``. Shares of the samples:
-    ``holds`` (result), in which all variants rank as with the values given, with ``holds_interval`` (result,
-    end), in which it lies with a probability of 0.9; ``better`` (result, variant, other), ``equal`` alike;
-    ``best`` (result, variant), in which no other variant is better. ``place`` (result, variant) is the rank
-    as given, and ``sentence`` (result) says it in words. Each result q in SI: ``q`` (variant, sample),
-    ``q_given`` (variant), ``q_difference`` (variant, other, percentile) of the paired differences. Smaller is
-    better, of the efficiency larger. Also shares of contact loss, instability and stand-ins by variant, and
-    ``share`` (input, sample), the drawn numbers. Attributes: ``taken`` of the machines ``asked`` for,
-    ``seconds``, the limit; ``refused`` (samples without a prediction in
-    some variant, which count in none), ``remarks`` (inputs that vary in some variants only, or whose range
-    hides a difference), ``parameters`` of A and ``parameters_B``, ...
+    xarray.Dataset over ``variant`` and ``other``, letters, ``result`` and ``sample``. Smaller is better,
+    for the efficiency larger. These variables are shares of the machines. ``holds`` (result): all variants
+    rank as with the values as given. ``holds_interval`` (result, end): interval of this share with a
+    probability of 0.9. ``better`` and ``equal`` (result, variant, other): the variant is better than the
+    other, or equal. ``best`` (result, variant): no other variant is better. ``contact_lost``, ``unstable``
+    and ``linear`` (variant): contact is lost, the motion is unstable, the linear motion stands in.
+
+    ``place`` (result, variant) is the rank with the values as given; ``sentence`` (result) has the answer
+    in words. Each result q is in SI: ``q`` (variant, sample), ``q_given`` (variant), and ``q_difference``
+    (variant, other, percentile), the differences in the same machine. ``share`` (input, sample) has the
+    drawn numbers.
+
+    Attributes: ``asked`` and ``taken``, the numbers of requested and of computed machines; ``seconds``, the
+    time limit; ``refused``, the number of samples in which a variant has no prediction, which do not count;
+    ``remarks`` on inputs that vary in some variants only, and on ranges that hide a difference;
+    ``parameters`` of A, ``parameters_B``, ...
 
     Raises
     ------
@@ -141,7 +152,7 @@ def compare(
     if not draws:
         action = "State ranges in [uncertainty], or sources that say what is assumed."
         raise refuse("uncertainty", "none", "at least one uncertain input", action)
-    own_teeth = any(one.healthy is not one for one in pairs)
+    unlike_teeth = any(one.healthy is not one for one in pairs)
     deadline = Deadline(
         None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
     )
@@ -150,46 +161,48 @@ def compare(
     done = 0
 
     def row(k: int, shares: Mapping[int, float]) -> FloatArray | None:
-        """Numbers of variant k with some draws, by their place, at these shares."""
+        """Numbers of variant k. ``shares``: number of a draw -> share of the distribution."""
         nonlocal done
         done += 1
         if progress is not None:
             progress(done / total)
-        own = [(draws[n].inputs[k], share) for n, share in shares.items() if k in draws[n].inputs]
-        return _numbers(pairs[k], own, own_teeth=own_teeth)
+        changes = [(draws[n].inputs[k], share) for n, share in shares.items() if k in draws[n].inputs]
+        return _numbers(pairs[k], changes, unlike_teeth=unlike_teeth)
 
-    given = [row(k, {}) for k in range(len(pairs))]
-    for k, one in enumerate(given):
+    nominal = [row(k, {}) for k in range(len(pairs))]
+    for k, one in enumerate(nominal):
         if one is None:
             name = f"{ascii_uppercase[k]} ({texts[k]})"
             raise NumericalError(f"{name} has no prediction with its values as given.")
-    as_given = np.stack([one for one in given if one is not None])
+    as_given = np.stack([one for one in nominal if one is not None])
     swings = np.full((len(draws), 2, as_given.shape[1]), np.nan)
     first = deadline.share(ALONE)
     for n, draw in enumerate(draws):
         if first.passed:
             break
         ends = [row(min(draw.inputs), {n: share}) for share in alone[n]]
-        if known := [one for one in ends if one is not None]:
-            swings[n] = np.min(known, axis=0), np.max(known, axis=0)
+        if valid_ends := [one for one in ends if one is not None]:
+            swings[n] = np.min(valid_ends, axis=0), np.max(valid_ends, axis=0)
     points = sobol_points(importance_of(swings), samples, seed)
     machines: list[list[FloatArray | None]] = []
     for point in points:
         if len(machines) >= LEAST_SAMPLES and deadline.passed:
             break
         machines.append([row(k, dict(enumerate(point.tolist()))) for k in range(len(pairs))])
-    kept = np.array([all(one is not None for one in machine) for machine in machines])
-    if kept.sum() < _LEAST * len(machines):
-        text = f"Only {kept.sum()} of {len(machines)} samples have a prediction in every variant"
+    complete = np.array([all(one is not None for one in machine) for machine in machines])
+    if complete.sum() < _LEAST * len(machines):
+        text = f"Only {complete.sum()} of {len(machines)} samples have a prediction in every variant"
         raise NumericalError(f"{text}: narrow the ranges in [uncertainty].")
-    table = np.array([machine for machine, whole in zip(machines, kept, strict=True) if whole])
-    results = (*RESULTS, *(OF_TEETH if own_teeth else ()))
-    found = _dataset(results, as_given, np.moveaxis(table, 1, 0), points[: len(machines)][kept], draws)
-    letters = list(map(str, found["variant"].to_numpy()))
-    found["name"] = ("variant", texts, {"units": "1", "long_name": "what the variant is"})
-    held = {
+    table = np.array(
+        [machine for machine, is_complete in zip(machines, complete, strict=True) if is_complete]
+    )
+    results = (*RESULTS, *(OF_TEETH if unlike_teeth else ()))
+    dataset = _dataset(results, as_given, np.moveaxis(table, 1, 0), points[: len(machines)][complete], draws)
+    letters = list(map(str, dataset["variant"].to_numpy()))
+    dataset["name"] = ("variant", texts, {"units": "1", "long_name": "what the variant is"})
+    attributes = {
         "supports": supports_of(pairs[0], None),
-        "teeth": "as given" if own_teeth else "alike",
+        "teeth": "as given" if unlike_teeth else "alike",
         "taken": len(machines),
         "asked": samples,
         "seconds": math.inf if seconds is None else float(seconds),
@@ -197,12 +210,12 @@ def compare(
         "seed": seed,
         "remarks": _remarks(draws, pairs, letters),
     }
-    held |= {f"parameters_{k}": one.to_toml() for k, one in zip(letters[1:], pairs[1:], strict=True)}
-    return found.assign_attrs(provenance(pairs[0], samples=samples, seed=seed) | held)
+    attributes |= {f"parameters_{k}": one.to_toml() for k, one in zip(letters[1:], pairs[1:], strict=True)}
+    return dataset.assign_attrs(provenance(pairs[0], samples=samples, seed=seed) | attributes)
 
 
 def _names(pairs: Sequence[GearPair], names: Sequence[str] | None) -> list[str]:
-    """What each variant is called; refused are too few, too many and equal variants."""
+    """Name of each variant. Too few, too many and equal variants are refused."""
     if not 2 <= len(pairs) <= len(ascii_uppercase):
         allowed = f"2 to {len(ascii_uppercase)}"
         raise refuse("variants", len(pairs), allowed, "Give another pair, or pair.with_(...).")
@@ -210,18 +223,18 @@ def _names(pairs: Sequence[GearPair], names: Sequence[str] | None) -> list[str]:
     plain = [one.with_(about) for one in pairs]
     for k, one in enumerate(plain):
         if one in plain[:k]:
-            which = f"{ascii_uppercase[plain.index(one)]} and {ascii_uppercase[k]}"
+            both = f"{ascii_uppercase[plain.index(one)]} and {ascii_uppercase[k]}"
             action = "They are equal: leave one out, or change it."
-            raise refuse("variants", which, "pairs that differ in some value", action)
+            raise refuse("variants", both, "pairs that differ in some value", action)
     if names is not None and len(names) != len(pairs):
         raise refuse("names", list(names), f"{len(pairs)} texts, one a variant", "Give one for each.")
     if names is not None:
         return list(map(str, names))
-    return [_told(one, next(other for other in pairs if other.name == one.name)) for one in pairs]
+    return [_name_of(one, next(other for other in pairs if other.name == one.name)) for one in pairs]
 
 
-def _told(pair: GearPair, before: GearPair) -> str:
-    """The name of a pair, and where it differs from an earlier one of the same name."""
+def _name_of(pair: GearPair, before: GearPair) -> str:
+    """Name of a pair, with the fields in which the pair differs from an earlier pair of the same name."""
     if pair is before:
         return pair.name
     ours = leaf_paths(pair)
@@ -231,11 +244,11 @@ def _told(pair: GearPair, before: GearPair) -> str:
 
 
 def common_draws(pairs: Sequence[GearPair]) -> list[_Draw]:
-    """The random numbers that make a machine, and which inputs of which variants take their values from each.
+    """Return the random numbers of a machine, each with the inputs of the variants that use the number.
 
-    Variants share the number of a field in which value and range are equal. Where the values differ, a part
-    of another size is another part: its number is its own. A field ``_COMMON`` keeps one number, for the
-    machine and the model are the same, unless the range stays where it is though the value moves.
+    Variants share the random number of a field where value and range are equal. Where the values differ,
+    the part is another part and has its own number. A field of ``_COMMON`` belongs to the machine or to the
+    model and has one number for all variants, unless the values differ and the ranges do not.
     """
     by_field: dict[str, dict[int, tuple[Input, Any]]] = defaultdict(dict)
     for k, pair in enumerate(pairs):
@@ -243,31 +256,34 @@ def common_draws(pairs: Sequence[GearPair]) -> list[_Draw]:
         for one in uncertain_inputs(pair):
             by_field[one.field][k] = one, _rounded(values.get(one.field))
     draws: list[_Draw] = []
-    for name, of in by_field.items():
-        ranges = {k: _range(one) for k, (one, _) in of.items()}
-        fixed = len({(value, ranges[k]) for k, (_, value) in of.items()}) > len(set(ranges.values()))
-        whole = any(fnmatch.fnmatchcase(name, pattern) for pattern in _COMMON) and not fixed
+    for name, inputs_of in by_field.items():
+        ranges = {k: _range(one) for k, (one, _) in inputs_of.items()}
+        fixed = len({(value, ranges[k]) for k, (_, value) in inputs_of.items()}) > len(set(ranges.values()))
+        one_machine = any(fnmatch.fnmatchcase(name, pattern) for pattern in _COMMON) and not fixed
         groups: dict[Any, _Draw] = {}
-        for k, (one, value) in of.items():
-            key = None if whole else (value, ranges[k])
+        for k, (one, value) in inputs_of.items():
+            key = None if one_machine else (value, ranges[k])
             groups.setdefault(key, _Draw(name)).inputs[k] = one
         draws += groups.values()
     return draws
 
 
 def _rounded(value: Any) -> Any:
-    """A value as it compares: 8 um and 0.008 mm are equal."""
+    """A value for comparison: 8 um and 0.008 mm are equal."""
     return float(f"{value:.12g}") if isinstance(value, float) else value
 
 
 def _range(one: Input) -> tuple[Any, ...]:
-    """What a range allows; NaN, the ends of a choice, would differ from itself. A class is its words."""
+    """A range for comparison: ends and choices, for teeth of a class the words of the class.
+
+    The ends of a choice are NaN, which never equals NaN, and are left out.
+    """
     ends = () if one.choices else (_rounded(one.low), _rounded(one.high))
     return (*ends, frozenset(one.choices), one.written if one.field.endswith(".seed") else "")
 
 
 def _remarks(draws: Sequence[_Draw], pairs: Sequence[GearPair], letters: Sequence[str]) -> list[str]:
-    """What a reader must know of inputs that do not vary alike in all variants."""
+    """Sentences on inputs that do not vary alike in all variants."""
     fields: dict[str, dict[int, Input]] = defaultdict(dict)
     for draw in draws:
         fields[draw.path] |= draw.inputs
@@ -275,52 +291,63 @@ def _remarks(draws: Sequence[_Draw], pairs: Sequence[GearPair], letters: Sequenc
     for name, inputs in fields.items():
         if len(inputs) < len(pairs):
             only[tuple(sorted(inputs))].append(name)
-    found = []
+    remarks = []
     for places, names in only.items():
         where = _all([letters[k] for k in places])
         text = f"{_listed(names)} {'vary' if len(names) > 1 else 'varies'} in {where} only"
-        found.append(f"{text}: state ranges in [uncertainty] to vary them in every variant")
+        remarks.append(f"{text}: state ranges in [uncertainty] to vary them in every variant")
     for name, inputs in fields.items():
         values = {k: _rounded(leaf_paths(pairs[k]).get(name)) for k in inputs}
         ranges = {k: _range(one) for k, one in inputs.items()}
         if len(set(values.values())) > 1 and len(set(ranges.values())) == 1 and not name.endswith(".seed"):
             text = next(iter(inputs.values())).written
-            found.append(
+            remarks.append(
                 f"{name} differs between variants and its range, {text}, does not: the samples do not show "
                 "this difference. State '+- ...' in [uncertainty], or the source of the value"
             )
-    return found
+    return remarks
 
 
 def _listed(names: Sequence[str]) -> str:
+    """The first name and the number of the others."""
     return names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
 
 
-def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]], *, own_teeth: bool) -> FloatArray | None:
-    """``RESULTS``, with ``own_teeth`` ``OF_TEETH``, and the flags; None where there is no motion."""
+def _numbers(
+    pair: GearPair, changes: Sequence[tuple[Input, float]], *, unlike_teeth: bool
+) -> FloatArray | None:
+    """``RESULTS``, for unlike teeth ``OF_TEETH``, and ``FLAGS``. None: there is no motion."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             sampled = varied(pair, changes)
-            found = predicted(sampled.healthy)
-            over_period = [_over_the_period(sampled)] if own_teeth else []
+            prediction = predicted(sampled.healthy)
+            over_period = [_over_the_period(sampled)] if unlike_teeth else []
     except SpurcheckError:
         return None
-    flags = [float(found.contact_lost), float(not found.stable), float(found.motion is Motion.LINEAR)]
-    numbers = np.array([*(found.numbers[name] for name in RESULTS), *over_period, *flags])
+    flags = [
+        float(prediction.contact_lost),
+        float(not prediction.stable),
+        float(prediction.motion is Motion.LINEAR),
+    ]
+    numbers = np.array([*(prediction.numbers[name] for name in RESULTS), *over_period, *flags])
     return numbers if np.isfinite(numbers).all() else None
 
 
 def _over_the_period(pair: GearPair) -> float:
     """Peak to peak of the transmission error over the period of the teeth, in the linear form [m]."""
-    if own := of_teeth(pair):
-        return own[0]
+    if teeth := of_teeth(pair):
+        return teeth[0]
     motion = lumped.steady_state(pair, samples_per_cycle=TEETH_SAMPLES)
     return float(motion.attrs["dte_peak_to_peak"])
 
 
 def _dataset(
-    results: tuple[str, ...], given: FloatArray, table: FloatArray, points: FloatArray, draws: Sequence[_Draw]
+    results: tuple[str, ...],
+    nominal: FloatArray,
+    table: FloatArray,
+    points: FloatArray,
+    draws: Sequence[_Draw],
 ) -> xr.Dataset:
     """Shares and numbers of ``given`` (variant, column) and ``table`` (variant, sample, column)."""
     count, machines = table.shape[:2]
@@ -331,7 +358,7 @@ def _dataset(
         unit, text = (QUANTITIES | TEETH)[name]
         values = table[..., column]
         relation = _relation(values, name)
-        as_given = _relation(given[:, column], name)
+        as_given = _relation(nominal[:, column], name)
         holding = int((relation == as_given[..., None]).all(axis=(0, 1)).sum())
         interval = binomtest(holding, machines).proportion_ci(SURE, "exact")
         shares["holds"].append(holding / machines)
@@ -340,11 +367,11 @@ def _dataset(
         shares["equal"].append((relation == 0).mean(axis=-1))
         shares["best"].append((relation >= 0).all(axis=1).mean(axis=-1))
         shares["place"].append(1 + (as_given < 0).sum(axis=1))
-        shares["sentence"].append(_sentence(name, given[:, column], shares, letters))
+        shares["sentence"].append(_sentence(name, nominal[:, column], shares, letters))
         between = np.percentile(differences(values, values), PERCENTILES, axis=-1)
         variables |= {
             name: (("variant", "sample"), values, unit, text),
-            f"{name}_given": ("variant", given[:, column], unit, f"{text}, with the values as given"),
+            f"{name}_given": ("variant", nominal[:, column], unit, f"{text}, with the values as given"),
             f"{name}_difference": (
                 ("variant", "other", "percentile"),
                 np.moveaxis(between, 0, -1),
@@ -380,16 +407,17 @@ def _dataset(
 
 
 def _label(draw: _Draw, draws: Sequence[_Draw], letters: Sequence[str]) -> str:
-    """The field of a draw; with the variants that it is of where there are others of the same field."""
+    """Field of a random number, with its variants where the field has several random numbers."""
     alone = sum(one.path == draw.path for one in draws) == 1
     return draw.path if alone else f"{draw.path} ({', '.join(letters[k] for k in draw.inputs)})"
 
 
 def differences(values: FloatArray, others: FloatArray) -> FloatArray:
-    """(variant, other, ...) values less those of others; 0 where they are equal but for rounding."""
-    a, b = values[:, None], others[None]
-    equal = np.abs(a - b) <= _EQUAL * np.maximum(np.abs(a), np.abs(b))
-    return np.where(equal, 0.0, a - b)
+    """Return (variant, other, ...) ``values`` less ``others``; 0 where the two are equal but for rounding."""
+    first = values[:, None]
+    second = others[None]
+    equal = np.abs(first - second) <= _EQUAL * np.maximum(np.abs(first), np.abs(second))
+    return np.where(equal, 0.0, first - second)
 
 
 def _relation(values: FloatArray, name: str) -> FloatArray:
@@ -398,16 +426,16 @@ def _relation(values: FloatArray, name: str) -> FloatArray:
 
 
 def of_hundred(share: float) -> int:
-    """A share as a number of 100 machines: 100 and 0 are all and none."""
+    """Return a share as a number of 100 machines. Only the shares 0 and 1 give 0 and 100."""
     return min(max(round(100.0 * share), 1 if share > 0.0 else 0), 99 if share < 1.0 else 100)
 
 
 def as_read(
     name: str, values: FloatArray, digits: int = 3, beside: FloatArray | None = None
 ) -> tuple[list[str], str]:
-    """Values of a result side by side, and their unit: an efficiency in per cent, with a digit more.
+    """Return the values of a result as texts with one prefix, and the unit. An efficiency is in per cent.
 
-    ``beside``: values in whose unit they are.
+    ``beside``: values that set the prefix.
     """
     line = values if beside is None else beside
     if name == "efficiency":
@@ -416,7 +444,7 @@ def as_read(
 
 
 def ranking(places: Sequence[int], letters: Sequence[str]) -> str:
-    """Variants from the best to the worst, "B, A"; equal ones as "A = B"."""
+    """Return the variants from the best to the worst, "B, A"; equal variants as "A = B"."""
     order = sorted(zip(places, letters, strict=True))
     text = order[0][1]
     for (before, _), (place, letter) in itertools.pairwise(order):
@@ -425,11 +453,11 @@ def ranking(places: Sequence[int], letters: Sequence[str]) -> str:
 
 
 def _sentence(
-    name: str, given: FloatArray, shares: Mapping[str, Sequence[Any]], letters: Sequence[str]
+    name: str, nominal: FloatArray, shares: Mapping[str, Sequence[Any]], letters: Sequence[str]
 ) -> str:
-    """What the samples say of a result; ``shares`` ends with those of this result."""
+    """Sentence on the samples of a result. The last entries of ``shares`` are those of this result."""
     better, equal, best, place = (shares[key][-1] for key in ("better", "equal", "best", "place"))
-    numbers, unit = as_read(name, given)
+    numbers, unit = as_read(name, nominal)
     words = [f"{number}{unit}" for number in numbers]
     first = int(np.argmax(best))
     machines = "of 100 possible machines"
@@ -445,16 +473,17 @@ def _sentence(
         tied = float(equal[0, 1])
         clear = share / (1.0 - tied)  # of the machines in which they differ
         values = f"{text} {words[first]} against {words[1 - first]}"
-        said = f"{letters[first]} is better than {letters[1 - first]} in {of_hundred(share)} {machines}"
-        said += f", equal in {of_hundred(tied)}" if tied > 0.0 else ""
+        statement = f"{letters[first]} is better than {letters[1 - first]} in {of_hundred(share)} {machines}"
+        statement += f", equal in {of_hundred(tied)}" if tied > 0.0 else ""
     else:
         verb = "is" if len(alike) == 1 else "are"
-        said = f"{_all([letters[k] for k in alike])} {verb} best in {of_hundred(clear)} {machines}"
+        statement = f"{_all([letters[k] for k in alike])} {verb} best in {of_hundred(clear)} {machines}"
     if clear < CLEAR:
-        return f"No difference that these inputs can show: {values}; {said}."
+        return f"No difference that these inputs can show: {values}; {statement}."
     against = "" if place[first] == 1 else ", though not with the values as given"
-    return f"{said}{against}: {values}."
+    return f"{statement}{against}: {values}."
 
 
 def _all(letters: Sequence[str]) -> str:
+    """All letters as a list in words: "A, B and C"."""
     return letters[0] if len(letters) == 1 else f"{', '.join(letters[:-1])} and {letters[-1]}"

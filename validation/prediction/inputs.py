@@ -1,9 +1,10 @@
-"""Inputs of a pair that are not known exactly, and what each may be: as stated, or by documented defaults.
+"""Uncertain inputs of a pair and their ranges: as the file states them, or documented defaults.
 
-A range is log-uniform where factors state it, or where both ends are positive and one is at least twice the
-other, else uniform. So a value is the median of factors up and down, and of as much up as down. Fields
-that one cause moves are one input: both directions of a bearing, the flanks of both gears, mass and inertia.
-A tip takes a few values of its range, so that the finite elements of a gear are solved for these alone.
+A range is log-uniform where factors state the range, or where both ends are positive and the upper end is
+at least twice the lower end; every other range is uniform. The stated value is therefore the median of "*
+0.5 .. * 2" and of "+- 2 um". Fields with one cause are one input: both directions of a bearing, the flanks
+of both gears, mass and inertia. A tip takes a few values of the range: each value needs its own finite
+elements.
 """
 
 from __future__ import annotations
@@ -32,25 +33,24 @@ _NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
 _OFFSET = re.compile(rf"\+-\s*{_NUMBER}\s*(.*)")
 _FACTORS = re.compile(rf"([*/])\s*{_NUMBER}\s*\.\.\s*([*/])\s*{_NUMBER}\s*")
 _WRITTEN = "'0.02 .. 0.10', '+- 2 um', '+- 10 %', '/ 2 .. * 2', or a list of choices"
-#: A range whose upper end is at least this many times the lower one is log-uniform.
+#: A range is log-uniform where the upper end is at least this many times the lower end.
 _WIDE = 2.0
-#: A default spread in modules, as much up as down.
+#: A default range in modules, the same distance up and down.
 _MODULES = re.compile(rf"\+-\s*{_NUMBER}\s*modules")
-#: Field of a gear whose default spread is one: `_tips` reads it.
+#: Field of a gear with a default range in modules: `_tips` reads this range.
 _IN_MODULES = ".tip_alteration"
-#: Fields of which one says where a tip is.
+#: Fields that can give the position of a tip.
 _TIP = ("tip_alteration", "tip_diameter", "addendum")
-#: Values that a tip takes, one in the middle of each part of its range: its finite elements take .05 s each.
+#: Number of values of a tip: each value needs its own finite elements, which take 0.05 s.
 TIP_LEVELS = 9
-#: The same of profile shifts that nothing but the centre distance decides.
+#: Number of values of profile shifts that only the centre distance gives.
 _SHIFT_LEVELS = 3
 #: Seeds of random gears of a tolerance class run from 1 to here.
 _SEEDS = 2**31
-#: Field -> the names that a choice may have.
+#: Field -> allowed names of a choice.
 _CHOICES: Mapping[str, tuple[str, ...]] = {"friction.law": tuple(LAWS), "mesh.stiffness": tuple(MODELS)}
 
-
-#: Fields that one cause moves -> the name of what moves them.
+#: Fields with one cause -> name of the common input.
 _TIED = (
     (re.compile(r"((?:shafts\.\w+\.)?bearings\.\w+)\.o?loa_(stiffness|damping_ratio)"), r"\1.\2"),
     (re.compile(r"(?:pinion|gear)\.(roughness)"), r"gears.\1"),
@@ -59,9 +59,15 @@ _TIED = (
 
 @dataclass(frozen=True)
 class Part:
-    """A field that an input moves, ends in file units, NaN of a choice; ``geometric`` is log-uniform.
+    """A field that an input moves.
 
-    ``levels``: values that it takes alone, each in the middle of an equal part of its range; 0: all.
+    Attributes
+    ----------
+    field : path of the field
+    low, high : ends of the range in the unit of the parameter file; NaN: the input is a choice between names
+    geometric : whether the distribution is uniform over the logarithm of the value
+    levels : number of values that the field takes, each in the middle of an equal part of the range; 0: all
+        values
     """
 
     field: str
@@ -71,7 +77,7 @@ class Part:
     levels: int = 0
 
     def at(self, share: float) -> float:
-        """The value that a share of the distribution lies below, in file units."""
+        """Return the value below which a share of the distribution lies, in file units."""
         if self.field.endswith(".seed"):
             return int(self.low + (self.high - self.low) * share)
         if self.levels:
@@ -83,11 +89,16 @@ class Part:
 
 @dataclass(frozen=True)
 class Input:
-    """One thing that is not known exactly, with the fields that it moves together.
+    """An uncertain input. One input may move several fields together.
 
-    ``field`` is its name: that of the field, or of what several fields have in common, such as
-    ``bearings.pinion.stiffness``. ``choices``: the names between which it chooses, else empty. ``written`` is
-    the spread as the file or the default states it, ``reason`` why so far and from where.
+    Attributes
+    ----------
+    field : name of the input: the path of the field, or a common name such as ``bearings.pinion.stiffness``
+    parts : fields that the input moves
+    choices : names between which the input chooses; empty: the input is a number
+    unit : unit in the parameter file
+    written : range as the file or the default states it
+    reason : reason and source of the range
     """
 
     field: str
@@ -108,13 +119,13 @@ class Input:
         return self.parts[0].high
 
     def at(self, share: float) -> float | str:
-        """The value of the first field that a share of the distribution lies below, in file units."""
+        """Return the value of the first field below which a share of the distribution lies, in file units."""
         if self.choices:
             return self.choices[min(int(share * len(self.choices)), len(self.choices) - 1)]
         return self.parts[0].at(share)
 
     def changes(self, share: float) -> dict[str, Any]:
-        """Every field with its value at a share of the distribution, as ``GearPair.with_`` takes them."""
+        """Return the fields with their values at a share of the distribution, for ``GearPair.with_``."""
         if self.choices:
             name = self.at(share)
             return {self.field: {"model": name} if self.field == "mesh.stiffness" else name}
@@ -122,21 +133,22 @@ class Input:
 
 
 def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
-    """Return every input of a pair that may be another value than the file has.
+    """Return every uncertain input of a pair.
 
-    Those of ``[uncertainty]``, and by documented defaults every assumed value that the pair reads, or would
-    read with another law or model that its inputs may be. A spread that cannot be read, or with values that
-    the field cannot have, is refused. Of random teeth of a tolerance class the seed is an input.
+    The inputs are those of ``[uncertainty]`` and, with documented default ranges, the assumed values. An
+    assumed value counts where the pair reads the value, or would read the value with another law or model
+    among the choices. For random teeth of a tolerance class the seed is an input. An unreadable range is
+    refused, and a range with values outside the limits of the field.
     """
     stated = dict(pair.uncertainty)
-    found = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
+    stated_inputs = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
     for gear in ("pinion", "gear"):
         deviations = getattr(pair, gear).deviations
         if deviations is not None and deviations.tolerance_class is not None:
             words = f"class {deviations.tolerance_class}"
             reason = "the class says how large errors are, and not which: every seed is another gear of it"
             seed = Part(f"{gear}.deviations.seed", 1, _SEEDS)
-            found.append(Input(seed.field, (seed,), (), "1", words, reason))
+            stated_inputs.append(Input(seed.field, (seed,), (), "1", words, reason))
     candidates = [*leaf_paths(pair), "mesh.stiffness", "mesh.stiffness_factor"]
     assumed: list[Input] = []
     for field in dict.fromkeys(candidates):
@@ -151,13 +163,19 @@ def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
                 spread = list(dict.fromkeys([_chosen(pair, field), *spread]))
             if (value := _by_default(pair, field, spread, default["reason"])) is not None:
                 assumed.append(value)
-    read = _read(pair, [*found, *assumed])
+    read = _read(pair, [*stated_inputs, *assumed])
     assumed = [one for one in assumed if one.choices or one.field in read]
-    return (*found, *_together(assumed), *_blanks(pair, stated), *_shifts(pair, stated), *_tips(pair, stated))
+    return (
+        *stated_inputs,
+        *_together(assumed),
+        *_blanks(pair, stated),
+        *_shifts(pair, stated),
+        *_tips(pair, stated),
+    )
 
 
 def _together(inputs: Iterable[Input]) -> Iterator[Input]:
-    """The inputs, those that one cause moves as one; one that stands alone keeps the name of its field."""
+    """The inputs, after fields with one cause are joined to one input. A single field keeps the name."""
     groups: dict[str, list[Input]] = {}
     for one in inputs:
         names = (pattern.sub(name, one.field) for pattern, name in _TIED if pattern.fullmatch(one.field))
@@ -168,15 +186,15 @@ def _together(inputs: Iterable[Input]) -> Iterator[Input]:
 
 
 def _blanks(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
-    """Mass and inertia of each gear, where the solid disc stands for a blank that is not known.
+    """Mass and inertia of each gear as one input, where a solid disc stands for an unknown blank.
 
-    They move together; a bore that is known says the shape of the blank.
+    A known bore gives the shape of the blank: then there is no such input.
     """
-    own = bodies_of(pair)
+    bodies = bodies_of(pair)
     for gear in ("pinion", "gear"):
         field = f"{gear}.inertia"
         default = _default(field)
-        of_disc = {"inertia": getattr(own, f"inertia_{gear}"), "mass": getattr(own, f"mass_{gear}")}
+        of_disc = {"inertia": getattr(bodies, f"inertia_{gear}"), "mass": getattr(bodies, f"mass_{gear}")}
         parts = [
             _part(
                 f"{gear}.{key}",
@@ -195,10 +213,10 @@ def _blanks(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
 
 
 def _shifts(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
-    """Share of the pinion in the sum of the profile shifts, where the centre distance alone decides the sum.
+    """Share of the pinion in the sum of the profile shifts, where only the centre distance gives the sum.
 
-    From half to each gear to all to the gear with fewer teeth, of a negative sum to the one with more; the
-    shift of the gear is the rest.
+    The range goes from half the sum for each gear to the whole sum for one gear: the gear with fewer teeth
+    for a positive sum, the gear with more teeth for a negative sum. The shift of the gear is the rest.
     """
     fields = [f"{gear}.profile_shift" for gear in ("pinion", "gear")]
     free = pair.pinion.profile_shift is None and pair.gear.profile_shift is None
@@ -207,8 +225,8 @@ def _shifts(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
         return
     gets_all = (pair.pinion.teeth <= pair.gear.teeth) == (total > 0.0)
     low, high = sorted((0.5 * total, total if gets_all else 0.0))
-    own = pair.profile_shifts[0]
-    low, high = (end if _allowed(pair, fields[0], end) else own for end in (low, high))
+    pinion_shift = pair.profile_shifts[0]
+    low, high = (end if _allowed(pair, fields[0], end) else pinion_shift for end in (low, high))
     if low < high:
         words = "half of the sum to each gear, or all to one"
         reason = "convention: no drawing says how the shifts that its centre distance asks for are shared"
@@ -216,7 +234,7 @@ def _shifts(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
 
 
 def _tips(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
-    """Tip alteration of each gear, where it is assumed; a range in modules."""
+    """Tip alteration of each gear, where it is assumed. The default range is in modules."""
     for gear in ("pinion", "gear"):
         field = f"{gear}{_IN_MODULES}"
         default = _default(field)
@@ -227,20 +245,22 @@ def _tips(pair: GearPair, stated: Mapping[str, Any]) -> Iterator[Input]:
         match = _MODULES.fullmatch(default["spread"])
         assert match is not None, "the default of a tip is in modules"
         unit = str(stated_unit(field))
-        own = getattr(pair, gear).tip_alteration
-        value = float(to_stated(pair.tip_alteration if own is None else own, unit))
-        off = float(match[1]) * float(to_stated(pair.basic_rack.module, unit))
-        low, high = (end if _allowed(pair, field, end) else value for end in (value - off, value + off))
+        alteration = getattr(pair, gear).tip_alteration
+        value = float(to_stated(pair.tip_alteration if alteration is None else alteration, unit))
+        half_width = float(match[1]) * float(to_stated(pair.basic_rack.module, unit))
+        low, high = (
+            end if _allowed(pair, field, end) else value for end in (value - half_width, value + half_width)
+        )
         if low < high:
             part = Part(field, low, high, levels=TIP_LEVELS)
             yield Input(field, (part,), (), unit, default["spread"], default["reason"])
 
 
 def forms_beside(pair: GearPair) -> dict[str, dict[str, Any]]:
-    """Forms of the model that the range does not hold: name -> what changes the pair to it.
+    """Return other forms of the model, outside the range of the inputs: name -> changes of the pair.
 
-    The other contact, and, where the stiffness model is uncertain, the models that are not among its choices.
-    A stiffness of the whole mesh is used as given: no other contact goes with it.
+    Other forms are the other contact and, for an uncertain stiffness model, the models outside the choices.
+    A given stiffness of the whole mesh includes the contact: then there is no other contact.
     """
     other = "prescribed" if pair.mesh.contact == "loaded" else "loaded"
     forms: dict[str, dict[str, Any]] = {}
@@ -254,12 +274,12 @@ def forms_beside(pair: GearPair) -> dict[str, dict[str, Any]]:
 
 
 def is_assumed(pair: GearPair, field: str) -> bool:
-    """Whether a value is assumed; of the stiffness of the teeth, whether its model is."""
+    """Return whether a value is assumed. For the tooth stiffness: whether the model is assumed."""
     return pair.state("mesh.stiffness.model" if field == "mesh.stiffness" else field) is State.ASSUMED
 
 
 def _read(pair: GearPair, inputs: Iterable[Input], *, contact_lost: bool = False) -> frozenset[str]:
-    """Fields that a pair reads with its laws and models, and with those that its inputs may be instead."""
+    """Fields that a pair reads, with the present laws and models and with every choice of the inputs."""
     read = fields_read(pair, contact_lost=contact_lost)
     for one in inputs:
         for place in range(len(one.choices)):
@@ -270,10 +290,10 @@ def _read(pair: GearPair, inputs: Iterable[Input], *, contact_lost: bool = False
 
 
 def given_and_assumed(pair: GearPair, *, contact_lost: bool = False) -> tuple[int, int]:
-    """Number of values of a pair that are known, and that are assumed, of those that its results depend on.
+    """Return the number of known and the number of assumed values on which the results depend.
 
-    What the chosen laws and models do not read counts where a choice that is an uncertain input reads it, and
-    the backlash where contact is lost.
+    A value that the chosen laws and models do not read counts where another choice reads the value. The
+    backlash counts where contact is lost.
     """
     read = read_values(pair, contact_lost=contact_lost)
     assumed = sum(path in pair.assumed for path in read)
@@ -296,9 +316,9 @@ def _default(field: str) -> dict[str, Any] | None:
 
 
 def source_of(pair: GearPair, field: str) -> str | None:
-    """Where a value of a pair comes from, in the words of the file; None where it does not say.
+    """Return the source of a value in the words of the file; None: the file states no source.
 
-    It is the source of the field, of the section that it is in, or of a field inside it.
+    The source may be stated for the field, for its section, or for a field inside it.
     """
     sources = dict(pair.sources)
     parts = field.split(".")
@@ -308,7 +328,7 @@ def source_of(pair: GearPair, field: str) -> str | None:
 
 
 def kind_of(field: str) -> str:
-    """Kind of an input: inputs of one kind are found out in the same way, by the advice of the report."""
+    """Return the kind of an input. The report gives one advice for all inputs of a kind."""
     first, *rest = field.split(".")
     if first == "shafts" and "bearings" in rest:
         return "shafts.bearings"
@@ -328,9 +348,9 @@ def _chosen(pair: GearPair, field: str) -> str:
 
 
 def _by_default(pair: GearPair, field: str, spread: object, reason: str) -> Input | None:
-    """An assumed input with its default spread; an end that the field cannot have is the value itself.
+    """An assumed input with the default range. An end that the field cannot take becomes the value.
 
-    None where nothing is left of the spread: a share of zero.
+    None: the range is empty, for example a share of zero.
     """
     if isinstance(spread, str):
         unit = str(stated_unit(field))
@@ -347,7 +367,7 @@ def _by_default(pair: GearPair, field: str, spread: object, reason: str) -> Inpu
 
 
 def _part(field: str, ends: tuple[float, float], spread: str) -> Part:
-    """A field with its range, as the text states it."""
+    """A field with its range, as the text states the range."""
     low, high = ends
     factors = _FACTORS.fullmatch(spread.strip()) is not None
     levels = TIP_LEVELS if field.split(".")[-1] in _TIP else 0
@@ -365,10 +385,10 @@ def _allowed(pair: GearPair, field: str, value: float) -> bool:
 def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
     where = f"uncertainty.{field}"
     if isinstance(spread, (list, tuple)):
-        known = _CHOICES.get(field)
-        wrong = known is None or len(spread) < 2 or any(one not in known for one in spread)
+        choices = _CHOICES.get(field)
+        wrong = choices is None or len(spread) < 2 or any(one not in choices for one in spread)
         if wrong:
-            allowed = f"at least two of {', '.join(known)}" if known else f"a range: {_WRITTEN}"
+            allowed = f"at least two of {', '.join(choices)}" if choices else f"a range: {_WRITTEN}"
             raise refuse(where, ", ".join(map(str, spread)), allowed, "Correct the list.")
         text = " or ".join(map(str, spread))
         return Input(field, (Part(field),), tuple(map(str, spread)), "1", text, reason)
@@ -394,7 +414,7 @@ def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
 
 
 def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, float]:
-    """Both ends of a written range in the field's unit."""
+    """Both ends of a written range, in the unit of the field."""
     text = spread.strip()
     if match := _FACTORS.fullmatch(text):
         factors = [
@@ -403,14 +423,14 @@ def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, floa
         ends = value * factors[0], value * factors[1]
     elif match := _OFFSET.fullmatch(text):
         size = float(match[1])
-        of = match[2].strip()
-        if of == "%":
-            off = abs(value) * size / 100.0
+        unit_of_size = match.group(2).strip()
+        if unit_of_size == "%":
+            half_width = abs(value) * size / 100.0
         elif unit == "degC":
-            off = size  # a difference of temperatures, in K
+            half_width = size  # a difference of temperatures, in K
         else:
-            off = _stated(where, f"{size} {of}" if of else size, unit)
-        ends = value - off, value + off
+            half_width = _stated(where, f"{size} {unit_of_size}" if unit_of_size else size, unit)
+        ends = value - half_width, value + half_width
     elif text.count("..") == 1:
         low, high = (part.strip() for part in text.split(".."))
         ends = _stated(where, low, unit), _stated(where, high, unit)

@@ -1,8 +1,8 @@
-"""The prediction for a pair at its operating point: the best motion that the program has, and its numbers.
+"""The prediction for a pair at its operating point: the best motion of the program, and its numbers.
 
-The prediction is the motion of the pair as given, with its own teeth and on its shafts: contact is
-unilateral, stiffness and dampers follow the momentary load. Where no such motion is found, the linear motion
-stands in and says why. Contact is lost where the total mesh force is zero.
+The prediction is the motion of the pair as given, with its own teeth and on its shafts. Contact is
+unilateral; stiffness and dampers follow the momentary load. Where no such motion is found, the linear
+motion stands in, with the reason. Contact is lost where the total mesh force is zero.
 
 Sources: docs/theory/validity.md, "Prediction".
 """
@@ -29,18 +29,19 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.signals.complex_orders import orders_of_period
 
+#: Samples in a mesh cycle of a pair with like teeth.
 _SAMPLES = 512
-#: Load of a tooth pair over the mean mesh force that counts as pulling: rounding of a pair that just touches.
+#: A tooth pair pulls below this load over the mean mesh force: smaller loads are the rounding of light
+#: contact.
 _PULLS = -1e-6
+#: Number of mesh orders of a result.
 ORDERS = 10
-
-
-#: Vibration over the mean that is rounding: a mesh of constant stiffness without friction stands still.
+#: Vibration over the mean value that is rounding: a mesh of constant stiffness without friction stands still.
 NOTHING = 1e-12
 
 
 class Motion(Enum):
-    """Which motion the prediction is; the value is the text that a reader gets."""
+    """Kind of the predicted motion. The value is the phrase that a user reads."""
 
     UNILATERAL = "the motion with unilateral contact"
     SETTLED = "the motion with unilateral contact to which a run settles"
@@ -49,7 +50,7 @@ class Motion(Enum):
 
     @property
     def text(self) -> str:
-        """The meaning, as a phrase."""
+        """The phrase that a user reads."""
         return self.value
 
 
@@ -60,14 +61,14 @@ class Prediction:
     Attributes
     ----------
     pair : the gear pair
-    motion : which motion it is
-    cycle : that motion at even times over its period, with the variables of ``lumped.steady_state``
-    peak_to_peak : of the transmission error, between samples too [m]
-    stable : whether the motion returns after a small disturbance, by multipliers of its own; of teeth that
-        differ by those of the twin with like teeth
-    mesh_cycles : after which the motion repeats
-    losses : place of ``PLACES`` -> mean power that is lost there [W]; empty where the motion is not periodic
-    reason : why another motion stands in for the one with unilateral contact; else empty
+    motion : kind of the motion
+    cycle : motion at equal time steps over its period, with the variables of ``lumped.steady_state``
+    peak_to_peak : peak to peak of the transmission error, with peaks between samples [m]
+    stable : whether the motion returns after a small disturbance, by the multipliers of the motion; for
+        unlike teeth by the multipliers of the twin with like teeth
+    mesh_cycles : mesh cycles in the period of the motion
+    losses : place of ``PLACES`` -> mean power lost there [W]; empty: the motion is not periodic
+    reason : why the linear motion stands in for the motion with unilateral contact; empty: it does not
     """
 
     pair: GearPair
@@ -101,22 +102,22 @@ class Prediction:
 
     @property
     def loss(self) -> float:
-        """Mean power that all places lose together [W]; NaN where the motion is not periodic."""
+        """Mean power lost at all places together [W]; NaN: the motion is not periodic."""
         return sum(self.losses.values()) if self.losses else math.nan
 
     @property
     def efficiency(self) -> float:
-        """Share of the driving power that is not lost [-], 1 - loss / input."""
+        """1 - loss / input power [-]."""
         return 1.0 - self.loss / self.input_power
 
     @property
     def dynamic_factor(self) -> float:
-        """Largest mesh force over the static one [-]."""
+        """Largest mesh force over the static mesh force [-]."""
         return float(self.mesh_force.max()) / self.static_force
 
     @property
     def least_force(self) -> float:
-        """Smallest mesh force over the static one; 0 is contact loss [-]."""
+        """Smallest mesh force over the static mesh force; 0: contact is lost [-]."""
         return max(float(self.mesh_force.min()) / self.static_force, 0.0)
 
     @property
@@ -131,19 +132,19 @@ class Prediction:
 
     @cached_property
     def bearing_orders(self) -> FloatArray:
-        """(``ORDERS``,) amplitudes of the pinion's bearing force at the mesh orders 1, 2, ... [N].
+        """(``ORDERS``,) amplitudes of the pinion bearing force at the mesh orders 1, 2, ... [N].
 
-        Both directions together: the root of the sum of their squared amplitudes.
+        Both directions together: the root of the sum of the squared amplitudes.
         """
-        along, off = (self.orders_of(f"bearing_force_{line}_p") for line in "xy")
-        return np.asarray(np.hypot(along, off), dtype=np.float64)
+        along, across = (self.orders_of(f"bearing_force_{line}_p") for line in "xy")
+        return np.asarray(np.hypot(along, across), dtype=np.float64)
 
     @property
     def bearing_rms(self) -> float:
-        """Root mean square of the pinion's bearing force about its mean, both directions together [N]."""
-        along, off = (float(self.cycle[f"bearing_force_{line}_p"].std()) for line in "xy")
-        found = float(np.hypot(along, off))
-        return found if found > NOTHING * self.static_force else 0.0
+        """Root mean square of the pinion bearing force about its mean, both directions together [N]."""
+        along, across = (float(self.cycle[f"bearing_force_{line}_p"].std()) for line in "xy")
+        rms = float(np.hypot(along, across))
+        return rms if rms > NOTHING * self.static_force else 0.0
 
     def orders_of(self, name: str) -> FloatArray:
         """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
@@ -151,7 +152,7 @@ class Prediction:
 
     @property
     def numbers(self) -> dict[str, float]:
-        """The scalar results by name, in SI; see ``QUANTITIES``."""
+        """The scalar results by name, in SI. ``QUANTITIES`` has units and plain names."""
         return {
             "dte_peak_to_peak": self.peak_to_peak,
             "dynamic_factor": self.dynamic_factor,
@@ -163,18 +164,21 @@ class Prediction:
 
 
 def mesh_orders(values: FloatArray, mesh_cycles: int = 1) -> FloatArray:
-    """(``ORDERS``,) amplitudes at the mesh orders 1, 2, ... of values at even times over so many cycles."""
+    """Return the (``ORDERS``,) amplitudes at the mesh orders 1, 2, ...
+
+    ``values``: samples at equal steps over ``mesh_cycles`` mesh cycles.
+    """
     return orders_of_period(values, ORDERS, mesh_cycles).amplitudes[mesh_cycles - 1 :: mesh_cycles]
 
 
-#: Where power is lost -> its plain name.
+#: Place where power is lost -> plain name.
 PLACES = {
     "sliding": "sliding",
     "tooth_dampers": "tooth damping",
     "bearings": "bearing damping",
     "shafts": "damping of shafts and couplings",
 }
-#: Result -> its unit and plain name.
+#: Result -> SI unit and plain name.
 QUANTITIES = {
     "dte_peak_to_peak": ("m", "transmission error, peak to peak"),
     "dynamic_factor": ("1", "largest mesh force over the static one"),
@@ -186,12 +190,14 @@ QUANTITIES = {
 
 
 def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
-    """Return the best motion that the program has for a pair at its operating point, and its numbers.
+    """Return the prediction for a pair at its operating point: the best motion of the program, and its
+    numbers.
 
-    It is ``lumped.steady_state`` with ``contact="unilateral"``, by momentary load, of teeth that differ over
-    their whole period, on the shafts of a pair that has them. Where none is found the linear motion stands in
-    if it is stable. ``Prediction.motion`` says which one it is, ``reason`` why it is the linear one,
-    ``uncertainty`` how far the inputs move it. Charts, margins and jumps are of other forms.
+    The motion is ``lumped.steady_state`` with ``contact="unilateral"``, which follows the momentary load.
+    Unlike teeth have the motion over their whole period. A pair with shafts is computed on the shafts.
+    Where no such motion is found, a stable linear motion stands in: ``Prediction.motion`` names the motion,
+    ``Prediction.reason`` the reason. ``uncertainty`` gives the range with the uncertain inputs. Charts,
+    margins and jumps use other forms.
 
     Parameters
     ----------
@@ -212,15 +218,15 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
 
 
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
-    """Return the largest mesh force of ``predict`` over the static one [-].
+    """Return the dynamic factor of ``predict``: largest mesh force over the static mesh force [-].
 
-    ``pair``, ``supports`` and errors are those of ``predict``.
+    Arguments and errors as for ``predict``.
     """
     return predict(pair, supports=supports).dynamic_factor
 
 
 def predicted(pair: GearPair) -> Prediction:
-    """Return the prediction for a pair at its operating point, on its shafts where it has them."""
+    """Return the prediction for a pair at its operating point, on the shafts of a pair that has shafts."""
     samples = _SAMPLES if pair.healthy is pair else None
     try:
         cycle = lumped.steady_state(pair, contact="unilateral", samples_per_cycle=samples)
@@ -231,22 +237,22 @@ def predicted(pair: GearPair) -> Prediction:
 
 
 def _stand_in(pair: GearPair, samples: int | None, error: NumericalError) -> Prediction:
-    """The linear motion, stable or not, in place of one with unilateral contact that was not found."""
+    """The linear motion, stable or not, in place of the unilateral motion that was not found."""
     try:
-        found = measured(pair, lumped.steady_state(pair, samples_per_cycle=samples), Motion.LINEAR)
+        linear = measured(pair, lumped.steady_state(pair, samples_per_cycle=samples), Motion.LINEAR)
     except NumericalError:
         raise error from None
-    return replace(found, reason=str(error))
+    return replace(linear, reason=str(error))
 
 
 def pulls(pair: GearPair, linear: xr.Dataset) -> bool:
-    """Whether a tooth pair pulls in a linear motion."""
+    """Return whether a tooth pair pulls in a linear motion."""
     force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     return float(linear["normal_load"].min()) < _PULLS * force
 
 
 def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
-    """Return the numbers of any periodic motion of either model at even times over its period."""
+    """Return the numbers of a periodic motion of either model, sampled at equal steps over its period."""
     attributes = cycle.attrs
     swing = float(attributes.get("dte_peak_to_peak", cycle_peak_to_peak(cycle, "dte")))
     return Prediction(
@@ -261,7 +267,7 @@ def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
 
 
 def losses_of(motion: xr.Dataset) -> dict[str, float]:
-    """Return the mean losses by place [W] that a periodic motion of either model carries as ``power_*``."""
+    """Return the mean losses by place [W], the attributes ``power_*`` of a motion of either model."""
     return {
         place: float(motion.attrs[f"power_{place}"]) for place in PLACES if f"power_{place}" in motion.attrs
     }

@@ -1,8 +1,8 @@
-"""How far the prediction moves with its uncertain inputs: samples, percentiles, swing of each input.
+"""Range of the prediction with its uncertain inputs: samples, percentiles, swing of each input.
 
-A sample is a possible machine. Processor time may end the samples: the points of a Sobol sequence that come
-first fill the space already, so those taken are a valid, smaller set. A sample that has begun is finished and
-counts, since slow samples are those that lose contact, and without them the range would be too narrow.
+A sample is a possible machine. A limit of processor time may end the samples. The first points of a Sobol
+sequence fill the space already, so fewer points are still a valid set. A sample that has begun is finished
+and counts: slow samples are those that lose contact, and without them the range would be too narrow.
 
 Sources: scrambled Sobol points, A. B. Owen, J. Complexity 14 (1998) 466; intervals of percentiles from the
 binomial distribution of order statistics, David and Nagaraja, Order Statistics, 2003, section 7.1.
@@ -36,36 +36,38 @@ from validation.prediction.inputs import Input, forms_beside, uncertain_inputs
 from validation.prediction.motion import ORDERS, QUANTITIES, Motion, Prediction, predicted
 from validation.signals.averages import GEARS, sidebands
 
-#: Percentiles that are told; the swing of an input runs between the first and the last.
+#: Percentiles of a range. The swing of an input runs from the first to the last.
 PERCENTILES = (5.0, 50.0, 95.0)
-#: Probability with which the interval of a percentile holds it.
+#: Probability that a percentile lies in its interval.
 _SURE = 0.9
-#: Samples of which most must be left after refusals.
+#: Share of the samples that must have a motion.
 _LEAST = 0.5
-#: Samples that a range needs at least where time ended them: the interval of a percentile of 32 is a quarter
-#: of the samples wide. Where fewer than twice as many are asked for, half of them.
+#: Least number of samples of a range where the time limit ended the samples: with 32 samples the interval
+#: of a percentile contains a quarter of them. Half of the requested samples, if that is fewer.
 LEAST_SAMPLES = 32
-#: The same of the ranges that 32 samples give: over speed, of teeth that differ, beside a record.
+#: The same for ranges from 32 samples: over speed, of unlike teeth, beside a record.
 LEAST_BAND = 8
-#: Part of the time in which the inputs move alone; the rest is for the samples.
+#: Share of the time limit for inputs that are varied alone; the rest is for the samples.
 ALONE = 1.0 / 3.0
-#: Times in a mesh cycle, and largest angle of a step [rad], of motions over speed. Twice the step of other
-#: results: on 19/41 from 145 to 2900 rpm a peak to peak then errs by 4e-4, a hundredth of the range. With
-#: ``LONG_STEP`` it errs by 4e-4 where a cycle has hundreds of vibrations: 21/23 and 16/32 from 12 to 240 rpm.
+#: Times in a mesh cycle of motions over speed, and the largest angle of a step [rad]. The step is twice
+#: as long as for other results: the error of a peak to peak is 4e-4, a hundredth of the range (19/41, 145
+#: to 2900 rpm). With ``LONG_STEP`` the error is 4e-4 too where a mesh cycle has hundreds of vibrations
+#: (21/23 and 16/32, 12 to 240 rpm).
 _TIMES = 32
 STEP = 1.0
 LONG_STEP = 2.0
-#: Further quantities of teeth that differ: unit and words; in the linear form, with so many samples a cycle.
+#: Further quantities of unlike teeth, in the linear form: unit and plain name.
 TEETH = {
     "revolution_dte_peak_to_peak": ("m", "transmission error over the period of the teeth, peak to peak"),
     "sideband_ratio": ("1", "largest sideband of the mesh frequency in the transmission error, over it"),
 }
+#: Samples of the motion of unlike teeth in a mesh cycle.
 TEETH_SAMPLES = 32
-#: Samples of them beside those of like teeth, and mesh cycles of all together.
+#: Least and most machines with unlike teeth in a range, and the most mesh cycles of all of them together.
 _LEAST_DRAWN = LEAST_BAND
 _MOST_DRAWN = 32
 _ALL_CYCLES = 30_000
-#: What may be of a sample, in the last columns of the table.
+#: Flags of a sample, in the last columns of the table.
 FLAGS = ("contact_lost", "unstable", "linear")
 _ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
 T = TypeVar("T")
@@ -73,7 +75,14 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Sampled(Generic[T]):
-    """Results at samples of the inputs, without those that are refused; ``taken`` of those ``asked`` for."""
+    """Results at samples of the inputs.
+
+    Attributes
+    ----------
+    results : results of the samples that have a motion
+    taken : number of samples that began before the time limit
+    asked : number of requested samples
+    """
 
     results: tuple[T, ...]
     taken: int
@@ -82,9 +91,14 @@ class Sampled(Generic[T]):
 
 @dataclass(frozen=True, eq=False)
 class Varied:
-    """Predictions with like teeth: ``given`` with the inputs as given, ``samples`` with varied ones.
+    """Predictions with like teeth.
 
-    ``taken`` of the samples ``asked`` for were begun before the time was used up; 0 of 0 without a limit.
+    Attributes
+    ----------
+    given : prediction with the inputs as given
+    samples : predictions with varied inputs
+    taken : number of samples that began before the time limit
+    asked : number of requested samples; 0 without a time limit
     """
 
     given: Prediction
@@ -109,27 +123,34 @@ def uncertainty(
     pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where a
         value is assumed
     samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
-    seed : of the scrambled Sobol points
+    seed : seed of the scrambled Sobol points
     supports : "springs" leaves shafts and their inputs out; by default the shafts of a pair that has them
-    seconds : processor time after which no further sample begins [s], a third of it for the inputs alone;
-        None: all samples are taken
+    seconds : processor time after which no further sample begins [s]; a third of the time is for the inputs
+        alone. None: all samples are computed
     progress : called with the finished fraction
 
     Returns
     -------
-    xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the prediction,
-    in SI: ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it
-    lies with a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of
-    a choice the smallest and largest result; ``q_rank_correlation`` (input), Spearman's; ``q_form`` (form),
-    the result with the inputs as given in a form of the model that the range does not hold. ``value``
-    (input, sample) holds the inputs, a choice by its number; of fields that move together, the first. Of
-    teeth that differ also the quantities ``TEETH``; teeth of a tolerance class are drawn anew in every
-    sample. Attributes: ``taken`` of the samples ``asked`` for; of these ``refused``, which have no prediction
-    and are left out; ``contact_lost``, ``unstable``, ``lost_or_unstable``, and ``linear``, in which the
-    linear motion stands in (counts of samples); ``alone``, how many inputs were moved alone; ``seconds``, the
-    limit; ``seed``; and the result with the inputs as given, ``given_q``. Where the time is used up, inputs
-    that were not moved alone and forms have NaN, and with less than ``LEAST_SAMPLES`` samples, or half of
-    those asked for where that is fewer, percentiles, intervals and rank correlations are NaN: no range
+    xarray.Dataset over ``sample``, ``percentile``, ``input`` and ``form``. Each quantity q of the
+    prediction is in SI. ``q`` (sample) has the samples. ``q_percentile`` (percentile) has the percentiles,
+    ``q_interval`` (percentile, end) the interval of each percentile with a probability of 0.9. ``q_swing``
+    (input, end) is the result with one input alone at 5 % and 95 %, for a choice the smallest and the
+    largest result. ``q_rank_correlation`` (input) is Spearman's coefficient. ``q_form`` (form) is the
+    result in another form of the model, with the inputs as given.
+
+    ``value`` (input, sample) has the value of each input in the unit of its field; for a choice the number
+    of the choice, for fields that move together the value of the first field. Unlike teeth also have the
+    quantities ``TEETH``; the teeth of a tolerance class are drawn anew in every sample.
+
+    Attributes: ``given_q``, the result with the inputs as given; ``asked`` and ``taken``, the numbers of
+    requested and of computed samples; ``refused``, the number of samples without a prediction, which are
+    left out; the numbers of samples with ``contact_lost``, ``unstable``, ``lost_or_unstable``, and
+    ``linear``, where the linear motion stands in; ``alone``, the number of inputs that were varied alone;
+    ``seconds``, the time limit; ``seed``.
+
+    Where the time limit ended the computation, the missing swings and forms are NaN. With fewer than
+    ``LEAST_SAMPLES`` samples, or half of the requested samples if that is fewer, there is no range:
+    percentiles, intervals and rank correlations are NaN
 
     Raises
     ------
@@ -156,83 +177,96 @@ def uncertainty(
             progress(done / total)
         return _numbers(base, changes)
 
-    given = row(())
-    if given is None:
+    nominal = row(())
+    if nominal is None:
         raise NumericalError("The pair has no prediction with its inputs as given.")
     first = deadline.share(ALONE)
     alone = 0
-    of: list[int] = []
-    found_alone: list[FloatArray | None] = []
+    input_of_row: list[int] = []
+    rows_alone: list[FloatArray | None] = []
     for j, one in enumerate(inputs):
         if first.passed:
             break
         for share in end_shares(one):
-            of.append(j)
-            found_alone.append(row([(one, share)]))
+            input_of_row.append(j)
+            rows_alone.append(row([(one, share)]))
         alone += 1
-    ends = _ends(inputs, of, found_alone, given.size)
+    ends = _ends(inputs, input_of_row, rows_alone, nominal.size)
     points = sobol_points(importance_of(ends), samples, seed)
     rows = list[FloatArray | None]()
     for point in points:
         if deadline.passed:
             break
         rows.append(row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]))
-    kept = np.array([found is not None for found in rows], dtype=bool)
-    enough = kept.sum() >= least_samples(samples)
-    if kept.sum() < _LEAST * len(rows) and (enough or len(rows) == samples):
+    has_motion = np.array([dataset is not None for dataset in rows], dtype=bool)
+    enough = has_motion.sum() >= least_samples(samples)
+    if has_motion.sum() < _LEAST * len(rows) and (enough or len(rows) == samples):
         raise NumericalError(
-            f"Only {kept.sum()} of {len(rows)} samples have a prediction: narrow the ranges in [uncertainty]."
+            f"Only {has_motion.sum()} of {len(rows)} samples have a prediction: narrow the ranges in "
+            "[uncertainty]."
         )
-    table = np.array([found for found in rows if found is not None]).reshape(-1, given.size)
-    found = _dataset(pair, inputs, points[: len(rows)][kept], table, ends, enough=bool(enough))
-    beside = np.full((len(forms), given.size), np.nan)
+    table = np.array([dataset for dataset in rows if dataset is not None]).reshape(-1, nominal.size)
+    dataset = _dataset(pair, inputs, points[: len(rows)][has_motion], table, ends, enough=bool(enough))
+    other_forms = np.full((len(forms), nominal.size), np.nan)
     for number, form in enumerate(forms.values()):
-        if not deadline.passed and (own := row((), pair.with_(form))) is not None:
-            beside[number] = own
+        if not deadline.passed and (numbers := row((), pair.with_(form))) is not None:
+            other_forms[number] = numbers
     for column, name in enumerate(QUANTITIES):
-        attrs = found[name].attrs | {"long_name": f"{found[name].attrs['long_name']}, inputs as given"}
-        found[f"{name}_form"] = ("form", beside[:, column], attrs)
-    found = found.assign_coords(form=("form", list(forms), {"units": "1", "long_name": "form of the model"}))
-    names = (name for name in found.data_vars if found[name].dims == ("sample",))
-    found.attrs |= {f"given_{name}": float(value) for name, value in zip(names, given, strict=False)}
-    found.attrs |= {"taken": len(rows), "asked": samples, "refused": len(rows) - len(table), "seed": seed}
-    found.attrs |= {"alone": alone, "seconds": math.inf if seconds is None else float(seconds)}
-    held = {
+        attrs = dataset[name].attrs | {"long_name": f"{dataset[name].attrs['long_name']}, inputs as given"}
+        dataset[f"{name}_form"] = ("form", other_forms[:, column], attrs)
+    dataset = dataset.assign_coords(
+        form=("form", list(forms), {"units": "1", "long_name": "form of the model"})
+    )
+    names = (name for name in dataset.data_vars if dataset[name].dims == ("sample",))
+    dataset.attrs |= {f"given_{name}": float(value) for name, value in zip(names, nominal, strict=False)}
+    dataset.attrs |= {"taken": len(rows), "asked": samples, "refused": len(rows) - len(table), "seed": seed}
+    dataset.attrs |= {"alone": alone, "seconds": math.inf if seconds is None else float(seconds)}
+    attributes = {
         "supports": supports_of(pair, None),
         "teeth": "alike" if pair.healthy is pair else "as given",
     }
-    return found.assign_attrs(provenance(pair, samples=samples, seed=seed) | held)
+    return dataset.assign_attrs(provenance(pair, samples=samples, seed=seed) | attributes)
 
 
-def least_samples(asked: int, least: int = LEAST_SAMPLES) -> int:
-    """How many samples make a range where so many are asked for: ``least``, or half of them where fewer."""
-    return min(least, asked // 2)
+def least_samples(requested: int, least: int = LEAST_SAMPLES) -> int:
+    """Return the least number of samples of a range: ``least``, or half of the requested samples if fewer."""
+    return min(least, requested // 2)
 
 
-def transmission_error(found: xr.Dataset) -> str:
-    """Name of the peak to peak of the transmission error, of teeth that differ over their period."""
-    return "revolution_dte_peak_to_peak" if "revolution_dte_peak_to_peak" in found else "dte_peak_to_peak"
+def transmission_error(dataset: xr.Dataset) -> str:
+    """Return the name of the transmission error: for unlike teeth over the period of the teeth."""
+    return "revolution_dte_peak_to_peak" if "revolution_dte_peak_to_peak" in dataset else "dte_peak_to_peak"
 
 
 def speed_band(
     pair: GearPair,
     speeds_rpm: FloatArray,
-    known: xr.Dataset,
+    at_operating_speed: xr.Dataset,
     samples: int = 32,
     step_angle: float = STEP,
     seconds: float | None = None,
 ) -> xr.Dataset:
     """Return 5 and 95 % of the linear peak to peak on springs, ``low`` and ``high`` [m], over ``speed_rpm``.
 
-    ``known`` is the ``uncertainty`` at the operating speed, which says what inputs matter most.
-    ``step_angle`` is the largest angle of the fastest vibration in a step [rad]. ``seconds``: processor time
-    after which no further sample begins [s]; attributes ``taken`` and ``asked`` say how many did. NaN:
-    too few have a motion to make a range, ``least_samples`` of ``LEAST_BAND``.
+    Parameters
+    ----------
+    at_operating_speed : result of ``uncertainty`` at the operating speed, which ranks the inputs
+    samples : number of samples
+    step_angle : largest angle of the fastest vibration in a step [rad]
+    seconds : processor time after which no further sample begins [s]
+
+    Returns
+    -------
+    xarray.Dataset with ``low`` and ``high``; NaN: fewer samples than ``least_samples`` of ``LEAST_BAND``
+    have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the number of requested
+    samples
     """
-    found = _each_sample(pair, known, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds)
+    sampled = _each_sample(
+        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds
+    )
     low = high = np.full(np.shape(speeds_rpm), np.nan)
-    if len(found.results) >= least_samples(found.asked, LEAST_BAND):
-        low, high = np.nanpercentile(np.array(found.results), PERCENTILES[::2], axis=0)
+    if len(sampled.results) >= least_samples(sampled.asked, LEAST_BAND):
+        low, high = np.nanpercentile(np.array(sampled.results), PERCENTILES[::2], axis=0)
     text = "transmission error, peak to peak"
     return labelled_dataset(
         {
@@ -240,85 +274,93 @@ def speed_band(
             "high": ("speed_rpm", high, "m", f"{text}, 95 % of the samples"),
         },
         {"speed_rpm": (np.asarray(speeds_rpm), "rpm", "pinion speed")},
-        _counts(found),
+        _counts(sampled),
     )
 
 
-def teeth_band(pair: GearPair, known: xr.Dataset, seconds: float | None = None) -> xr.Dataset:
-    """5 and 95 % of the quantities ``TEETH`` of teeth that differ, over ``end``.
+def teeth_band(pair: GearPair, at_operating_speed: xr.Dataset, seconds: float | None = None) -> xr.Dataset:
+    """Return 5 % and 95 % of the quantities ``TEETH`` of unlike teeth, over ``end``.
 
-    Teeth of a class are drawn anew. ``known``, ``seconds``, attributes and NaN as in `speed_band`, of the
-    twin with like teeth. The more mesh cycles, the fewer samples.
+    The teeth of a tolerance class are drawn anew in each sample. ``at_operating_speed`` is the
+    ``uncertainty`` of the twin with like teeth. ``seconds``, attributes and NaN are as in `speed_band`. A
+    longer period has fewer samples.
     """
     samples = max(_LEAST_DRAWN, min(_MOST_DRAWN, _ALL_CYCLES // period_of(pair)))
-    found = _each_sample(pair, known, samples, of_teeth, seconds)
+    sampled = _each_sample(pair, at_operating_speed, samples, of_teeth, seconds)
     ends = np.full((2, len(TEETH)), np.nan)
-    if len(found.results) >= least_samples(found.asked, LEAST_BAND):
-        ends = np.percentile(np.array(found.results), PERCENTILES[::2], axis=0)
+    if len(sampled.results) >= least_samples(sampled.asked, LEAST_BAND):
+        ends = np.percentile(np.array(sampled.results), PERCENTILES[::2], axis=0)
     variables: dict[str, Variable] = {
         name: ("end", ends[:, column], unit, text)
         for column, (name, (unit, text)) in enumerate(TEETH.items())
     }
     return labelled_dataset(variables, {"end": (list(PERCENTILES[::2]), "%", "share of the samples below")},
-                            _counts(found))  # fmt: skip
+                            _counts(sampled))  # fmt: skip
 
 
 def sampled_predictions(
-    pair: GearPair, known: xr.Dataset, samples: int = 32, seconds: float | None = None
+    pair: GearPair, at_operating_speed: xr.Dataset, samples: int = 32, seconds: float | None = None
 ) -> Varied:
-    """Whole motions at samples of the inputs; ``known`` and ``seconds`` as in `speed_band`.
+    """Return predictions at samples of the inputs. ``at_operating_speed`` and ``seconds`` as in `speed_band`.
 
-    Fewer samples than those of ``uncertainty``, whose numbers they do not keep: 32 give a deviation to 13 %.
+    The samples are fewer than in ``uncertainty``, which keeps numbers but no motions. 32 samples give a
+    standard deviation to 13 %.
     """
-    found = _each_sample(pair, known, samples, lambda varied: predicted(varied.healthy), seconds)
-    return Varied(predicted(pair.healthy), found.results, found.taken, found.asked)
+    sampled = _each_sample(
+        pair, at_operating_speed, samples, lambda varied: predicted(varied.healthy), seconds
+    )
+    return Varied(predicted(pair.healthy), sampled.results, sampled.taken, sampled.asked)
 
 
-def _counts(found: Sampled[T]) -> dict[str, int]:
-    """Attributes of a range: samples in it, begun and asked for."""
-    return {"samples": len(found.results), "taken": found.taken, "asked": found.asked}
+def _counts(sampled: Sampled[T]) -> dict[str, int]:
+    """Attributes of a range: number of samples in the range, of begun samples and of requested samples."""
+    return {"samples": len(sampled.results), "taken": sampled.taken, "asked": sampled.asked}
 
 
 def _each_sample(
-    pair: GearPair, known: xr.Dataset, samples: int, run: Callable[[GearPair], T], seconds: float | None
+    pair: GearPair,
+    at_operating_speed: xr.Dataset,
+    samples: int,
+    run: Callable[[GearPair], T],
+    seconds: float | None,
 ) -> Sampled[T]:
-    """Results of the pair at samples of its inputs, until a processor time is used up [s]."""
+    """Results at samples of the inputs until the processor time [s] is over. ``run`` computes a machine."""
     deadline = Deadline(seconds)
     inputs = uncertain_inputs(pair)
-    moved = np.ptp(np.nan_to_num(known["dte_peak_to_peak_swing"].to_numpy()), axis=1)
-    by_name = dict(zip(known["input"].to_numpy().tolist(), moved, strict=True))
-    importance = np.array([by_name.get(one.field, moved.max()) for one in inputs])
-    found = list[T]()
+    swing = np.ptp(np.nan_to_num(at_operating_speed["dte_peak_to_peak_swing"].to_numpy()), axis=1)
+    by_name = dict(zip(at_operating_speed["input"].to_numpy().tolist(), swing, strict=True))
+    importance = np.array([by_name.get(one.field, swing.max()) for one in inputs])
+    results = list[T]()
     taken = 0
-    for point in sobol_points(importance, samples, int(known.attrs["seed"])):
+    for point in sobol_points(importance, samples, int(at_operating_speed.attrs["seed"])):
         if deadline.passed:
             break
         taken += 1
         try:
-            found.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
+            results.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
         except SpurcheckError:
             continue
-    return Sampled(tuple(found), taken, samples)
+    return Sampled(tuple(results), taken, samples)
 
 
 def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:
-    """Peak to peak of the linear transmission error at speeds, NaN where no motion is found [m]."""
+    """Peak to peak of the linear transmission error at each speed [m]; NaN: there is no motion."""
     pairs = [pair.at_speed(float(rpm)) for rpm in speeds_rpm]
-    found = np.full(len(pairs), np.nan)
+    sizes = np.full(len(pairs), np.nan)
     for j, system in enumerate(systems_over_speed(pairs, "springs", warn=False)):
         times = sample_times(system.period, _TIMES)
         try:
             motion = periodic_solution(system, times, estimate_error=False, step_angle=step_angle)
         except NumericalError:
             continue
-        found[j] = motion.peak_to_peak["dte"]
-    return found
+        sizes[j] = motion.peak_to_peak["dte"]
+    return sizes
 
 
 def percentile_interval(count: int, percentile: float) -> tuple[int, int]:
-    """Numbers, from 0, of the order statistics of ``count`` samples between which a percentile lies.
+    """Return the ranks, from 0, of the two samples between which a percentile lies.
 
-    The number of samples below it is binomial, so the interval holds whatever the distribution is.
+    The number of samples below a percentile is binomial. The interval therefore holds for every distribution.
     """
     low, high = (
         float(binom.ppf(p, count, percentile / 100.0)) for p in (0.5 - 0.5 * _SURE, 0.5 + 0.5 * _SURE)
@@ -327,18 +369,18 @@ def percentile_interval(count: int, percentile: float) -> tuple[int, int]:
 
 
 def end_shares(one: Input) -> list[float]:
-    """Shares of the distribution at which an input stands alone: 5 and 95 %, of a choice each of them."""
+    """Return the shares at which an input is varied alone: 5 % and 95 %, or the middle of every choice."""
     if one.choices:
         return [(k + 0.5) / len(one.choices) for k in range(len(one.choices))]
     return [PERCENTILES[0] / 100.0, PERCENTILES[-1] / 100.0]
 
 
 def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
-    """Return (samples, inputs) scrambled Sobol points, the first dimensions for the most important inputs.
+    """Return (samples, inputs) scrambled Sobol points; the most important inputs get the first dimensions.
 
-    ``importance`` (inputs,): a number that grows with what an input moves. Few points fill the planes of
-    later dimensions unevenly: docs/verification/uncertainty.md. Inputs that symmetry makes equal stay in
-    their order, whatever rounding says.
+    ``importance`` (inputs,): grows with the effect of an input. Few points fill the planes of later
+    dimensions unevenly, see docs/verification/uncertainty.md. Inputs that are equal by symmetry keep their
+    order: importance is rounded.
     """
     importance = np.round(importance, 6)
     points = qmc.Sobol(importance.size, rng=np.random.default_rng(seed)).random(samples)
@@ -346,18 +388,28 @@ def sobol_points(importance: FloatArray, samples: int, seed: int) -> FloatArray:
 
 
 def _ends(
-    inputs: Sequence[Input], of: Sequence[int], rows: Sequence[FloatArray | None], columns: int
+    inputs: Sequence[Input], input_of_row: Sequence[int], rows: Sequence[FloatArray | None], columns: int
 ) -> FloatArray:
-    """(input, 2, column) results of each input alone at its ends, of a choice the extremes; NaN: refused."""
-    found = np.full((len(inputs), 2, columns), np.nan)
+    """(input, end, column) results with each input alone at its ends; for a choice the extremes. NaN:
+    refused.
+
+    ``input_of_row``: number of the input that each row varies.
+    """
+    ends = np.full((len(inputs), 2, columns), np.nan)
     for j, one in enumerate(inputs):
-        if own := [row for number, row in zip(of, rows, strict=True) if number == j and row is not None]:
-            found[j] = (np.min(own, axis=0), np.max(own, axis=0)) if one.choices else (own[0], own[-1])
-    return found
+        if of_input := [
+            row for number, row in zip(input_of_row, rows, strict=True) if number == j and row is not None
+        ]:
+            ends[j] = (
+                (np.min(of_input, axis=0), np.max(of_input, axis=0))
+                if one.choices
+                else (of_input[0], of_input[-1])
+            )
+    return ends
 
 
 def importance_of(ends: FloatArray) -> FloatArray:
-    """(input,) swing of each input over the largest one, of the result that it moves most."""
+    """Return (input,) the largest swing of each input, over the largest swing of that result."""
     width = np.nan_to_num(np.abs(ends[:, 1] - ends[:, 0])[:, : len(QUANTITIES)])
     largest = width.max(axis=0)
     return np.asarray((width / np.where(largest > 0.0, largest, 1.0)).max(axis=1))
@@ -382,23 +434,27 @@ def varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
 
 
 def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
-    """Quantities, orders of the bearing force and the flags ``FLAGS``; None where there is no motion."""
+    """Quantities, orders of the bearing force, quantities of unlike teeth and ``FLAGS``. None: no motion."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LawRangeWarning)
             sampled = varied(pair, changes)
-            found = predicted(sampled.healthy)
-            own = of_teeth(sampled)
+            prediction = predicted(sampled.healthy)
+            teeth = of_teeth(sampled)
     except SpurcheckError:
         return None
     orders = np.zeros(ORDERS)
-    orders[: found.bearing_orders.size] = found.bearing_orders
-    flags = [float(found.contact_lost), float(not found.stable), float(found.motion is Motion.LINEAR)]
-    return np.array([*found.numbers.values(), *orders, *own, *flags])
+    orders[: prediction.bearing_orders.size] = prediction.bearing_orders
+    flags = [
+        float(prediction.contact_lost),
+        float(not prediction.stable),
+        float(prediction.motion is Motion.LINEAR),
+    ]
+    return np.array([*prediction.numbers.values(), *orders, *teeth, *flags])
 
 
 def of_teeth(pair: GearPair) -> list[float]:
-    """The quantities ``TEETH``; none of like teeth."""
+    """Return the quantities ``TEETH``; empty for like teeth."""
     if pair.healthy is pair:
         return []
     motion = lumped.steady_state(pair, samples_per_cycle=TEETH_SAMPLES)
@@ -415,9 +471,11 @@ def _dataset(
     *,
     enough: bool,
 ) -> xr.Dataset:
-    """The samples ``table`` at ``points`` with their percentiles, and what each input alone does.
+    """Dataset of the samples, with percentiles and the effect of each input alone.
 
-    NaN in the place of percentiles where the samples are not ``enough`` for a range.
+    ``points`` (sample, input): shares of the distributions; ``table`` (sample, column): results; ``ends``
+    (input, end, column): results of one input alone; ``enough``: there are enough samples for a range, else
+    percentiles are NaN.
     """
     bearing = "force on the pinion bearings, mesh order"
     results = QUANTITIES | {name: ("N", f"{bearing} {m}") for m, name in enumerate(_ORDER_NAMES, 1)}
@@ -460,7 +518,7 @@ def _dataset(
 
 
 def _percentiles(table: FloatArray, *, enough: bool) -> tuple[FloatArray, FloatArray]:
-    """(percentile, column) of the samples, and the intervals (percentile, end, column) that hold them."""
+    """Percentiles (percentile, column) of the samples, and their intervals (percentile, end, column)."""
     count, columns = table.shape
     if not enough:
         return np.full((len(PERCENTILES), columns), np.nan), np.full((len(PERCENTILES), 2, columns), np.nan)
@@ -469,15 +527,16 @@ def _percentiles(table: FloatArray, *, enough: bool) -> tuple[FloatArray, FloatA
 
 
 def _number(one: Input, share: float) -> float:
+    """Value of an input at a share of the distribution; for a choice the number of the name."""
     value = one.at(share)
     return float(one.choices.index(value)) if isinstance(value, str) else value
 
 
 def _rank_correlation(ranks: FloatArray, values: FloatArray) -> FloatArray:
-    """Spearman's coefficient of each input's ranks (samples, inputs) with a result; 0 for a constant."""
-    own = rankdata(values)
-    own = own - own.mean()
+    """Spearman's coefficient of the ranks (samples, inputs) of each input with a result; 0 for a constant."""
+    result_ranks = rankdata(values)
+    result_ranks = result_ranks - result_ranks.mean()
     ranks = ranks - ranks.mean(axis=0)
-    size = np.sqrt((own @ own) * (ranks**2).sum(axis=0))
-    found = np.divide(own @ ranks, size, out=np.zeros(ranks.shape[1]), where=size > 0.0)
-    return np.asarray(found, dtype=np.float64)
+    size = np.sqrt((result_ranks @ result_ranks) * (ranks**2).sum(axis=0))
+    coefficients = np.divide(result_ranks @ ranks, size, out=np.zeros(ranks.shape[1]), where=size > 0.0)
+    return np.asarray(coefficients, dtype=np.float64)

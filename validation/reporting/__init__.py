@@ -1,6 +1,6 @@
-"""The verification report: results computed once, chapters of blocks, one HTML page and one JSON file.
+"""The verification report: shared results, chapters of blocks, an HTML page and a JSON file.
 
-Names are imported on first use: commands that only write a number in words do without chapters and figures.
+Names are imported at their first use: a command without a report does not load chapters and figures.
 """
 
 import lazy_loader

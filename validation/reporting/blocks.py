@@ -1,20 +1,20 @@
-"""What the report is made of: plain data that becomes HTML, JSON and CSV.
+"""Blocks of the report: texts, tables and pictures, as plain data that becomes HTML, JSON and CSV.
 
-Chapters show numbers only through these blocks, so the page shows no number that report.json does not have. A
-picture draws one dataset, which is written beside it.
+Chapters show numbers only through these blocks. The page therefore shows no number that is missing in
+report.json. Numbers are in SI, or in the unit that stands beside the number ("rpm", "°", "%").
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import xarray as xr
 from matplotlib.figure import Figure
 
-#: State of a badge -> its class in the page. The words themselves always stand beside the colour.
+#: State of a badge -> class in the page, which sets the colour. The word of the badge is always printed too.
 STATES = {
     "ok": "good",
     "agrees": "good",
@@ -31,7 +31,7 @@ STATES = {
 
 @dataclass(frozen=True)
 class Badge:
-    """A verdict in a word; ``state`` is a key of ``STATES``."""
+    """A verdict in one word. ``state`` is a key of ``STATES``; ``text`` replaces the word."""
 
     state: str
     text: str = ""
@@ -49,7 +49,7 @@ class Badge:
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number in SI with its unit ("1" for a ratio), shown with a prefix."""
+    """A number with its unit: an SI unit, or "rpm", "°" or "%"; "1" for a ratio. The page adds a prefix."""
 
     value: float
     unit: str
@@ -60,8 +60,48 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
+class Column(Generic[T]):
+    """A column of a table. A chapter declares the column here and nowhere else.
+
+    report.json, the CSV file, the workbook and the page read name, heading and unit from this declaration.
+    The tests recompute every column; see "Add a column" in CONTRIBUTING.md.
+
+    Attributes
+    ----------
+    name : name in report.json, in the CSV file and in the tests
+    heading : heading on the page
+    read : function from the item of a row to the value in this column
+    unit : unit of the value, SI or "rpm", "°", "%"; "1" for a ratio. Empty: ``read`` returns words, a
+        count, a badge, or a `Quantity` whose unit differs from row to row
+    """
+
+    name: str
+    heading: str
+    read: Callable[[T], Cell]
+    unit: str = ""
+
+    def cell(self, item: T) -> Cell:
+        """Cell of the row of an item. A value that is None stays None: the cell is empty."""
+        value = self.read(item)
+        if not self.unit or value is None:
+            return value
+        if isinstance(value, (str, bool, Quantity, Badge)):
+            raise TypeError(f"column {self.name} has the unit {self.unit}, but {value!r} is no number")
+        return Quantity(float(value), self.unit)
+
+
+@dataclass(frozen=True)
 class Table:
-    """A table; ``key`` names it in report.json and its CSV file, ``columns`` are name -> heading."""
+    """A table of the report.
+
+    Attributes
+    ----------
+    key : name in report.json, of the CSV file and of the sheet
+    caption : sentence above the table
+    columns : name of each column -> heading
+    rows : cells, row by row
+    note : sentence below the table
+    """
 
     key: str
     caption: str
@@ -71,31 +111,51 @@ class Table:
 
 
 def table_of(
-    key: str,
-    caption: str,
-    items: Sequence[T],
-    columns: Mapping[str, tuple[str, Callable[[T], Cell]]],
-    note: str = "",
+    key: str, caption: str, items: Iterable[T], columns: Sequence[Column[T]], note: str = ""
 ) -> Table:
-    """Table with one row per item; ``columns``: name in report.json -> heading, and the cell of an item."""
-    return Table(
+    """Return the table with one row for each item. Each column reads its cell from the item."""
+    headings = {column.name: column.heading for column in columns}
+    rows = tuple(tuple(column.cell(item) for column in columns) for item in items)
+    return Table(key, caption, headings, rows, note)
+
+
+class NamedNumber(NamedTuple):
+    """A row of a table of named numbers: name, value, unit of the value as in `Quantity`, and a note."""
+
+    name: str
+    value: float
+    unit: str
+    note: str = ""
+
+
+def named_numbers(
+    key: str, caption: str, numbers: Iterable[NamedNumber], *more: Column[NamedNumber]
+) -> Table:
+    """Return a table of named numbers. ``more``: further columns, between the value and the note."""
+    return table_of(
         key,
         caption,
-        {name: heading for name, (heading, _) in columns.items()},
-        tuple(tuple(cell(item) for _, cell in columns.values()) for item in items),
-        note,
+        numbers,
+        (
+            Column("name", "", lambda number: number.name),
+            Column("value", "value", lambda number: Quantity(float(number.value), number.unit)),
+            *more,
+            Column("note", "", lambda number: number.note),
+        ),
     )
-
-
-def quantities(key: str, caption: str, *rows: tuple[str, float, str] | tuple[str, float, str, str]) -> Table:
-    """Table of named numbers: a row is a label, a number, its unit in SI, and a note."""
-    cells = tuple((row[0], Quantity(float(row[1]), row[2]), row[3] if len(row) > 3 else "") for row in rows)
-    return Table(key, caption, {"name": "", "value": "value", "note": ""}, cells)
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure of one dataset, which is written as CSV beside it; ``key`` names both."""
+    """A figure and the dataset that the figure draws.
+
+    Attributes
+    ----------
+    key : name of the figure file and of the CSV file of the dataset
+    caption : sentence below the figure
+    data : dataset; every variable has a unit attribute
+    draw : function from the dataset to the figure
+    """
 
     key: str
     caption: str
@@ -103,7 +163,7 @@ class Picture:
     draw: Callable[[xr.Dataset], Figure]
 
     def figure(self) -> Figure:
-        """The figure of its dataset."""
+        """Draw the figure."""
         return self.draw(self.data)
 
 
@@ -120,14 +180,20 @@ Block = Text | Table | Picture
 
 @dataclass(frozen=True)
 class Content:
-    """What a chapter says about one gear pair: its result in one sentence, then blocks."""
+    """A written chapter.
+
+    Attributes
+    ----------
+    result : the result of the chapter in one sentence
+    blocks : texts, tables and pictures below the sentence
+    """
 
     result: str
     blocks: tuple[Block, ...]
 
 
 def plain(value: Cell) -> Any:
-    """Cell as JSON data; a number that is not finite becomes null."""
+    """Return a cell as JSON data. A number that is not finite becomes null."""
     if isinstance(value, Badge):
         return {"state": value.state, "text": value.label}
     if isinstance(value, Quantity):
@@ -142,7 +208,7 @@ REMARKS = ("text", "figures", "captions", "tables")
 
 
 def chapter_data(title: str, content: Content) -> dict[str, Any]:
-    """Everything a chapter shows, as JSON data."""
+    """Return all texts, tables and captions of a chapter as JSON data."""
     data: dict[str, Any] = {"title": title, "text": [[content.result]]}
     for block in content.blocks:
         if isinstance(block, Table):

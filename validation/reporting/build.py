@@ -23,20 +23,24 @@ from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
+from validation.measurements.channel_comparison import Record
 from validation.measurements.record import load_measurement
-from validation.measurements.record_comparison import Record, RecordComparison
+from validation.measurements.record_comparison import RecordComparison
 from validation.measurements.record_orders import check_record
 from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
+from validation.reporting.effort import FULL, QUICK
 from validation.reporting.facts import Fact
 from validation.reporting.first_figures import first_figures
+from validation.reporting.first_numbers import Number, first_numbers
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
-from validation.reporting.page_one import Number, PageOne, first_numbers, page_one, title
-from validation.reporting.results import FULL, QUICK, Results, failed_checks
+from validation.reporting.page_one import PageOne, page_one, title
+from validation.reporting.relations import failed_checks
+from validation.reporting.results import Results
 from validation.reporting.tables import write_tables
 
 
@@ -46,13 +50,13 @@ class Report:
 
     Attributes
     ----------
-    folder : where it is
-    first : what page 1 says
+    folder : folder of the report
+    first : contents of page 1
     failed : checks of the program that fail, one phrase each
     findings : findings about the machine, for gates: "contact", "stable", "holds", "record"
     seconds : wall time [s]
-    comparison : with an earlier report, where one was given
-    record : the prediction beside a measured record, where one was given
+    comparison : comparison with an earlier report; None: no earlier report was given
+    record : comparison with a measured record; None: no record was given
     """
 
     folder: Path
@@ -81,8 +85,10 @@ def report(
     """Write the verification report of a gear pair into a folder.
 
     The folder gets ``index.html`` (self-contained: it needs no network and no other file), ``report.json``
-    (every number shown), ``figures/`` (SVG), ``tables/`` (CSV of every table and figure, and one workbook)
-    and ``data/`` (NetCDF and the parameter file). It is written whole or not at all.
+    (every number on the page), ``figures/`` (SVG), ``tables/`` (CSV of every table and figure, and one
+    workbook) and ``data/`` (NetCDF and the parameter file). Numbers are in SI or in the unit that stands
+    beside them; every variable of a dataset has the attribute ``units``. The folder is written completely
+    or not at all.
 
     Parameters
     ----------
@@ -151,27 +157,28 @@ def report(
 
 
 def findings(results: Results) -> frozenset[str]:
-    """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold".
+    """Return the findings about the machine: "contact", "stable", "holds", "record".
 
+    "contact": contact is lost. "stable": the motion is not stable. "holds": the model does not hold.
     "record": a measured record does not confirm the prediction.
     """
     lost = results.contact_lost
     unstable = not results.prediction.stable
     record = results.measured_error
-    found = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
-    found["record"] = record is not None and record.verdict is not Record.CONFIRMS
-    return frozenset(name for name, there in found.items() if there)
+    conditions = {"contact": lost, "stable": unstable, "holds": bool(results.outside) or lost or unstable}
+    conditions["record"] = record is not None and record.verdict is not Record.CONFIRMS
+    return frozenset(name for name, holds in conditions.items() if holds)
 
 
 def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -> tuple[Written, ...]:
-    """Write chapters, without those that the report leaves out."""
+    """Write the chapters, without those that the report leaves out."""
     total = sum(chapter.seconds for chapter in chapters)
     made: list[Written] = []
     done = shown = 0.0
 
-    def tell(first: float, own: float, fraction: float, stage: str = "", /) -> None:
+    def tell(first: float, seconds: float, fraction: float, stage: str = "", /) -> None:
         nonlocal shown
-        shown = max(shown, (first + fraction * own) / total)  # a chapter may compute several results
+        shown = max(shown, (first + fraction * seconds) / total)  # a chapter may compute several results
         progress(shown, stage)
 
     # Samples first, charts last: another process compiles the second program meanwhile, and then the charts.
@@ -187,7 +194,7 @@ def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -
 def document(
     results: Results, first: PageOne, chapters: tuple[Written, ...], *, quick: bool
 ) -> dict[str, Any]:
-    """report.json without its timestamps: the same parameters and software give the same data."""
+    """Return report.json without its timestamps. Equal parameters and equal software give equal data."""
     return {
         "format": FORMAT,
         "format_version": FORMAT_VERSION,
@@ -209,12 +216,14 @@ def document(
 
 
 def _fact(fact: Fact) -> dict[str, Any]:
+    """A fact as JSON data."""
     scope = asdict(fact.scope) | {"speeds_rpm": list(fact.scope.speeds_rpm)}
-    own = {"claim": fact.claim, "value": plain(fact.value), "unit": fact.unit}
-    return own | {"scope": scope, "computed_by": fact.computed_by}
+    claim = {"claim": fact.claim, "value": plain(fact.value), "unit": fact.unit}
+    return claim | {"scope": scope, "computed_by": fact.computed_by}
 
 
 def _number(number: Number) -> dict[str, Any]:
+    """A row of the table of page 1 as JSON data."""
     sizes = {
         name: plain(float(getattr(number, name))) for name in ("value", "low", "high", "median", "second")
     }
@@ -223,7 +232,7 @@ def _number(number: Number) -> dict[str, Any]:
 
 
 def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict[str, str]:
-    """Draw the pictures; key -> data URI of its file."""
+    """Draw the pictures. Returns key of a picture -> data URI of the file."""
     folder.mkdir()
     images = {}
     for count, picture in enumerate(pictures):
@@ -235,10 +244,10 @@ def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict
 
 
 def _write_data(results: Results, folder: Path) -> None:
-    """Write the datasets that the numbers come from, and the parameter file."""
+    """Write the datasets of the numbers, and the parameter file."""
     folder.mkdir()
     second = results.second
-    found: dict[str, xr.Dataset | Absent] = {
+    datasets: dict[str, xr.Dataset | Absent] = {
         "prediction": results.prediction.cycle,
         "linear": results.linear,
         "second_program": second if isinstance(second, Absent) else second.cycle,
@@ -249,8 +258,8 @@ def _write_data(results: Results, folder: Path) -> None:
         "stability": results.chart,
     }
     for number, branches in enumerate(results.jump_search.branches, 1):
-        found[f"motions_{number}" if number > 1 else "motions"] = branches.dataset
-    for name, data in found.items():
+        datasets[f"motions_{number}" if number > 1 else "motions"] = branches.dataset
+    for name, data in datasets.items():
         if not isinstance(data, Absent):
             write_dataset(data, folder / f"{name}.nc")
     (folder / "parameters.toml").write_text(results.given.to_toml(), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What a chapter of the report is, before it is written for a gear pair."""
+"""A chapter of the report: its key, its title and the function that writes the chapter."""
 
 from __future__ import annotations
 
@@ -11,10 +11,14 @@ from validation.reporting.results import Results
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter of the report; ``write`` gives None where the report leaves it out.
+    """A chapter of the report.
 
-    ``key`` is its anchor and its name in report.json; ``seconds`` about what it takes, for the progress bar
-    [s].
+    Attributes
+    ----------
+    key : anchor on the page and name in report.json
+    title : heading
+    write : function from the results to the written chapter; None: the report leaves the chapter out
+    seconds : approximate time of the chapter, for the progress bar [s]
     """
 
     key: str
@@ -23,5 +27,5 @@ class Chapter:
     seconds: float = 0.1
 
 
-#: A chapter with what it says about a gear pair.
+#: A chapter with its contents for a gear pair.
 Written = tuple[Chapter, Content]

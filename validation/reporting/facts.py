@@ -1,7 +1,7 @@
-"""What a report claims of a pair: each claim with its value, the scope it was computed over, and by what.
+"""Facts: the claims of a report about the pair, each with value, scope and computing function.
 
-Page 1, the terminal and report.json take their sentences from here. What was not computed is not claimed: a
-fact then says so, over the same scope.
+Page 1, the terminal and report.json take their sentences from here. Without a computation there is no
+claim: the fact then says, over the same scope, that the computation is missing.
 """
 
 from __future__ import annotations
@@ -18,22 +18,23 @@ from validation.files.formatting import number, quantity
 from validation.prediction.resonance import Resonance
 from validation.prediction.uncertainty import LEAST_BAND, least_samples
 from validation.reporting.results import SHORT, Results
+from validation.reporting.second_program_words import second_program_words
 
-#: Keys of what the time left open of ranges that few samples give; page 1 says each that is there.
+#: Keys of the facts on ranges whose computation the time limit ended; page 1 says each of them.
 RANGES = ("range_over_speed", "range_of_teeth", "range_beside_record")
 
 
 @dataclass(frozen=True)
 class Scope:
-    """Over what a claim was computed.
+    """What a claim was computed for.
 
     Attributes
     ----------
-    speeds_rpm : lowest and highest pinion speed [rpm]; twice the operating speed where it is of that one
-    motion : which motion it is about
+    speeds_rpm : lowest and highest pinion speed [rpm]; both are the operating speed for a claim on that speed
+    motion : name of the motion
     supports : "springs" or "shafts"
     teeth : "alike" or "as given"
-    inputs : "as given", or how many samples of them
+    inputs : "as given", or the number of samples
     effort : "quick report" or "full report"
     """
 
@@ -52,7 +53,7 @@ class Scope:
 
     @property
     def words(self) -> str:
-        """The whole scope in one line."""
+        """The scope in one line."""
         return (
             f"{self.speeds}; {self.motion}; {self.supports}; teeth {self.teeth}; inputs {self.inputs}; "
             f"{self.effort}"
@@ -67,9 +68,10 @@ class Fact:
     ----------
     key : name in report.json
     claim : the claim as a clause, without a full stop
-    value, unit : the number that it is about, in SI or rpm; NaN where it has none
-    scope : over what it was computed
-    computed_by : the function that computed it
+    value : number of the claim; NaN for a claim without a number
+    unit : unit of the value, SI or "rpm"
+    scope : what the claim was computed for
+    computed_by : name of the function that computed the claim
     """
 
     key: str
@@ -81,18 +83,18 @@ class Fact:
 
 
 def rpm(speed: float) -> str:
-    """A speed as it is printed."""
+    """Return a speed as the page prints the speed."""
     return f"{number(speed, 5)} rpm"
 
 
 def percent(share: float) -> str:
-    """A share in per cent, with its sign where it is negative: two digits, all before the point."""
+    """Return a share in per cent with two significant digits, and all digits before the point."""
     return number(100.0 * share, 2)
 
 
-def facts(results: Results) -> dict[str, Fact]:
-    """Return every claim of a report by its key; those of what was computed already cost nothing."""
-    found = (
+def facts_of(results: Results) -> dict[str, Fact]:
+    """Return every fact of a report by its key. Results that are missing are computed."""
+    facts = (
         _contact(results),
         _stable(results),
         _instability(results),
@@ -109,12 +111,12 @@ def facts(results: Results) -> dict[str, Fact]:
         _record(results),
         _inputs(results),
     )
-    return {one.key: one for one in found if one is not None}
+    return {fact.key: fact for fact in facts if fact is not None}
 
 
 def _scope(results: Results, **changes: str) -> Scope:
-    """The scope of the prediction at the operating point, with changes."""
-    own = results.operating_rpm
+    """Scope of the prediction at the operating point, with changes of single entries."""
+    speed = results.operating_rpm
     words = {
         "motion": results.prediction.motion.text,
         "supports": "springs" if results.pair.shafts is None else "shafts",
@@ -122,11 +124,11 @@ def _scope(results: Results, **changes: str) -> Scope:
         "inputs": "as given",
         "effort": results.effort.name,
     }
-    return Scope((own, own), **(words | changes))
+    return Scope((speed, speed), **(words | changes))
 
 
 def _over(results: Results, speeds: tuple[float, float], motion: str) -> Scope:
-    """The scope of what is computed over speed: on springs, with like teeth."""
+    """Scope of a result over speed, which is on springs and with like teeth."""
     scope = _scope(results, motion=motion, supports="springs", teeth="alike")
     return replace(scope, speeds_rpm=speeds)
 
@@ -147,7 +149,7 @@ def _stable(results: Results) -> Fact:
 
 
 def _instability(results: Results) -> Fact:
-    """What the chart says over speed at the given damping."""
+    """Unstable speeds in the stability chart at the damping of the pair."""
     share = float((results.stability_line < 0).mean())
     claim = "no speed is unstable" if share == 0.0 else f"{percent(share)} % of the speeds are unstable"
     scope = _over(results, results.speeds, "linear motion")
@@ -155,13 +157,13 @@ def _instability(results: Results) -> Fact:
 
 
 def _jumps(results: Results) -> Fact:
-    """What the search beyond contact loss says over the widest range that it went through."""
+    """Jumps, beats and chaos in the widest range of speed whose search is complete."""
     search = results.jump_search
     searched = results.searched
     motion = "motions with unilateral contact"
     if searched is None:
-        own = results.operating_rpm
-        scope = _over(results, (own, own), motion)
+        speed = results.operating_rpm
+        scope = _over(results, (speed, speed), motion)
         claim = "jumps were not searched to the end about this speed"
         return Fact("jumps", claim, math.nan, "1", scope, "search_jumps")
     low, high = searched
@@ -178,95 +180,97 @@ def _jumps(results: Results) -> Fact:
 
 
 def _left_open(results: Results) -> Fact | None:
-    """The speeds whose search the budget did not finish."""
-    left = results.jump_search.open
-    if not left:
+    """Ranges of speed whose search the time limit ended. None: the search is complete."""
+    left_open = results.jump_search.open
+    if not left_open:
         return None
-    ranges = " and ".join(f"from {number(low, 5)} to {rpm(high)}" for low, high in left)
+    ranges = " and ".join(f"from {number(low, 5)} to {rpm(high)}" for low, high in left_open)
     claim = f"jumps {ranges} were not searched to the end"
-    scope = _over(results, (left[0][0], left[-1][1]), "motions with unilateral contact")
-    return Fact("jumps_left_open", claim, float(len(left)), "1", scope, "search_jumps")
+    scope = _over(results, (left_open[0][0], left_open[-1][1]), "motions with unilateral contact")
+    return Fact("jumps_left_open", claim, float(len(left_open)), "1", scope, "search_jumps")
 
 
 def _resonance(results: Results) -> Fact:
-    found = results.resonance
+    resonance = results.resonance
     scope = replace(_scope(results, motion="mesh orders 1 to 10", teeth="alike"), speeds_rpm=results.speeds)
-    if found is None:
+    if resonance is None:
         return Fact("resonance", "no mesh order resonates", math.nan, "rpm", scope, "nearest_resonance")
-    distance = found.speed_rpm - results.operating_rpm
-    return Fact("resonance", resonance_words(found), distance, "rpm", scope, "nearest_resonance")
+    distance = resonance.speed_rpm - results.operating_rpm
+    return Fact("resonance", resonance_words(resonance), distance, "rpm", scope, "nearest_resonance")
 
 
-def resonance_words(found: Resonance) -> str:
-    """Where the operating speed lies beside a resonance: "order 3 is 0.4 % above the mesh mode (1870 Hz)"."""
-    side = "above" if found.apart > 0.0 else "below"
-    size = number(100.0 * abs(found.apart), 2)
-    return f"order {found.order} is {size} % {side} the {found.mode} ({found.frequency:.0f} Hz)"
+def resonance_words(resonance: Resonance) -> str:
+    """Return the distance to a resonance in words: "order 3 is 0.4 % above the mesh mode (1870 Hz)"."""
+    side = "above" if resonance.apart > 0.0 else "below"
+    size = number(100.0 * abs(resonance.apart), 2)
+    mode = f"{resonance.mode} ({resonance.frequency:.0f} Hz)"
+    return f"order {resonance.order} is {size} % {side} the {mode}"
 
 
-def amplified_words(found: Resonance) -> str:
-    """What a resonance amplifies, at its speed: the dynamic factor, or the force on the bearings."""
-    if found.place == "mesh force":
-        factor = found.dynamic_factor
+def amplified_words(resonance: Resonance) -> str:
+    """Return the amplified force at the speed of a resonance: the dynamic factor, or the bearing force."""
+    if resonance.place == "mesh force":
+        factor = resonance.dynamic_factor
         return f"dynamic factor there {factor:.3g}" if math.isfinite(factor) else ""
-    return f"{found.place} there {quantity(found.force, 'N', 2)} at this order"
+    return f"{resonance.place} there {quantity(resonance.force, 'N', 2)} at this order"
 
 
-def samples_words(found: xr.Dataset) -> str:
-    """From how many possible machines a range is, and what the time left open: a clause."""
-    taken, asked, used = (found.attrs[name] for name in ("taken", "asked", "seconds"))
-    kept = int(found.sizes["sample"])
-    refused = found.attrs["refused"]
-    linear = found.attrs["linear"]
-    of = f"{taken} of {asked}" if taken < asked else f"{taken}"
-    parts = [f"the range is from {of} possible machines"]
-    if kept < least_samples(asked):
-        parts = [
-            f"there is no range: it needs {least_samples(asked)} possible machines, and {of} were computed"
-        ]
+def samples_words(samples: xr.Dataset) -> str:
+    """Return a clause: the number of samples of a range, and what the time limit left out."""
+    taken = samples.attrs["taken"]
+    requested = samples.attrs["asked"]
+    seconds = samples.attrs["seconds"]
+    count = int(samples.sizes["sample"])
+    refused = samples.attrs["refused"]
+    linear = samples.attrs["linear"]
+    machines = f"{taken} of {requested}" if taken < requested else f"{taken}"
+    parts = [f"the range is from {machines} possible machines"]
+    least = least_samples(requested)
+    if count < least:
+        parts = [f"there is no range: it needs {least} possible machines, and {machines} were computed"]
     parts[0] += f", of which {refused} have no motion and are left out" if refused else ""
-    parts += [f"in {linear} of {kept} the linear motion stands in"] if linear else []
-    if taken < asked:
-        parts += [f"the time of {number(used, 3)} s was used up"]
-        inputs = int(found.sizes["input"])
-        alone = found.attrs["alone"]
+    parts += [f"in {linear} of {count} the linear motion stands in"] if linear else []
+    if taken < requested:
+        parts += [f"the time of {number(seconds, 3)} s was used up"]
+        inputs = int(samples.sizes["input"])
+        alone = samples.attrs["alone"]
         parts += [f"{alone} of {inputs} inputs were moved alone"] if alone < inputs else []
     return "; ".join(parts)
 
 
 def sampled_words(what: str, counts: Mapping[str, Any], seconds: float) -> str:
-    """What the time left open of a range that few samples give: a clause."""
-    of = f"{counts['taken']} of {counts['asked']}"
+    """Return a clause on a range whose computation the time limit ended. ``what``: name of the range."""
+    machines = f"{counts['taken']} of {counts['asked']}"
     end = f"the time of {number(seconds, 3)} s was used up"
     least = least_samples(counts["asked"], LEAST_BAND)
     if counts["samples"] < least:
-        return f"there is no {what}: it needs {least} possible machines, and {of} were computed; {end}"
-    return f"the {what} is from {of} possible machines; {end}"
+        return f"there is no {what}: it needs {least} possible machines, and {machines} were computed; {end}"
+    return f"the {what} is from {machines} possible machines; {end}"
 
 
 def _samples(results: Results) -> Fact | None:
-    """From how many samples the ranges of page 1 are."""
-    found = results.uncertainty
-    if not isinstance(found, xr.Dataset):
+    """Number of samples of the ranges of page 1. None: the inputs are not varied."""
+    samples = results.uncertainty
+    if not isinstance(samples, xr.Dataset):
         return None
-    count = int(found.sizes["sample"])
+    count = int(samples.sizes["sample"])
     scope = _scope(results, teeth="alike", inputs=f"{count} samples")
-    return Fact("samples", samples_words(found), float(count), "1", scope, "uncertainty")
+    return Fact("samples", samples_words(samples), float(count), "1", scope, "uncertainty")
 
 
 def samples_matter(results: Results) -> bool:
-    """Whether page 1 has to say from how many samples a range is: not from all that were asked for."""
-    found = results.uncertainty
-    if not isinstance(found, xr.Dataset):
+    """Return whether page 1 must say the number of samples: some of the requested samples are missing."""
+    samples = results.uncertainty
+    if not isinstance(samples, xr.Dataset):
         return False
-    own = found.attrs
-    return bool(own["taken"] < own["asked"] or own["refused"] or own["linear"])
+    counts = samples.attrs
+    return bool(counts["taken"] < counts["asked"] or counts["refused"] or counts["linear"])
 
 
 def _cut(
     key: str, what: str, counts: Mapping[str, Any], scope: Scope, results: Results, by: str
 ) -> Fact | None:
-    """What the time left open of a range that few samples give; None where nothing is."""
+    """Fact on a range whose computation the time limit ended. None: all samples were computed."""
     if counts["taken"] == counts["asked"]:
         return None
     scope = replace(scope, inputs=f"{counts['samples']} samples")
@@ -301,13 +305,14 @@ def _range_beside_a_record(results: Results) -> Fact | None:
 
 
 def _trouble(results: Results) -> Fact | None:
-    """The share of the samples that lose contact or are unstable."""
-    found = results.uncertainty
-    if not isinstance(found, xr.Dataset) or not found.sizes["sample"]:
+    """Share of the samples that lose contact or are unstable. None: there are no samples."""
+    samples = results.uncertainty
+    if not isinstance(samples, xr.Dataset) or not samples.sizes["sample"]:
         return None
-    count = int(found.sizes["sample"])
-    lost = int(found.attrs["contact_lost"])
-    unstable, either = (int(found.attrs[name]) for name in ("unstable", "lost_or_unstable"))
+    count = int(samples.sizes["sample"])
+    lost = int(samples.attrs["contact_lost"])
+    unstable = int(samples.attrs["unstable"])
+    either = int(samples.attrs["lost_or_unstable"])
     parts = [f"{lost} of {count} possible machines lose contact"] if lost else []
     parts += [f"{unstable} of {count} are unstable"] if unstable else []
     claim = " and ".join(parts) or f"none of {count} possible machines loses contact or is unstable"
@@ -316,7 +321,7 @@ def _trouble(results: Results) -> Fact | None:
 
 
 def _levels(results: Results) -> Fact | None:
-    """How far the inputs move the transmission error."""
+    """Range of the transmission error with the uncertain inputs. None: there are too few samples."""
     spread = results.spread("dte_peak_to_peak")
     if spread is None:
         return None
@@ -329,7 +334,7 @@ def _levels(results: Results) -> Fact | None:
 
 
 def spread_words(spread: tuple[float, float]) -> str:
-    """A range relative to its result: "−20/+180 %"."""
+    """Return a range relative to the result: "−20/+180 %"."""
     low, high = (f"{'+' if end > 0.0 else ''}{percent(end)}" for end in spread)
     return f"{low}/{high} %"
 
@@ -340,7 +345,9 @@ def _second_program(results: Results) -> Fact:
     if not isinstance(check, Absent) and check.of("exact"):
         worst = check.worst("exact").difference
     scope = _scope(results, motion="motion of the second program", teeth="alike")
-    return Fact("second_program", results.second_words.removesuffix("."), worst, "1", scope, "crosscheck")
+    return Fact(
+        "second_program", second_program_words(results).removesuffix("."), worst, "1", scope, "crosscheck"
+    )
 
 
 def _record(results: Results) -> Fact | None:
@@ -352,6 +359,6 @@ def _record(results: Results) -> Fact | None:
 
 
 def _inputs(results: Results) -> Fact:
-    known, assumed = results.inputs
-    claim = f"{assumed} of {known + assumed} inputs are assumed"
+    known_count, assumed = results.inputs
+    claim = f"{assumed} of {known_count + assumed} inputs are assumed"
     return Fact("inputs", claim, float(assumed), "1", _scope(results), "given_and_assumed")

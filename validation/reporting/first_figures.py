@@ -16,15 +16,16 @@ from validation.reporting.chapters.contact_loss import linear_over_speed, motion
 from validation.reporting.chapters.forces import tooth_forces
 from validation.reporting.results import Results
 
-#: Inputs in the figure of swings.
+#: Most inputs in the figure of swings.
 _MOST = 6
+#: Mesh orders in the figure of the bearing force.
 _ORDERS = 8
 
 
 def first_figures(results: Results) -> tuple[Picture, ...]:
-    """Return the figures of page 1; where contact is lost the mesh force takes the place of the swings."""
+    """Return the figures of page 1. Where contact is lost, the mesh force stands in place of the swings."""
     over = motions(results) if results.jump_search.branches else linear_over_speed(results)
-    found = [
+    pictures = [
         Picture(
             "over_speed",
             f"Transmission error over speed{results.on_springs}",
@@ -34,7 +35,7 @@ def first_figures(results: Results) -> tuple[Picture, ...]:
         Picture("bearing_orders", "Force on the pinion bearings", bearing_orders(results), orders_figure),
     ]
     if results.prediction.contact_lost:
-        found.append(
+        pictures.append(
             Picture(
                 "mesh_force",
                 "The teeth leave contact",
@@ -43,21 +44,21 @@ def first_figures(results: Results) -> tuple[Picture, ...]:
             )
         )
     elif isinstance(results.uncertainty, xr.Dataset):
-        found.append(
+        pictures.append(
             Picture("swings", "What the result depends on", swings(results.uncertainty), swings_figure)
         )
-    return tuple(found)
+    return tuple(pictures)
 
 
 def bearing_orders(results: Results) -> xr.Dataset:
-    """Orders of the pinion's bearing force with their ranges."""
+    """Return the orders of the pinion bearing force, with ranges where the inputs were varied."""
     amplitude = results.prediction.bearing_orders[:_ORDERS]
     order = np.arange(1, amplitude.size + 1)
     text = "force on the pinion bearings"
     variables: dict[str, Variable] = {"amplitude": ("order", amplitude, "N", text)}
-    found = results.uncertainty
-    if results.teeth is None and not isinstance(found, Absent):  # samples are of like teeth
-        ends = np.array([found[f"bearing_order_{m}_percentile"].to_numpy()[[0, -1]] for m in order])
+    samples = results.uncertainty
+    if results.teeth is None and not isinstance(samples, Absent):  # samples are of like teeth
+        ends = np.array([samples[f"bearing_order_{m}_percentile"].to_numpy()[[0, -1]] for m in order])
         if np.isfinite(ends).all():  # else too few for a range
             variables["low"] = ("order", ends[:, 0], "N", f"{text}, 5 % of the samples")
             variables["high"] = ("order", ends[:, 1], "N", f"{text}, 95 % of the samples")
@@ -68,12 +69,12 @@ def bearing_orders(results: Results) -> xr.Dataset:
     )
 
 
-def swings(found: xr.Dataset) -> xr.Dataset:
-    """The inputs that move the transmission error most, the largest first."""
-    swing = found["dte_peak_to_peak_swing"].to_numpy()
+def swings(samples: xr.Dataset) -> xr.Dataset:
+    """Return the inputs with the largest swing of the transmission error, the largest first."""
+    swing = samples["dte_peak_to_peak_swing"].to_numpy()
     order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")[:_MOST]
     order = order[np.isfinite(swing[order]).all(axis=1)]
-    names = [str(found["input"].to_numpy()[j]) for j in order]
+    names = [str(samples["input"].to_numpy()[j]) for j in order]
     text = "transmission error, p-p"
     return labelled_dataset(
         {
@@ -84,13 +85,13 @@ def swings(found: xr.Dataset) -> xr.Dataset:
         {
             "names": [plain_name(name) for name in names],
             "quantity": text,
-            "given": float(found.attrs["given_dte_peak_to_peak"]),
+            "given": float(samples.attrs["given_dte_peak_to_peak"]),
         },
     )
 
 
 def plain_name(field: str) -> str:
-    """A field in words: ``bearings.pinion.loa_stiffness`` as "pinion bearing, stiffness along ..."."""
+    """Return a field in words: ``bearings.pinion.loa_stiffness`` as "pinion bearing, stiffness along ..."."""
     if field in _WHOLE:
         return _WHOLE[field]
     *place, what = field.split(".")
@@ -104,7 +105,7 @@ def plain_name(field: str) -> str:
     return field.replace(".", " ").replace("_", " ")
 
 
-#: Fields whose words are not those of their path.
+#: Field -> words, where the words differ from the path.
 _WHOLE = {
     "mesh.stiffness": "tooth stiffness model",
     "mesh.stiffness_factor": "tooth stiffness",

@@ -1,4 +1,4 @@
-"""Report.json as a gate: what changed since an earlier report."""
+"""Comparison of report.json with that of an earlier report: the gate of ``--compare``."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from validation.files.folder import FORMAT, FORMAT_VERSION
 from validation.reporting.blocks import REMARKS
 from validation.reporting.verdict import Verdict
 
-#: Relative change of a number that passes; numbers are compared as computed, not as shown.
+#: Relative change of a number that passes. Numbers are compared as computed, not as printed.
 TOLERANCE = 1e-3
 #: A number counts as zero below this share of the largest of its column.
 _SMALL = 1e-4
-#: Tables of numerical errors, which change with every rounding; their limits judge them in every report.
+#: Tables of numerical errors, which change with every rounding. Every report compares them with their limits.
 _ERRORS = frozenset({"agreement", "conservation", "error_budget"})
-#: Chapters that repeat the input or name the software, which is free to change.
+#: Chapters with inputs and software, which may change.
 _FREE = frozenset({"inputs", "evidence"})
 _MAX_BYTES = 100_000_000
 #: Verdicts of page 1, the worst last.
@@ -30,7 +30,15 @@ _RANK = {verdict.name: rank for rank, verdict in enumerate(Verdict)}
 
 @dataclass(frozen=True)
 class Change:
-    """One difference between two reports, as texts; the relative change of a number, and whether it fails."""
+    """One difference between two reports.
+
+    Attributes
+    ----------
+    path : place of the value: chapter, table, row and column
+    old, new : values as texts
+    size : relative change of a number; 0 for other values
+    fails : whether the change is past the tolerance
+    """
 
     path: str
     old: str
@@ -45,7 +53,14 @@ class Change:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two reports beside each other: how many values were compared, the changes, those that fail first."""
+    """The differences between two reports.
+
+    Attributes
+    ----------
+    old_name : gear pair of the earlier report
+    compared : number of compared values
+    changes : differences, failures first
+    """
 
     old_name: str
     compared: int
@@ -53,18 +68,20 @@ class Comparison:
 
     @property
     def regressions(self) -> tuple[Change, ...]:
-        """Changes past their tolerance."""
+        """Changes past the tolerance."""
         return tuple(change for change in self.changes if change.fails)
 
 
 def compare(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = TOLERANCE) -> Comparison:
     """Compare report.json of two reports.
 
-    A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
-    ten-thousandth of the largest number of its column. The verdict fails where it gets worse, an entry where
-    it is gone. New entries and changed parameters are shown and do not fail.
+    A number fails where it changes by more than the tolerance. The change is relative to the larger of the
+    two numbers, or to a ten-thousandth of the largest number of the column if that is more. The verdict
+    fails where it gets worse, an entry where it is missing. New entries and changed parameters are shown
+    and do not fail.
     """
-    before, after = dict(_leaves(old)), dict(_leaves(new))
+    before = dict(_leaves(old))
+    after = dict(_leaves(new))
     largest: dict[str, float] = {}
     for path, value in before.items():
         if isinstance(value, float):
@@ -72,45 +89,46 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = T
             largest[column] = max(largest.get(column, 0.0), abs(value))
     changes = []
     for path in before | after:
-        one, other = before.get(path), after.get(path)
-        if one == other:
+        old_value = before.get(path)
+        new_value = after.get(path)
+        if old_value == new_value:
             continue
         size = 0.0
         fails = path in before and not path.startswith("parameters/")
         if path == "verdict":
-            fails = _RANK[str(other)] > _RANK[str(one)]
+            fails = _RANK[str(new_value)] > _RANK[str(old_value)]
         elif path not in before:
             fails = False
-        elif isinstance(one, float) and isinstance(other, float):
-            scale = max(abs(one), abs(other), _SMALL * largest[_column(path)])
-            size = abs(one - other) / scale
+        elif isinstance(old_value, float) and isinstance(new_value, float):
+            scale = max(abs(old_value), abs(new_value), _SMALL * largest[_column(path)])
+            size = abs(old_value - new_value) / scale
             fails = fails and size > tolerance
-        changes.append(Change(path, _shown(one), _shown(other), size, fails))
+        changes.append(Change(path, _shown(old_value), _shown(new_value), size, fails))
     changes.sort(key=lambda c: (not c.fails, -c.size))
     return Comparison(str(old.get("gear_pair", "")), len(before.keys() & after.keys()), tuple(changes))
 
 
 def load_report(source: str | Path, *, quick: bool) -> dict[str, Any]:
-    """Read report.json of an earlier report or its folder; ``quick`` must be that of the new one."""
+    """Read report.json of an earlier report, or of its folder. Both reports must be quick, or both full."""
     path = file_path("--compare", source)
     path = path / "report.json" if path.is_dir() else path
     try:
-        found = json.loads(read_text(path, _MAX_BYTES, field="--compare", kind="report.json"))
+        document = json.loads(read_text(path, _MAX_BYTES, field="--compare", kind="report.json"))
     except ParameterError:
         raise
     except ValueError as error:
         raise refuse("--compare", path, "report.json of a report", f"It is no JSON: {error}.") from None
-    layout = (found.get("format"), found.get("format_version")) if isinstance(found, dict) else ()
+    layout = (document.get("format"), document.get("format_version")) if isinstance(document, dict) else ()
     if layout != (FORMAT, FORMAT_VERSION):
         raise refuse("--compare", path, "report.json of this layout", "Make the earlier report again.")
-    if found["quick"] != quick:
+    if document["quick"] != quick:
         action = "Compare reports that are both made with --quick, or both without."
         raise refuse("--compare", path, "a report of the same sampling", action)
-    return dict(found)
+    return dict(document)
 
 
 def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Paths and values of what is compared."""
+    """Paths and values of all compared entries."""
     yield "verdict", document["verdict"]["kind"]
     for key, one in document["numbers"].items():
         for name in ("value", "low", "high", "median", "second"):

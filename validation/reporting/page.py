@@ -18,7 +18,7 @@ from validation.reporting.page_one import PageOne
 
 @dataclass(frozen=True)
 class Part:
-    """A chapter as the page shows it: its number and anchor, title, result in a sentence, and blocks."""
+    """A chapter on the page: anchor, number, title, result in a sentence, and blocks."""
 
     anchor: str
     number: int
@@ -34,7 +34,7 @@ def render(
     images: Mapping[str, str],
     data: Mapping[str, Any],
 ) -> str:
-    """Return index.html; ``images``: key of a picture -> data URI, ``data``: report.json."""
+    """Return index.html. ``images``: key of a picture -> data URI; ``data``: report.json."""
     parts = tuple(
         Part(chapter.key, number, chapter.title, content.result, content.blocks)
         for number, (chapter, content) in enumerate(chapters, 1)
@@ -61,7 +61,7 @@ def render(
 
 
 def limits() -> list[str]:
-    """What the program does not do, one sentence or two each; docs/limits.md shows the same text."""
+    """Return the limits of the program, one or two sentences each. docs/limits.md has the same text."""
     text = files("validation").joinpath("templates/limits.md").read_text(encoding="utf-8")
     return [" ".join(entry.split()) for entry in text.removeprefix("- ").split("\n- ")]
 
@@ -91,18 +91,18 @@ def _is_numeric(value: object) -> bool:
 
 
 def _numeric_columns(table: Table) -> list[bool]:
-    """Which columns hold numbers, at least in one row: their headings and gaps stand to the right too."""
+    """Whether each column has a number in any row. Headings and gaps of these columns are right-aligned."""
     return [any(_is_numeric(row[k]) for row in table.rows) for k in range(len(table.columns))]
 
 
 def shown_rows(table: Table) -> list[list[str | Badge]]:
-    """Texts of the cells of a table, and its badges: one prefix for all numbers of a unit in a column."""
+    """Return the texts and badges of the cells. All numbers of a unit in a column have one prefix."""
     columns = zip(*table.rows, strict=True)
     exponents = [_exponents(column) for column in columns]
     return [
         [
-            value if isinstance(value, Badge) else cell(value, exponents=found)
-            for value, found in zip(row, exponents, strict=True)
+            value if isinstance(value, Badge) else cell(value, exponents=exponents_of_column)
+            for value, exponents_of_column in zip(row, exponents, strict=True)
         ]
         for row in table.rows
     ]
@@ -114,12 +114,12 @@ def _exponents(column: Sequence[Cell]) -> dict[str, int]:
     for value in column:
         if isinstance(value, Quantity):
             sizes.setdefault(value.unit, []).append(value.value)
-    found = {unit: common_exponent(values) for unit, values in sizes.items()}
-    return {unit: exponent for unit, exponent in found.items() if exponent is not None}
+    exponents = {unit: common_exponent(values) for unit, values in sizes.items()}
+    return {unit: exponent for unit, exponent in exponents.items() if exponent is not None}
 
 
 def cell(value: Cell, digits: int = 4, exponents: Mapping[str, int] | None = None) -> str:
-    """Text of a table cell; ``exponents``: of the prefix of a unit, by default each number's own."""
+    """Return the text of a cell. ``exponents``: unit -> exponent of ten of the prefix of all its numbers."""
     if value is None:
         return "–"
     if isinstance(value, Badge):

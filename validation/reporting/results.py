@@ -1,11 +1,9 @@
-"""Results that the report shares, each computed when it is first asked for."""
+"""Shared results of the chapters of the report. Each result is computed at the first use."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -28,17 +26,13 @@ from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.cross_check.verdict import Verdict
-from validation.cross_check.words import loss_difference, share
-from validation.files.formatting import quantity
+from validation.measurements.comparing import compare_record
 from validation.measurements.record import Measurement
-from validation.measurements.record_comparison import RecordComparison, compare_record
+from validation.measurements.record_comparison import RecordComparison
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
-    NOTHING,
     ORDERS,
-    QUANTITIES,
     Motion,
     Prediction,
     measured,
@@ -57,15 +51,15 @@ from validation.prediction.uncertainty import (
     teeth_band,
     uncertainty,
 )
+from validation.reporting.effort import Effort
+from validation.reporting.hazards import Hazard, beats_and_chaos, nearest_of
 from validation.signals.findings import TeethFindings
 from validation.validity.flags import Flag, validity_flags
 from validation.validity.plausibility import parameter_warnings
 
-#: Rounding that a relation may be off by.
-_SLACK = 1e-9
-#: A curve over speed passes through the table's value within this share: it is computed with other samples.
-_SAME = 2e-3
-#: Numbers of page 1 in a sentence.
+#: Relative rounding of a result.
+_ROUNDING = 1e-9
+#: Number of page 1 -> its name in a sentence.
 SHORT = {
     "dte_peak_to_peak": "transmission error",
     "dynamic_factor": "dynamic factor",
@@ -73,45 +67,16 @@ SHORT = {
     "bearing_rms": "bearing force",
     "efficiency": "efficiency",
 }
-#: Numbers of page 1 by which both programs are compared.
-_COMPARED = ("dte_peak_to_peak", "dynamic_factor", "tooth_load", "bearing_rms")
-#: Share of its peak to peak by which another motion differs from the prediction at least.
+#: Another motion counts where its peak to peak differs by at least this share from the prediction.
 _APART = 0.25
-#: Share of the speed to either side within which jumps are searched where contact is lost at the operating
-#: point and the linear motion does not say so.
+#: Jumps are searched within this share of the operating speed where contact is lost there although the linear
+#: motion keeps contact.
 _ABOUT = 0.1
-#: Vibrations in a mesh cycle beyond which half of the samples, and of the speeds of their range, are taken:
-#: each costs as much more, and no resonance is left to be seen.
+#: With more vibrations in a mesh cycle than this, half of the samples and half of the speeds are
+#: computed: each costs more time, and no resonance shows any more.
 _MANY = 300.0
-#: Times in a mesh cycle of the second program on shafts.
+#: Output times in a mesh cycle of the second program on shafts.
 _SAMPLES = 512
-
-
-@dataclass(frozen=True)
-class Effort:
-    """How finely the report samples: inputs (0: not varied), speeds of each curve, nodes of the chart.
-
-    ``jump_seconds``: processor time of the search for jumps; ``jump_seeds``: speeds an octave at which runs
-    settle, to find isolated motions, beats and chaos; ``sample_seconds`` and ``band_seconds``: processor time
-    of the samples, and of each of the ranges that ``band_samples`` give; ``name``: what a reader calls it.
-    """
-
-    samples: int
-    band_samples: int
-    band_speeds: int
-    sweep_speeds: int
-    chart_speeds: int
-    chart_dampings: int
-    orders_speeds: int
-    jump_seconds: float
-    jump_seeds: int
-    name: str
-    sample_seconds: float = 30.0
-    band_seconds: float = 10.0
-
-
-FULL = Effort(128, 32, 41, 160, 1601, 101, 61, 30.0, 8, "full report")
-QUICK = Effort(0, 0, 0, 96, 401, 41, 25, 5.0, 0, "quick report")
 
 
 class Results:
@@ -119,12 +84,13 @@ class Results:
 
     Parameters
     ----------
-    pair : the gear pair; where its teeth differ, ``teeth`` has what that does, and all else is about its twin
-        with like teeth. Prediction, second program, uncertainty and teeth are on the shafts of a pair that
-        has them; all else is on the springs of ``bearings``, of ``pair_on_springs``
-    effort : how finely
-    name : how a command names the pair: its file, or the preset
-    progress : called with the finished fraction of the present computation and its name
+    pair : the gear pair. Only ``prediction`` and ``teeth`` are about unlike teeth; all other results are
+        about the twin with like teeth. Prediction, second program, uncertainty and teeth are on the shafts
+        of a pair that has shafts; all other results are on the springs of ``bearings``, of
+        ``pair_on_springs``
+    effort : how finely the report samples
+    name : how a command names the pair: a file or a preset
+    progress : called with the finished fraction and the name of the present computation
     record : a measured record of the pair at its operating point
 
     Raises
@@ -149,7 +115,7 @@ class Results:
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
 
     def stage(self, name: str) -> Progress:
-        """Progress of one computation: tells its name at once, and takes its finished fraction."""
+        """Report the start of a computation. Return the function that takes the finished fraction."""
         self.progress(0.0, name)
         return lambda fraction, _="", /: self.progress(fraction, name)
 
@@ -160,7 +126,7 @@ class Results:
 
     @cached_property
     def speeds(self) -> tuple[float, float]:
-        """Range of pinion speeds of everything over speed [rpm]."""
+        """Range of pinion speeds of all results over speed [rpm]."""
         return speed_range(self.pair)
 
     @cached_property
@@ -179,7 +145,7 @@ class Results:
 
     @cached_property
     def teeth(self) -> TeethFindings | None:
-        """What teeth that differ do; None where they are alike."""
+        """Motion and signals of unlike teeth. None: all teeth are alike."""
         if self.given is self.pair:
             return None
         return TeethFindings(self.given, motion=self.prediction.cycle)
@@ -194,7 +160,7 @@ class Results:
 
     @cached_property
     def check(self) -> CrossCheck | Absent:
-        """The second program beside the lumped model on springs; absent at a speed that it refuses."""
+        """Cross-check of both programs on springs. Absent: the second program refuses the speed."""
         try:
             return crosscheck(self.pair_on_springs, cycles=6, progress=self.stage("second program"))
         except ParameterError as error:
@@ -202,7 +168,7 @@ class Results:
 
     @cached_property
     def second(self) -> Prediction | Absent:
-        """The motion of the second program at the operating point, on the shafts where they are given."""
+        """The motion of the second program at the operating point, on shafts where the pair has shafts."""
         if self.pair.shafts is not None:
             self.stage("second program on the shafts")
             try:
@@ -221,7 +187,7 @@ class Results:
 
     @cached_property
     def uncertainty(self) -> xr.Dataset | Absent:
-        """How far the prediction moves with its uncertain inputs."""
+        """Samples of the prediction with varied inputs. Absent: the inputs are not varied."""
         if not self.effort.samples or not uncertain_inputs(self.pair):
             return Absent(Outcome.NOT_ASKED)
         stage = self.stage("uncertain inputs")
@@ -229,23 +195,23 @@ class Results:
 
     @property
     def samples(self) -> int:
-        """How many samples of the uncertain inputs are taken."""
+        """Number of samples of the uncertain inputs."""
         return self.effort.samples // (2 if self.vibrations > _MANY else 1)
 
     @cached_property
     def vibrations(self) -> float:
-        """Bound on the vibrations of the fastest mode, on springs, in a mesh cycle."""
+        """Upper bound of the vibrations of the fastest mode in a mesh cycle, on springs."""
         system = LTVSystem.of(self.pair, "full", supports="springs")
         return fastest_frequency(system) * system.period / (2.0 * math.pi)
 
     @cached_property
     def inputs(self) -> tuple[int, int]:
-        """Number of inputs that are known, and of those that are assumed; see ``given_and_assumed``."""
+        """Number of known inputs and number of assumed inputs, see ``given_and_assumed``."""
         return given_and_assumed(self.given, contact_lost=self.prediction.contact_lost)
 
     @cached_property
     def varies(self) -> bool:
-        """Whether inputs are uncertain."""
+        """Whether any input is uncertain."""
         return bool(uncertain_inputs(self.given))
 
     @cached_property
@@ -273,7 +239,7 @@ class Results:
 
     @cached_property
     def teeth_band(self) -> xr.Dataset | None:
-        """See ``teeth_band``; None of like teeth, or without samples."""
+        """Range of the results of unlike teeth. None: the teeth are alike, or the inputs are not varied."""
         if self.teeth is None or isinstance(self.uncertainty, Absent):
             return None
         self.stage("range of teeth that differ")
@@ -281,13 +247,13 @@ class Results:
 
     @cached_property
     def record_samples(self) -> Varied | None:
-        """Motions at samples of the inputs beside a record; None without one, or without samples."""
-        known = self.uncertainty
-        if self.record is None or isinstance(known, Absent):
+        """Motions at samples of the inputs. None: there is no record, or the inputs are not varied."""
+        samples = self.uncertainty
+        if self.record is None or isinstance(samples, Absent):
             return None
         self.stage("the record, with uncertain inputs")
         effort = self.effort
-        return sampled_predictions(self.pair, known, effort.band_samples, effort.band_seconds)
+        return sampled_predictions(self.pair, samples, effort.band_samples, effort.band_seconds)
 
     @property
     def contact_lost(self) -> bool:
@@ -296,28 +262,31 @@ class Results:
 
     @cached_property
     def other_motions(self) -> tuple[GearOrbit, ...]:
-        """Further stable motions that were found at the operating speed, by size; see ``jump_search``."""
+        """Stable motions at the operating speed other than the prediction, the smallest first."""
         if self.pair.shafts is not None:
             return ()  # the search is on springs
-        own = self.like.peak_to_peak
-        stable = [one for one in self.jump_search.at(self.operating_rpm) if one.stable]
-        others = [one for one in stable if abs(one.peak_to_peak - own) > _APART * own]
-        return tuple(sorted(others, key=lambda one: one.peak_to_peak))
+        predicted_size = self.like.peak_to_peak
+        stable = [orbit for orbit in self.jump_search.at(self.operating_rpm) if orbit.stable]
+        others = [
+            orbit for orbit in stable if abs(orbit.peak_to_peak - predicted_size) > _APART * predicted_size
+        ]
+        return tuple(sorted(others, key=lambda orbit: orbit.peak_to_peak))
 
     @property
     def teeth_apart(self) -> int:
-        """At how many pairs of teeth contact is lost where teeth differ."""
+        """Number of pairs of unlike teeth that lose contact."""
         return 0 if self.teeth is None else len(self.teeth.contact_lost)
 
     @cached_property
     def contact_loss_windows(self) -> tuple[tuple[float, float], ...]:
-        """Speeds [rpm] at which like teeth on springs can lose contact, within ``speeds``."""
+        """Ranges of speed [rpm] in which like teeth on springs can lose contact, within ``speeds``."""
         windows = contact_loss_windows(self.sweep, self.speeds)
-        own = self.operating_rpm
-        if not self.like.contact_lost or any(low <= own <= high for low, high in windows):
+        speed = self.operating_rpm
+        if not self.like.contact_lost or any(low <= speed <= high for low, high in windows):
             return windows
-        ends = max((1.0 - _ABOUT) * own, self.speeds[0]), min((1.0 + _ABOUT) * own, self.speeds[1])
-        return tuple(sorted((*windows, ends)))
+        lowest, highest = self.speeds
+        about = max((1.0 - _ABOUT) * speed, lowest), min((1.0 + _ABOUT) * speed, highest)
+        return tuple(sorted((*windows, about)))
 
     @cached_property
     def jump_search(self) -> JumpSearch:
@@ -334,12 +303,19 @@ class Results:
 
     @property
     def searched(self) -> tuple[float, float] | None:
-        """Widest range about the operating speed in which all jumps were searched [rpm]; None: none."""
-        own, (low, high) = self.operating_rpm, self.speeds
+        """Widest range about the operating speed in which the search for jumps is complete [rpm].
+
+        None: the search about the operating speed is not complete.
+        """
+        speed = self.operating_rpm
+        low, high = self.speeds
         for start, end in self.jump_search.open:
-            if start <= own <= end:
+            if start <= speed <= end:
                 return None
-            low, high = (max(low, end), high) if end < own else (low, min(high, start))
+            if end < speed:
+                low = max(low, end)
+            else:
+                high = min(high, start)
         return low, high
 
     @cached_property
@@ -350,7 +326,7 @@ class Results:
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
-        """Modes of the averaged pair on springs; empty where one is overdamped: it has no frequency."""
+        """Modes of the averaged pair on springs. Empty: a mode is overdamped and has no frequency."""
         try:
             return modes(self.pair, "springs")
         except NumericalError:
@@ -363,20 +339,20 @@ class Results:
 
     @property
     def stability_line(self) -> IntArray:
-        """Verdicts over speed at the given damping."""
-        at = int(np.abs(self.chart["damping_ratio"].to_numpy() - self.pair.mesh.damping_ratio).argmin())
-        return np.asarray(self.chart["verdict"].isel(damping_ratio=at).to_numpy(), dtype=np.int64)
+        """Verdicts of the stability chart over speed, at the damping of the pair."""
+        nearest = int(np.abs(self.chart["damping_ratio"].to_numpy() - self.pair.mesh.damping_ratio).argmin())
+        return np.asarray(self.chart["verdict"].isel(damping_ratio=nearest).to_numpy(), dtype=np.int64)
 
     @cached_property
     def chart(self) -> xr.Dataset:
         """Stability on springs over speed and mesh damping."""
         axes = chart_axes(self.pair, self.effort.chart_speeds, self.effort.chart_dampings)
-        tell = self.stage("stability chart")
-        return floquet.stability_chart(self.pair, axes, supports="springs", progress=tell)
+        progress = self.stage("stability chart")
+        return floquet.stability_chart(self.pair, axes, supports="springs", progress=progress)
 
     @cached_property
     def orders_over_speed(self) -> xr.Dataset:
-        """Amplitudes of the pinion's bearing force by mesh order over speed, linear motion on springs."""
+        """Amplitudes of the pinion bearing force by mesh order and speed, linear motion on springs."""
         self.stage("orders over speed")
         speeds = np.linspace(*self.speeds, self.effort.orders_speeds)
         pairs = [self.pair.at_speed(float(rpm)) for rpm in speeds]
@@ -405,225 +381,86 @@ class Results:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Sentences on given values that hardly can be meant."""
+        """Sentences on implausible values of the parameter file."""
         return tuple(parameter_warnings(self.pair))
 
     @cached_property
     def same_equations(self) -> float | None:
-        """Largest difference of the same equations in both programs, over peak to peak."""
+        """Largest difference between both programs with the same equations, over the peak to peak."""
         agreements = () if isinstance(self.check, Absent) else self.check.of("linear")
         return max((a.difference for a in agreements if a.quantity in ("dte", "x_p", "x_g")), default=None)
 
     @cached_property
     def measured_error(self) -> RecordComparison | None:
-        """The prediction beside a measured record; None without one."""
+        """Comparison of the prediction with a measured record. None: there is no record."""
         if self.record is None:
             return None
-        errors = [float(one.attrs.get("error_estimate", math.nan)) for one in self._motions]
-        share = next((one for one in errors if math.isfinite(one)), 0.0)
+        errors = [float(motion.attrs.get("error_estimate", math.nan)) for motion in self._motions]
+        numerical = next((error for error in errors if math.isfinite(error)), 0.0)
         varied = self.record_samples
         if varied is not None and len(varied.samples) < least_samples(varied.asked, LEAST_BAND):
             varied = None
-        return compare_record(self.record, self.prediction, numerical=share, varied=varied)
+        return compare_record(self.record, self.prediction, numerical=numerical, varied=varied)
 
     @property
     def _motions(self) -> tuple[xr.Dataset, ...]:
-        """Motions that may say their numerical error; an orbit has no steps and says none."""
+        """Motions that may have an estimate of the numerical error. An orbit has no steps and no estimate."""
         linear = self.linear
         return (self.prediction.cycle, *(() if isinstance(linear, Absent) else (linear,)))
 
     @cached_property
     def outside(self) -> tuple[Flag, ...]:
-        """What the model does not have and this pair needs."""
+        """Violated assumptions, but for contact and stability: effects that the model does not have."""
         skip = ("contact_loss", "stability")
         return tuple(f for f in self.flags if f.state == "violated" and f.key not in skip)
 
     @property
     def in_place_of_shafts(self) -> str:
-        """Added to what is said of a pair with shafts where it is computed on springs."""
+        """Words behind a result on springs of a pair that has shafts; empty for a pair without shafts."""
         return "" if self.pair.shafts is None else ", on the springs of [bearings]"
 
     @property
     def on_springs(self) -> str:
-        """Added to what is said of stability and jumps of a pair with shafts, or with teeth that differ."""
+        """Words behind a result on stability and jumps, which are on springs and with like teeth."""
         like = "" if self.teeth is None else ", with like teeth"
         return f"{like}{self.in_place_of_shafts}"
 
-    @property
-    def second_words(self) -> str:
-        """Whether both programs agree, in a sentence; by the numbers of page 1 that differ most."""
-        words = self._second_words
-        return words if self.teeth is None else f"With like teeth, {words[0].lower()}{words[1:]}"
-
-    @property
-    def _second_words(self) -> str:
-        check = self.check
-        second = self.second
-        if isinstance(check, Absent) or isinstance(second, Absent):
-            return "Not checked: the second program does not run here; its chapter says why."
-        if check.verdict is Verdict.NOT_CHECKED:
-            return "The equations are; the second program has no motion to compare."
-        if check.verdict is Verdict.FAILS:
-            return "No: a check of the program fails."
-        apart = f"{self._most_apart(second)}{'' if self.pair.shafts is None else ' on the shafts'}"
-        if check.verdict is Verdict.AGREES:
-            return f"Yes: a second program agrees{self.in_place_of_shafts}. Its {apart}."
-        if all(a.within for a in check.of("exact")):
-            return f"Yes, but of the second program, whose motion agrees: {loss_difference(check)}"
-        own = check.worst("exact")
-        swings = (quantity(v, own.unit, 3) for v in (own.peak_to_peak_multibody, own.peak_to_peak))
-        return (
-            f"Yes, but the second program, with exact contact, differs{self.in_place_of_shafts}: "
-            f"{own.long_name}, {' beside '.join(swings)}, by {share(own.difference)}. Its {apart}."
-        )
-
-    def _most_apart(self, second: Prediction) -> str:
-        """The number of page 1 that differs most by the second program; of the efficiency the loss."""
-        one, other = self.like, second
-        numbers = {name: (one.numbers[name], other.numbers[name]) for name in _COMPARED}
-        sizes = {name: abs(there / here - 1.0) for name, (here, there) in numbers.items() if here}
-        name = max(sizes, key=sizes.__getitem__)
-        unit, _ = QUANTITIES[name]
-        shown = " beside ".join(quantity(value, unit, 3) for value in reversed(numbers[name]))
-        return f"{SHORT[name]} differs most: {shown}, by {share(sizes[name])}"
-
     def spread(self, name: str) -> tuple[float, float] | None:
-        """5 and 95 % of a number of page 1, relative to its result; None without enough samples."""
-        found = self.uncertainty
+        """5 % and 95 % of a number of page 1, relative to the result. None: there are too few samples."""
+        samples = self.uncertainty
         if self.teeth is not None:
             if name != "dte_peak_to_peak" or self.teeth_band is None:
                 return None
             low, high = self.teeth_band["revolution_dte_peak_to_peak"].to_numpy().tolist()
-        elif isinstance(found, Absent):
+        elif isinstance(samples, Absent):
             return None
         else:
-            low, _, high = found[f"{name}_percentile"].to_numpy().tolist()
+            low, _, high = samples[f"{name}_percentile"].to_numpy().tolist()
         result = self.prediction.numbers[name]
         return (low / result - 1.0, high / result - 1.0) if result and math.isfinite(low) else None
 
     def rank(self, name: str) -> float:
-        """Share of the samples below the result as given [-]; NaN where no samples tell it."""
-        found = self.uncertainty
-        if self.teeth is not None or isinstance(found, Absent) or self.spread(name) is None:
+        """Share of the samples below the result with the inputs as given [-]; NaN: too few samples."""
+        samples = self.uncertainty
+        if self.teeth is not None or isinstance(samples, Absent) or self.spread(name) is None:
             return math.nan
-        values = found[name].to_numpy()
+        values = samples[name].to_numpy()
         result = self.prediction.numbers[name]
-        slack = _SLACK * abs(result)
+        slack = _ROUNDING * abs(result)
         return float(0.5 * (np.mean(values < result - slack) + np.mean(values <= result + slack)))
 
     @cached_property
     def budget(self) -> xr.Dataset:
-        """Every error of the prediction, in one table."""
+        """All errors of the prediction."""
         self.stage("error budget")
         return error_budget(self)
 
     @cached_property
     def roaming(self) -> tuple[Hazard, ...]:
-        """Beats and chaos: what runs settle to, and what a pair does where a motion loses its stability."""
-        own = self.operating_rpm
-        search = self.jump_search
-        settled = [
-            Hazard(min(max(own, one.low_rpm), one.high_rpm), str(one.kind), "possible")
-            for one in search.attractors
-        ]
-        behind = [
-            Hazard(one.speed_rpm, str(one.after), "possible")
-            for one in search.losses
-            if one.after in ("beats", "chaos")
-        ]
-        return (*settled, *behind)
+        """Speeds of beats and chaos in the search for jumps."""
+        return beats_and_chaos(self.jump_search, self.operating_rpm)
 
     @property
     def nearest_hazard(self) -> Hazard | None:
-        """The unstable speed, jump, beats or chaos nearest to the operating speed."""
-        edge = float(self.chart.attrs["nearest_edge_speed_rpm"])
-        own = self.operating_rpm
-        found = [] if math.isnan(edge) else [Hazard(edge, "unstable speed")]
-        if self.multipliers.verdict == "unstable":
-            found = [Hazard(own, "unstable speed")]
-        found += [
-            Hazard(jump.speed_rpm, "jump", f"running {'up' if jump.rising else 'down'}")
-            for jump in self.jump_search.jumps
-        ]
-        return min([*found, *self.roaming], key=lambda one: abs(one.speed_rpm - own), default=None)
-
-
-#: Kind of a hazard -> the hazard with its article.
-_NOUNS = {
-    "jump": "a jump",
-    "unstable speed": "an unstable speed",
-    "periodic": "a motion of many mesh cycles",
-}
-
-
-@dataclass(frozen=True)
-class Hazard:
-    """A speed at which the pair must not run.
-
-    Attributes
-    ----------
-    speed_rpm : pinion speed [rpm]
-    kind : "unstable speed", "jump", "beats", "chaos", or "periodic", a motion of many mesh cycles
-    how : how it happens
-    """
-
-    speed_rpm: float
-    kind: str
-    how: str = ""
-
-    @property
-    def noun(self) -> str:
-        """The hazard with its article."""
-        return _NOUNS.get(self.kind, self.kind)
-
-    @property
-    def words(self) -> str:
-        """The hazard and how it happens."""
-        kind = "motion of many mesh cycles" if self.kind == "periodic" else self.kind
-        return f"{kind}{',' if self.kind == 'jump' else ''} {self.how}".strip()
-
-
-def failed_checks(results: Results) -> tuple[str, ...]:
-    """Return the checks of the program that fail: same equations, conservation, relations between results."""
-    failures = () if isinstance(results.check, Absent) else results.check.failures
-    return (*(judgement.check for judgement in failures), *broken_relations(results))
-
-
-def broken_relations(results: Results) -> tuple[str, ...]:
-    """Return the relations between results that do not hold, as phrases."""
-    return tuple(_broken(results))
-
-
-def _broken(results: Results) -> Iterator[str]:
-    prediction = results.prediction
-    numbers = prediction.numbers
-    if numbers["dynamic_factor"] < 1.0 - _SLACK:
-        yield f"the dynamic factor {numbers['dynamic_factor']:.4g} is below 1"
-    if not 0.0 <= numbers["least_force"] <= 1.0 + _SLACK:
-        yield f"the smallest mesh force is {numbers['least_force']:.4g} of the static one"
-    # Where the linear motion stands in, what pulling teeth do may be more than the shafts bring.
-    if not prediction.reason and not 0.0 < numbers["efficiency"] <= 1.0 + _SLACK:
-        yield f"the efficiency is {numbers['efficiency']:.4g}"
-    dte = prediction.cycle["dte"].to_numpy()
-    sampled = float(np.ptp(dte))
-    rounding = NOTHING * float(np.abs(dte).max())
-    if not sampled * (1.0 - _SLACK) - rounding <= prediction.peak_to_peak <= 1.05 * sampled + 1e-12:
-        yield "the peak to peak is not that of the motion"
-    rms = numbers["bearing_rms"]
-    orders = prediction.bearing_orders
-    if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6) + (NOTHING * prediction.static_force) ** 2:
-        yield "the orders of the bearing force carry more than its rms"
-    linear = results.linear
-    if not isinstance(linear, Absent) and results.pair.shafts is None:
-        at = results.sweep.interp(speed=results.operating_rpm)["dte_peak_to_peak"]
-        given = float(linear.attrs["dte_peak_to_peak"])
-        if abs(float(at) - given) > _SAME * given + rounding:
-            yield "the curve over speed misses the value at the operating speed"
-    found = results.uncertainty
-    if isinstance(found, xr.Dataset):
-        for name, value in results.like.numbers.items():
-            if abs(found.attrs[f"given_{name}"] - value) > _SLACK * max(abs(value), 1e-300):
-                yield f"the samples were taken about another {name}"
-            low, middle, high = found[f"{name}_percentile"].to_numpy()
-            if math.isfinite(middle) and not low <= middle <= high:
-                yield f"the percentiles of {name} are not in order"
+        """The unstable speed, jump, beats or chaos nearest to the operating speed; None: there is none."""
+        return nearest_of(self.chart, self.multipliers, self.jump_search, self.operating_rpm)

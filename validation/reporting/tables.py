@@ -15,7 +15,11 @@ _LONGEST = 31
 
 
 def frame(table: Table) -> pd.DataFrame:
-    """A table with numbers in SI; a unit that all numbers of a column share stands in its heading."""
+    """Return a table as a data frame with numbers in the unit of their column.
+
+    The unit of a column stands in the heading: an SI unit, or "rpm", "°", "%". If a column has several
+    units, a column ``<name> unit`` follows.
+    """
     columns: dict[str, list[object]] = {}
     for place, name in enumerate(table.columns):
         cells = [row[place] for row in table.rows]
@@ -51,6 +55,6 @@ def write_tables(tables: Sequence[Table], pictures: Sequence[Picture], folder: P
 
 
 def _heading(data: xr.Dataset, names: list[str]) -> dict[str, str]:
-    """Names with their units."""
+    """Variable -> name with unit."""
     units = {name: str(data[name].attrs["units"]) for name in names}
     return {name: name if unit == "1" else f"{name} [{unit}]" for name, unit in units.items()}

@@ -1,4 +1,4 @@
-"""The analyses of a study: what each computes of a case, and the numbers it gives. One registry holds all."""
+"""The analyses of a study: results of a case and their units. One registry has all analyses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _VERDICT = {"stable": 1.0, "undecided": 0.0, "unstable": -1.0}
 
 
 class Settings(Section):
-    """Numerical settings of the analyses; each reads its own."""
+    """Numerical settings of the analyses. An analysis reads only the settings that its description names."""
 
     samples_per_cycle: Annotated[int, Field(ge=8, le=65536, strict=True)] = Field(
         128, description="output times per mesh cycle (lumped, multibody)"
@@ -56,12 +56,13 @@ class Settings(Section):
 
 @dataclass(frozen=True)
 class Analysis:
-    """What is computed of a varied pair and settings.
+    """An analysis of a varied pair.
 
     Attributes
     ----------
-    outputs : name -> (unit, plain name) of its numbers
-    own_teeth : whether the teeth are those of the pair as given; else they are alike
+    compute : function from the varied pair and the settings to the results
+    outputs : result -> (unit, plain name)
+    own_teeth : whether the teeth are those of the pair as given; else all teeth are alike
     """
 
     compute: Callable[[GearVariation, Settings], Values]
@@ -145,8 +146,8 @@ def _multibody(variation: GearVariation, settings: Settings) -> Values:
     )
     # The grid ends on the last cycle's end, which is the first sample of a cycle that is not there.
     first = -1 - settings.kept_cycles * samples
-    whole = run.isel(time=slice(first, None))
-    peaks = {f"{name}_peak_to_peak": cycle_peak_to_peak(whole, name) for name in _MOTIONS}
+    last_cycles = run.isel(time=slice(first, None))
+    peaks = {f"{name}_peak_to_peak": cycle_peak_to_peak(last_cycles, name) for name in _MOTIONS}
     return _motion(variation.pair, run.isel(time=slice(first, -1))) | peaks
 
 
@@ -154,17 +155,17 @@ def _floquet(variation: GearVariation, settings: Settings) -> Values:
     from floquet.gear.multipliers import gear_pair_multipliers
 
     tolerance: dict[str, Any] = {} if settings.rtol is None else {"rtol": settings.rtol}
-    found = gear_pair_multipliers(variation, **tolerance)
+    multipliers = gear_pair_multipliers(variation, **tolerance)
     return {
-        "spectral_radius": found.spectral_radius,
-        "spectral_radius_error": found.error,
-        "verdict": _VERDICT[found.verdict],
-        "liouville_residual": found.liouville_residual,
+        "spectral_radius": multipliers.spectral_radius,
+        "spectral_radius_error": multipliers.error,
+        "verdict": _VERDICT[multipliers.verdict],
+        "liouville_residual": multipliers.liouville_residual,
     }
 
 
 def _motion(pair: GearPair, run: xr.Dataset) -> Values:
-    """Extremes and means of a motion over whole mesh cycles, but peak to peak of what moves."""
+    """Extremes and means of a motion over whole mesh cycles, without the peaks to peak of displacements."""
     values: Values = {}
     for name in _MOTIONS:
         values[f"{name}_rms"] = float(np.std(run[name].to_numpy()))

@@ -1,4 +1,4 @@
-"""An axis of a study: what it varies, and its values in the unit of the field."""
+"""An axis of a study: the fields that vary, and their values in the unit of the field."""
 
 from __future__ import annotations
 
@@ -25,8 +25,14 @@ _FLOQUET_ONLY = ("friction_coefficient", "stiffness_variation")
 
 @dataclass(frozen=True)
 class Target:
-    """Where an axis acts: stated unit ("" of a field that is no quantity), description, kind of its values
-    ("float", "int" or "other", a choice), and whether only the stability analysis knows it.
+    """Target of an axis: a field of the gear pair, or an axis of a stability chart.
+
+    Attributes
+    ----------
+    unit : stated unit; empty for a field without a unit
+    long_name : description
+    kind : kind of the values, "float", "int" or "other", a choice
+    floquet_only : whether only the stability analysis has this target
     """
 
     unit: str
@@ -36,13 +42,13 @@ class Target:
 
 
 def target_of(path: str) -> Target:
-    """Return what a dotted field path, or the name of a stability chart's axis, stands for."""
+    """Return the target of a dotted field path or of the name of an axis of a stability chart."""
     if path in GEAR_AXES:
         axis = GEAR_AXES[path]
         return Target(axis.units, axis.long_name, "float", path in _FLOQUET_ONLY)
     if len(path) > 200 or path.split(".")[0] in ("name", "description", "sources"):
-        known = "a gear-pair field by dotted path, or " + ", ".join(GEAR_AXES)
-        raise refuse("field", repr(path[:80]), known, "Correct the path.")
+        allowed = "a gear-pair field by dotted path, or " + ", ".join(GEAR_AXES)
+        raise refuse("field", repr(path[:80]), allowed, "Correct the path.")
     info = field_at(path)
     for marker in info.metadata:
         if type(marker) is Quantity:
@@ -54,7 +60,7 @@ _Bound = Quantity("1", optional=True, action="Give the number in the axis' unit.
 
 
 def _plain_values(values: object) -> object:
-    """Refuse the first value that is no number or text; pydantic would list millions of them."""
+    """Refuse the first value that is no number and no text; pydantic would list all of them."""
     for value in values if isinstance(values, (list, tuple)) else ():
         number = isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 2.0**63
         if not number and not isinstance(value, str):
@@ -67,7 +73,7 @@ def _single(value: object) -> object:
 
 
 class Axis(Section):
-    """One parameter that varies, or several fields that vary together (both face widths, say)."""
+    """A parameter that varies, or several fields that vary together, for example both face widths."""
 
     name: str = Field("", max_length=80, pattern=r"^\w*$", description="label; default the field's name")
     field: Annotated[
@@ -113,20 +119,20 @@ class Axis(Section):
         return self.name or self.field[0].replace(".", "_")
 
     def listed(self) -> tuple[AxisValue, ...]:
-        """Values of a listed axis, in the field's stated unit, or () for a range that is sampled."""
+        """Return the values of a listed axis in the stated unit of the field; () for a sampled range."""
         target = target_of(self.field[0])
         units = {target_of(path).unit for path in self.field}
         if len(units) > 1:
-            given = " and ".join(sorted(units))
-            raise refuse("field", given, "fields of the same unit", "Use separate axes.")
+            stated = " and ".join(sorted(units))
+            raise refuse("field", stated, "fields of the same unit", "Use separate axes.")
         if self.values is None:
             if target.kind == "other":
                 raise refuse("field", repr(self.field[0]), "a number for a range", "List its values.")
             assert self.low is not None
             assert self.high is not None
             if target.kind == "int" and not -_EXACT < math.ceil(self.low) <= math.floor(self.high) < _EXACT:
-                given = f"{self.low:g} to {self.high:g}"
-                raise refuse("low", given, "a range with integers in it", "Correct the range.")
+                stated = f"{self.low:g} to {self.high:g}"
+                raise refuse("low", stated, "a range with integers in it", "Correct the range.")
             return () if self.count is None else self.spaced(np.linspace(0.0, 1.0, self.count))
         values = tuple(_read(value, target) for value in self.values)
         if len(set(values)) < len(values):
@@ -134,23 +140,25 @@ class Axis(Section):
         return values
 
     def spaced(self, share: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[AxisValue, ...]:
-        """Values at the given shares, 0 to 1, of the way from low to high; integers for an integer field.
+        """Return the values at shares, 0 to 1, of the way from low to high; integers for an integer field.
 
-        Samples of an integer field give both ends the same chance as the values between.
+        In samples of an integer field both ends are as likely as the values between.
         """
         assert self.low is not None
         assert self.high is not None
         if target_of(self.field[0]).kind == "int":
-            low, high = math.ceil(self.low), math.floor(self.high)
+            low = math.ceil(self.low)
+            high = math.floor(self.high)
             if self.count is None:
-                whole = np.minimum(low + np.floor(share * (high - low + 1)), high)
+                integers = np.minimum(low + np.floor(share * (high - low + 1)), high)
             else:
-                whole = np.rint(low + share * (high - low))
-                if np.unique(whole).size < whole.size:
+                integers = np.rint(low + share * (high - low))
+                if np.unique(integers).size < integers.size:
                     raise refuse("count", self.count, f"<= {high - low + 1} integers", "Lower the count.")
-            return tuple(int(v) for v in whole)
+            return tuple(int(v) for v in integers)
         if self.spacing == "log":
-            low_log, high_log = np.log(self.low), np.log(self.high)
+            low_log = np.log(self.low)
+            high_log = np.log(self.high)
             values = np.exp(low_log + share * (high_log - low_log))  # the ratio itself may overflow
         else:
             values = self.low + share * (self.high - self.low)

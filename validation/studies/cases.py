@@ -1,4 +1,4 @@
-"""The cases of a study: a fixed list, numbered from 0, that depends on nothing but the study."""
+"""The cases of a study: a fixed list, numbered from 0, that depends on the study alone."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from validation.studies.schema import Study
 class CaseList:
     """Parameters of every case by number.
 
-    A grid is numbered in C order (the last axis runs fastest). Samples are numbered as drawn; with
-    sensitivity indices they are the blocks A, B, AB_1 ... AB_d of Saltelli et al., Comput. Phys. Commun. 181
-    (2010) 259-270: AB_i is A with column i taken from B.
+    A grid is numbered in C order: the last axis runs fastest. Samples have the numbers of the draw. With
+    sensitivity indices the samples are the blocks A, B, AB_1 ... AB_d of Saltelli et al., Comput. Phys.
+    Commun. 181 (2010) 259-270: AB_i is A with column i of B.
     """
 
     study: Study
@@ -36,7 +36,7 @@ class CaseList:
 
     @cached_property
     def grid(self) -> tuple[tuple[AxisValue, ...], ...] | None:
-        """Values of each axis of a grid, None for samples."""
+        """Values of each axis of a grid; None for samples."""
         if self.study.design.method != "grid":
             return None
         return tuple(axis.listed() for axis in self.study.axes)
@@ -61,13 +61,14 @@ class CaseList:
         """Samples (k, d) of the unit cube for sampled cases."""
         if not self.study.design.sensitivity:
             return self._shares[cases]
-        d, n = len(self.study.axes), len(self._shares)
+        d = len(self.study.axes)
+        n = len(self._shares)
         block, row = np.divmod(cases, n)
         result = self._shares[row, :d].copy()
         result[block == 1] = self._shares[row[block == 1], d:]
         for i in range(d):
-            at = block == i + 2
-            result[at, i] = self._shares[row[at], d + i]
+            in_block = block == i + 2
+            result[in_block, i] = self._shares[row[in_block], d + i]
         return result
 
     def values(self, cases: npt.ArrayLike) -> list[tuple[AxisValue, ...]]:
@@ -79,7 +80,7 @@ class CaseList:
         numbers = np.asarray(cases, dtype=np.int64)
         if self.grid is not None:
             where = np.unravel_index(numbers, self.shape)
-            return [tuple(axis[i] for i in at) for axis, at in zip(self.grid, where, strict=True)]
+            return [tuple(axis[i] for i in indices) for axis, indices in zip(self.grid, where, strict=True)]
         shares = self.shares(numbers)
         return [axis.spaced(shares[:, j]) for j, axis in enumerate(self.study.axes)]
 
@@ -95,7 +96,7 @@ class CaseList:
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of the parameters of all cases: another sampler version cannot slip in on resume."""
+        """Hash of the parameters of all cases: a resumed sweep must have the same samples."""
         digest = hashlib.sha256(repr((self.shape, self.grid)).encode())
         if self.grid is None:
             digest.update(np.ascontiguousarray(self._shares).tobytes())
@@ -104,7 +105,7 @@ class CaseList:
 
 @dataclass(frozen=True)
 class StudyEvaluator:
-    """What computes a case: the pair that is varied, the paths of each axis, and the rest of the study."""
+    """Computes a case: the pair, the paths of each axis, the analysis, the results and the settings."""
 
     pair: GearPair
     fields: tuple[tuple[str, ...], ...]
@@ -119,7 +120,7 @@ class StudyEvaluator:
         return StudyEvaluator(study.gear_pair, fields, study.analysis, study.outputs, study.settings)
 
     def variation(self, values: tuple[AxisValue, ...]) -> GearVariation:
-        """Return the pair with the axes' values; plain fields change at once, as they must fit together."""
+        """Return the pair with the values of the axes. Plain fields change together: they must fit."""
         changes: dict[str, AxisValue] = {}
         charted: list[tuple[str, float]] = []
         for paths, value in zip(self.fields, values, strict=True):

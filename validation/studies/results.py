@@ -1,4 +1,4 @@
-"""The labelled results of a study, compiled from its store, with Sobol indices where it asks for them."""
+"""The labelled results of a study, compiled from the store, with Sobol indices on request."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RESULTS = "results.nc"
 
 
 def read_results(folder: str | Path) -> xr.Dataset:
-    """Return what a store holds so far, also while the sweep runs or after it was killed.
+    """Return the present contents of a store, also during a sweep or after the sweep was killed.
 
     Parameters
     ----------
@@ -44,9 +44,10 @@ def read_results(folder: str | Path) -> xr.Dataset:
 def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     """Label the outcomes of a study.
 
-    Returns xarray.Dataset with the study's outputs and ``status`` (flag meanings in its attributes); the
-    failed cases with their error text in ``failure_message`` over ``failure``, the first ``MAX_FAILURES`` of
-    them; the axes in the fields' stated units; sensitivity indices where the design asks for them.
+    Returns xarray.Dataset with the outputs of the study in SI and ``status``, whose attributes explain the
+    numbers. Failed cases have their error text in ``failure_message`` over ``failure``, the first
+    ``MAX_FAILURES`` of them. The axes are in the stated units of the fields, which their attribute
+    ``units`` names. Sensitivity indices are there where the design asks for them.
     """
     study = cases.study
     dims = cases.dims
@@ -71,11 +72,12 @@ def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
 
 
 def _coordinates(cases: CaseList) -> dict[str, xr.DataArray]:
+    """Axes of the study with their values, and the numbers of the cases of a sampled study."""
     study = cases.study
-    found: dict[str, xr.DataArray] = {}
+    coordinates: dict[str, xr.DataArray] = {}
     if cases.grid is None:
         columns: list[Any] = cases.columns(np.arange(cases.count))
-        found["case"] = xr.DataArray(
+        coordinates["case"] = xr.DataArray(
             np.arange(cases.count), dims="case", attrs={"long_name": "number of the case"}
         )
     else:
@@ -87,8 +89,8 @@ def _coordinates(cases: CaseList) -> dict[str, xr.DataArray]:
         if target.unit:
             attrs["units"] = target.unit
         dim = axis.label if cases.grid is not None else "case"
-        found[axis.label] = xr.DataArray(array, dims=dim, attrs=attrs)
-    return found
+        coordinates[axis.label] = xr.DataArray(array, dims=dim, attrs=attrs)
+    return coordinates
 
 
 def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
@@ -117,7 +119,8 @@ def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
 def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.Dataset:
     """Add ``sobol_first`` and ``sobol_total`` over (output, axis).
 
-    A failed case would bias the estimators, so they are left out then; attribute ``sensitivity`` says why.
+    A failed case would bias the estimators: then there are no indices, and attribute ``sensitivity`` has
+    the reason.
     """
     if not cases.study.design.sensitivity:
         return result
@@ -149,7 +152,7 @@ def indices(values: FloatArray, axes: int) -> FloatArray:
     """
     from scipy import stats  # takes a third of a second, and most studies have no use for it
 
-    found = np.full((2, len(values), axes), np.nan)
+    sobol = np.full((2, len(values), axes), np.nan)
     varies = np.ptp(values, axis=1) > 0.0
     if varies.any():
         # The estimators are invariant under shift and scale. About a zero mean they lose fewer digits, and
@@ -160,5 +163,5 @@ def indices(values: FloatArray, axes: int) -> FloatArray:
         func: Any = {"f_A": blocks[0], "f_B": blocks[1], "f_AB": blocks[2:]}
         with np.errstate(invalid="ignore", divide="ignore"):  # A and B alike, as of one sample
             result: Any = stats.sobol_indices(func=func, n=blocks.shape[-1])
-        found[:, varies] = np.reshape([result.first_order, result.total_order], (2, -1, axes))
-    return found
+        sobol[:, varies] = np.reshape([result.first_order, result.total_order], (2, -1, axes))
+    return sobol

@@ -1,4 +1,4 @@
-"""Run a study: every case once, each outcome kept the moment it is known."""
+"""Run a study: compute every case once, and store every outcome at once."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ _SHOWN_FAILURES = 20
 
 @dataclass(frozen=True)
 class Summary:
-    """What a run of a sweep did.
+    """Result of a run of a sweep.
 
     Attributes
     ----------
     cases : number of cases of the study
-    before : of these, computed by earlier runs
-    computed : computed by this run
+    before : number of cases that earlier runs computed
+    computed : number of cases that this run computed
     statuses : (status, number) of all cases, by status
-    failures : (case, text) of the first failed ones
-    seconds : wall time of this run
-    results : the compiled file
+    failures : (case, text) of the first failed cases
+    seconds : wall time of this run [s]
+    results : compiled file
     """
 
     cases: int
@@ -128,7 +128,7 @@ def run_sweep(
 
 
 def _opened(root: Path, cases: CaseList, resume: bool) -> Store:
-    """Open the store of a new or empty folder, or with ``resume`` of one that holds this study."""
+    """Open the store of a new or empty folder, or with ``resume`` of a folder with this study."""
     try:
         root.mkdir(parents=True, exist_ok=True)
         names = {entry.name for entry in root.iterdir() if not entry.name.startswith(".")}

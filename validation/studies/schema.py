@@ -1,4 +1,4 @@
-"""A study: one gear pair, what varies, how it is analysed, what is kept; its file, its refusals."""
+"""A study: gear pair, axes, analysis and outputs; the study file and the refusals."""
 
 from __future__ import annotations
 
@@ -56,12 +56,12 @@ class Design(Section):
         sobol = self.method == "sobol"
         samples = self.samples
         near = 1 << ((samples or 1).bit_length() - 1)
-        given = str(samples)
+        stated = str(samples)
         power = "a power of two (the balance of a Sobol sequence)"
         cases = (
-            (grid and samples is not None, "samples", given, "none for a grid", "Remove it, or sample."),
+            (grid and samples is not None, "samples", stated, "none for a grid", "Remove it, or sample."),
             (not grid and samples is None, "samples", "missing", "number of samples", "Give it."),
-            (sobol and samples not in (None, near), "samples", given, power, f"Take {near} or {2 * near}."),
+            (sobol and samples not in (None, near), "samples", stated, power, f"Take {near} or {2 * near}."),
             (self.sensitivity and not sobol, "sensitivity", "true", "method = 'sobol'", "Change the method."),
         )
         problems = [FieldProblem(*problem) for wrong, *problem in cases if wrong]
@@ -75,7 +75,7 @@ def _pair_in(value: object) -> object:
 
 
 class Study(Section):
-    """A study: everything that decides the results, nothing about where and how it runs."""
+    """A study: everything that decides the results, and nothing about place and way of the computation."""
 
     name: Text = Field(min_length=1, max_length=80, description="short name")
     description: Text = Field("", max_length=2000, description="what the study is for")
@@ -102,7 +102,7 @@ class Study(Section):
 
     @property
     def count(self) -> int:
-        """Number of cases; sensitivity indices take a block of samples an axis and two more."""
+        """Number of cases. Sensitivity indices need one block of samples for each axis, and two more."""
         design = self.design
         if design.method == "grid":
             return math.prod(len(axis.values or ()) or axis.count or 1 for axis in self.axes)
@@ -118,21 +118,21 @@ class Study(Section):
 
     @property
     def sha256(self) -> str:
-        """Hash of the study's TOML text, which names the store it belongs to."""
+        """Hash of the TOML text of the study, which names the store of the study."""
         return hashlib.sha256(self.to_toml().encode()).hexdigest()
 
 
 def _output_problems(study: Study) -> list[FieldProblem]:
-    known = ANALYSES[study.analysis].outputs
+    outputs = ANALYSES[study.analysis].outputs
     problems = [
         FieldProblem(
             f"outputs.{j}",
             shown(repr(name)),
-            "one of " + ", ".join(known),
-            nearest(name, known) or "Correct the name.",
+            "one of " + ", ".join(outputs),
+            nearest(name, outputs) or "Correct the name.",
         )
         for j, name in enumerate(study.outputs)
-        if name not in known
+        if name not in outputs
     ]
     if len(set(study.outputs)) < len(study.outputs):
         allowed = "names that all differ"
@@ -141,7 +141,7 @@ def _output_problems(study: Study) -> list[FieldProblem]:
 
 
 def _support_problems(study: Study) -> list[FieldProblem]:
-    """The refusal of shafts that the pair does not have."""
+    """Refusal of shafts that the pair does not have."""
     try:
         with_supports(study.gear_pair, study.settings.supports)
     except ParameterError as error:
@@ -163,10 +163,10 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
     for j, axis in enumerate(study.axes):
         listed = axis.values is not None or axis.count is not None
         name = axis.label
-        own = "a name that no other axis or result has"
+        unique = "a name that no other axis or result has"
         needed = "values, or low, high and count, for a grid"
         cases = [
-            (labels.count(name) > 1 or name in taken, "name", repr(name), own, "Give the axis a name."),
+            (labels.count(name) > 1 or name in taken, "name", repr(name), unique, "Give the axis a name."),
             (grid and not listed, "count", "missing", needed, "Add it."),
             (listed and not grid, "values", "given", "low and high, for samples", "Give the range only."),
         ]
@@ -178,13 +178,13 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
                 (charted and not floquet, "field", repr(path), "an axis of analysis = 'floquet'", vary),
                 (on_shafts and path.startswith("bearing"), "field", repr(path), "not on shafts", springs),
             ]
-        found = [FieldProblem(*problem) for wrong, *problem in cases if wrong]
+        axis_problems = [FieldProblem(*problem) for wrong, *problem in cases if wrong]
         try:
-            if not found:
+            if not axis_problems:
                 axis.listed()
         except ParameterError as error:
-            found += error.problems
-        problems += [replace(problem, field=f"axes.{j}.{problem.field}") for problem in found]
+            axis_problems += error.problems
+        problems += [replace(problem, field=f"axes.{j}.{problem.field}") for problem in axis_problems]
     if study.count > MAX_CASES:
         action = "Take fewer values, or split the study."
         problems.append(FieldProblem("design", f"{study.count} cases", f"<= {MAX_CASES} cases", action))

@@ -1,7 +1,7 @@
-"""The store of a study: one SQLite file, one row a case, each chunk of cases in one transaction.
+"""The store of a study: one SQLite file, one row for each case, one transaction for each chunk of cases.
 
-SQLite keeps it whole: after a crash it holds every chunk that was added. The labelled NetCDF file is compiled
-from the store, with the same bytes each time.
+After a crash the file has every chunk that was added. The labelled NetCDF file is compiled from the store
+and has the same bytes each time.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ _COMPILER = ("NUMBA_DISABLE_JIT", "NUMBA_OPT", "NUMBA_CPU_NAME", "NUMBA_CPU_FEAT
 
 
 class StoreError(StorageError):
-    """The store cannot be read or written; what it holds is kept, and the text says how to go on."""
+    """The store cannot be read or written. Stored results are kept, and the text says how to continue."""
 
 
 class Status(IntEnum):
-    """What became of a case; no code, kept in stores and results, ever gets another meaning."""
+    """Outcome of a case. The codes stand in stores and results: a code never gets another meaning."""
 
     MISSING = -1
     OK = 0
@@ -58,12 +58,12 @@ class Status(IntEnum):
 
     @property
     def failed(self) -> bool:
-        """Whether there are no outputs."""
+        """Whether the case has no outputs."""
         return self >= Status.REFUSED
 
 
 class Provenance(NamedTuple):
-    """What the last digits of a result depend on: versions, hash of the source, name of the processor."""
+    """Origin of the last digits of a result: versions, hash of the source, name of the processor."""
 
     versions: str
     code: str
@@ -72,7 +72,7 @@ class Provenance(NamedTuple):
 
 @cache
 def provenance() -> Provenance:
-    """Return the provenance of what this process computes."""
+    """Return the provenance of results of this process."""
     parts = [f"python {platform.python_version()}"]
     parts += [f"{name} {metadata.version(name)}" for name in _LIBRARIES]
     parts += [platform.machine()] + [f"{name}={os.environ[name]}" for name in _COMPILER if name in os.environ]
@@ -81,9 +81,13 @@ def provenance() -> Provenance:
 
 @dataclass(frozen=True)
 class Chunk:
-    """Outcomes of some cases, the time that they took [s], and the process that computed them.
+    """Outcomes of some cases.
 
-    A row: number of the case, status, outputs as bytes of doubles or None, error text or None.
+    Attributes
+    ----------
+    rows : for each case number, status, outputs as bytes of doubles or None, error text or None
+    seconds : computing time of all cases [s]
+    provenance : process that computed the cases
     """
 
     rows: list[tuple[int, int, bytes | None, str | None]]
@@ -93,8 +97,14 @@ class Chunk:
 
 @dataclass
 class Table:
-    """Outcomes of all cases: status (cases,), values (cases, outputs) with NaN where there is none,
-    error texts of at most ``MAX_FAILURES`` failed cases, and what computed them, in order, each once.
+    """Outcomes of all cases.
+
+    Attributes
+    ----------
+    status : (cases,) status of each case
+    values : (cases, outputs) results; NaN: the case has no outputs
+    messages : number of a failed case -> error text, for at most ``MAX_FAILURES`` cases
+    runs : provenance of the results, in order, each once
     """
 
     status: np.ndarray[Any, np.dtype[np.int8]]
@@ -109,10 +119,10 @@ class Table:
 
 
 class Store:
-    """The store of cases in a folder, opened for adding; its lock keeps others out.
+    """The store of cases in a folder, opened for adding. A lock keeps other processes out.
 
-    Refused is one of other cases, or that other code began; a StoreError says that it cannot be used, is
-    damaged, or another process writes to it.
+    A store of other cases, or of another version of the code, is refused. A StoreError says that the store
+    cannot be used, is damaged, or that another process writes to the store.
     """
 
     def __init__(self, folder: Path, cases: CaseList) -> None:
@@ -146,7 +156,7 @@ class Store:
         self._db.execute("BEGIN IMMEDIATE")
 
     def add(self, chunk: Chunk) -> None:
-        """Write the outcomes of a chunk; a later outcome of a case replaces the earlier one."""
+        """Write the outcomes of a chunk. A later outcome of a case replaces an earlier outcome."""
         with _translated(self.path):
             if chunk.provenance not in self._runs:
                 self._db.execute("INSERT INTO run VALUES (?, ?, ?)", chunk.provenance)
@@ -168,13 +178,13 @@ class Store:
 
 
 def read_definition(folder: Path) -> str:
-    """Return the text that says what a store belongs to; raises StoreError where there is no store."""
+    """Return the study of a store as text. Raises StoreError where there is no store."""
     with _reader(folder) as db:
         return str(dict(db.execute("SELECT key, value FROM about"))["definition"])
 
 
 def read_table(folder: Path, cases: CaseList) -> Table:
-    """Return the outcomes that a store holds, also while another process adds to it."""
+    """Return the outcomes in a store, also while another process adds outcomes."""
     with _reader(folder) as db:
         _check_same(db, folder / STORE, cases)
         return _table(db, cases)
@@ -191,7 +201,7 @@ def _reader(folder: Path) -> Iterator[sqlite3.Connection]:
 
 @contextmanager
 def _translated(path: Path) -> Iterator[None]:
-    """Give the errors of SQLite in the user's words."""
+    """Raise errors of SQLite as StoreError, in the words of the user."""
     try:
         yield
     except sqlite3.Error as error:
@@ -213,11 +223,11 @@ def _about(cases: CaseList) -> dict[str, str]:
 
 def _check_same(db: sqlite3.Connection, path: Path, cases: CaseList) -> None:
     """Refuse the store of other cases."""
-    known = dict(db.execute("SELECT key, value FROM about"))
+    stored = dict(db.execute("SELECT key, value FROM about"))
     wanted = _about(cases)
-    if known == wanted:
+    if stored == wanted:
         return
-    if known.get("definition") == wanted["definition"]:
+    if stored.get("definition") == wanted["definition"]:
         allowed = "a store of the same cases"
         action = "Another version of scipy draws other samples: use the version that began the study."
     else:

@@ -1,4 +1,4 @@
-"""Cases to outcomes: a chunk at a time, in this process, in worker processes, or on any executor."""
+"""Evaluation of cases in chunks: in this process, in worker processes, or on any executor."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ Submit = Callable[..., Future[Chunk]]
 
 
 class SweepStopped(SpurcheckError):
-    """The workers cannot go on; every case that was computed is kept, and the text says how to continue."""
+    """The workers cannot go on. All computed cases are stored, and the text says how to continue."""
 
 
 def evaluate_chunk(
     evaluator: StudyEvaluator, cases: Sequence[int], values: Sequence[tuple[Any, ...]]
 ) -> Chunk:
-    """Evaluate cases one after the other; whatever a case raises becomes its outcome."""
+    """Evaluate cases one after the other. An exception in a case becomes the outcome of the case."""
     start = time.perf_counter()
     rows: list[tuple[int, int, bytes | None, str | None]] = []
     pack = struct.Struct(f"<{len(evaluator.outputs)}d").pack
@@ -79,7 +79,7 @@ def _evaluate(evaluator: StudyEvaluator, values: tuple[Any, ...]) -> tuple[Statu
 
 @contextmanager
 def workers_of(workers: int, executor: Executor | None, limit: float | None) -> Iterator[tuple[Submit, int]]:
-    """Give what starts a function call somewhere, and how many calls run there at the same time."""
+    """Give the function that submits a call, and the number of parallel calls."""
     if not 0 <= workers <= 1024:
         raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
     if limit is not None and executor is not None:
@@ -102,7 +102,7 @@ def _here(function: Callable[..., Chunk], *arguments: Any) -> Future[Chunk]:
 
 @contextmanager
 def _processes(workers: int, limit: float | None) -> Iterator[Submit]:
-    """Worker processes of this machine, each ended when a chunk takes longer than ``limit``."""
+    """Worker processes of this machine. A process is ended when a chunk takes longer than ``limit`` [s]."""
     pool = pebble.ProcessPool(workers, context=_context())
     try:
         try:
@@ -119,7 +119,7 @@ def _processes(workers: int, limit: float | None) -> Iterator[Submit]:
 
 
 def _context() -> Any:
-    """How worker processes start: forks of one clean process that has everything loaded and one thread.
+    """Start method of worker processes: forks of a clean process with all modules loaded and one thread.
 
     A fork of this process could copy a lock that a thread of numba or exudyn holds.
     """
@@ -146,20 +146,20 @@ def chunks_of(
     slots: int,
     limit: float | None,
 ) -> Iterator[Chunk]:
-    """Yield the outcomes of cases as they come, in any order, each case once.
+    """Yield the outcomes of cases in the order of their completion, each case once.
 
-    A chunk that took longer than a case may (``limit`` [s]), or on which a worker died, is divided into
-    single cases. ``submit`` and ``slots`` are those of ``workers_of``.
+    A chunk is divided into single cases if it takes longer than one case may take (``limit`` [s]), or if
+    its worker dies. ``submit`` and ``slots`` come from ``workers_of``.
     """
     # seconds: mean time of a case, 0 where it is not known yet
-    left = count
+    remaining = count
     seconds = 0.0
     singles: deque[int] = deque()
     running: dict[Future[Chunk], list[int]] = {}
     most_seconds = CHUNK_SECONDS if limit is None else min(CHUNK_SECONDS, limit / 4.0)
     while True:
         while len(running) < 2 * slots:
-            size = min(int(most_seconds / seconds), left // (4 * slots), MAX_CHUNK) if seconds else 1
+            size = min(int(most_seconds / seconds), remaining // (4 * slots), MAX_CHUNK) if seconds else 1
             cases = [singles.popleft()] if singles else list(islice(numbers, max(size, 1)))
             if not cases:
                 break
@@ -175,7 +175,7 @@ def chunks_of(
             if chunk is None:
                 singles += cases
                 continue
-            left -= len(cases)
+            remaining -= len(cases)
             mean = max(chunk.seconds / len(cases), 1e-6)
             seconds = 0.8 * seconds + 0.2 * mean if seconds else mean
             yield chunk
@@ -189,7 +189,7 @@ def _stopped(error: Exception) -> SweepStopped:
 
 
 def _outcome(future: Future[Chunk], cases: list[int], limit: float | None) -> Chunk | None:
-    """Outcomes of a finished chunk, None when its cases run again one by one."""
+    """Outcomes of a finished chunk. None: the cases of the chunk run again one by one."""
     try:
         chunk = future.result()
     except Exception as error:

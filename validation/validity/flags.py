@@ -1,4 +1,4 @@
-"""Is the linear time-varying model valid for this motion? Each assumption as a flag: a number, and words.
+"""Is the linear time-varying model valid for a motion? One flag for each assumption: a number and words.
 
 Sources: docs/theory/validity.md.
 """
@@ -40,7 +40,7 @@ STATES = ("valid", "warning", "violated", "no periodic motion")
 
 State = Literal["ok", "warning", "violated"]
 
-#: Key of a flag -> its name, the unit of its number, what it is for, and what to do where it is raised.
+#: Key of a flag -> name, unit, meaning and action.
 _ABOUT = read_table("validation.validity", "flags.toml")
 
 
@@ -53,10 +53,11 @@ class Flag:
     key : stable name for programs
     name : plain name
     state : "ok", "warning" or "violated"
-    value, unit : the number that decides ("1" for a ratio); None where a text says it all
-    detail : where and how much
-    meaning : what the assumption is for
-    action : what to do; empty where nothing needs doing
+    value : number that decides the state; None: there is no number
+    unit : unit of the value, "1" for a ratio
+    detail : sentence on place and size
+    meaning : purpose of the assumption
+    action : what the user can do; empty: nothing
     """
 
     key: str
@@ -70,7 +71,7 @@ class Flag:
 
 
 def flag(key: str, state: State, value: float | None, detail: str) -> Flag:
-    """The flag of a key of ``flags.toml``."""
+    """Return the flag with this key of ``flags.toml``."""
     words = _ABOUT[key] | ({"action": ""} if state == "ok" else {})
     return Flag(key=key, state=state, value=value, detail=detail, **words)
 
@@ -106,12 +107,12 @@ def validity_flags(
         from floquet.gear.multipliers import GearPairMultipliers
 
         what = "what gear_pair_multipliers returns"
-        own = of_type("multipliers", multipliers, GearPairMultipliers, what)
-        held = own.variation.supports
-        if held != (wanted := motion.attrs.get("supports", held)):
+        checked = of_type("multipliers", multipliers, GearPairMultipliers, what)
+        supports = checked.variation.supports
+        if supports != (wanted := motion.attrs.get("supports", supports)):
             action = f'Give those of gear_pair_multipliers(pair, supports="{wanted}").'
-            raise refuse("multipliers", f"on {held}", f"on {wanted}, as the motion", action)
-        flags.append(stability(own))
+            raise refuse("multipliers", f"on {supports}", f"on {wanted}, as the motion", action)
+        flags.append(stability(checked))
     return tuple(flags)
 
 
@@ -120,7 +121,7 @@ def _state(value: float, limits: tuple[float, float]) -> State:
 
 
 def _zone(g: Geometry, position: float) -> str:
-    """Position on the path of contact in words: distance from A and the zone it lies in."""
+    """Position on the path of contact in words: distance from A, and the zone."""
     marks = (("A", g.L_XA), ("B", g.L_XB), ("P", g.L_XP), ("C", g.L_XC), ("D", g.L_XD))
     ordered = sorted(marks, key=lambda mark: mark[1])
     around = (
@@ -133,9 +134,10 @@ def _zone(g: Geometry, position: float) -> str:
 
 
 def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
-    """N_i >= 0 while in contact: the model glues teeth together that would separate.
+    """Check N_i >= 0 in contact: the linear model lets teeth pull that would separate.
 
-    With loaded contact, where pairs begin and end their contact gradually, all pairs together must press.
+    With loaded contact single pairs begin and end their contact gradually: then all pairs together must
+    press.
     """
     form = contact_of(pair)
     load, contact = form.pressing(motion["normal_load"].to_numpy(), motion["contact"].to_numpy() > 0)
@@ -155,7 +157,7 @@ def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
 
 
 def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
-    """Sliding follows the sign s_i of the nominal motion except next to the pitch point."""
+    """Check that sliding has the sign s_i of the nominal motion, except next to the pitch point."""
     position = motion["position"].to_numpy()
     loaded = (motion["contact"].to_numpy() > 0) & (motion["normal_load"].to_numpy() > 0)
     sliding = motion["sliding_velocity"].to_numpy()
@@ -175,9 +177,9 @@ def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
 
 
 def validity_state(lowest_load: FloatArray, reversal: FloatArray) -> NDArray[np.int64]:
-    """Index into ``STATES``: the worse of contact and sliding, over speed.
+    """Return the index into ``STATES`` over speed: the worse of contact and sliding.
 
-    ``lowest_load`` is over the static load, NaN without a periodic motion; ``reversal`` over the base pitch.
+    ``lowest_load``: over the static load, NaN without a periodic motion; ``reversal``: over the base pitch.
     """
     state = np.zeros(lowest_load.shape, dtype=np.int64)
     state[reversal > REVERSAL_LIMITS[0]] = 1
@@ -187,7 +189,7 @@ def validity_state(lowest_load: FloatArray, reversal: FloatArray) -> NDArray[np.
 
 
 def contact_ratio(g: Geometry) -> Flag:
-    """Contact ratio in the range of the formulas, with some margin above 1."""
+    """Check that the contact ratio is in the range of the formulas, with some margin above 1."""
     sigma = g.contact_ratio
     state: State = "ok" if 1.1 <= sigma <= 3.0 else "warning"
     detail = "; ".join([f"{sigma:.4f}: up to {g.pairs} tooth pairs share the load", *g.notes])
@@ -195,12 +197,12 @@ def contact_ratio(g: Geometry) -> Flag:
 
 
 def law_ranges(pair: GearPair) -> Flag:
-    """The friction law is used inside the range in which it was fitted."""
+    """Check that the friction law is inside the range of its fit."""
     return _ranges("friction_law_range", law_range_violations(pair), pair.friction.law)
 
 
 def stiffness_ranges(pair: GearPair) -> Flag:
-    """The stiffness model is used inside the ranges of its fits."""
+    """Check that the stiffness model is inside the ranges of its fits."""
     return _ranges("stiffness_range", pair.mesh.stiffness.violations(pair), pair.mesh.stiffness.model)
 
 
@@ -211,10 +213,11 @@ def _ranges(key: str, violations: tuple[RangeViolation, ...], name: str) -> Flag
 
 
 def film_regime(pair: GearPair) -> Flag:
-    """The film parameter suits the friction law."""
+    """Check that the film parameter suits the friction law."""
     path = contact_path(pair)
     parameter = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 201))
-    low, high = float(parameter.min()), float(parameter.max())
+    low = float(parameter.min())
+    high = float(parameter.max())
     boundary = pair.friction.thresholds[0]
     fluid_law = law_of(pair.friction).fluid_film
     state: State = "warning" if fluid_law and low < boundary else "ok"
@@ -228,10 +231,10 @@ def film_regime(pair: GearPair) -> Flag:
 
 
 def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
-    """The torques hold the mean speed, so that a periodic motion exists."""
+    """Check that the torques keep the mean speed: otherwise there is no periodic motion."""
     needed = float(motion.attrs["pinion_torque"])
-    given = pair.operating.pinion_torque
-    excess = abs(needed - given) / given
+    operating_torque = pair.operating.pinion_torque
+    excess = abs(needed - operating_torque) / operating_torque
     state = _state(excess, (1e-9, 0.05))
     brake = float(motion.attrs["brake_torque"])
     if state == "ok":
@@ -239,13 +242,13 @@ def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
     else:
         detail = (
             f"with the given brake torque of {brake:.6g} N m the drive must give {needed:.6g} N m, "
-            f"not {given:.6g} N m"
+            f"not {operating_torque:.6g} N m"
         )
     return flag("torque_balance", state, excess, detail)
 
 
 def speed_drift(g: Geometry, motion: xr.Dataset) -> Flag:
-    """The mean speed does not drift over the run."""
+    """Check that the mean speed does not drift over the run."""
     time = motion["time"].to_numpy()
     rate = motion["theta_p_dot"].to_numpy()
     last = time >= time[-1] - g.mesh_period
@@ -262,7 +265,7 @@ def speed_drift(g: Geometry, motion: xr.Dataset) -> Flag:
 
 
 def solution_error(motion: xr.Dataset) -> Flag:
-    """The periodic motion is computed accurately."""
+    """Check that the periodic motion is accurate."""
     error = float(motion.attrs["error_estimate"])
     state = _state(error, ERROR_LIMITS)
     return flag(
@@ -275,7 +278,7 @@ def solution_error(motion: xr.Dataset) -> Flag:
 
 
 def stability(multipliers: GearPairMultipliers) -> Flag:
-    """The periodic motion is stable: all Floquet multipliers inside the unit circle."""
+    """Check that the periodic motion is stable: all Floquet multipliers are inside the unit circle."""
     radius = multipliers.spectral_radius
     error = multipliers.error
     states: dict[str, State] = {"stable": "ok", "undecided": "warning", "unstable": "violated"}

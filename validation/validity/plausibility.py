@@ -1,6 +1,6 @@
-"""Values that can exist but hardly can be meant, each with its likely cause. The computation goes on.
+"""Sentences on implausible values of a parameter file, each with the likely cause. The computation goes on.
 
-Sources: a rolling contact of bearing steel is indented for good at about 4.2 GPa (ISO 76:2006).
+Sources: a Hertzian pressure of about 4.2 GPa leaves a permanent indentation in bearing steel (ISO 76:2006).
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ _SIZES = {
 
 
 def parameter_warnings(pair: GearPair) -> tuple[str, ...]:
-    """Return one sentence for each value that hardly can be meant: field, value, likely cause."""
+    """Return one sentence for each implausible value: field, value, likely cause."""
     return (
         *_sizes(pair),
         *_frequencies(pair),
@@ -68,15 +68,16 @@ def _sizes(pair: GearPair) -> Iterator[str]:
     for pattern, (unit, factor, low, high, words) in _SIZES.items():
         for gear in ("pinion", "gear"):
             path = pattern.format(gear)
-            whole: Any = pair
+            value_at_path: Any = pair
             for key in path.split("."):
-                whole = getattr(whole, key, None)  # no relief, no amount
-            value = factor * (whole or 0.0)
+                value_at_path = getattr(value_at_path, key, None)  # no relief, no amount
+            value = factor * (value_at_path or 0.0)
             if value and not low <= value <= high:
                 yield f"{path} = {value:g} {unit} {words.format(value)}"
 
 
 def _frequencies(pair: GearPair) -> Iterator[str]:
+    """Sentence on a fastest mode that makes the multibody model slow."""
     fastest = math.sqrt(max(_squared_frequencies(pair)))
     oscillations = fastest * pair.geometry.mesh_period / (2.0 * math.pi)
     if oscillations > _OSCILLATIONS:
@@ -87,17 +88,19 @@ def _frequencies(pair: GearPair) -> Iterator[str]:
 
 
 def _shafts(pair: GearPair) -> Iterator[str]:
-    """Springs of the 6-DOF model that the shafts contradict, in one sentence about the worst."""
+    """Sentence on the spring of the 6-DOF model that differs most from the stiffness of the shafts."""
     if pair.shafts is None:
         return
     condensed = condensed_bearings(pair)
-    found = []
+    differences = []
     for name in ("pinion", "gear"):
         for field in ("loa_stiffness", "oloa_stiffness"):
-            given, static = (getattr(getattr(one.bearings, name), field) for one in (pair, condensed))
+            stated, static = (getattr(getattr(one.bearings, name), field) for one in (pair, condensed))
             line = "along" if field.startswith("loa") else "off"
-            found.append((abs(math.log(given / static)), f"{name} has {given:.3g} N/m {line}", static))
-    ratio, springs, static = max(found)
+            differences.append(
+                (abs(math.log(stated / static)), f"{name} has {stated:.3g} N/m {line}", static)
+            )
+    ratio, springs, static = max(differences)
     if ratio > math.log(_FAR):
         yield (
             "Jumps, and what else is computed on the springs of [bearings], is not of the shafts: "
@@ -107,8 +110,9 @@ def _shafts(pair: GearPair) -> Iterator[str]:
 
 
 def _squared_frequencies(pair: GearPair) -> Iterator[float]:
-    """Squares of frequencies that bound those of the pair, of one spring and one body each [rad^2/s^2]."""
-    b, g = bodies_of(pair), pair.geometry
+    """Upper bounds of the squared frequencies [rad^2/s^2]: all springs of one coordinate over its mass."""
+    b = bodies_of(pair)
+    g = pair.geometry
     mesh = float(mesh_stiffness(pair).attrs["mean"])
     for bearing, mass in ((pair.bearings.pinion, b.mass_pinion), (pair.bearings.gear, b.mass_gear)):
         yield (bearing.loa_stiffness + mesh) / mass
@@ -117,6 +121,7 @@ def _squared_frequencies(pair: GearPair) -> Iterator[float]:
 
 
 def _widths(pair: GearPair) -> Iterator[str]:
+    """Sentences on face widths in modules."""
     for name in ("pinion", "gear"):
         width = getattr(pair, name).face_width
         modules = width / pair.basic_rack.module
@@ -126,13 +131,14 @@ def _widths(pair: GearPair) -> Iterator[str]:
 
 
 def _load(pair: GearPair) -> Iterator[str]:
+    """Sentences on the pressure and the deflection at the operating torque."""
     g = pair.geometry
-    at = pair.operating
-    force = at.pinion_torque / g.base_radius_pinion
+    operating = pair.operating
+    force = operating.pinion_torque / g.base_radius_pinion
     path = contact_path(pair)
     pressure = float(path.hertz_pressure(path.L_XP))  # type: ignore[arg-type]
     give = force / float(mesh_stiffness(pair).attrs["mean"])
-    torque = f"operating.pinion_torque = {at.pinion_torque:g} N m"
+    torque = f"operating.pinion_torque = {operating.pinion_torque:g} N m"
     if pressure > _PRESSURE:
         yield f"{torque} presses the flanks with {pressure * 1e-9:.3g} GPa, beyond any steel. {_cause(pair)}"
     if give > _GIVES_WAY * pair.basic_rack.module:
@@ -148,7 +154,7 @@ def _load(pair: GearPair) -> Iterator[str]:
 
 
 def _cause(pair: GearPair) -> str:
-    """Swapped speed and torque, where exchanging them makes sense of both; else the units."""
+    """Likely cause: swapped speed and torque where the exchange gives a plausible pair, else units."""
     rpm = pair.operating.pinion_speed * 30.0 / math.pi
     torque = float(pair.operating.pinion_torque)
     try:
@@ -161,6 +167,7 @@ def _cause(pair: GearPair) -> str:
 
 
 def _speed(pair: GearPair) -> Iterator[str]:
+    """Sentences on the pinion speed."""
     rpm = pair.operating.pinion_speed * 30.0 / math.pi
     if rpm < _SLOW:
         yield f"operating.pinion_speed = {rpm:g} rpm: does a point part thousands? Then write {1e3 * rpm:g}."
@@ -174,10 +181,11 @@ def _speed(pair: GearPair) -> Iterator[str]:
 
 
 def _roughness(pair: GearPair) -> Iterator[str]:
-    given = pair.friction.composite_roughness
+    """Sentence on a composite roughness that differs from both flanks."""
+    stated = pair.friction.composite_roughness
     both = math.hypot(pair.pinion.roughness, pair.gear.roughness)
-    if given is not None and abs(given - both) > 0.05 * both:
+    if stated is not None and abs(stated - both) > 0.05 * both:
         yield (
-            f"friction.composite_roughness = {given * 1e6:.3g} um is used for the film, not the root sum "
+            f"friction.composite_roughness = {stated * 1e6:.3g} um is used for the film, not the root sum "
             f"square {both * 1e6:.3g} um of both roughnesses. Delete it if the roughnesses are meant."
         )

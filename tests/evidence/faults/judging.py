@@ -22,7 +22,9 @@ from tests.evidence.kinds import OF_PAIRS
 from tests.evidence.pairs import pairs
 from tests.evidence.refinement import refinements
 from validation.cross_check.comparison import crosscheck
-from validation.reporting.results import QUICK, Results, broken_relations
+from validation.reporting.effort import QUICK
+from validation.reporting.relations import broken_relations
+from validation.reporting.results import Results
 
 _CYCLES = 6
 _SAMPLES = 64

@@ -17,7 +17,9 @@ from tests.evidence.faults.rewriting import FaultError, applied, fitted
 from tests.evidence.faults.sound import drawn
 from tests.evidence.faults.table import laws_that_act, sample, verdict
 from tests.evidence.pairs import pairs
-from validation.reporting.results import QUICK, Results, broken_relations
+from validation.reporting.effort import QUICK
+from validation.reporting.relations import broken_relations
+from validation.reporting.results import Results
 
 pytestmark = pytest.mark.filterwarnings(f"ignore::{LawRangeWarning.__module__}.LawRangeWarning")
 

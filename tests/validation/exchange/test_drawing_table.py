@@ -6,7 +6,8 @@ from validation.cli import app
 from validation.exchange.drawing_table import HEADINGS, drawing_rows
 from validation.exchange.new_pair_file import new_pair
 from validation.reporting.chapters import inputs
-from validation.reporting.results import QUICK, Results
+from validation.reporting.effort import QUICK
+from validation.reporting.results import Results
 
 #: 12/24 of module 3 with shifts 0.6 and 0.36, as printed by the manufacturer's worked example.
 PRINTED = {

@@ -11,15 +11,15 @@ from lumped.errors import ParameterError
 from tests.unlike_pairs import unlike_pair
 from tests.validation.measurements.dynamic_records import dynamic_record, motion
 from validation.exchange.new_pair_file import new_pair
-from validation.measurements.record_comparison import (
+from validation.measurements.channel_comparison import (
     NOT_VARIED,
     SHARE,
     UNKNOWN,
     ChannelComparison,
     PeakToPeak,
     Record,
-    compare_record,
 )
+from validation.measurements.comparing import compare_record
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import Varied
 from validation.signals.complex_orders import ComplexOrders

@@ -20,9 +20,10 @@ from tests.validation.reporting.kinds import KINDS
 from tests.validation.reporting.written import plain
 from validation.prediction.inputs import read_values
 from validation.reporting.chapters import response
-from validation.reporting.facts import facts
+from validation.reporting.effort import QUICK, Effort
+from validation.reporting.facts import facts_of
 from validation.reporting.page_one import page_one
-from validation.reporting.results import QUICK, Effort, Results
+from validation.reporting.results import Results
 from validation.reporting.verdict import NEAR, Verdict
 
 #: As a quick report, but for charts that are drawn: what is claimed stays the same.
@@ -54,7 +55,7 @@ def linear(pair: lumped.GearPair, rpm: float) -> xr.Dataset | None:
 
 def test_contact_is_that_of_the_second_program(results):
     """Teeth that differ have no second program here: their loads are added up pair by pair."""
-    claim = facts(results)["contact"]
+    claim = facts_of(results)["contact"]
     assert claim.scope.speeds_rpm == (operating_rpm(results.given),) * 2
     if results.teeth is None:
         second = results.second
@@ -69,7 +70,7 @@ def test_contact_is_that_of_the_second_program(results):
 
 
 def test_no_speed_is_unstable_over_the_range_that_is_named(results):
-    claim = facts(results)["unstable_speeds"]
+    claim = facts_of(results)["unstable_speeds"]
     pair = without_shafts(results.pair)
     low, high = claim.scope.speeds_rpm
     assert claim.scope.supports == "springs"
@@ -82,7 +83,7 @@ def test_no_speed_is_unstable_over_the_range_that_is_named(results):
 def test_where_no_jump_was_looked_for_the_linear_motion_keeps_contact(results):
     """At speeds of its own, between those of the report."""
     search = results.jump_search
-    claim = facts(results)["jumps"]
+    claim = facts_of(results)["jumps"]
     if search.windows:
         assert claim.claim != "contact is kept, and no jump was found"
         return
@@ -113,7 +114,7 @@ def test_all_jumps_of_the_range_are_found_in_a_quick_report(kind):
 def test_a_resonance_is_where_an_order_meets_a_natural_frequency(results):
     found = results.resonance
     pair = results.pair
-    claim = plain(facts(results)["resonance"].claim)
+    claim = plain(facts_of(results)["resonance"].claim)
     if found is None:
         assert claim == "no mesh order resonates"
         return
@@ -170,7 +171,7 @@ def test_the_force_of_a_resonance_falls_where_the_page_says():
 
 
 def test_inputs_are_counted_field_by_field(results):
-    claim = facts(results)["inputs"].claim
+    claim = facts_of(results)["inputs"].claim
     assumed, all_inputs = map(int, re.fullmatch(r"(\d+) of (\d+) inputs are assumed", claim).groups())
     read = read_values(results.given, contact_lost=results.contact_lost)
     assert all_inputs == len(read)
@@ -178,7 +179,7 @@ def test_inputs_are_counted_field_by_field(results):
 
 
 def test_the_numbers_of_the_second_program_are_those_of_the_sentence(results):
-    claim = plain(facts(results)["second_program"].claim)
+    claim = plain(facts_of(results)["second_program"].claim)
     numbers = {row.key: row for row in page_one(results).numbers}
     if claim.startswith("Not checked"):
         assert all(math.isnan(row.second) for row in numbers.values())
@@ -211,7 +212,7 @@ def test_teeth_as_given_lead():
 
 def test_a_scope_is_what_was_computed(results):
     """No claim of a quick report is said to be of a full one, of other supports, or of a wider range."""
-    known = facts(results)
+    known = facts_of(results)
     for one in known.values():
         low, high = one.scope.speeds_rpm
         assert one.scope.effort == "quick report"

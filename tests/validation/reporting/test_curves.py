@@ -10,7 +10,7 @@ import lumped
 from lumped.friction.registry import law_of
 from lumped.losses import losses_of_laws
 from lumped.model.averaged import modes
-from tests.validation.reporting import recomputed as own
+from tests.validation.reporting import recomputed
 from tests.validation.reporting.test_numbers import pair_of
 from tests.validation.reporting.written import plain
 
@@ -36,7 +36,7 @@ _NAMES = {
 def axis(label):
     """Words, base unit and factor of an axis label "words [unit]"."""
     words, unit = re.fullmatch(r"(.*) \[(.*)\]", label, flags=re.DOTALL).groups()
-    return words, *own.unit_factor(unit)
+    return words, *recomputed.unit_factor(unit)
 
 
 def column(data, name):
@@ -102,7 +102,7 @@ def test_every_curve_is_its_column(written):
 
 def test_csv_of_the_curves_over_a_cycle(written):
     cycle = written.data("prediction")
-    frequency = own.mesh_frequency(written.parameters)
+    frequency = recomputed.mesh_frequency(written.parameters)
     for name in ("transmission_error", "tooth_forces", "bearing_forces"):
         close(written.curves(name)["cycles"], cycle["time"].to_numpy() * frequency)
     close(written.curves("transmission_error")["dte [m]"], cycle["dte"])
@@ -193,7 +193,9 @@ def test_the_range_over_speed_is_about_the_curve(written):
 def test_the_orders_of_the_bearing_force(written):
     cycle = written.data("prediction")
     samples = written.data("uncertainty")
-    size = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))[:8]
+    size = np.hypot(*(recomputed.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))[
+        :8
+    ]
     data = written.curves("bearing_orders")
     ax = written.figures["bearing_orders"].axes[0]
     close(data["amplitude [N]"], size)
@@ -209,7 +211,7 @@ def test_the_orders_of_the_bearing_force(written):
     ends = np.array([segment[:, 1] * factor for segment in ax.collections[0].get_segments()])
     close(ends, data[["low [N]", "high [N]"]].to_numpy())
     frequency = re.fullmatch(r"mesh order \[-\]; 1 is (.*) Hz", ax.get_xlabel())[1]
-    assert float(frequency) == pytest.approx(own.mesh_frequency(written.parameters), rel=1e-3)
+    assert float(frequency) == pytest.approx(recomputed.mesh_frequency(written.parameters), rel=1e-3)
 
 
 def test_the_swings(written):
@@ -254,7 +256,7 @@ def test_the_bars_of_the_error_budget(written):
             assert text.get_text() == "not known"
         elif share > 0.0:
             assert bar.get_width() == pytest.approx(share)
-            own.assert_printed(plain(text.get_text()).removesuffix(" %"), share, "1", 2)
+            recomputed.assert_printed(plain(text.get_text()).removesuffix(" %"), share, "1", 2)
     poorer = ("linear model, for charts", "form of the contact", "springs in place of shafts")
     errors = [np.nan if one["error"] in poorer else one["share"] for one in table]
     assert np.flatnonzero(red).tolist() == [int(np.nanargmax(np.array(errors, dtype=float)))]
@@ -283,7 +285,7 @@ def test_the_map_of_orders(written):
     table = data.pivot(index="order", columns="speed_rpm", values="amplitude [N]")
     speed = table.columns[3]
     cycle = lumped.steady_state(pair.with_({"operating.pinion_speed": float(speed)}), samples_per_cycle=128)
-    size = np.hypot(*(own.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
+    size = np.hypot(*(recomputed.amplitudes(cycle[f"bearing_force_{line}_p"].to_numpy()) for line in "xy"))
     close(table[speed], size, 1e-6)
     operating = written.parameters["operating"]["pinion_speed"]
     close(table.columns.to_numpy(), np.linspace(0.1 * operating, 2.0 * operating, 9))

@@ -10,15 +10,16 @@ import xarray as xr
 
 from tests.validation.measurements.dynamic_records import dynamic_record
 from validation.exchange.new_pair_file import new_pair
-from validation.measurements.record_comparison import Record
+from validation.measurements.channel_comparison import Record
 from validation.prediction.motion import predicted
 from validation.prediction.uncertainty import sampled_predictions, uncertainty
 from validation.reporting.blocks import Picture, Quantity, Table, Text, chapter_data
 from validation.reporting.build import findings
 from validation.reporting.chapters import record as chapter
-from validation.reporting.facts import facts
+from validation.reporting.effort import QUICK
+from validation.reporting.facts import facts_of
 from validation.reporting.page_one import page_one
-from validation.reporting.results import QUICK, Results
+from validation.reporting.results import Results
 from validation.reporting.tables import write_tables
 from validation.reporting.verdict import Verdict, verdict_of
 
@@ -172,6 +173,6 @@ def test_a_record_that_confirms_within_a_wide_range_is_said_beside_it(right):
     vars(results)["uncertainty"] = xr.Dataset(wide | values, attrs=attrs).assign_coords(
         input=["mesh.damping_ratio"]
     )
-    found = verdict_of(results, facts(results))
-    assert found[0] is Verdict.UNCERTAIN
-    assert "A record confirms the prediction; the range is that of every possible machine." in found[2]
+    found = verdict_of(results, facts_of(results))
+    assert found.verdict is Verdict.UNCERTAIN
+    assert "A record confirms the prediction; the range is that of every possible machine." in found.reason

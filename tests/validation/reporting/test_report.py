@@ -14,10 +14,10 @@ import xarray as xr
 import lumped
 from tests.validation.reporting.written import PAIRS, SMALL, known, write_report
 from validation.reporting import build
+from validation.reporting.actions import advice_on_inputs
 from validation.reporting.blocks import plain
 from validation.reporting.chapters import contact_loss
-from validation.reporting.page_one import advice_on_inputs
-from validation.reporting.results import broken_relations
+from validation.reporting.relations import broken_relations
 from validation.reporting.verdict import Verdict
 
 
@@ -113,7 +113,7 @@ class TestRelations:
         assert any(word in text for text in broken_relations(results))
 
     def test_a_broken_relation_is_a_failed_check_and_the_verdict(self, results, tmp_path, monkeypatch):
-        monkeypatch.setattr("validation.reporting.results._SAME", -1.0)
+        monkeypatch.setattr("validation.reporting.relations._SAME", -1.0)
         made = write_report("calm", tmp_path / "r", drawn=False, results=results).result
         assert made.first.verdict is Verdict.BROKEN
         assert made.failed

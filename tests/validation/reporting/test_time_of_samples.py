@@ -11,7 +11,8 @@ import pytest
 
 from tests.validation.reporting.written import PAIRS, SMALL, Written, known, plain, write_report
 from validation.prediction import uncertainty as module
-from validation.reporting.results import FULL, QUICK, Results
+from validation.reporting.effort import FULL, QUICK
+from validation.reporting.results import Results
 
 #: Known results of the pair that the samples do not change.
 _KEPT = (
@@ -90,12 +91,12 @@ def test_a_part_of_the_samples_is_a_range_of_that_part(monkeypatch):
         patch.setattr("floquet.orbits.deadline.time.process_time", lambda: now[0])
         results.effort = replace(results.effort, samples=128)
         found = results.uncertainty
-    from validation.reporting.facts import facts
+    from validation.reporting.facts import facts_of
     from validation.reporting.page_one import page_one
 
     assert found.attrs["taken"] == found.sizes["sample"] == 2 * ends >= 32
     assert found.attrs["alone"] == found.sizes["input"]
-    claims = facts(results)
+    claims = facts_of(results)
     first = page_one(results)
     said = f"the range is from {2 * ends} of 128 possible machines; the time of {1 + 3 * ends} s was used up"
     assert claims["samples"].claim == said
@@ -109,15 +110,15 @@ def test_a_part_of_the_samples_is_a_range_of_that_part(monkeypatch):
 
 def test_all_samples_are_said_in_the_facts_alone():
     results = known("calm")
-    from validation.reporting.facts import facts
+    from validation.reporting.facts import facts_of
     from validation.reporting.page_one import page_one
 
-    assert facts(results)["samples"].claim == "the range is from 16 possible machines"
+    assert facts_of(results)["samples"].claim == "the range is from 16 possible machines"
     assert page_one(results).sure[1].endswith("inputs are assumed.")
     changed = copy.copy(results)
     vars(changed)["uncertainty"] = results.uncertainty.assign_attrs(refused=2, taken=18, asked=18, linear=3)
     words = "16 possible machines"
-    assert facts(changed)["samples"].claim == (
+    assert facts_of(changed)["samples"].claim == (
         f"the range is from {words.replace('16', '18')}, of which 2 have no motion and are left out; "
         "in 3 of 16 the linear motion stands in"
     )

@@ -12,7 +12,8 @@ import lumped
 from lumped.losses import losses_of_laws
 from lumped.schema.pair import field_values
 from tests.unlike_pairs import known_sizes
-from tests.validation.reporting import recomputed as own
+from tests.validation.reporting import recomputed
+from tests.validation.reporting.columns import recomputes
 from tests.validation.reporting.test_numbers import motions_of, nearest_hazard, of_motion, pair_of
 from tests.validation.reporting.written import SMALL, known, pair, plain
 from validation.exchange import new_pair
@@ -22,9 +23,12 @@ from validation.prediction.uncertainty import LONG_STEP, _peaks
 from validation.reporting.blocks import Badge
 from validation.reporting.build import findings
 from validation.reporting.chapters import contact_loss, inputs, second_program, stability
+from validation.reporting.effort import QUICK
 from validation.reporting.first_figures import plain_name
+from validation.reporting.hazards import Hazard
 from validation.reporting.page_one import _remark, page_one
-from validation.reporting.results import QUICK, Hazard, Results
+from validation.reporting.results import Results
+from validation.reporting.second_program_words import second_program_words
 from validation.reporting.verdict import Verdict
 
 _ADVICE = read_table("validation.reporting", "advice.toml")
@@ -63,7 +67,7 @@ def test_page_1_prints_the_numbers(written):
             assert middle == pytest.approx(np.median(samples[key].to_numpy()))
             words = "median of the possible machines"
             label, _, median = label.rpartition(words)
-            own.assert_printed(median.strip(), (100.0 if number["unit"] == "%" else 1.0) * middle,
+            recomputed.assert_printed(median.strip(), (100.0 if number["unit"] == "%" else 1.0) * middle,
                                number["unit"], 2)  # fmt: skip
             label = label.rstrip("; ")
         if key in RANGED:
@@ -79,7 +83,7 @@ def test_page_1_prints_the_numbers(written):
         if number["value"] is None:
             assert value == "none"
         elif unit != "rpm":
-            own.assert_printed(value, times * number["value"], unit, digits)
+            recomputed.assert_printed(value, times * number["value"], unit, digits)
             shown_digits = re.sub(r"\D", "", value.partition(" ")[0]).lstrip("0")
             assert unit == "%" or "." not in value or len(shown_digits) <= digits
         else:
@@ -91,11 +95,11 @@ def test_page_1_prints_the_numbers(written):
                 spread, share = re.fullmatch(r"(.+) \((.+) %\)", spread).groups()
                 assert_relative(share, low / number["value"] - 1.0, high / number["value"] - 1.0)
             for shown_end, end in zip(ends_of(spread), (low, high), strict=True):
-                own.assert_printed(shown_end, times * end, unit, 3 if unit == "%" else digits)
+                recomputed.assert_printed(shown_end, times * end, unit, 3 if unit == "%" else digits)
         if number["second"] is None:
             assert second == "not computed"
         else:
-            own.assert_printed(second, times * number["second"], unit, 4 if unit == "%" else 3)
+            recomputed.assert_printed(second, times * number["second"], unit, 4 if unit == "%" else 3)
 
 
 def ends_of(printed):
@@ -114,12 +118,12 @@ def assert_relative(text, low, high):
 
 def test_the_title(written):
     p, (speed, _) = written.parameters, speed_of(written)
-    own.assert_says(
+    recomputed.assert_says(
         plain(written.result.first.title),
         r"(\w+): spur gears (\d+)/(\d+), m ([\d.]+), b ([\d.]+) mm, (.*), ([\d.]+) N m \((.*)\)", p["name"],
         str(p["pinion"]["teeth"]), str(p["gear"]["teeth"]), f"{p['basic_rack']['module']:g}",
         f"{min(p['pinion']['face_width'], p['gear']['face_width']):g}", (speed, "rpm"),
-        f"{p['operating']['pinion_torque']:g}", (own.power(p), "W"),
+        f"{p['operating']['pinion_torque']:g}", (recomputed.power(p), "W"),
     )  # fmt: skip
 
 
@@ -167,7 +171,7 @@ def test_the_verdict(written):
         else ""
     )
     assert headline == f"Do not run here: the teeth lose contact{near}."
-    own.assert_says(
+    recomputed.assert_says(
         reason,
         r"The mesh force falls to zero and rises to (.*) times the static one\. Running (\w+), the vibration "
         r"jumps at (.*) to (.*) times \(rms\)\.",
@@ -188,16 +192,18 @@ def test_the_actions(written):
     width = np.abs(swing[:, 1] - swing[:, 0])
     gains = [plain(one["gain"]) for one in actions if one["gain"]]
     if hazard is not None:
-        own.assert_says(
+        recomputed.assert_says(
             plain(actions[0]["text"]), r"Do not pass (.*) at this torque", (hazard[0], "rpm"), digits=5
         )
         assert actions[1]["command"] == f"spurcheck response {written.document['gear_pair']} --map"
     found = []
     for gain in gains:
         low, high = ends_of(re.fullmatch(r"it moves the transmission error from (.*)", gain)[1])
-        rounding = [0.051 * 10.0 ** np.floor(np.log10(v)) for v in (own.read(low)[0], own.read(high)[0])]
-        fits = (np.abs(swing.min(axis=1) - own.read(low)[0]) <= rounding[0]) & (
-            np.abs(swing.max(axis=1) - own.read(high)[0]) <= rounding[1]
+        rounding = [
+            0.051 * 10.0 ** np.floor(np.log10(v)) for v in (recomputed.read(low)[0], recomputed.read(high)[0])
+        ]
+        fits = (np.abs(swing.min(axis=1) - recomputed.read(low)[0]) <= rounding[0]) & (
+            np.abs(swing.max(axis=1) - recomputed.read(high)[0]) <= rounding[1]
         )
         assert fits.any(), gain
         fields = [str(field) for field in samples["input"].to_numpy()[fits]]
@@ -243,9 +249,9 @@ def test_how_sure(written):
         rf"Yes: a second program agrees\. Its {RANGED[most]} differs most: (.*) beside (.*), by (.*) %\."
     )
     there, here, share = re.fullmatch(pattern, said).groups()
-    own.assert_printed(there, second[most], unit, 3)
-    own.assert_printed(here, first[most], unit, 3)
-    own.assert_printed(share, 100.0 * apart[most], "1", 2)
+    recomputed.assert_printed(there, second[most], unit, 3)
+    recomputed.assert_printed(here, first[most], unit, 3)
+    recomputed.assert_printed(share, 100.0 * apart[most], "1", 2)
 
 
 def test_where_the_second_program_differs(written):
@@ -263,8 +269,8 @@ def test_where_the_second_program_differs(written):
         one["quantity"]: one["difference"] for one in written.table("agreement") if "exact" in one["fidelity"]
     }
     name = "pinion displacement off the line of action"
-    own.assert_says(
-        plain(results.second_words),
+    recomputed.assert_says(
+        plain(second_program_words(results)),
         r"Yes, but the second program, with exact contact, differs: (.*), (.*) beside (.*), by (.*) %\. "
         r"Its .*",
         name,
@@ -281,7 +287,7 @@ def test_the_remark(written):
         return
     size = np.ptp(written.data("linear")["dte"].to_numpy())
     words = r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\."
-    own.assert_says(remark, words, (size, "m"), digits=2)
+    recomputed.assert_says(remark, words, (size, "m"), digits=2)
 
 
 class AboveAJump(Results):
@@ -299,12 +305,12 @@ def test_page_1_prints_what_differs_from_the_prediction(written):
     results.__class__, size = AboveAJump, results.prediction.peak_to_peak
     vars(results)["second"] = replace(results.second, peak_to_peak=1.7 * size)
     first = page_one(results)
-    own.assert_says(plain(first.numbers[0].second_shown), r"(.*)", (1.7 * size, "m"), digits=2)
+    recomputed.assert_says(plain(first.numbers[0].second_shown), r"(.*)", (1.7 * size, "m"), digits=2)
     if results.contact_lost:
         assert plain(first.headline) == "Do not run here: the teeth lose contact, 3 % above a jump."
         vars(results)["linear"] = results.linear.assign_attrs(dte_peak_to_peak=2.3 * size)
         words = r"The linear model would give (.*)\. It lets teeth pull, so it is not used here\."
-        own.assert_says(plain(_remark(results)), words, (2.3 * size, "m"), digits=2)
+        recomputed.assert_says(plain(_remark(results)), words, (2.3 * size, "m"), digits=2)
 
 
 def test_a_form_of_the_model_outside_the_range_is_named():
@@ -318,13 +324,14 @@ def test_a_form_of_the_model_outside_the_range_is_named():
     budget["result"][at["second"]] = 1.04 * high
     budget["result"][at["stiffness"]] = 0.5 * (low + high)
     vars(results)["budget"] = budget
-    own.assert_says(
+    recomputed.assert_says(
         plain(_remark(results)),
         r"Outside this range of the transmission error: contact prescribed from A to D, (.*); "
         r"second program, (.*)\.", (0.97 * low, "m"), (1.04 * high, "m"),
     )  # fmt: skip
 
 
+@recomputes("claims", claim="claim", scope="scope", computed_by="by")
 def test_the_claims(written):
     """Each fact of report.json, and its row in the table of claims, against the saved data."""
     found = written.document["facts"]
@@ -332,9 +339,13 @@ def test_the_claims(written):
     assert [plain(one["claim"]).lower() for one in table] == [
         f"{plain(one['claim'])}.".lower() for one in found.values()
     ]
-    assert [one["by"] if "by" in one else one["computed_by"] for one in table] == [
-        one["computed_by"] for one in found.values()
-    ]
+    assert [one["computed_by"] for one in table] == [one["computed_by"] for one in found.values()]
+    for one, fact in zip(table, found.values(), strict=True):
+        scope = fact["scope"]
+        words = (scope["motion"], scope["supports"], f"teeth {scope['teeth']}", f"inputs {scope['inputs']}")
+        speeds = [plain(f"{end:.5g}") for end in scope["speeds_rpm"]]
+        start = f"at {speeds[0]} rpm" if speeds[0] == speeds[1] else f"from {speeds[0]} to {speeds[1]} rpm"
+        assert plain(one["scope"]) == "; ".join([start, *words, scope["effort"]])
     (speed, _), lost = speed_of(written), of_motion(written, "prediction")["least_force"] == 0.0
     assert found["contact"]["claim"] == ("the teeth lose contact" if lost else "contact is kept")
     here = [speed, speed]
@@ -361,7 +372,7 @@ def test_the_claims(written):
     frequencies = [one["frequency"]["value"] for one in written.table("modes")]
     frequency = min(frequencies, key=lambda one: abs(one - float(hertz)))
     assert abs(frequency - float(hertz)) < 0.51
-    apart = int(order) * own.mesh_frequency(written.parameters) / frequency - 1.0
+    apart = int(order) * recomputed.mesh_frequency(written.parameters) / frequency - 1.0
     assert 100.0 * abs(apart) == pytest.approx(float(share), rel=0.06)
     assert side == ("above" if apart > 0.0 else "below")
     assert found["resonance"]["value"] == pytest.approx(speed / (1.0 + apart) - speed)
@@ -388,7 +399,9 @@ def test_forms_outside_the_range_are_named_and_no_others(written):
             outside = not first["low"] <= size <= first["high"]
             assert (f"{form}, " in remark) == outside
             if outside:
-                own.assert_printed(remark.partition(f"{form}, ")[2].partition(" µm")[0] + " µm", size, "m", 3)
+                recomputed.assert_printed(
+                    remark.partition(f"{form}, ")[2].partition(" µm")[0] + " µm", size, "m", 3
+                )
 
 
 def test_findings(written):
@@ -399,8 +412,8 @@ def test_findings(written):
 
 def test_the_sentences_of_response_forces_and_contact_loss(written):
     said, first, (speed, _) = written.sentences, of_motion(written, "prediction"), speed_of(written)
-    size = own.amplitudes(written.data("prediction")["dte"].to_numpy())
-    own.assert_says(
+    size = recomputed.amplitudes(written.data("prediction")["dte"].to_numpy())
+    recomputed.assert_says(
         plain(said["response"]),
         r"The prediction is (.*); its transmission error is (.*) peak to peak, most of it at mesh order "
         r"(\d+)\.",
@@ -408,12 +421,12 @@ def test_the_sentences_of_response_forces_and_contact_loss(written):
         (written.document["numbers"]["dte_peak_to_peak"]["value"], "m"),
         str(int(np.argmax(size)) + 1),
     )
-    own.assert_says(
+    recomputed.assert_says(
         plain(said["forces"]),
         r"The largest mesh force is (.*) times the static (.*); one tooth pair carries at most (.*) times "
         r"the static force\.",
         (first["dynamic_factor"], "1"),
-        (own.static_force(written.parameters), "N"),
+        (recomputed.static_force(written.parameters), "N"),
         (first["tooth_load"], "1"),
     )
     if nearest_hazard(written) is None:
@@ -426,14 +439,14 @@ def test_the_sentences_of_response_forces_and_contact_loss(written):
         )
         jumps = sum(written.data(name).sizes["jump"] for name in motions_of(written))
         count = ["one jump was" if jumps == 1 else f"{jumps} jumps were"]
-    own.assert_says(
+    recomputed.assert_says(
         plain(said["contact_loss"]), pattern, (0.1 * speed, "1"), (2.0 * speed, "1"), *count, digits=5
     )
 
 
 def test_the_sentences_of_stability_losses_and_inputs(written):
     said, (speed, _) = written.sentences, speed_of(written)
-    own.assert_says(
+    recomputed.assert_says(
         plain(said["stability"]).partition("; ")[2].partition(" unstable")[0],
         r"at the given damping no speed from (.*) to (.*) rpm is",
         (0.1 * speed, "1"),
@@ -443,8 +456,8 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     assert written.data("linear").attrs["spectral_radius"] < 1.0
     assert "the linear motion is stable" in said["stability"]
     loss = 100.0 * (1.0 - losses_of_laws(pair_of(written))["mesh_efficiency"].to_numpy())
-    supply = own.power(written.parameters)
-    own.assert_says(
+    supply = recomputed.power(written.parameters)
+    recomputed.assert_says(
         plain(said["losses"]), r"The pair loses (.*) of (.*); sliding alone takes (.*) to (.*) % by the "
         r"different friction laws\.",
         ((1.0 - written.document["numbers"]["efficiency"]["value"]) * supply, "W"), (supply, "W"),
@@ -456,7 +469,7 @@ def test_the_sentences_of_stability_losses_and_inputs(written):
     own_errors = [
         one for one in budget if one["error"] not in ("linear model, for charts", "form of the contact")
     ]
-    own.assert_says(
+    recomputed.assert_says(
         plain(said["how_sure"]),
         r"With its uncertain inputs the transmission error lies from (\S+) to (\S+) µm \(5 to 95 %\)\. "
         r"The largest error of the prediction is “(.*)”\.",
@@ -503,7 +516,7 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts():
     vars(results)["like"] = like
     for factor, words in ((1.1, "by 10 %"), (0.8, "by 20 %")):
         vars(results)["second"] = replace(like, peak_to_peak=factor * like.peak_to_peak)
-        said = plain(results.second_words)
+        said = plain(second_program_words(results))
         assert said.startswith("Yes: a second program agrees, on the springs of [bearings]. Its transmission")
         assert said.endswith(f"{words} on the shafts.")
 
@@ -511,7 +524,10 @@ def test_on_shafts_the_second_program_is_judged_on_the_shafts():
 def test_a_pair_too_slow_for_the_second_program_has_a_report():
     """A mesh cycle of 607 swings of the fastest mode is refused there: nothing but that motion is missing."""
     results = Results(new_pair("16/32", 1.5, 12.8, 114, 12.2), SMALL)
-    assert results.second_words == "Not checked: the second program does not run here; its chapter says why."
+    assert (
+        second_program_words(results)
+        == "Not checked: the second program does not run here; its chapter says why."
+    )
     (why,) = second_program.write(results).blocks
     assert why.text.startswith("operating.pinion_speed = 114 rpm: allowed at least")
     assert (str(results.second), results.same_equations) == (str(results.check), None)

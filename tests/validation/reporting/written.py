@@ -19,7 +19,8 @@ import lumped
 from validation.exchange.new_pair_file import new_pair_text
 from validation.plots.style import save
 from validation.reporting import build
-from validation.reporting.results import Effort, Results
+from validation.reporting.effort import Effort
+from validation.reporting.results import Results
 
 #: Few samples and speeds: what is tested is what is done with them.
 SMALL = Effort(16, 4, 9, 32, 101, 21, 9, 30.0, 0, "small report")
@@ -89,6 +90,10 @@ class Written:
     def table(self, name: str) -> list[dict]:
         """A table of report.json."""
         return next(c[name] for c in self.document["chapters"].values() if name in c.get("tables", {}))
+
+    def headings(self, name: str) -> dict[str, str]:
+        """Column of a table -> heading on the page."""
+        return dict(zip(self.table(name)[0], self.printed[name].headings, strict=True))
 
     def curves(self, name: str, number: int = 1) -> pd.DataFrame:
         """What a figure draws, from its CSV; ``number`` of its datasets."""

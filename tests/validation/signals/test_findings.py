@@ -19,8 +19,9 @@ from tests.validation.commands.conftest import refused, run
 from validation.prediction.motion import Motion
 from validation.reporting.build import findings
 from validation.reporting.chapters import teeth as chapter
+from validation.reporting.effort import QUICK
 from validation.reporting.page_one import Verdict, page_one
-from validation.reporting.results import QUICK, Results
+from validation.reporting.results import Results
 from validation.signals import indicators
 from validation.signals.findings import TeethFindings, deviations_table
 

@@ -1,6 +1,6 @@
-"""The chapters of the report, one module each, in their order: nine, one where teeth differ, one of a record.
+"""The chapters of the report, one module each, in their order. A module defines ``CHAPTER``.
 
-A module writes ``CHAPTER``.
+The chapter on unlike teeth and the chapter on a record are left out where they do not apply.
 """
 
 from validation.reporting.chapter import Chapter

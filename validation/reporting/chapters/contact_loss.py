@@ -1,4 +1,4 @@
-"""Where contact is lost, the motions there, and the speeds at which the pair jumps from one to another."""
+"""Contact loss: the motions beyond contact loss, and the speeds at which the pair jumps between motions."""
 
 from __future__ import annotations
 
@@ -8,35 +8,35 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from floquet.gear.motions import Basin
+from floquet.gear.motions import Basin, GearOrbit
+from floquet.gear.response import Jump
 from lumped.labelling import labelled_dataset
 from validation.files.formatting import number
 from validation.plots.prediction import over_speed_figure
 from validation.plots.style import WIDTH
-from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
+from validation.reporting.blocks import Block, Column, Content, Picture, Table, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.facts import facts
+from validation.reporting.facts import facts_of
 from validation.reporting.results import Results
 
 
 def write(results: Results) -> Content:
     """Write the chapter."""
     search = results.jump_search
-    left = facts(results).get("jumps_left_open")
-    unsearched = () if left is None else (Text(f"{left.claim[0].upper()}{left.claim[1:]}."),)
+    left_open = facts_of(results).get("jumps_left_open")
+    unsearched = () if left_open is None else (Text(f"{left_open.claim[0].upper()}{left_open.claim[1:]}."),)
     if not search.branches:
         words = f"Contact is never lost {_over(results)}{results.on_springs}."
         if search.windows:
             words = f"Contact can be lost {_over(results)}{results.on_springs}."
         shared = _load_sharing(results)
         return Content(words, (*((Text(shared),) if shared else ()), *unsearched))
-    jumps = search.jumps
     lost = "Contact is lost" if results.contact_lost else "Contact is kept"
     windows = " and ".join(f"{number(low, 5)} to {number(high, 5)}" for low, high in search.windows)
-    found = f"{_count(len(jumps), 'jump')} found{results.on_springs}"
+    jumps = f"{_count(len(search.jumps), 'jump')} found{results.on_springs}"
     result = (
         f"{lost} at the operating point. {_over(results).capitalize()} contact can be lost at {windows} rpm; "
-        f"there {found}."
+        f"there {jumps}."
     )
     blocks: list[Block] = [
         Picture(
@@ -45,62 +45,16 @@ def write(results: Results) -> Content:
             motions(results),
             partial(over_speed_figure, operating_rpm=results.operating_rpm, size=(3.4, WIDTH)),
         ),
-        table_of(
-            "jumps",
-            "Jumps: where a motion ends as the speed rises or falls.",
-            jumps,
-            {
-                "speed": ("speed", lambda j: Quantity(j.speed_rpm, "rpm")),
-                "way": ("running", lambda j: "up" if j.rising else "down"),
-                "before": ("transmission error before, rms", lambda j: Quantity(j.dte_rms, "m")),
-                "after": ("after, rms", lambda j: Quantity(j.dte_rms_after, "m")),
-                "load": ("largest tooth load after", lambda j: Quantity(j.largest_load_after, "N")),
-                "motion": ("motion after", lambda j: str(j.after)),
-            },
-        ),
+        _jumps_table(search.jumps),
     ]
-    here = search.at(results.operating_rpm)
-    if len(here) > 1:
-        blocks.append(
-            table_of(
-                "motions_here",
-                "All motions that were found at the operating speed.",
-                here,
-                {
-                    "cycles": ("mesh cycles", lambda o: o.n),
-                    "stable": ("stable", lambda o: o.stable),
-                    "size": (
-                        "transmission error, peak to peak",
-                        lambda o: Quantity(o.peak_to_peak, "m"),
-                    ),
-                    "load": ("largest tooth load", lambda o: Quantity(o.largest_load, "N")),
-                },
-            )
-        )
-    shares = _basins(results)
-    if len(shares) > 1:
-        total = sum(one.starts for one in shares)
-        blocks.append(
-            table_of(
-                "basins",
-                f"To which motion {total} random start states lead at the operating speed.",
-                shares,
-                {
-                    "motion": ("motion", lambda one: str(one.kind)),
-                    "cycles": ("mesh cycles", lambda one: one.n),
-                    "size": (
-                        "transmission error, peak to peak",
-                        lambda one: Quantity(one.dte_peak_to_peak, "m"),
-                    ),
-                    "load": ("largest tooth load", lambda one: Quantity(one.largest_load, "N")),
-                    "share": ("share of the start states", lambda one: Quantity(one.share, "1")),
-                    "low": ("at least (95 %)", lambda one: Quantity(one.share_interval[0], "1")),
-                    "high": ("at most (95 %)", lambda one: Quantity(one.share_interval[1], "1")),
-                },
-            )
-        )
-    for one in search.attractors:
-        blocks.append(Text(f"{one.text}."))
+    motions_at_speed = search.at(results.operating_rpm)
+    if len(motions_at_speed) > 1:
+        blocks.append(_motions_table(motions_at_speed))
+    basins = _basins(results)
+    if len(basins) > 1:
+        blocks.append(_basins_table(basins))
+    for attractor in search.attractors:
+        blocks.append(Text(f"{attractor.text}."))
     for low_rpm, high_rpm in sorted(gap for branches in search.branches for gap in branches.gaps):
         blocks.append(
             Text(f"No motion that repeats is stable from {number(low_rpm, 5)} to {number(high_rpm, 5)} rpm.")
@@ -108,18 +62,72 @@ def write(results: Results) -> Content:
     return Content(result, (*blocks, *unsearched))
 
 
+def _jumps_table(jumps: Sequence[Jump]) -> Table:
+    return table_of(
+        "jumps",
+        "Jumps: where a motion ends as the speed rises or falls.",
+        jumps,
+        (
+            Column[Jump]("speed", "speed", lambda jump: jump.speed_rpm, "rpm"),
+            Column[Jump]("way", "running", lambda jump: "up" if jump.rising else "down"),
+            Column[Jump]("before", "transmission error before, rms", lambda jump: jump.dte_rms, "m"),
+            Column[Jump]("after", "after, rms", lambda jump: jump.dte_rms_after, "m"),
+            Column[Jump]("load", "largest tooth load after", lambda jump: jump.largest_load_after, "N"),
+            Column[Jump]("motion", "motion after", lambda jump: str(jump.after)),
+        ),
+    )
+
+
+def _motions_table(motions_at_speed: Sequence[GearOrbit]) -> Table:
+    return table_of(
+        "motions_here",
+        "All motions that were found at the operating speed.",
+        motions_at_speed,
+        (
+            Column[GearOrbit]("cycles", "mesh cycles", lambda orbit: orbit.n),
+            Column[GearOrbit]("stable", "stable", lambda orbit: orbit.stable),
+            Column[GearOrbit](
+                "size", "transmission error, peak to peak", lambda orbit: orbit.peak_to_peak, "m"
+            ),
+            Column[GearOrbit]("load", "largest tooth load", lambda orbit: orbit.largest_load, "N"),
+        ),
+    )
+
+
+def _basins_table(basins: Sequence[Basin]) -> Table:
+    total = sum(basin.starts for basin in basins)
+    return table_of(
+        "basins",
+        f"To which motion {total} random start states lead at the operating speed.",
+        basins,
+        (
+            Column[Basin]("motion", "motion", lambda basin: str(basin.kind)),
+            Column[Basin]("cycles", "mesh cycles", lambda basin: basin.n),
+            Column[Basin](
+                "size", "transmission error, peak to peak", lambda basin: basin.dte_peak_to_peak, "m"
+            ),
+            Column[Basin]("load", "largest tooth load", lambda basin: basin.largest_load, "N"),
+            Column[Basin]("share", "share of the start states", lambda basin: basin.share, "1"),
+            Column[Basin]("low", "at least (95 %)", lambda basin: basin.share_interval[0], "1"),
+            Column[Basin]("high", "at most (95 %)", lambda basin: basin.share_interval[1], "1"),
+        ),
+    )
+
+
 def _over(results: Results) -> str:
-    """The speeds of the search in words."""
+    """The range of speeds of the search in words."""
     low, high = results.speeds
     return f"from {number(low, 5)} to {number(high, 5)} rpm"
 
 
 def _basins(results: Results) -> Sequence[Basin]:
-    """To which motions start states lead at the operating speed, where its window was searched."""
-    own = results.operating_rpm
+    """Motions to which random start states lead at the operating speed; empty: no search there."""
+    speed = results.operating_rpm
     for branches in results.jump_search.branches:
         low, high = branches.speeds_rpm
-        if low <= own <= high and (any(o.stable for o in branches.at(own)) or branches.attractors):
+        if not low <= speed <= high:
+            continue
+        if any(orbit.stable for orbit in branches.at(speed)) or branches.attractors:
             return branches.basins()
     return ()
 
@@ -129,7 +137,7 @@ def _count(count: int, word: str) -> str:
 
 
 def _load_sharing(results: Results) -> str:
-    """A note where a pair carries nothing for a time while others do: what relief is for."""
+    """Sentence on a tooth pair that carries no load while other pairs carry; empty: no pair does."""
     cycle = results.prediction.cycle
     idle = (cycle["contact"].to_numpy() > 0) & (cycle["normal_load"].to_numpy() <= 0.0)
     if not idle.any():
@@ -138,20 +146,20 @@ def _load_sharing(results: Results) -> str:
 
 
 def motions(results: Results) -> xr.Dataset:
-    """What ``over_speed_figure`` draws: linear motion, range, motions with unilateral contact, jumps."""
+    """Return the dataset of ``over_speed_figure``: linear motion, range, unilateral motions and jumps."""
     data = linear_over_speed(results)
     search = results.jump_search
-    saved = [branches.dataset for branches in search.branches]
+    datasets = [branches.dataset for branches in search.branches]
     speed, size, stable = (
-        np.concatenate([one[name].to_numpy().astype(float) for one in saved])
+        np.concatenate([dataset[name].to_numpy().astype(float) for dataset in datasets])
         for name in ("speed_rpm", "dte_peak_to_peak", "stable")
     )
-    jumps = [j for j in search.jumps if np.isfinite(j.dte_rms_after)]
-    at = np.array([j.speed_rpm for j in jumps])
+    jumps = [jump for jump in search.jumps if np.isfinite(jump.dte_rms_after)]
+    jump_speed = np.array([jump.speed_rpm for jump in jumps])
     before, after = (
-        np.array([getattr(j, f"dte_peak_to_peak{when}") for j in jumps]) for when in ("", "_after")
+        np.array([getattr(jump, f"dte_peak_to_peak{when}") for jump in jumps]) for when in ("", "_after")
     )
-    roaming = [point for one in search.attractors for point in one.points]
+    roaming = [point for attractor in search.attractors for point in attractor.points]
     text = "transmission error, peak to peak"
     more = labelled_dataset(
         {
@@ -169,14 +177,14 @@ def motions(results: Results) -> xr.Dataset:
         {
             "roaming_speed_rpm": (np.array([point.speed_rpm for point in roaming]), "rpm", "pinion speed"),
             "motion_speed_rpm": (speed, "rpm", "pinion speed"),
-            "jump_speed_rpm": (at, "rpm", "pinion speed"),
+            "jump_speed_rpm": (jump_speed, "rpm", "pinion speed"),
         },
     )
     return data.merge(more)
 
 
 def linear_over_speed(results: Results) -> xr.Dataset:
-    """Linear peak to peak over speed, and its range where the inputs were varied."""
+    """Return the linear peak to peak over speed, with the range where the inputs were varied."""
     sweep = results.sweep
     band = results.band
     speeds = sweep["speed"].to_numpy()

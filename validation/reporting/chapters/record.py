@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
-from validation.measurements.record_comparison import ChannelComparison, Record, RecordComparison
+from validation.measurements.channel_comparison import ChannelComparison, OrdersOfChannel, Record
+from validation.measurements.record_comparison import RecordComparison
 from validation.plots.record import record_figure
 from validation.plots.style import scaled
-from validation.reporting.blocks import Badge, Block, Cell, Content, Picture, Table, Text
+from validation.reporting.blocks import Badge, Block, Column, Content, Picture, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -22,127 +24,164 @@ _MOST = 6
 
 
 def write(results: Results) -> Content | None:
-    """Write the chapter; None without a record."""
-    found = results.measured_error
-    if found is None:
+    """Write the chapter. None: there is no record."""
+    comparison = results.measured_error
+    if comparison is None:
         return None
     blocks: list[Block] = []
-    for unit in dict.fromkeys(one.unit for one in found.channels):
-        alike = [one for one in found.channels if one.unit == unit]
-        blocks += [_channels(alike, unit), _orders(alike, unit)]
+    for unit in dict.fromkeys(channel.unit for channel in comparison.channels):
+        channels = [channel for channel in comparison.channels if channel.unit == unit]
+        blocks += [_channels_table(channels, unit), _orders_table(channels, unit)]
     picture = "Both motions about their means, and their mesh orders; bars: 2 standard uncertainties."
-    blocks.append(Picture("record", picture, found.figure_data, record_figure))
-    blocks += [_uncertainties(found), Text(_scope(found))]
-    return Content(f"{found.verdict.text} {found.words}", tuple(blocks))
+    blocks.append(Picture("record", picture, comparison.figure_data, record_figure))
+    blocks += [_uncertainties_table(comparison), Text(_scope(comparison))]
+    return Content(f"{comparison.verdict.text} {comparison.words}", tuple(blocks))
 
 
-def _scope(found: RecordComparison) -> str:
+def _scope(comparison: RecordComparison) -> str:
+    """Sentences on what the comparison covers."""
     mean = (
         "The prediction is periodic over one mesh cycle."
-        if found.mesh_cycles == 1
-        else f"The prediction repeats after {found.mesh_cycles} mesh cycles; their mean is compared."
+        if comparison.mesh_cycles == 1
+        else f"The prediction repeats after {comparison.mesh_cycles} mesh cycles; their mean is compared."
     )
     return (
         f"{mean} Orders are those of the mesh: what differs from tooth to tooth is averaged out. "
         "Means are not compared: sensors of motion have no zero. All channels have the same shift in time, "
-        f"{found.shift:.4f} mesh cycles."
+        f"{comparison.shift:.4f} mesh cycles."
     )
 
 
-def _channels(alike: Sequence[ChannelComparison], unit: str) -> Table:
-    peaks = [one.peak_to_peak for one in alike]
-    factor, shown = scaled([[p.measured, p.predicted] for p in peaks], unit=unit)
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+def _channels_table(channels: Sequence[ChannelComparison], unit: str) -> Table:
+    """Channels with one SI unit. The headings name the unit, with one prefix for all rows."""
+    peaks = [channel.peak_to_peak for channel in channels]
+    factor, prefixed = scaled([[peak.measured, peak.predicted] for peak in peaks], unit=unit)
+    percent = "predicted less measured [% of the measured]"
+    explained = "share of the measured motion that the prediction explains [%]"
+    return table_of(
+        f"record_{_key(unit)}",
+        "The prediction beside the record.",
+        channels,
         (
-            one.name,
-            one.words,
-            _rounded(p.measured / factor),
-            _rounded(p.predicted / factor),
-            _rounded(p.percent),
-            _rounded(100.0 * one.explained, 4),
-            _BADGES[one.verdict],
-        )
-        for one, p in zip(alike, peaks, strict=True)
+            Column[ChannelComparison]("channel", "channel", lambda channel: channel.name),
+            Column[ChannelComparison]("quantity", "quantity", lambda channel: channel.words),
+            Column[ChannelComparison](
+                "measured",
+                f"measured, peak to peak [{prefixed}]",
+                lambda channel: _rounded(channel.peak_to_peak.measured / factor),
+            ),
+            Column[ChannelComparison](
+                "predicted",
+                f"predicted [{prefixed}]",
+                lambda channel: _rounded(channel.peak_to_peak.predicted / factor),
+            ),
+            Column[ChannelComparison](
+                "percent", percent, lambda channel: _rounded(channel.peak_to_peak.percent)
+            ),
+            Column[ChannelComparison](
+                "explained", explained, lambda channel: _rounded(100.0 * channel.explained, 4)
+            ),
+            Column[ChannelComparison]("verdict", "the record", lambda channel: _BADGES[channel.verdict]),
+        ),
     )
-    columns = {
-        "channel": "channel",
-        "quantity": "quantity",
-        "measured": f"measured, peak to peak [{shown}]",
-        "predicted": f"predicted [{shown}]",
-        "percent": "predicted less measured [% of the measured]",
-        "explained": "share of the measured motion that the prediction explains [%]",
-        "verdict": "the record",
-    }
-    return Table(f"record_{_key(unit)}", "The prediction beside the record.", columns, rows)
 
 
-def _orders(alike: Sequence[ChannelComparison], unit: str) -> Table:
-    factor, shown = scaled([one.measured.amplitudes.max() for one in alike], unit=unit)
-    rows: list[tuple[Cell, ...]] = []
-    for one in alike:
-        table = one.table()
-        size = sorted(
-            range(one.measured.orders.size), key=lambda j: -max(table["measured"][j], table["predicted"][j])
+class _Order(NamedTuple):
+    """A row of the table of orders: place ``j`` of a mesh order in the table of a channel."""
+
+    channel: str
+    orders: OrdersOfChannel
+    j: int
+
+
+def _largest_orders(channel: ChannelComparison) -> list[_Order]:
+    """The largest orders of a channel, measured or predicted, by order."""
+    orders = channel.table()
+    largest_first = sorted(
+        range(orders.order.size), key=lambda j: -max(orders.measured[j], orders.predicted[j])
+    )
+    return [_Order(channel.name, orders, j) for j in sorted(largest_first[:_MOST])]
+
+
+def _orders_table(channels: Sequence[ChannelComparison], unit: str) -> Table:
+    """Orders of the channels with one SI unit. The headings name the unit, with one prefix for all rows."""
+    factor, prefixed = scaled([channel.measured.amplitudes.max() for channel in channels], unit=unit)
+
+    def amplitude(name: str, words: str) -> Column[_Order]:
+        return Column(
+            name,
+            f"{words} [{prefixed}]",
+            lambda row: _rounded(float(getattr(row.orders, name)[row.j]) / factor),
         )
-        for j in sorted(size[:_MOST]):
-            rows.append(
-                (
-                    one.name,
-                    float(one.measured.orders[j]),
-                    *(_rounded(float(table[name][j]) / factor) for name in _AMPLITUDES),
-                    _rounded(math.degrees(float(table["phase_difference"][j]))),
-                    _rounded(math.degrees(float(table["phase_deviation"][j])), 2),
-                    "contradicts" if table["contradicts"][j] else "",
-                )
-            )
-    columns = {"channel": "channel", "order": "mesh order"}
-    columns |= {name: f"{words} [{shown}]" for name, words in _AMPLITUDES.items()}
-    columns |= {
-        "phase": "phase, predicted less measured [degrees]",
-        "phase_deviation": "its u [degrees]",
-        "note": "",
-    }
-    words = f"The {_MOST} largest mesh orders of each channel; u: standard uncertainty."
-    return Table(f"record_orders_{_key(unit)}", words, columns, tuple(rows))
+
+    def degrees(name: str, heading: str, variable: str, digits: int) -> Column[_Order]:
+        return Column(
+            name,
+            heading,
+            lambda row: _rounded(math.degrees(float(getattr(row.orders, variable)[row.j])), digits),
+        )
+
+    return table_of(
+        f"record_orders_{_key(unit)}",
+        f"The {_MOST} largest mesh orders of each channel; u: standard uncertainty.",
+        [row for channel in channels for row in _largest_orders(channel)],
+        (
+            Column[_Order]("channel", "channel", lambda row: row.channel),
+            Column[_Order]("order", "mesh order", lambda row: float(row.orders.order[row.j])),
+            amplitude("measured", "measured amplitude"),
+            amplitude("measured_deviation", "its u"),
+            amplitude("predicted", "predicted amplitude"),
+            amplitude("predicted_deviation", "its u"),
+            degrees("phase", "phase, predicted less measured [degrees]", "phase_difference", 3),
+            degrees("phase_deviation", "its u [degrees]", "phase_deviation", 2),
+            Column[_Order]("note", "", lambda row: "contradicts" if row.orders.contradicts[row.j] else ""),
+        ),
+    )
 
 
-_AMPLITUDES = {
-    "measured": "measured amplitude",
-    "measured_deviation": "its u",
-    "predicted": "predicted amplitude",
-    "predicted_deviation": "its u",
-}
+def _uncertainties_table(comparison: RecordComparison) -> Table:
+    """Error and standard uncertainties of each peak to peak, in per cent of the measured value."""
 
+    def percent(name: str, heading: str, uncertainty: str) -> Column[ChannelComparison]:
+        return Column(
+            name,
+            heading,
+            lambda channel: _rounded(
+                100.0 * getattr(channel.peak_to_peak, uncertainty) / channel.peak_to_peak.measured
+            ),
+        )
 
-def _uncertainties(found: RecordComparison) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for one in found.channels:
-        p = one.peak_to_peak
-        parts = (p.record, p.inputs, p.numerical, p.u_val)
-        rows.append((one.name, _rounded(p.percent), *(_rounded(100.0 * u / p.measured) for u in parts)))
-    columns = {
-        "channel": "channel",
-        "error": "error E = S − D [%]",
-        "record": "u of the record's noise [%]",
-        "inputs": "u of the inputs [%]",
-        "numerics": "u of the numerics [%]",
-        "u_val": "all three, u_val [%]",
-    }
-    inputs = "" if found.varied else " The inputs were not varied: a stated 12.5 % stands for them."
+    inputs = "" if comparison.varied else " The inputs were not varied: a stated 12.5 % stands for them."
     words = (
         "Peak to peak in percent of the measured value D; S is the predicted one. The error of the model "
         f"lies within E ± 2 u_val (ASME V&V 20).{inputs}"
     )
-    return Table("record_uncertainty", words, columns, tuple(rows))
+    return table_of(
+        "record_uncertainty",
+        words,
+        comparison.channels,
+        (
+            Column[ChannelComparison]("channel", "channel", lambda channel: channel.name),
+            Column[ChannelComparison](
+                "error", "error E = S − D [%]", lambda channel: _rounded(channel.peak_to_peak.percent)
+            ),
+            percent("record", "u of the record's noise [%]", "record"),
+            percent("inputs", "u of the inputs [%]", "inputs"),
+            percent("numerics", "u of the numerics [%]", "numerical"),
+            percent("u_val", "all three, u_val [%]", "u_val"),
+        ),
+    )
 
 
 def _rounded(value: float, digits: int = 3) -> float | None:
+    """Value rounded to some digits; None for a value that is not finite."""
     if not math.isfinite(value):
         return None
     return float(f"{value:.{digits}g}")
 
 
 def _key(unit: str) -> str:
+    """Word of the key of a table for channels with this SI unit."""
     return {"m": "motions", "N": "forces"}[unit]
 
 

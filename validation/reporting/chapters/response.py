@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from lumped.labelling import labelled_dataset
+from lumped.model.averaged import Mode
 from lumped.model.dynamic_factor import iso_dynamic_factor
 from validation.files.formatting import quantity
 from validation.plots.axes import cycle_figure
 from validation.plots.maps import orders_map_figure
-from validation.reporting.blocks import Block, Content, Picture, Quantity, Table, Text, quantities
+from validation.reporting.blocks import (
+    Block,
+    Column,
+    Content,
+    NamedNumber,
+    Picture,
+    Table,
+    Text,
+    named_numbers,
+    table_of,
+)
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -27,58 +39,15 @@ def write(results: Results) -> Content:
         {"dte": ("cycles", cycle["dte"].to_numpy(), "m", "dynamic transmission error")},
         {"cycles": (cycle["time"].to_numpy() / period, "mesh cycles", "time")},
     )
-    classes = [
-        gear.deviations.tolerance_class
-        for gear in (results.given.pinion, results.given.gear)
-        if gear.deviations is not None and gear.deviations.tolerance_class is not None
-    ]
-    iso = iso_dynamic_factor(pair, max(classes)) if classes else iso_dynamic_factor(pair)
-    of_class = f"tolerances of class {iso.tolerance_class}{'' if classes else ' assumed'}"
-    # K_v has the stiffness of the standard, which no factor on the model's stiffness changes.
-    if pair.mesh.stiffness_factor != 1.0:
-        of_class += ", without mesh.stiffness_factor"
-    numbers = quantities(
-        "motion",
-        "The motion at the operating point.",
-        ("transmission error, peak to peak", prediction.peak_to_peak, "m"),
-        ("transmission error, mean", float(cycle["dte"].mean()), "m"),
-        ("dynamic factor", prediction.dynamic_factor, "1", "largest mesh force over the static one"),
-        (
-            "K_v of ISO 6336-1, method B",
-            iso.factor,
-            "1",
-            f"{iso.zone}, N = {iso.resonance_ratio:.2f}, {of_class}",
-        ),
-        ("mesh frequency", pair.geometry.mesh_frequency, "Hz"),
-    )
-    orders = Table(
-        "orders",
-        "Amplitudes by mesh order.",
-        {
-            "order": "order",
-            "frequency": "frequency",
-            "dte": "transmission error",
-            "bearing": "pinion bearings",
-        },
-        tuple(
-            (
-                order,
-                Quantity(order * pair.geometry.mesh_frequency, "Hz"),
-                Quantity(float(size), "m"),
-                Quantity(float(prediction.bearing_orders[order - 1]), "N"),
-            )
-            for order, size in enumerate(prediction.orders_of("dte"), 1)
-        ),
-    )
     blocks: list[Block] = [
-        numbers,
+        _motion_table(results),
         Picture(
             "transmission_error",
             "Dynamic transmission error over time.",
             time,
             partial(cycle_figure, names=["dte"]),
         ),
-        orders,
+        _orders_table(results),
         Picture(
             "orders_over_speed",
             f"Force on the pinion bearings by mesh order over speed, linear motion{springs}. Red: where an "
@@ -92,21 +61,7 @@ def write(results: Results) -> Content:
         ),
     ]
     if results.modes:
-        blocks.append(
-            Table(
-                "modes",
-                f"Natural frequencies of the time-averaged pair{springs}.",
-                {
-                    "frequency": "frequency",
-                    "damping": "damping ratio",
-                    "speed": "speed at which order 1 meets it",
-                },
-                tuple(
-                    (Quantity(m.natural_frequency, "Hz"), m.damping_ratio, Quantity(m.resonant_speed, "rpm"))
-                    for m in results.modes
-                ),
-            )
-        )
+        blocks.append(_modes_table(results))
     else:
         blocks.append(
             Text("A mode of the averaged pair is overdamped, so no natural frequencies are listed.")
@@ -117,6 +72,77 @@ def write(results: Results) -> Content:
         f"{quantity(prediction.peak_to_peak, 'm', 3)} peak to peak, most of it at mesh order {loudest}."
     )
     return Content(result, tuple(blocks))
+
+
+def _motion_table(results: Results) -> Table:
+    prediction = results.prediction
+    geometry = results.pair.geometry
+    classes = [
+        gear.deviations.tolerance_class
+        for gear in (results.given.pinion, results.given.gear)
+        if gear.deviations is not None and gear.deviations.tolerance_class is not None
+    ]
+    iso = iso_dynamic_factor(results.pair, max(classes)) if classes else iso_dynamic_factor(results.pair)
+    tolerances = f"tolerances of class {iso.tolerance_class}{'' if classes else ' assumed'}"
+    # K_v has the stiffness of the standard, which no factor on the model's stiffness changes.
+    if results.pair.mesh.stiffness_factor != 1.0:
+        tolerances += ", without mesh.stiffness_factor"
+    iso_note = f"{iso.zone}, N = {iso.resonance_ratio:.2f}, {tolerances}"
+    mean = float(prediction.cycle["dte"].mean())
+    over_static = "largest mesh force over the static one"
+    return named_numbers(
+        "motion",
+        "The motion at the operating point.",
+        (
+            NamedNumber("transmission error, peak to peak", prediction.peak_to_peak, "m"),
+            NamedNumber("transmission error, mean", mean, "m"),
+            NamedNumber("dynamic factor", prediction.dynamic_factor, "1", over_static),
+            NamedNumber("K_v of ISO 6336-1, method B", iso.factor, "1", iso_note),
+            NamedNumber("mesh frequency", geometry.mesh_frequency, "Hz"),
+        ),
+    )
+
+
+class _Order(NamedTuple):
+    """A row of the table of orders: number of the mesh order, frequency [Hz], amplitudes [m], [N]."""
+
+    number: int
+    frequency: float
+    transmission_error: float
+    bearing_force: float
+
+
+def _orders_table(results: Results) -> Table:
+    prediction = results.prediction
+    mesh_frequency = results.pair.geometry.mesh_frequency
+    orders = [
+        _Order(number, number * mesh_frequency, float(dte), float(prediction.bearing_orders[number - 1]))
+        for number, dte in enumerate(prediction.orders_of("dte"), 1)
+    ]
+    return table_of(
+        "orders",
+        "Amplitudes by mesh order.",
+        orders,
+        (
+            Column[_Order]("order", "order", lambda order: order.number),
+            Column[_Order]("frequency", "frequency", lambda order: order.frequency, "Hz"),
+            Column[_Order]("dte", "transmission error", lambda order: order.transmission_error, "m"),
+            Column[_Order]("bearing", "pinion bearings", lambda order: order.bearing_force, "N"),
+        ),
+    )
+
+
+def _modes_table(results: Results) -> Table:
+    return table_of(
+        "modes",
+        f"Natural frequencies of the time-averaged pair{results.in_place_of_shafts}.",
+        results.modes,
+        (
+            Column[Mode]("frequency", "frequency", lambda mode: mode.natural_frequency, "Hz"),
+            Column[Mode]("damping", "damping ratio", lambda mode: mode.damping_ratio),
+            Column[Mode]("speed", "speed at which order 1 meets it", lambda mode: mode.resonant_speed, "rpm"),
+        ),
+    )
 
 
 CHAPTER = Chapter("response", "Response", write, seconds=1.5)

@@ -1,27 +1,32 @@
-"""The prediction beside the second program, and what both must conserve."""
+"""The prediction beside the second program, and the conservation laws of both."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from lumped.labelling import labelled_dataset
 from lumped.outcomes import Absent
+from validation.cross_check.agreement import Agreement
+from validation.cross_check.comparison import CrossCheck
 from validation.cross_check.conservation import worst_of_each
 from validation.cross_check.losses import LossAgreement
+from validation.cross_check.verdict import Judgement
 from validation.cross_check.words import MEASURES, percent
 from validation.plots.prediction import overlay_figure
 from validation.prediction.motion import PLACES
-from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Table, Text, table_of
+from validation.reporting.blocks import Badge, Block, Column, Content, Picture, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.second_program_words import second_program_words
 
 
 def write(results: Results) -> Content:
     """Write the chapter."""
     check = results.check
     second = results.second
-    springs = results.in_place_of_shafts
     if isinstance(check, Absent):
         return Content("The second program does not run here.", (Text(check.detail),))
     blocks: list[Block] = []
@@ -34,56 +39,72 @@ def write(results: Results) -> Content:
                 overlay_figure,
             )
         )
-    blocks.append(
-        table_of(
-            "agreement",
-            f"Largest difference of the second program, as a share{springs}.",
-            check.agreements,
-            {
-                "quantity": ("quantity", lambda a: a.long_name),
-                "fidelity": ("second program", lambda a: _FIDELITY[a.fidelity]),
-                "difference": ("difference", lambda a: a.difference),
-                "limit": ("limit", lambda a: a.limit),
-                "state": ("", lambda a: Badge("ok" if a.within else "differs")),
-            },
-            MEASURES,
-        )
-    )
+    blocks.append(_agreement_table(check, results.in_place_of_shafts))
     if check.loss is not None:
-        blocks.append(_losses(check.loss, springs))
-    blocks.append(
-        table_of(
-            "conservation",
-            f"Conservation laws, checked on both programs{springs}: of each the check that uses most of its "
-            "limit.",
-            worst_of_each(check.conservation),
-            {
-                "check": ("check", lambda j: j.check),
-                "value": ("residual", lambda j: j.value),
-                "limit": ("limit", lambda j: j.limit),
-                "state": ("", lambda j: Badge("ok" if j.within else "failed")),
-            },
-        )
-    )
+        blocks.append(_losses_table(check.loss, results.in_place_of_shafts))
+    blocks.append(_conservation_table(check, results.in_place_of_shafts))
     if isinstance(second, Absent):
         blocks.append(Text(str(second)))
-    return Content(results.second_words, tuple(blocks))
+    return Content(second_program_words(results), tuple(blocks))
 
 
-def _losses(loss: LossAgreement, springs: str) -> Table:
-    """Mean losses of both programs, place by place; ``springs`` is added where shafts are left out."""
-    both = [*((PLACES[p], loss.lumped[p], loss.multibody.get(p, 0.0)) for p in loss.lumped)]
-    both.append(("all places", loss.total, loss.total_multibody))
+def _agreement_table(check: CrossCheck, springs: str) -> Table:
+    """Differences of all quantities. ``springs``: words of the caption where the shafts are left out."""
+    return table_of(
+        "agreement",
+        f"Largest difference of the second program, as a share{springs}.",
+        check.agreements,
+        (
+            Column[Agreement]("quantity", "quantity", lambda agreement: agreement.long_name),
+            Column[Agreement]("fidelity", "second program", lambda agreement: _FIDELITY[agreement.fidelity]),
+            Column[Agreement]("difference", "difference", lambda agreement: agreement.difference),
+            Column[Agreement]("limit", "limit", lambda agreement: agreement.limit),
+            Column[Agreement]("state", "", lambda agreement: Badge("ok" if agreement.within else "differs")),
+        ),
+        MEASURES,
+    )
+
+
+def _conservation_table(check: CrossCheck, springs: str) -> Table:
+    """For each conservation law the check that uses most of its limit."""
+    return table_of(
+        "conservation",
+        f"Conservation laws, checked on both programs{springs}: of each the check that uses most of its "
+        "limit.",
+        worst_of_each(check.conservation),
+        (
+            Column[Judgement]("check", "check", lambda law: law.check),
+            Column[Judgement]("value", "residual", lambda law: law.value),
+            Column[Judgement]("limit", "limit", lambda law: law.limit),
+            Column[Judgement]("state", "", lambda law: Badge("ok" if law.within else "failed")),
+        ),
+    )
+
+
+class _Loss(NamedTuple):
+    """A row of the table of losses: the place and the mean loss there in both programs [W]."""
+
+    place: str
+    lumped: float
+    multibody: float
+
+
+def _losses_table(loss: LossAgreement, springs: str) -> Table:
+    """Mean losses of both programs by place. ``springs``: words of the caption where shafts are left out."""
+    losses = [
+        _Loss(PLACES[place], lumped, loss.multibody.get(place, 0.0)) for place, lumped in loss.lumped.items()
+    ]
+    losses.append(_Loss("all places", loss.total, loss.total_multibody))
     return table_of(
         "losses_of_both",
         f"Power lost in both programs{springs}. Their sums differ by {percent(loss.difference)}, limit "
         f"{percent(loss.limit)}: {'they agree' if loss.within else 'they do not agree'}.",
-        both,
-        {
-            "place": ("place", lambda row: row[0]),
-            "lumped": ("lumped model", lambda row: Quantity(row[1], "W")),
-            "second": ("second program", lambda row: Quantity(row[2], "W")),
-        },
+        losses,
+        (
+            Column[_Loss]("place", "place", lambda row: row.place),
+            Column[_Loss]("lumped", "lumped model", lambda row: row.lumped, "W"),
+            Column[_Loss]("second", "second program", lambda row: row.multibody, "W"),
+        ),
     )
 
 

@@ -1,31 +1,52 @@
-"""Teeth that differ: what they do to loads, orders and indicators, beside the twin with like teeth."""
+"""Teeth that differ: effect on loads, orders and indicators, beside the twin with like teeth."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from lumped.labelling import labelled_dataset
 from validation.plots.teeth import loads_figure, sidebands_figure, turn_figure
-from validation.reporting.blocks import Block, Content, Picture, Quantity, Table, Text, quantities
+from validation.reporting.blocks import (
+    Block,
+    Column,
+    Content,
+    NamedNumber,
+    Picture,
+    Table,
+    Text,
+    named_numbers,
+    table_of,
+)
 from validation.reporting.chapter import Chapter
 from validation.reporting.facts import sampled_words
 from validation.reporting.results import Results
+from validation.signals.averages import Gear
 from validation.signals.findings import GEARS, NOISE, TeethFindings, deviations_table, rpm_and_period
 
-#: Turns of the pinion that the figure over time shows.
+#: Most turns of the pinion in the figure over time.
 _MOST_TURNS = 4
 
 
 def write(results: Results) -> Content | None:
-    """Write the chapter; None where all teeth are alike."""
-    found = results.teeth
-    if found is None:
+    """Write the chapter. None: all teeth are alike."""
+    findings = results.teeth
+    if findings is None:
         return None
-    return Content(found.sentence, (*_tables(found), *_spread(results), *_pictures(found)))
+    blocks = (
+        Text(f"At {rpm_and_period(findings)}. Contact: {findings.motion.attrs['touch']}."),
+        _deviations_table(findings),
+        _numbers_table(findings),
+        _indicators_table(findings),
+        *_spread(results),
+        *_pictures(findings),
+    )
+    return Content(findings.sentence, blocks)
 
 
 def _spread(results: Results) -> list[Block]:
-    """What a class, and every other uncertain input, leaves open."""
+    """Range of the results with the uncertain inputs; the teeth of a tolerance class are drawn anew."""
     if (band := results.teeth_band) is None:
         return []
     if band["sideband_ratio"].isnull().any():
@@ -40,72 +61,106 @@ def _spread(results: Results) -> list[Block]:
     return [Text(f"{text} is {swings} µm and the largest sideband {shares} % of the mesh tone (5 to 95 %).")]
 
 
-def _tables(found: TeethFindings) -> list[Block]:
-    given = deviations_table(found.pair)
-    lengths = ("cumulative", "pitch", "eccentricity")
-    held = (int(one) if one < 12 else "none" for one in given["tolerance_class"])
-    sizes = ([Quantity(float(given[name].sel(gear=gear)), "m") for name in lengths] for gear in GEARS)
-    rows = tuple((gear, *size, one) for gear, size, one in zip(GEARS, sizes, held, strict=True))
-    columns = {
-        "gear": "gear",
-        "cumulative": "range of the index deviations",
-        "pitch": "largest step",
-        "eccentricity": "eccentricity",
-        "tolerance_class": "class of ISO 1328-1 that holds",
-    }
-    swing, twin = (one.attrs["dte_peak_to_peak"] for one in (found.motion, found.twin))
-    load, healthy = (found.load(one) / found.static_force for one in (found.motion, found.twin))
-    rate, of_twin = found.rates
-    numbers = quantities(
+def _deviations_table(findings: TeethFindings) -> Table:
+    """Index deviations and eccentricity of both gears."""
+    deviations = deviations_table(findings.pair)
+
+    def length(name: str, heading: str) -> Column[Gear]:
+        return Column(name, heading, lambda gear: float(deviations[name].sel(gear=gear)), "m")
+
+    def tolerance_class(gear: Gear) -> int | str:
+        number = int(deviations["tolerance_class"].sel(gear=gear))
+        return number if number < 12 else "none"
+
+    return table_of(
+        "teeth_deviations",
+        "Index deviations of the teeth, and the class of ISO 1328-1 that they keep.",
+        GEARS,
+        (
+            Column[Gear]("gear", "gear", lambda gear: gear),
+            length("cumulative", "range of the index deviations"),
+            length("pitch", "largest step"),
+            length("eccentricity", "eccentricity"),
+            Column[Gear]("tolerance_class", "class of ISO 1328-1 that holds", tolerance_class),
+        ),
+    )
+
+
+def _numbers_table(findings: TeethFindings) -> Table:
+    """Numbers of the teeth as given; the note of each has the number of like teeth."""
+    swing = findings.motion.attrs["dte_peak_to_peak"]
+    twin_swing = findings.twin.attrs["dte_peak_to_peak"]
+    load = findings.load(findings.motion) / findings.static_force
+    twin_load = findings.load(findings.twin) / findings.static_force
+    rate, twin_rate = findings.rates
+    lost = float(len(findings.contact_lost))
+    return named_numbers(
         "teeth_numbers",
         "Teeth as given, with the value of like teeth in the note.",
-        ("transmission error, peak to peak", swing, "m", f"like teeth: {1e6 * twin:.3g} µm"),
-        ("largest load on one tooth / mean", load, "1", f"like teeth: {healthy:.3g}"),
-        ("growth of a perturbation in a mesh cycle", rate, "1", f"like teeth: {of_twin:.3g}"),
-        ("meeting teeth at which contact is lost", float(len(found.contact_lost)), "1"),
-    )
-    return [
-        Text(f"At {rpm_and_period(found)}. Contact: {found.motion.attrs['touch']}."),
-        Table(
-            "teeth_deviations",
-            "Index deviations of the teeth, and the class of ISO 1328-1 that they keep.",
-            columns,
-            rows,
+        (
+            NamedNumber(
+                "transmission error, peak to peak", swing, "m", f"like teeth: {1e6 * twin_swing:.3g} µm"
+            ),
+            NamedNumber("largest load on one tooth / mean", load, "1", f"like teeth: {twin_load:.3g}"),
+            NamedNumber(
+                "growth of a perturbation in a mesh cycle", rate, "1", f"like teeth: {twin_rate:.3g}"
+            ),
+            NamedNumber("meeting teeth at which contact is lost", lost, "1"),
         ),
-        numbers,
-        _indicators(found),
+    )
+
+
+class _Indicator(NamedTuple):
+    """A row of the table of indicators: shaft, name, value with the teeth as given and with like teeth."""
+
+    shaft: Gear
+    name: str
+    pair: float
+    twin: float
+
+
+def _indicators_of(findings: TeethFindings, shaft: Gear) -> list[_Indicator]:
+    """Condition indicators, averaged over the turns of one shaft."""
+    indicators = findings.indicators(shaft)
+    values = indicators["value"]
+    return [
+        _Indicator(
+            shaft,
+            str(name),
+            float(values.sel(indicator=name, record="pair")),
+            float(values.sel(indicator=name, record="healthy twin")),
+        )
+        for name in indicators["indicator"].to_numpy()
     ]
 
 
-def _indicators(found: TeethFindings) -> Table:
-    rows = []
-    for gear in GEARS:
-        table = found.indicators(gear)
-        for name in table["indicator"].to_numpy():
-            pair, twin = (
-                float(table["value"].sel(indicator=name, record=r)) for r in ("pair", "healthy twin")
-            )
-            rows.append((gear, str(name), pair, twin))
-    return Table(
+def _indicators_table(findings: TeethFindings) -> Table:
+    return table_of(
         "teeth_indicators",
         "Condition indicators of the pinion's acceleration along the line of action, averaged over the turns "
         "of each shaft.",
-        {"shaft": "shaft", "indicator": "indicator", "pair": "teeth as given", "twin": "like teeth"},
-        tuple(rows),
+        [row for gear in GEARS for row in _indicators_of(findings, gear)],
+        (
+            Column[_Indicator]("shaft", "shaft", lambda row: row.shaft),
+            Column[_Indicator]("indicator", "indicator", lambda row: row.name),
+            Column[_Indicator]("pair", "teeth as given", lambda row: row.pair),
+            Column[_Indicator]("twin", "like teeth", lambda row: row.twin),
+        ),
         f"With white noise of {100 * NOISE:.0f} % of the root mean square of like teeth. RMS in m/s².",
     )
 
 
-def _pictures(found: TeethFindings) -> list[Block]:
-    motion = found.motion
-    twin = found.twin
-    pair = found.pair
+def _pictures(findings: TeethFindings) -> list[Block]:
+    """Transmission error over time, largest loads, and orders of each gear whose teeth differ."""
+    motion = findings.motion
+    twin = findings.twin
+    pair = findings.pair
     count = motion.sizes["time"]
-    turns = found.period / pair.pinion.teeth
+    turns = findings.period / pair.pinion.teeth
     samples = twin.sizes["time"]
     shown_count = min(count, _MOST_TURNS * pair.pinion.teeth * samples)
-    turn = np.arange(count) * (found.period / (pair.pinion.teeth * count))
-    healthy = np.tile(twin["dte"].to_numpy(), found.period)
+    turn = np.arange(count) * (findings.period / (pair.pinion.teeth * count))
+    healthy = np.tile(twin["dte"].to_numpy(), findings.period)
     over_turn = labelled_dataset(
         {
             "dte": ("turn", motion["dte"].to_numpy()[:shown_count], "m", "transmission error"),
@@ -114,24 +169,27 @@ def _pictures(found: TeethFindings) -> list[Block]:
         {"turn": (turn[:shown_count], "1", "turns of the pinion")},
     )
     caption = f"Transmission error over {min(turns, _MOST_TURNS):g} of the {turns:g} turns of the period."
-    shown: list[Block] = [Picture("teeth_turn", caption, over_turn, turn_figure), *_loads(found)]
+    pictures: list[Block] = [Picture("teeth_turn", caption, over_turn, turn_figure), *_loads(findings)]
     for gear in GEARS:
         if getattr(pair, gear).has_own_teeth:
-            data = found.spectrum(gear).assign_attrs(teeth=getattr(pair, gear).teeth)
+            data = findings.spectrum(gear).assign_attrs(teeth=getattr(pair, gear).teeth)
             words = (
                 f"Orders of the {gear}: the mesh harmonics and the sidebands beside them. Dots: like teeth."
             )
-            shown.append(Picture(f"teeth_orders_{gear}", words, data, sidebands_figure))
-    return shown
+            pictures.append(Picture(f"teeth_orders_{gear}", words, data, sidebands_figure))
+    return pictures
 
 
-def _loads(found: TeethFindings) -> list[Picture]:
-    """Map of all meeting pairs over the hunting period; else the teeth of the gear whose teeth differ."""
-    pair = found.pair
-    share = found.largest_loads / found.static_force
+def _loads(findings: TeethFindings) -> list[Picture]:
+    """Largest loads: a map of all meeting pairs over the hunting period, or the teeth of one gear.
+
+    One gear is drawn where the motion repeats after a turn of the pinion or of the gear.
+    """
+    pair = findings.pair
+    share = findings.largest_loads / findings.static_force
     words = "largest load over the mean mesh force"
     teeth = {gear: np.arange(getattr(pair, gear).teeth) + 1 for gear in GEARS}
-    if found.period not in (pair.pinion.teeth, pair.gear.teeth):
+    if findings.period not in (pair.pinion.teeth, pair.gear.teeth):
         coordinates = {f"{gear}_tooth": (teeth[gear], "1", f"tooth of the {gear}") for gear in GEARS}
         data = labelled_dataset({"share": (tuple(coordinates), share, "1", words)}, coordinates)
         white = " White: these teeth never meet." if np.isnan(share).any() else ""
@@ -144,7 +202,7 @@ def _loads(found: TeethFindings) -> list[Picture]:
         data = labelled_dataset(
             {"share": ("tooth", np.nanmax(share, axis=1 - axis), "1", words)},
             {"tooth": (teeth[gear], "1", f"tooth of the {gear}")},
-            {"shaft": gear, "healthy": found.load(found.twin) / found.static_force},
+            {"shaft": gear, "healthy": findings.load(findings.twin) / findings.static_force},
         )
         caption = f"Largest load of each tooth of the {gear} over the mean mesh force."
         pictures.append(Picture(f"teeth_loads_{gear}", caption, data, loads_figure))

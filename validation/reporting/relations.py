@@ -1,0 +1,87 @@
+"""Relations that must hold between the results of a report, and the failed checks of the program."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from lumped.outcomes import Absent
+from validation.prediction.motion import NOTHING
+from validation.reporting.results import Results
+
+#: Relative rounding that a relation allows.
+ROUNDING = 1e-9
+#: A curve over speed passes through the value of the operating speed within this share: the samples differ.
+_SAME = 2e-3
+
+
+def failed_checks(results: Results) -> tuple[str, ...]:
+    """Return the failed checks of the program: same equations, conservation laws, relations."""
+    failures = () if isinstance(results.check, Absent) else results.check.failures
+    return (*(judgement.check for judgement in failures), *broken_relations(results))
+
+
+def broken_relations(results: Results) -> tuple[str, ...]:
+    """Return the relations between results that do not hold, as phrases."""
+    return (*_of_numbers(results), *_of_the_motion(results), *_of_the_sweep(results), *_of_samples(results))
+
+
+def _of_numbers(results: Results) -> Iterator[str]:
+    """Bounds of the numbers of page 1."""
+    numbers = results.prediction.numbers
+    if numbers["dynamic_factor"] < 1.0 - ROUNDING:
+        yield f"the dynamic factor {numbers['dynamic_factor']:.4g} is below 1"
+    if not 0.0 <= numbers["least_force"] <= 1.0 + ROUNDING:
+        yield f"the smallest mesh force is {numbers['least_force']:.4g} of the static one"
+    # Where the linear motion stands in, teeth that pull may do more work than the shafts bring.
+    if not results.prediction.reason and not 0.0 < numbers["efficiency"] <= 1.0 + ROUNDING:
+        yield f"the efficiency is {numbers['efficiency']:.4g}"
+
+
+def _of_the_motion(results: Results) -> Iterator[str]:
+    """Numbers of page 1 against the motion over time."""
+    prediction = results.prediction
+    dte = prediction.cycle["dte"].to_numpy()
+    sampled = float(np.ptp(dte))
+    if (
+        not sampled * (1.0 - ROUNDING) - _rounding(results)
+        <= prediction.peak_to_peak
+        <= 1.05 * sampled + 1e-12
+    ):
+        yield "the peak to peak is not that of the motion"
+    rms = prediction.numbers["bearing_rms"]
+    orders = prediction.bearing_orders
+    if np.sum(orders**2) / 2.0 > rms**2 * (1.0 + 1e-6) + (NOTHING * prediction.static_force) ** 2:
+        yield "the orders of the bearing force carry more than its rms"
+
+
+def _of_the_sweep(results: Results) -> Iterator[str]:
+    """The curve over speed against the linear motion at the operating speed, of a pair on springs."""
+    linear = results.linear
+    if isinstance(linear, Absent) or results.pair.shafts is not None:
+        return
+    on_curve = float(results.sweep.interp(speed=results.operating_rpm)["dte_peak_to_peak"])
+    computed = float(linear.attrs["dte_peak_to_peak"])
+    if abs(on_curve - computed) > _SAME * computed + _rounding(results):
+        yield "the curve over speed misses the value at the operating speed"
+
+
+def _of_samples(results: Results) -> Iterator[str]:
+    """The samples of the inputs against the prediction."""
+    samples = results.uncertainty
+    if not isinstance(samples, xr.Dataset):
+        return
+    for name, value in results.like.numbers.items():
+        if abs(samples.attrs[f"given_{name}"] - value) > ROUNDING * max(abs(value), 1e-300):
+            yield f"the samples were taken about another {name}"
+        low, middle, high = samples[f"{name}_percentile"].to_numpy()
+        if math.isfinite(middle) and not low <= middle <= high:
+            yield f"the percentiles of {name} are not in order"
+
+
+def _rounding(results: Results) -> float:
+    """Rounding of the transmission error [m]: a share of its largest value."""
+    return NOTHING * float(np.abs(results.prediction.cycle["dte"].to_numpy()).max())
