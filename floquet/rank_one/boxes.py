@@ -21,7 +21,7 @@ from numpy.polynomial.chebyshev import chebvander
 from floquet.engine.refinement import parts_of
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.kernel_input import own, packed
-from floquet.rank_one.kernels.gains import Limits, Problem
+from floquet.rank_one.kernels.gains import Limits, Point, Problem
 from floquet.rank_one.kernels.taylor import largest_flow
 from floquet.rank_one.piecewise import to_series
 from floquet.rank_one.system import RankOneSystem
@@ -180,7 +180,7 @@ class _Size:
         self.each = (rates[0] + edges[:, 0]) * lean, (rates[1] + edges[:, 1]) * np.linalg.norm(problem.v)
         gains = np.ones(edges.shape[0]) if gains is None else np.abs(gains)
         self.w, self.wd = (float(gains @ part) for part in self.each)
-        self.calm = float(problem.omega.max() + np.linalg.norm(problem.C[0]) + problem.noise)
+        self.calm = float(problem.omega.max() + np.linalg.norm(problem.C) + problem.noise)
 
     def change(
         self, T: FloatArray, damping: FloatArray, along: FloatArray, up: FloatArray, moved: FloatArray
@@ -245,7 +245,7 @@ class FlowPolynomial:
         )
         matrices = flow.matrices.reshape(x.size, y.size, *flow.matrices.shape[1:])
         gains = np.append(1.0, at[-1])
-        largest, wrong = largest_flow(problem, own(gains), zeta, t, Limits(1e-12, _ANGLE))
+        largest, wrong = largest_flow(problem, Point(own(gains), zeta, t), Limits(1e-12, _ANGLE))
         size = _Size(problem, math.inf, gains)
         # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
         lean = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])

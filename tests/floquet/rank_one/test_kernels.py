@@ -13,8 +13,8 @@ from flint import arb_mat
 from floquet import RankOneSystem, fast_monodromies
 from floquet.rank_one.batch import _quick
 from floquet.rank_one.kernels.eigenvalue_bounds import _gershgorin, _join
-from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, powers_of_radii
-from floquet.rank_one.kernels.product import BLOCKS, carry, divide
+from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, table_of_radii
+from floquet.rank_one.kernels.product import Steps, carry, divide, product_workspace
 from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import Gains
 from tests.evidence.floquet.extended import state_matrix
@@ -32,8 +32,8 @@ from tests.floquet.engine.judge.enclosures import (
 
 def test_too_many_terms_are_said() -> None:
     for a in (40.0, np.nan, np.inf):
-        assert enough_terms(np.array([a]), 0, np.log(1e-10), powers_of_radii(1))[0] == -1
-    assert enough_terms(np.array([20.0]), 0, np.log(1e-4), powers_of_radii(1))[0] <= MAX_TERMS
+        assert enough_terms(np.array([a]), 0, np.log(1e-10), table_of_radii(1))[0] == -1
+    assert enough_terms(np.array([20.0]), 0, np.log(1e-4), table_of_radii(1))[0] <= MAX_TERMS
 
 
 @pytest.mark.parametrize("n", [2, 4, 6])
@@ -215,10 +215,8 @@ def test_the_product_keeps_terms_of_second_order_and_of_blocks() -> None:
         steps = np.zeros((count, 1, LANES))
         steps[:, 0, 0] = sizes
         flow = np.zeros((1, LANES))
-        work = np.zeros((2 * BLOCKS + 1, 1, LANES))
-        before = np.empty(count)
-        table = np.zeros((5, BLOCKS))
-        bound = carry(steps, np.full(count, e), np.abs(sizes), count, flow, before, work, table)
+        work = product_workspace(count, 1, LANES)
+        bound = carry(Steps(steps, np.full(count, e), np.abs(sizes)), count, work, flow)
         exact = np.prod(np.abs(sizes) + e) - np.prod(np.abs(sizes))
         assert flow[0, 0] == pytest.approx(np.prod(sizes), rel=1e-14)
         assert exact * (1.0 - 1e-12) <= bound <= 1.001 * exact
