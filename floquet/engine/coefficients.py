@@ -219,7 +219,7 @@ def _known(value: Coefficient | float) -> Coefficient:
 
 
 class PeriodicMatrix:
-    """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...: a `PeriodicSystem` of it has proven bounds.
+    """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...: a `PeriodicSystem` of such a matrix has PROVEN bounds.
 
     Parameters
     ----------

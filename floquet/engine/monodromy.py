@@ -12,11 +12,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from floquet.engine.coefficients import PeriodicMatrix
+from floquet.engine.formula_steps import proven_propagation
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
 from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.proven import proven_propagation
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import of_type, real_number, whole_number
 from lumped.errors import NumericalError

@@ -121,10 +121,10 @@ def _cluster_bound(
 def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, FloatArray]:
     """Eigenvalues (n,) of M, largest modulus first, each with a bound (n,) on its error.
 
-    A theorem, rounding included: what LAPACK returns is checked by its residuals. ``delta`` bounds the
-    Frobenius norm of the error of M. Multipliers that delta does not allow to be told apart share one bound:
-    each has an exact one within it, and each exact one of theirs is that near to one of them. Source:
-    docs/theory/proven_bounds.md, "Multipliers".
+    PROVEN, rounding included: residuals check the results of LAPACK. ``delta`` bounds the Frobenius norm of
+    the error of M. Multipliers that an error of delta may merge share one bound. Within this bound of each
+    computed multiplier of the group there is an exact one, and within this bound of each exact multiplier of
+    the group there is a computed one. Source: docs/theory/proven_bounds.md, "Multipliers".
     """
     n = M.shape[0]
     T, Z = schur(M, output="complex")

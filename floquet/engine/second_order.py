@@ -163,7 +163,7 @@ def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -
 
 
 class _Solution:
-    """B -> X = (M T)^-1 B T with bounds on the errors of its entries.
+    """B -> X = (M T)^-1 B T with PROVEN bounds on the errors of the entries of X.
 
     With W an approximate inverse of P = M T and G = I - W P, that is (I - G)^-1 W (B T - P X), in the widest
     floating point.

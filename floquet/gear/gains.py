@@ -117,7 +117,7 @@ class _Law:
 
 
 class MeshGains:
-    """Gains on the coordinates of a "mesh" form as `fit_pieces` asks for them.
+    """Gains on the coordinates of a "mesh" form, with PROVEN errors, as `fit_pieces` asks for them.
 
     In this order: feedback of deflection and of its rate by normal loads (with their friction, unless there
     are ``levels``), the same by mu less the sum of the levels, and by each level but the first, zero.

@@ -14,10 +14,10 @@ from typing import get_args
 import numpy as np
 from scipy.linalg import block_diag, eigh
 
+from floquet.engine.formula_steps import proven_product
 from floquet.engine.monodromy import integral_of_trace, monodromy
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds, radii_with_bounds
 from floquet.engine.propagators.one_step import Propagator
-from floquet.engine.proven import proven_product
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
 from floquet.gear.gains import MeshGains, OwnGains, own_tables
@@ -286,7 +286,8 @@ class _Coefficients:
 class OffLineOfAction:
     """Exponents of the motions y_p, y_g off the line of action, or of separate modes on shafts; closed form.
 
-    m y'' + c y' + K y = 0 for each: s = -d +- sqrt(r), d = c/(2 m), r = d^2 - K/m, multipliers exp(s T).
+    m y'' + c y' + K y = 0 for each motion: s = -d +- sqrt(r), d = c/(2 m), r = d^2 - K/m. The multipliers are
+    exp(s T), with PROVEN bounds on their errors.
 
     Attributes
     ----------
@@ -466,7 +467,11 @@ def revolution_multipliers(
 def _of_cycles(
     laws: ToothLaws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
 ) -> tuple[ComplexArray, FloatArray, float]:
-    """Multipliers over so many cycles, largest first, their rates, and a bound on the largest one's error."""
+    """Multipliers over ``cycles`` mesh cycles, largest first, and their rates.
+
+    The third result is a PROVEN bound on the error of the largest rate. ``block`` cycles at a time are one
+    period of the kernel.
+    """
     own = own_tables(laws)
     mean = like.mean_of(like.gains.w)
 

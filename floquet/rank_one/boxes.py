@@ -104,7 +104,7 @@ def _last(first: int, end: int, error: Callable[[int], float]) -> int:
 
 
 def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray) -> float:
-    """Period from which on a system is stable for all damping and factors between two values, (2,), (2, Q-1).
+    """Period from which on a system is stable, PROVEN, for all damping (2,) and factors (2, Q-1) in between.
 
     On a cell of the phase |L x| grows at most with the logarithmic norm of L A L^-1, from cell to cell by |L'
     L^-1|; the norm is convex, so that the largest is at a corner. inf: none such, or gyroscopic terms.
@@ -210,7 +210,7 @@ class _Size:
 
 @dataclass(frozen=True, eq=False)
 class FlowPolynomial:
-    """Monodromy matrices of a patch of period and damping as polynomials with a bound on their error.
+    """Monodromy matrices of a patch of period and damping as polynomials with a PROVEN bound on their error.
 
     Attributes
     ----------
@@ -314,7 +314,7 @@ def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray)
 
 
 def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Verdicts (k,) of boxes x, y (2, k) of a patch, and how much its entries vary along both.
+    """PROVEN verdicts (k,) of boxes x, y (2, k) of a patch, and how much its entries vary along both axes.
 
     Where margin_k u_k > sum_j f_kj u_j for some u > 0 (Gershgorin's disks, scaled), no multiplier is on the
     unit circle, and as many are outside as diagonal entries.

@@ -50,7 +50,9 @@ def packed(system: RankOneSystem) -> Problem:
 
 
 def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, float]:
-    """Bounds on errors by rounding: of the constant part of A [1/s], of G, and the relative one of the gains.
+    """PROVEN bounds on the rounding of the change to modal coordinates.
+
+    Returns the error of the constant part of A [1/s], the error of G, and the relative error of the gains.
 
     Phi^-1 is (I - E)^-1 Phi^T g, E = I - Phi^T g Phi; the gains go through 57 + m roundings of the sum of
     their moduli. Sources: docs/theory/proven_bounds.md, "The matrix of a step".

@@ -81,7 +81,9 @@ def _power_matrix(degree: int) -> FloatArray:
 def fit_pieces(
     gains: PolynomialGains, edges: FloatArray, metric: FloatArray, degree: int = 8, rtol: float = 1e-11
 ) -> tuple[FloatArray, list[FloatArray], FloatArray, npt.NDArray[np.intp]]:
-    """Polynomials of G gains on pieces of the period, halved until what is dropped is small enough.
+    """Polynomials of G gains on pieces of the period, with PROVEN bounds on their errors.
+
+    A piece is halved until the dropped part of its polynomials is small enough.
 
     ``edges`` (S+1,) are the ends of the segments as parts of the period, ``metric`` (m,) weights of the norm
     of errors, ``degree`` the largest, ``rtol`` relative to the largest value of each gain; on pieces shorter

@@ -1,7 +1,7 @@
 """Disks that hold the eigenvalues of small real matrices, compiled.
 
-PROVEN here: each disk of `spectra` that is called safe, by residuals that are computed with their rounding
-(`_entry_bounds`, `_gershgorin`, `_join`). The eigenvalues and eigenvectors themselves need no proof.
+Proven here: each disk of `spectra` that is called safe, by residuals that are computed with their rounding:
+`_entry_bounds`, `_gershgorin`, `_join`. The eigenvalues and eigenvectors need no proof.
 
 Sources: docs/theory/proven_bounds.md, "Multipliers".
 """
@@ -330,7 +330,7 @@ def _add_inverse(q: float, bounds: EntryBounds) -> None:
 def _entry_bounds(
     A: FloatArray, values: ComplexArray, vectors: Eigenvectors, delta: float, bounds: EntryBounds
 ) -> float:
-    """PROVEN bounds f (n, n) on the entries of X^-1 (A + E) X - D for every |E| <= delta, D = diag(values).
+    """Bounds f (n, n) on the entries of X^-1 (A + E) X - D for every |E| <= delta, D = diag(values).
 
     X, the right eigenvectors as columns, and Y, the left eigenvectors as rows, may be any matrices with row
     sums q_i of |R| below 1, R = I - Y X. With G = Y (A + E) X - D the matrix is (I - R)^-1 (G + R D). So
@@ -359,7 +359,7 @@ def _entry_bounds(
 
 @compiled(_nrt=False, forceinline=True)
 def _gershgorin(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: FloatArray) -> None:
-    """PROVEN radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij, with R_i = sum_j f_ij.
+    """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij, with R_i = sum_j f_ij.
 
     Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), the i-th coordinate is scaled by
     tau = max_j 2 f_ji/|lambda_i - lambda_j|. Disk i stays apart, and its radius shrinks to f_ii + tau
@@ -384,9 +384,9 @@ def _gershgorin(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: Fl
 
 @compiled(_nrt=False, forceinline=True)
 def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
-    """Widen each overlapping disk so that it holds the union of the disks that overlap.
+    """Widen each overlapping disk until the disk holds the union of all overlapping disks.
 
-    PROVEN: a union of k disks apart from the others holds k eigenvalues.
+    A union of k disks apart from the other disks holds k eigenvalues.
     """
     n = values.size
     for i in range(n):
@@ -410,7 +410,7 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
 def spectra(
     M: FloatArray, delta: FloatArray, values: ComplexArray, radii: FloatArray, safe: npt.NDArray[np.bool_]
 ) -> None:
-    """Eigenvalues (N, n) of M (N, n, n) wrong by delta (N,), 2-norm, each with a disk for as many exact ones.
+    """Eigenvalues (N, n) of M (N, n, n) wrong by delta (N,), 2-norm, with PROVEN disks of radii (N, n).
 
     The radii follow from the residual of X^-1 M X - D, computed with its rounding. Where ``safe`` (N,) is
     true the eigenvectors are good enough, and each radius bounds the error of its own eigenvalue. Where disks

@@ -522,7 +522,7 @@ def _majorant_of_two_gains(
 def enough_terms(
     majorant: FloatArray, degree: int, log_tolerance: float, table: FloatArray
 ) -> tuple[int, float]:
-    """Degree p after which the neglected terms sum to less than the tolerance, -1 above MAX_TERMS.
+    """Degree p after which the neglected terms sum to less than the tolerance, PROVEN; -1 above MAX_TERMS.
 
     ``table`` is that of `table_of_radii`. The second result is exp(g(1)), the sum of all r_k: a bound on the
     sum of the Taylor terms, which measures rounding.

@@ -313,7 +313,7 @@ def _extend_tail(blocks: Blocks, last: int, product: FloatArray) -> None:
 
 @compiled(_nrt=False)
 def carry(steps: Steps, count: int, work: ProductWorkspace, flow: FloatArray) -> float:
-    """Flow = product of the steps; returns a bound on the Frobenius norm of its error, rounding included.
+    """Flow = product of the steps; returns a PROVEN bound on the Frobenius norm of the error of the flow.
 
     Q_j is the computed product before step j, E_j the error of step j and S_j the *exact* flow after step j.
     The error of the product is the sum of S_j E_j Q_j (docs/theory/proven_bounds.md, "The product"). S_j is

@@ -5,7 +5,7 @@ time u of the step, |u| <= 1, the equation of motion has the matrix A(u) = sum_j
 The Taylor series starts in the middle of the step. Its sums at u = 1 and u = -1 are the flows E and S from
 the middle to the end and to the start. The flow over the step is P = E S^-1.
 
-PROVEN here: the bound on the error of the flow over a step (`_error_of_step`), and with `carry` the bound on
+Proven here: the bound on the error of the flow over a step (`_error_of_step`), and with `carry` the bound on
 the error of the monodromy matrix (`propagate_points`). Sources: docs/theory/proven_bounds.md, "The matrix of
 a step" and "The product".
 """

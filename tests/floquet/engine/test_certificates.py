@@ -10,7 +10,7 @@ from floquet import (
     PiecewisePolynomial,
     monodromy,
 )
-from floquet.engine.proven import proven_product
+from floquet.engine.formula_steps import proven_product
 from lumped.errors import NumericalError, ParameterError, ResolutionWarning
 
 

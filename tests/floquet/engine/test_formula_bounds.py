@@ -12,7 +12,7 @@ pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 from flint import arb, arb_mat, arb_poly, ctx
 
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, monodromy
-from floquet.engine.proven import _size, _steps, _two_norm
+from floquet.engine.formula_steps import _size, _steps, _two_norm
 from floquet.engine.second_order import from_second_order
 from lumped.errors import NumericalError
 from tests.floquet.engine.judge.balls import worst_ratio
