@@ -146,7 +146,10 @@ def _steps(
     A: PeriodicMatrix, start: FloatArray, end: FloatArray, indivisible: BoolArray, scaling: FloatArray,
     rtol: float,
 ) -> tuple[FloatArray, FloatArray, BoolArray]:  # fmt: skip
-    """Transition matrices of the good steps, PROVEN bounds (k,) on their errors (2-norm), and good steps (k,)."""
+    """Transition matrices of the good steps, PROVEN bounds (k,) on their errors, and good steps (k,).
+
+    Errors are 2-norms.
+    """
     h = end - start
     coefficients, error_of_A = A.taylor(start, h, _DEGREE, scaling)
     B = coefficients * h[:, None, None, None]

@@ -135,8 +135,8 @@ def test_bounds_hold_everywhere_in_boxes(terms, monkeypatch) -> None:
     ends[:, 1, :50] = ends[:, 0, :50] + 0.1 * np.diff(ends, axis=1)[:, 0, :50]
     ends[:, :, 50:] = np.array([-1.0, 1.0])[:, None]  # the whole patch, where the series is cut off
     monkeypatch.setattr(boxes, "_TERMS", terms)
-    assert decided(patch, *ends)[0].any()
-    assert not decided(replace(patch, error=1.0), *ends)[0].any()
+    assert decided(patch, *ends).verdict.any()
+    assert not decided(replace(patch, error=1.0), *ends).verdict.any()
     V, low, high, f, _, _ = bounded_entries(replace(patch, error=0.0), *ends)
     places = (
         ends[:, 0, :, None]
@@ -255,7 +255,7 @@ def test_the_change_of_factors_is_bounded_on_ellipses_of_the_period(law, signs) 
     middle = 2.3
     factors = law(signs)
     at = factors(np.append(T, middle))
-    bound = boxes._moved(np.append(T, middle) / middle, at)
+    bound = boxes._factor_change(np.append(T, middle) / middle, at)
     assert (bound[0] == 0.0).all()  # of the gains that have no factor
     inside = boxes._RADII < 14.0  # beyond, an ellipse reaches the period 0
     assert (bound[1:, boxes._RADII > 16.0] > 1e29).all()
@@ -289,7 +289,7 @@ def change_over(system, factors, T, zeta):
     """
     middle = T.mean()
     at = factors(np.append(np.linspace(*T, 9), middle))
-    moved = boxes._moved(np.append(np.linspace(*T, 9), middle) / middle, at)
+    moved = boxes._factor_change(np.append(np.linspace(*T, 9), middle) / middle, at)
     size = boxes._Size(packed(system), 1.7, np.append(1.0, at[-1]))
     semi = 0.5 * (boxes._RADII + 1.0 / boxes._RADII)
     one = np.ones_like(boxes._RADII)

@@ -123,7 +123,7 @@ def test_eigenvectors_that_are_parallel_to_rounding_bound_nothing() -> None:
     _, low, high, _, _, _ = bounded_entries(patch, x, y)
     assert (high == np.inf).all()
     assert (low == -np.inf).all()
-    assert decided(patch, x, y)[0].tolist() == [0]
+    assert decided(patch, x, y).verdict.tolist() == [0]
 
 
 def test_a_box_is_decided_up_to_where_its_largest_multiplier_is_1() -> None:
@@ -138,8 +138,8 @@ def test_a_box_is_decided_up_to_where_its_largest_multiplier_is_1() -> None:
     ends = np.array([[-1.0, -1e-8], [-1.0, 0.0], [-1e-8, 1e-8], [0.0, 1.0], [1e-8, 1e-5]])
     all_y = np.tile([-1.0, 1.0], (len(ends), 1))
     expected = [1, 0, 0, 0, -1]
-    assert decided(patch_of({(0, 0): middle, (1, 0): change}), ends.T, all_y.T)[0].tolist() == expected
+    assert decided(patch_of({(0, 0): middle, (1, 0): change}), ends.T, all_y.T).verdict.tolist() == expected
     # An error of the patch moves the crossing by at most 8 error reach, and reach is below 10 here.
     wrong = patch_of({(0, 0): middle, (1, 0): change}, 1e-3)
     ends = np.array([[-1.0, -1e-3], [-1.0, -0.1], [1e-3, 1.0], [0.1, 1.0]])
-    assert decided(wrong, ends.T, all_y[:4].T)[0].tolist() == [0, 1, 0, -1]
+    assert decided(wrong, ends.T, all_y[:4].T).verdict.tolist() == [0, 1, 0, -1]
