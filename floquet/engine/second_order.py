@@ -89,8 +89,8 @@ def from_second_order(
     def sampled(times: FloatArray) -> FloatArray:
         return second_order(inverse @ K_of(times) @ T, inverse @ C_of(times) @ T)
 
-    known = [t for B in (damping, stiffness) if isinstance(B, PeriodicMatrix) for t in B.breaks]
-    inside = [t for t in known if 0.0 < t < period]
+    formulas = [t for B in (damping, stiffness) if isinstance(B, PeriodicMatrix) for t in B.breaks]
+    inside = [t for t in formulas if 0.0 < t < period]
     return SecondOrderSystem(sampled, period, (*breakpoints, *inside), vectorized=True, coordinates=T)
 
 

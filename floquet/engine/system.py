@@ -129,7 +129,7 @@ class PeriodicSystem:
         return values
 
     def inside(self, times: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Move times that touch the ends of their interval [start, end] strictly inside it."""
+        """Move times at the ends of an interval [start, end] strictly inside the interval."""
         inset = np.minimum(_INSET * self.period, 0.25 * (end - start))
         return np.clip(times, start + inset, end - inset)
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from floquet.rank_one.piecewise import series_rounding, to_series
+from floquet.rank_one.piecewise import GainValues, series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
 from lumped.mesh.element import BY_APPROACH, BY_RATE
@@ -209,7 +209,7 @@ class MeshGains:
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    ) -> GainValues:
         """See `PolynomialGains`."""
         phases = centre[:, None] + half[:, None] * nodes
         groups = np.zeros((2 * self.parts, *phases.shape, self.normal.size))
@@ -242,7 +242,7 @@ class MeshGains:
                 load = law(xi, number, segment) * factors[element]
                 for part, row in enumerate(rows):
                     groups[2 * part + element] -= load[..., None] * row
-        return groups, errors, rounding_errors
+        return GainValues(groups, errors, rounding_errors)
 
     def _row(self, part: int) -> _RowBounds:
         """Bounds on the row of one part of the gains, without tilt."""
@@ -407,7 +407,7 @@ class OwnGains:
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    ) -> GainValues:
         """See `PolynomialGains`."""
         cycle = np.floor(centre)[:, None]
         ends = self.tables.edges
@@ -423,7 +423,7 @@ class OwnGains:
             by += [force["friction"], force["friction_moment"], force["separating"]]
             gains.append(-np.stack(by, axis=-1) @ self.forces)
         nothing = np.zeros((2, centre.size))
-        return np.stack(gains), nothing, nothing
+        return GainValues(np.stack(gains), nothing, nothing)
 
 
 def _slips(breaks: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:

@@ -168,26 +168,27 @@ def gear_block(
 def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
     """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`.
 
-    With levels, what is proportional to mu is ``varied``: a factor on mu costs nothing, and with two levels
-    mu may also rise and fall as a whole.
+    With levels, the part of the gains that is proportional to mu is ``varied``: a factor on mu then needs no
+    new fit. With two levels mu may also rise and fall as a whole.
     """
     system = feedback.system
     metric = feedback.metric
     m = feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
     mesh = MeshGains(system, metric, feedback.misfit, factor, levels)
-    phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
-    jumps = np.zeros((phases.size, mesh.jumps.shape[0]))
-    jumps[at] = mesh.jumps.T
+    fits = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
+    jumps = np.zeros((fits.phases.size, mesh.jumps.shape[0]))
+    jumps[fits.edge_indices] = mesh.jumps.T
+    polynomials = fits.polynomials
     parts = [
-        Gains(fitted[k], fitted[k + 1], errors[:, k : k + 2], jumps[:, k : k + 2])
-        for k in range(0, len(fitted), 2)
+        Gains(polynomials[k], polynomials[k + 1], fits.errors[:, k : k + 2], jumps[:, k : k + 2])
+        for k in range(0, len(polynomials), 2)
     ]
     return RankOneSystem(
         stiffness=-system.constant[m:, :m],
         damping=-system.constant[m:, m:] - turning,
         v=system.deflection,
-        phases=phases,
+        phases=fits.phases,
         gains=parts[0],
         period=system.period,
         metric=metric,
@@ -308,8 +309,8 @@ class OffLineOfAction:
         # Twelve units of rounding: those of m, c and K, of d^2, of K/m and of the difference.
         e = 12.0 * _U * (decay**2 + square)
         with np.errstate(divide="ignore", invalid="ignore"):
-            wrong = np.minimum(np.sqrt(e), np.where(r == 0.0, np.inf, e / np.abs(root)))
-        errors = wrong + 4.0 * _U * (decay + np.abs(root))
+            root_error = np.minimum(np.sqrt(e), np.where(r == 0.0, np.inf, e / np.abs(root)))
+        errors = root_error + 4.0 * _U * (decay + np.abs(root))
         return cls(np.concatenate([-decay + root, -decay - root]), np.concatenate([errors, errors]))
 
     def multipliers(self, periods: FloatArray) -> tuple[ComplexArray, FloatArray]:
@@ -317,8 +318,8 @@ class OffLineOfAction:
         angle = self.exponents * periods[:, None]
         values = np.exp(angle)
         # Sixteen units: the product, and periods that are made of speeds in rpm.
-        wrong = self.errors * periods[:, None] + 16.0 * _U * np.abs(angle)
-        return values, np.abs(values) * (np.expm1(wrong) + 8.0 * _U)
+        exponent_error = self.errors * periods[:, None] + 16.0 * _U * np.abs(angle)
+        return values, np.abs(values) * (np.expm1(exponent_error) + 8.0 * _U)
 
 
 def gear_pair_multipliers(
@@ -385,16 +386,18 @@ def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
 
 @dataclass(frozen=True, eq=False)
 class RevolutionMultipliers:
-    """Floquet multipliers over the period of teeth that differ; those smaller than their bound are left out.
+    """Floquet multipliers over the period of teeth that differ.
+
+    Multipliers smaller than the bound on their error are left out.
 
     Attributes
     ----------
     multipliers : over the whole period, largest first; 0 where they are below the smallest number
-    rates : |multiplier|^(1/cycles), growth of each in one mesh cycle
-    rate : the largest one; above 1 the motion is unstable
+    rates : |multiplier|^(1/cycles), growth of each motion in one mesh cycle
+    rate : the largest rate; above 1 the motion is unstable
     error : bound on the error of ``rate``, proven for the polynomials of the gains of every mesh cycle
     cycles : mesh cycles of the period
-    healthy_rate : that of the twin with like teeth, by the same method
+    healthy_rate : rate of the twin with like teeth, by the same method
     certificate : "proven"
     """
 
@@ -408,7 +411,7 @@ class RevolutionMultipliers:
 
     @property
     def stable(self) -> bool:
-        """Whether perturbations fade, beyond the error."""
+        """Whether the rate is below 1 by more than its error: perturbations fade."""
         return self.rate + self.error < 1.0
 
 
@@ -417,10 +420,11 @@ def revolution_multipliers(
 ) -> RevolutionMultipliers:
     """Multipliers over a revolution or hunting period of teeth that differ: docs/theory/teeth.md.
 
-    Perturbations see the tangent of the contact about the own static state of every meeting pair. The maps of
-    the mesh cycles are multiplied one after the other and scaled, so that a hunting period of thousands of
-    cycles neither overflows nor underflows. What the mesh does not couple, y_p and y_g off the line of action
-    or on shafts all but the 12 modes of `gear_pair_multipliers` that count most, moves each by itself.
+    Each tooth pair has its own static state, and perturbations see the tangent of the contact about this
+    state. The maps of the mesh cycles are multiplied one after the other and scaled, so that a hunting period
+    of thousands of cycles neither overflows nor underflows. Motions that the mesh does not couple have
+    multipliers of their own: y_p and y_g off the line of action, or on shafts all but the 12 modes of
+    `gear_pair_multipliers` that count most.
 
     Parameters
     ----------
@@ -437,31 +441,34 @@ def revolution_multipliers(
     pair = load_gear_pair(pair)
     rtol = real_number("rtol", rtol, 1e-11, 0.1)
     feedback = feedback_system(GearVariation.of(pair.healthy, supports))
-    like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
+    like_teeth = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
     cycles = period_of(pair)
     laws = ToothLaws(pair, every=True)
     # Errors of the teeth force prescribed contact and do not change it.
     alike = not laws.loaded and len(laws.faults) == 1 and not laws.turning()["amplitude"][:RIPPLES].any()
-    healthy = float(_of_cycles(ToothLaws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
-    # The product of so many does not vanish, and the kernel has as many steps.
-    most = min(_SMALLEST / np.log(min(healthy, 0.99)), 4e4 / (1e3 + like.modal().omega.max() * like.period))
-    block = int(np.clip(most, 1, _BLOCK))
-    values, rates, error = _of_cycles(laws, feedback, like, 1 if alike else cycles, block, rtol)
+    healthy = float(_of_cycles(ToothLaws(pair.healthy, every=True), feedback, like_teeth, 1, 1, rtol)[1][0])
+    # The product of so many cycles does not vanish, and the kernel has enough steps for them.
+    longest = min(
+        _SMALLEST / np.log(min(healthy, 0.99)),
+        4e4 / (1e3 + like_teeth.modal().omega.max() * like_teeth.period),
+    )
+    block = int(np.clip(longest, 1, _BLOCK))
+    values, rates, error = _of_cycles(laws, feedback, like_teeth, 1 if alike else cycles, block, rtol)
     with np.errstate(under="ignore"):
-        whole = values**cycles if alike else values
+        over_period = values**cycles if alike else values
     # What the mesh does not couple has the same multipliers with any teeth.
-    apart = OffLineOfAction.of(feedback)
-    (separate,), (bounds,) = apart.multipliers(np.array([like.period]))
+    off_line = OffLineOfAction.of(feedback)
+    (separate,), (bounds,) = off_line.multipliers(np.array([like_teeth.period]))
     sizes = np.abs(separate)
     high = max(float(rates[0]) + error, float((sizes + bounds).max(initial=0.0)))
     low = max(float(rates[0]) - error, float((sizes - bounds).max(initial=0.0)))
-    whole = np.append(whole, separate**cycles)
+    over_period = np.append(over_period, separate**cycles)
     rates = np.append(rates, sizes)
     order = np.argsort(-rates, kind="stable")
     rate = float(rates[order[0]])
     error = max(high - rate, rate - low)
     healthy = max(healthy, float(sizes.max(initial=0.0)))
-    return RevolutionMultipliers(whole[order], rates[order], rate, error, cycles, healthy)
+    return RevolutionMultipliers(over_period[order], rates[order], rate, error, cycles, healthy)
 
 
 def _of_cycles(
@@ -472,36 +479,41 @@ def _of_cycles(
     The third result is a PROVEN bound on the error of the largest rate. ``block`` cycles at a time are one
     period of the kernel.
     """
-    own = own_tables(laws)
+    tables = own_tables(laws)
     mean = like.mean_of(like.gains.w)
 
     def map_of(first: int) -> FastMonodromy:
         count = min(block, cycles - first)
-        gains = OwnGains(own, feedback.system, first, count)
-        phases, (w, wd), misfit, _ = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
+        gains = OwnGains(tables, feedback.system, first, count)
+        fits = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
+        w, wd = fits.polynomials
         period = count * like.period
-        fits = Gains(w, wd, misfit)
+        block_gains = Gains(w, wd, fits.errors)
         turning = None if like.gyroscopic is None else count * like.gyroscopic
-        some = replace(like, phases=phases / count, gains=fits, period=period, gyroscopic=turning, mean=mean)
-        return fast_monodromies(some, tolerance=max(1e-4 * rtol, 1e-14))
+        cycles_of_block = replace(
+            like, phases=fits.phases / count, gains=block_gains, period=period, gyroscopic=turning, mean=mean
+        )
+        return fast_monodromies(cycles_of_block, tolerance=max(1e-4 * rtol, 1e-14))
 
-    found = in_threads(map_of, range(0, cycles, block))
-    maps, errors = (np.concatenate([getattr(f, name) for f in found]) for name in ("matrices", "errors"))
+    flows = in_threads(map_of, range(0, cycles, block))
+    maps, errors = (np.concatenate([getattr(f, name) for f in flows]) for name in ("matrices", "errors"))
     # Powers of two scale without rounding.
     flow = np.eye(maps.shape[1])
     halvings = np.zeros(errors.size, dtype=np.int64)
-    for n, one in enumerate(maps):
-        flow = one @ flow
+    for n, cycle_map in enumerate(maps):
+        flow = cycle_map @ flow
         halvings[n] = np.frexp(np.abs(flow).max())[1]
         flow = np.ldexp(flow, -halvings[n])
     scaled = np.ldexp(maps, -halvings[:, None, None])
     values, bounds = multipliers_with_bounds(*proven_product(scaled, np.ldexp(errors, -halvings)))
     radius, error = map(float, radii_with_bounds(values, bounds))
-    kept = values[(np.abs(values) > bounds) | (values == values[0])]
+    significant = values[(np.abs(values) > bounds) | (values == values[0])]
     logarithm = float(halvings.sum()) * np.log(2.0)
     interval = [max(radius - error, 0.0), radius + error]
     with np.errstate(under="ignore", divide="ignore"):
-        rates, (low, high) = (np.exp((np.log(m) + logarithm) / cycles) for m in (np.abs(kept), interval))
-        whole = kept * np.exp(min(logarithm, _LARGEST))
+        rates, (low, high) = (
+            np.exp((np.log(m) + logarithm) / cycles) for m in (np.abs(significant), interval)
+        )
+        over_period = significant * np.exp(min(logarithm, _LARGEST))
     rounding = 8.0 * _U * (2.0 + abs(np.log(high))) * high
-    return whole, rates, float(max(high - rates[0], rates[0] - low) + rounding)
+    return over_period, rates, float(max(high - rates[0], rates[0] - low) + rounding)

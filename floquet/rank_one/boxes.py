@@ -158,7 +158,10 @@ def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray)
 
 
 def _around(poly: FloatArray, middle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values of polynomials (Q, P, m, d+1) in the middles of cells, (Q, P cells, m), and their change within."""
+    """Values of polynomials (Q, P, m, d+1) in the middles of cells, and bounds on their change within cells.
+
+    Both are (Q, P cells, m).
+    """
     j = np.arange(poly.shape[3])
     choose = np.array([[math.comb(a, b) for b in j] for a in j], dtype=float)
     power = np.maximum(j[:, None] - j, 0)
