@@ -1,8 +1,8 @@
 """Charts over two axes that are evaluated near the edges of instability and interpolated elsewhere.
 
-A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
-cycles in a unit of time, is bilinear in it to the tolerance, and no two multipliers may meet in it; else it
-is cut. Whole rows of the second axis seed the search.
+A box of nodes is a leaf when three conditions hold: all known verdicts in the box are equal; the growth rate
+g = n ln(radius), with n cycles in a unit of time, is bilinear to the tolerance; no two multipliers may meet.
+Any other box is cut. Complete rows of the second axis seed the search.
 
 Sources: docs/theory/floquet.md, "Charts that refine themselves".
 """
@@ -19,19 +19,20 @@ from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progres
 
 #: Largest error of the spectral radius at an interpolated node, above 1 relative to the radius.
 TOLERANCE = 4e-3
-#: Nodes along the first axis of a box to begin with; the second axis is whole.
+#: Nodes along the first axis of the boxes of the first round; these boxes have all nodes of the second axis.
 _FIRST = 64
 #: Misfits along both axes within this factor cut a box along both.
 _ALIKE = 2.0
 _LEAST_RADIUS = 1e-12
-#: Largest excess of the radius over 1 in an unstable box that is no longer cut, over the least: near an edge
-#: it falls to 0, and may do so between nodes.
+#: Largest over least excess of the radius above 1 in an unstable box that is a leaf. Near an edge of
+#: instability the excess falls to 0, perhaps between nodes.
 _EXCESS = 8.0
-#: Change of the `gaps` in a box that is no longer cut for their sake, over the least of them.
+#: Largest change of the `gaps` in a box that is a leaf, over the least of these gaps.
 _PER_DECAY = 1.5
 
 #: Flat indices (k,) of nodes -> their spectral radius, verdict and `gaps` (k,); gaps of 0 are not followed.
 Ask = Callable[[IntArray], tuple[FloatArray, IntArray, FloatArray]]
+#: Indices of the first and the last node along the first axis, then along the second axis.
 Box = tuple[int, int, int, int]
 
 
@@ -163,9 +164,9 @@ class _State:
     def cuts(self, box: Box, tolerance: float) -> list[Box]:
         """The parts into which a box is cut; an empty list: the box is a leaf."""
         a, b, c, d = box
-        wide = b - a > 1
-        tall = d - c > 1
-        if not (wide or tall):
+        divisible_along_first = b - a > 1
+        divisible_along_second = d - c > 1
+        if not (divisible_along_first or divisible_along_second):
             return []
         i, j, error = self.misfit(box)
         verdict = self.verdict[i, j]
@@ -183,9 +184,9 @@ class _State:
                 if not (meeting or (verdict[0] < 0 and excess.max() > _EXCESS * excess.min())):
                     return []
         along, up = self._ways(box, i, j, error, mixed=mixed, meeting=meeting)
-        along = (along and wide) or not tall
-        up = (up and tall) or not wide
-        return parts_of(box, along=along and wide, up=up and tall)
+        along = (along and divisible_along_first) or not divisible_along_second
+        up = (up and divisible_along_second) or not divisible_along_first
+        return parts_of(box, along=along and divisible_along_first, up=up and divisible_along_second)
 
     def _ways(
         self, box: Box, i: IntArray, j: IntArray, error: FloatArray, *, mixed: bool, meeting: bool

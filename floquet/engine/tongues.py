@@ -202,7 +202,8 @@ def unstable_intervals(
 ) -> list[UnstableInterval]:
     """Intervals of instability with at least one of the nodes (k,) inside.
 
-    ``xtol`` is the relative error of their ends. First, nodes are added around local maxima of the radius near 1. A radius above 1 + threshold is unstable.
+    ``xtol`` is the relative error of their ends. First, nodes are added around local maxima of the radius
+    near 1. A radius above 1 + threshold is unstable.
     """
     nodes, values = _refine_maxima(radius, nodes, radius(nodes))
     unstable = values > 1.0 + threshold

@@ -263,7 +263,7 @@ class MeshGains:
         return float(np.linalg.norm(self.apart * np.sqrt(self.metric))) if part == 0 else 0.0
 
     def _reach(self, size: FloatArray, mu: FloatArray, tilt: FloatArray, part: int) -> FloatArray:
-        """Bound on the norm of what one pair adds to a gain, from bounds on its load, |mu| and tilt."""
+        """Bound on the norm of the share of one pair in a gain, from bounds on load, |mu| and tilt."""
         row_bounds = self._row(part)
         level_arm = self._row(1).arm if self.levels and part else row_bounds.arm
         row = (

@@ -40,9 +40,8 @@ MODES = 12
 _EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _LARGEST = 700.0  # growth beyond the largest number, as a logarithm
-# mesh cycles that are worked on together, logarithm of their product
-_BLOCK = 32
-_SMALLEST = -250.0
+_BLOCK = 32  # mesh cycles that are one period of the kernel, at most
+_SMALLEST = -250.0  # logarithm of the smallest product of these cycles
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +52,8 @@ class Feedback:
     ----------
     system : x' = A(t) x in these coordinates; modes of a pair on shafts have unit modal mass
     metric : (m,) weights of the norm of errors; they make the frictionless mesh symmetric
-    separate : decay rates [1/s] and squares of the natural frequencies (k,) of what moves by itself: on
-        springs off the line of action, on shafts the modes that count least
+    separate : decay rates [1/s] and squares of the natural frequencies (k,) of motions that the mesh does not
+        couple: on springs off the line of action, on shafts the modes of least importance
     misfit : (pieces,) bound on the error of the polynomials of mu
     """
 
@@ -65,7 +64,7 @@ class Feedback:
 
 
 def feedback_system(variation: GearVariation) -> Feedback:
-    """Return what the mesh couples of a gear pair."""
+    """Return the coordinates of a gear pair that the mesh couples."""
     system = LTVSystem.of(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
     interval = system.cycle.elements.friction.interval
     misfit = variation.friction_scale * friction_misfit(variation.pair, interval)
@@ -77,19 +76,19 @@ def feedback_system(variation: GearVariation) -> Feedback:
 
 
 def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
-    """The modes that count most of a pair on shafts, the others apart."""
+    """The modes of largest importance of a pair on shafts; the other modes are separate."""
     m = system.deflection.size
     mesh = system.cycle.mean_stiffness * np.outer(system.deflection, system.deflection)
     system = _in_modes(system, eigh(mesh - system.constant[m:, :m])[1])
-    whole = _in_modes(system, _turn(system))
-    order = np.argsort(-importance(whole), kind="stable")
-    leading, rest = (np.sort(part) for part in (order[:MODES], order[MODES:]))
-    separate = -0.5 * np.diag(whole.constant[m:, m:])[rest], _squares(whole)[rest]
-    return Feedback(_in_modes(whole, np.eye(m)[:, leading]), np.ones(leading.size), separate, misfit)
+    all_modes = _in_modes(system, _turn(system))
+    order = np.argsort(-importance(all_modes), kind="stable")
+    leading, separate_modes = (np.sort(part) for part in (order[:MODES], order[MODES:]))
+    separate = -0.5 * np.diag(all_modes.constant[m:, m:])[separate_modes], _squares(all_modes)[separate_modes]
+    return Feedback(_in_modes(all_modes, np.eye(m)[:, leading]), np.ones(leading.size), separate, misfit)
 
 
 def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
-    """The same in the coordinates whose unit vectors are the columns of ``modes`` (m, k), orthonormal."""
+    """The system in the coordinates whose unit vectors are the columns of ``modes`` (m, k), orthonormal."""
     both = block_diag(modes, modes)
     return replace(
         system,
@@ -106,29 +105,32 @@ def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
 
 def _squares(system: LTVSystem) -> FloatArray:
     """Squares of the natural frequencies (m,) with the mean stiffness of the mesh, without friction."""
-    v, m = system.deflection, system.deflection.size
+    v = system.deflection
+    m = v.size
     return np.asarray(system.cycle.mean_stiffness * v**2 - np.diag(system.constant[m:, :m]))
 
 
 def _turn(system: LTVSystem) -> FloatArray:
     """Combinations (m, m) of modes of equal frequency: one has all deflection, one all gyroscopic moments."""
     squares = _squares(system)
-    turn = np.eye(squares.size)
+    combinations = np.eye(squares.size)
     for group in np.split(
         np.arange(squares.size), 1 + np.flatnonzero(np.diff(squares) > _EQUAL * squares[1:])
     ):
-        own = np.ix_(group, group)
+        block = np.ix_(group, group)
         first = system.deflection[group]
-        leading = np.column_stack([first, system.gyroscopic[own] @ first, np.eye(group.size)])
+        leading = np.column_stack([first, system.gyroscopic[block] @ first, np.eye(group.size)])
         leading /= np.maximum(np.linalg.norm(leading, axis=0), np.finfo(float).tiny)
-        turn[own] = np.linalg.qr(leading)[0]
-    return turn
+        combinations[block] = np.linalg.qr(leading)[0]
+    return combinations
 
 
 def importance(system: LTVSystem) -> FloatArray:
-    """Share (m,) of each mode on shafts in the static deflection by the mesh, and what it gets of others.
+    """Importance (m,) of each mode on shafts for the deflection of the mesh.
 
-    By damping and gyroscopic moments, each at the speed where the mesh frequency is that mode's.
+    The share of the mode in the static deflection by the mesh, plus the shares of other modes that damping
+    and gyroscopic moments couple to the mode. The coupling is that at the speed at which the mesh frequency is
+    the frequency of the mode.
     """
     v = system.deflection
     squares = _squares(system)
@@ -138,8 +140,8 @@ def importance(system: LTVSystem) -> FloatArray:
     m = squares.size
     damping = system.constant[m:, m:] + g.omega_pinion * system.gyroscopic
     coupling = omega * (np.abs(damping) + omega / system.pair.pinion.teeth * np.abs(system.gyroscopic))
-    apart = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
-    ratio = coupling / apart
+    distance = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
+    ratio = coupling / distance
     np.fill_diagonal(ratio, 0.0)
     return np.asarray(share + np.square(ratio) @ share)
 
@@ -149,15 +151,15 @@ def gear_block(
 ) -> RankOneSystem:
     """Return z = (q, x_p, x_g) of a gear pair, or on shafts modes: z'' + D z' + L z + w v.z + wd v.z' = 0.
 
-    v . z is the dynamic transmission error, on springs with v = (1, 1, -1); w and wd collect what each pair's
-    normal load and friction do to each coordinate. Torques and unloaded tooth errors force the motion and do
-    not act on its stability. The metric makes the frictionless mesh symmetric: (m_e, m_p, m_g) on springs,
+    v . z is the dynamic transmission error, on springs with v = (1, 1, -1). w and wd are the effects of
+    normal load and friction of all pairs on each coordinate. Torques and unloaded tooth errors force the motion and
+    do not change its stability. The metric makes the frictionless mesh symmetric: (m_e, m_p, m_g) on springs,
     and one for modes, which have unit modal mass.
 
     Parameters
     ----------
     source : a gear pair, or a variation from a chart
-    rtol : error of the fitted polynomials relative to the largest gain; it becomes part of the error bounds
+    rtol : error of the fitted polynomials relative to the largest gain, which is part of the error bounds
     supports : of a pair: "springs", its ``bearings``, or its "shafts"; by default the shafts if it has them
     """
     rtol = real_number("rtol", rtol, 1e-14, 0.1)
@@ -201,15 +203,15 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
-    They do not include the double +1 of the free rotation: angle and speed of the pair are arbitrary.
+    The double +1 of the free rotation is not included: angle and speed of the pair are arbitrary.
 
     Attributes
     ----------
     feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable; on shafts
-        those of the modes that count most
-    oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings;
-        on shafts those of the other modes, each by itself
-    variation : the pair, as it was varied
+        of the modes of largest importance
+    oloa : (4,) of y_p and y_g, two each. Friction drives these motions and they do not act back, so their
+        multipliers are those of the bearings. On shafts of the other modes, each for itself
+    variation : the pair with the changes of the chart point
     """
 
     feedback: ComplexArray
@@ -356,23 +358,23 @@ def gear_pair_multipliers(
     variation = GearVariation.of(source, supports)
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
     feedback = feedback_system(variation)
-    own: Spectrum
+    spectrum: Spectrum
     if isinstance(method, str) and method == "taylor":
-        own = _proven(feedback, variation.stiffness_variation, rtol)
+        spectrum = _proven(feedback, variation.stiffness_variation, rtol)
     else:
-        own = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
-    (oloa,), (oloa_errors,) = OffLineOfAction.of(feedback).multipliers(np.array([own.period]))
-    values = np.concatenate([own.multipliers, oloa])
-    errors = np.concatenate([own.multiplier_errors, oloa_errors])
+        spectrum = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
+    (oloa,), (oloa_errors,) = OffLineOfAction.of(feedback).multipliers(np.array([spectrum.period]))
+    values = np.concatenate([spectrum.multipliers, oloa])
+    errors = np.concatenate([spectrum.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
     return GearPairMultipliers(
         multipliers=values[order],
         multiplier_errors=errors[order],
-        period=own.period,
-        feedback=own.multipliers,
+        period=spectrum.period,
+        feedback=spectrum.multipliers,
         oloa=oloa,
         variation=variation,
-        certificate=own.certificate,
+        certificate=spectrum.certificate,
     )
 
 

@@ -326,13 +326,13 @@ def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray)
         a, b, c, d = np.array(batch).T
         result, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
         for k, (i, j, p, q) in enumerate(batch):
-            wide = j - i > 1
-            tall = q - p > 1
+            divisible_in_period = j - i > 1
+            divisible_in_damping = q - p > 1
             if result[k]:
                 verdict[i:j, p:q] = result[k]
-            elif wide or tall:
-                along = wide and (2.0 * across[k] >= upward[k] or not tall)
-                up = tall and (2.0 * upward[k] >= across[k] or not wide)
+            elif divisible_in_period or divisible_in_damping:
+                along = divisible_in_period and (2.0 * across[k] >= upward[k] or not divisible_in_damping)
+                up = divisible_in_damping and (2.0 * upward[k] >= across[k] or not divisible_in_period)
                 boxes += parts_of((i, j, p, q), along=along, up=up)
     return verdict
 

@@ -183,7 +183,7 @@ def _padded(series: FloatArray, degree: int) -> FloatArray:
 
 
 def _drop_powers(series: FloatArray, errors: FloatArray, allowed: FloatArray) -> None:
-    """Set to zero the highest coefficients whose sum is within ``allowed``, and add this sum to the errors."""
+    """Drop the highest coefficients whose sum is within ``allowed``, and add the sum to the errors."""
     size = np.sqrt(np.square(series).sum(axis=3))  # (G, pieces, d+1); |T_n| <= 1
     beyond = np.cumsum(size[:, :, ::-1], axis=2)[:, :, ::-1]
     small = beyond <= np.maximum(allowed, 4e-16 * size.max(axis=2))[:, :, None]

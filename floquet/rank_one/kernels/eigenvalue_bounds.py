@@ -154,7 +154,7 @@ def _solve_transposed(factors: Factors, y: ComplexArray) -> None:
 
 @compiled(_nrt=False, forceinline=True)
 def _scale_to_each_other(x: ComplexArray, y: ComplexArray) -> None:
-    """Scale x and y of length one so that y^T x = 1 and |x| = |y|; x is nan where they are orthogonal."""
+    """Scale unit vectors x and y to y^T x = 1 and |x| = |y|; x becomes nan if the vectors are orthogonal."""
     n = x.size
     dot = 0.0 + 0.0j
     for i in range(n):

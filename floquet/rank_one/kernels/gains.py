@@ -219,7 +219,7 @@ class Series(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Arrays of one thread that every step overwrites, and what all points share.
+    """Arrays of one thread: constants of the problem, and arrays that every step overwrites.
 
     Attributes
     ----------

@@ -170,7 +170,7 @@ def gram(A: FloatArray, out: FloatArray) -> None:
 def spectral(A: FloatArray, square: FloatArray) -> float:
     """Bound on the 2-norm: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
 
-    Of a matrix so small that fourth powers of its entries underflow, the Frobenius norm.
+    The Frobenius norm where fourth powers of the entries would underflow.
     """
     size = frobenius(A)
     if size < 1e-60:

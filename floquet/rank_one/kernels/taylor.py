@@ -247,7 +247,7 @@ class _PowerSums(NamedTuple):
 def _power_sums(eta: FloatArray, q: int, c: int, terms: int) -> _PowerSums:
     """Sums of coordinate q in eight columns from c on, smallest terms first.
 
-    A rate is named after the powers of eta from which it comes, less one: odd powers of eta give even_rate.
+    The derivative of an odd power is an even power: odd powers of eta give ``even_rate``.
     """
     largest_even = terms + 1 - (terms + 1) % 2
     even = zero()
@@ -407,7 +407,7 @@ def _steps_of_piece(
 
 @compiled(_nrt=False, forceinline=True)
 def steps_of_period(problem: Problem, point: Point, limits: Limits, work: Workspace, steps: Steps) -> int:
-    """Write all steps of one period at one point, with bounds on their errors.
+    """Write all steps of one period at one point, and bounds on the errors of the steps.
 
     Returns the number of steps; -1 if a period would take more steps than there is memory for, or a step more
     than MAX_TERMS.
