@@ -129,8 +129,8 @@ def importance(system: LTVSystem) -> FloatArray:
     """Importance (m,) of each mode on shafts for the deflection of the mesh.
 
     The share of the mode in the static deflection by the mesh, plus the shares of other modes that damping
-    and gyroscopic moments couple to the mode. The coupling is that at the speed at which the mesh frequency is
-    the frequency of the mode.
+    and gyroscopic moments couple to the mode. The coupling is that at the speed at which the mesh frequency
+    is the frequency of the mode.
     """
     v = system.deflection
     squares = _squares(system)
@@ -152,9 +152,9 @@ def gear_block(
     """Return z = (q, x_p, x_g) of a gear pair, or on shafts modes: z'' + D z' + L z + w v.z + wd v.z' = 0.
 
     v . z is the dynamic transmission error, on springs with v = (1, 1, -1). w and wd are the effects of
-    normal load and friction of all pairs on each coordinate. Torques and unloaded tooth errors force the motion and
-    do not change its stability. The metric makes the frictionless mesh symmetric: (m_e, m_p, m_g) on springs,
-    and one for modes, which have unit modal mass.
+    normal load and friction of all pairs on each coordinate. Torques and unloaded tooth errors force the
+    motion and do not change its stability. The metric makes the frictionless mesh symmetric: (m_e, m_p, m_g)
+    on springs, and one for modes, which have unit modal mass.
 
     Parameters
     ----------

@@ -45,14 +45,14 @@ def exact_entries(
     inverse = balls(V).inv()
     vectors = balls(V)
     parts = arb_mat([real_balls(M).entries() for M in terms.values()])
-    found = []
+    entries = []
     for x, y in box[:, 0] + SHARES * (box[:, 1] - box[:, 0]):
         row = arb_mat([[arb(x).chebyshev_t(a) * arb(y).chebyshev_t(b) for a, b in terms]]) * parts
         M = arb_mat(6, 6, row.entries())
-        found.append(least_moduli(inverse * M * vectors))
+        entries.append(least_moduli(inverse * M * vectors))
     rows = np.linalg.norm(least_moduli(inverse), axis=1)
     reach = rows[:, None] * np.linalg.norm(np.abs(V), axis=0) * (1.0 - 1e-14)  # rounding of the norms
-    return found, reach
+    return entries, reach
 
 
 def judged(
@@ -68,9 +68,9 @@ def judged(
     allowed = ALLOWED * sum(np.linalg.norm(M) for M in terms.values())
     sums = []
     for k, box in enumerate(boxes):
-        found, reach = exact_entries(terms, V[k], box)
-        largest = np.maximum.reduce(found) + error * reach
-        least = np.minimum.reduce(found) * (1.0 + 1e-14) - error * reach  # moduli from above
+        entries, reach = exact_entries(terms, V[k], box)
+        largest = np.maximum.reduce(entries) + error * reach
+        least = np.minimum.reduce(entries) * (1.0 + 1e-14) - error * reach  # moduli from above
         assert (np.diagonal(largest) <= high[k]).all()
         assert (np.diagonal(least) >= low[k]).all()
         largest[range(6), range(6)] = 0.0
