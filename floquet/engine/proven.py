@@ -2,7 +2,7 @@
 
 "Proven" means: the bound holds for the numbers as given; truncation, polynomials in place of formulas and the
 rounding of every operation are in the bound. Each function below has the word PROVEN in its docstring. The
-sections are those of docs/theory/proven_bounds.md. tests/floquet/test_proven.py keeps this table complete.
+sections are those of docs/theory/proven_bounds.md. tests/floquet/engine/test_proven.py keeps this table complete.
 
 | statement | file: function | section |
 |---|---|---|

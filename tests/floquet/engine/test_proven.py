@@ -1,4 +1,4 @@
-"""Is the table of proven statements, floquet/proven.py, complete, and do its functions and sections exist?"""
+"""Is the table of floquet/engine/proven.py complete, and do its functions and sections exist?"""
 
 import ast
 import re
@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-import floquet.proven
+import floquet.engine.proven
 
-ROOT = Path(floquet.proven.__file__).parents[1]
+ROOT = Path(floquet.engine.proven.__file__).parents[2]
 ROW = re.compile(r"^\| (?!statement)(.+?) \| (\S+\.py): (\w+) \| (.+?) \|$", re.MULTILINE)
-ROWS = ROW.findall(floquet.proven.__doc__ or "")
+ROWS = ROW.findall(floquet.engine.proven.__doc__ or "")
 MARK = re.compile(r"\bPROVEN\b")
 
 
