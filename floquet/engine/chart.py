@@ -71,7 +71,7 @@ class ChartPoints:
 
     Attributes
     ----------
-    radius, error : (count,) spectral radius and what it may be wrong by
+    radius, error : (count,) spectral radius and the bound on its error, or an estimate of the error
     verdict : (count,) 1 stable, 0 undecided, -1 unstable
     proven : (count,) whether the error is a proven bound
     known : (count,) whether the point was evaluated; the others are interpolated
@@ -100,7 +100,7 @@ class ChartPoints:
         proven: bool | BoolArray,
         coupled: int | None = None,
     ) -> None:
-        """Take multipliers (k, size) of points (k,), the ``coupled`` first, and bounds on their errors."""
+        """Store multipliers (k, size) of points (k,) and bounds on their errors, the ``coupled`` first."""
         radius, error = radii_with_bounds(values, errors)
         self.radius[points] = radius
         self.error[points] = error
@@ -138,9 +138,12 @@ def refine_planes(
 ) -> None:
     """Evaluate a chart near its edges of instability and interpolate the rest, see `refine`.
 
-    ``plane`` names the two axes to refine over, the others are gone through value by value; ``cycles`` are
-    those in a unit of time at the values of its first axis. Where regions are widest at the lowest value of
-    its second axis (``lowest_alone``) that row alone seeds the search, else three rows do.
+    Parameters
+    ----------
+    plane : the two axes over which the chart refines itself, at each value of the other axes
+    cycles : cycles in a unit of time at the values of the first axis of the plane
+    lowest_alone : True: the row at the lowest value of the second axis seeds the search, where regions are
+        widest at this value; False: three rows seed the search
     """
     names = list(grid)
     order = [names.index(name) for name in plane] + [i for i, name in enumerate(names) if name not in plane]
@@ -152,13 +155,19 @@ def refine_planes(
     points.gap = np.zeros(points.radius.size)
     smooth = np.ones(first.size) if cycles is None else cycles[first]
     for k in range(index.shape[2]):
-        here = index[:, :, k].ravel()
+        plane_points = index[:, :, k].ravel()
 
-        def ask(nodes: IntArray, here: IntArray = here) -> tuple[FloatArray, IntArray, FloatArray]:
-            at = here[nodes]
-            evaluate(at)
+        def ask(
+            nodes: IntArray, plane_points: IntArray = plane_points
+        ) -> tuple[FloatArray, IntArray, FloatArray]:
+            point_numbers = plane_points[nodes]
+            evaluate(point_numbers)
             assert points.gap is not None
-            return points.radius[at], points.verdict[at].astype(np.intp), points.gap[at]
+            return (
+                points.radius[point_numbers],
+                points.verdict[point_numbers].astype(np.intp),
+                points.gap[point_numbers],
+            )
 
         def tell(fraction: float, stage: str = "", /, k: int = k) -> None:
             if progress is not None:
@@ -166,9 +175,9 @@ def refine_planes(
 
         result = refined(index.shape[:2], smooth, ask, rows=rows, progress=tell)
         rest = ~result.known.ravel()
-        points.radius[here[rest]] = result.radius.ravel()[rest]
-        points.error[here[rest]] = result.misfit.ravel()[rest]
-        points.verdict[here[rest]] = result.verdict.ravel()[rest]
+        points.radius[plane_points[rest]] = result.radius.ravel()[rest]
+        points.error[plane_points[rest]] = result.misfit.ravel()[rest]
+        points.verdict[plane_points[rest]] = result.verdict.ravel()[rest]
         tell(1.0)
 
 
@@ -285,11 +294,16 @@ def chart_dataset(grid: Mapping[str, FloatArray], points: ChartPoints) -> xr.Dat
     }
     if points.multipliers is not None and points.multiplier_errors is not None:
         full = (*dims, "multiplier")
-        wide = (*shape, -1)
+        shape_of_multipliers = (*shape, -1)
         text = "Floquet multipliers, largest modulus first"
-        variables["multipliers"] = (full, points.multipliers.reshape(wide), "1", text)
+        variables["multipliers"] = (full, points.multipliers.reshape(shape_of_multipliers), "1", text)
         text = "bound on the error of each multiplier"
-        variables["multiplier_errors"] = (full, points.multiplier_errors.reshape(wide), "1", text)
+        variables["multiplier_errors"] = (
+            full,
+            points.multiplier_errors.reshape(shape_of_multipliers),
+            "1",
+            text,
+        )
     dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
     dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
     proven = points.proven

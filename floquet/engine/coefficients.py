@@ -1,7 +1,7 @@
-"""Coefficients of A(t), and matrices of them, that are known as formulas, so that all can be bounded.
+"""Coefficients of A(t) that are given as formulas, and matrices of such coefficients.
 
 Piecewise polynomials and Fourier series, their sums and products. Each gives its Taylor polynomial on an
-interval with a bound on what that leaves out and on its rounding: what a callable cannot tell.
+interval with a bound on the remainder and on the rounding. A callable cannot give such a bound.
 
 Sources: docs/theory/proven_bounds.md, "Coefficients given as formulas".
 """
@@ -27,7 +27,7 @@ class Coefficient(ABC):
 
     Attributes
     ----------
-    breaks : times at which it jumps or has a kink [s]
+    breaks : times at which the function jumps or has a kink [s]
     """
 
     breaks: tuple[float, ...] = ()
@@ -44,21 +44,24 @@ class Coefficient(ABC):
         """
 
     def repeats(self, period: float) -> bool:
-        """Whether it is the same one period later; one with breaks is asked for its first period only."""
+        """Whether the function has the same values one period later.
+
+        True for a function with breaks: only its first period is used.
+        """
         if self.breaks:
             return True
         times = period * np.array([0.0, 0.17, 0.31, 0.47, 0.61, 0.83])
-        now = self(times)
+        first = self(times)
         later = self(times + period)
-        return bool(np.abs(later - now).max() <= 1e-9 * np.abs(now).max())
+        return bool(np.abs(later - first).max() <= 1e-9 * np.abs(first).max())
 
     def __add__(self, other: Coefficient | float) -> Coefficient:
         """The sum."""
-        return _Sum(self, _known(other))
+        return _Sum(self, _as_coefficient(other))
 
     def __mul__(self, other: Coefficient | float) -> Coefficient:
         """The product."""
-        return _Product(self, _known(other))
+        return _Product(self, _as_coefficient(other))
 
     def __neg__(self) -> Coefficient:
         """The negative."""
@@ -66,7 +69,7 @@ class Coefficient(ABC):
 
     def __sub__(self, other: Coefficient | float) -> Coefficient:
         """The difference."""
-        return self + _known(other) * -1.0
+        return self + _as_coefficient(other) * -1.0
 
     __radd__ = __add__
     __rmul__ = __mul__
@@ -81,8 +84,8 @@ class PiecewisePolynomial(Coefficient):
 
     Parameters
     ----------
-    breaks : (P+1,) ends of the pieces [s]; beyond them the first and the last piece go on
-    coefficients : (P, d+1) of the powers of the time since the start of the piece, lowest first
+    breaks : (P+1,) ends of the pieces [s]; the first and the last piece continue beyond the ends
+    coefficients : (P, d+1) of the powers of the time since the start of the piece, lowest power first
     """
 
     def __init__(self, breaks: npt.ArrayLike, coefficients: npt.ArrayLike) -> None:
@@ -106,24 +109,24 @@ class PiecewisePolynomial(Coefficient):
         return value
 
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
-        """See `Coefficient`; the place since the start of the piece is wrong by 2 u of the times."""
+        """See `Coefficient`; the time since the start of the piece is wrong by 2 u of the times."""
         piece = self._piece(start)  # the middle of a piece one unit in the last place wide rounds to its end
         x = start - self._ends[piece]
         rows = self._rows[piece]
-        most = rows.shape[1] - 1
+        highest = rows.shape[1] - 1
         reach = np.abs(x) + length
-        sizes = np.abs(rows) * reach[:, None] ** np.arange(most + 1)
-        slope = (sizes * np.arange(most + 1)).sum(axis=1) / reach
+        sizes = np.abs(rows) * reach[:, None] ** np.arange(highest + 1)
+        slope = (sizes * np.arange(highest + 1)).sum(axis=1) / reach
         place = 4.0 * _U * (np.abs(start) + np.abs(self._ends[piece]) + length)
-        moved = rows.copy()
-        for j in range(most):
-            for i in range(most - 1, j - 1, -1):
-                moved[:, i] += x * moved[:, i + 1]
-        moved *= length[:, None] ** np.arange(most + 1)
-        errors = (4.0 * most + 8.0) * _U * sizes.sum(axis=1) + place * slope
-        errors += np.abs(moved[:, degree + 1 :]).sum(axis=1)
+        shifted = rows.copy()
+        for j in range(highest):
+            for i in range(highest - 1, j - 1, -1):
+                shifted[:, i] += x * shifted[:, i + 1]
+        shifted *= length[:, None] ** np.arange(highest + 1)
+        errors = (4.0 * highest + 8.0) * _U * sizes.sum(axis=1) + place * slope
+        errors += np.abs(shifted[:, degree + 1 :]).sum(axis=1)
         out = np.zeros((start.size, degree + 1))
-        out[:, : most + 1] = moved[:, : degree + 1]
+        out[:, : highest + 1] = shifted[:, : degree + 1]
         return out, errors
 
 
@@ -157,7 +160,8 @@ class FourierSeries(Coefficient):
         """See `Coefficient`; cos and sin of the library are taken to be right to 4 u."""
         angle = start[:, None] * self._omega * self._order
         turn = length[:, None] * self._omega * self._order
-        cos, sin = np.cos(angle), np.sin(angle)
+        cos = np.cos(angle)
+        sin = np.sin(angle)
         derivatives = [self._a * cos + self._b * sin, self._b * cos - self._a * sin]
         size = np.abs(self._a) + np.abs(self._b)
         out = np.zeros((start.size, degree + 1))
@@ -211,15 +215,15 @@ class _Product(Coefficient):
         return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)
 
 
-def _known(value: Coefficient | float) -> Coefficient:
-    """A coefficient; numbers are constants."""
+def _as_coefficient(value: Coefficient | float) -> Coefficient:
+    """A coefficient as it is; a number as a constant coefficient."""
     if isinstance(value, Coefficient):
         return value
     return FourierSeries(1.0, real_number("coefficient", value))
 
 
 class PeriodicMatrix:
-    """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...: a `PeriodicSystem` of it has proven bounds.
+    """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...: a `PeriodicSystem` of such a matrix has PROVEN bounds.
 
     Parameters
     ----------
@@ -277,18 +281,18 @@ class PeriodicMatrix:
         out[:, 0] = matrices[0]
         rounded = (len(self.functions) + 2.0) * _U
         total = np.full(start.size, inexact[0] + rounded * sizes[0])
-        for function, matrix, size, off in zip(
+        for function, matrix, size, matrix_error in zip(
             self.functions, matrices[1:], sizes[1:], inexact[1:], strict=True
         ):
             series, error = function.taylor(start, length, degree)
             out += series[:, :, None, None] * matrix
             reach = np.abs(series).sum(axis=1) + error
-            total += error * (size + off) + reach * (off + rounded * size)
+            total += error * (size + matrix_error) + reach * (matrix_error + rounded * size)
         return out, total * (1.0 + 1e-9)
 
 
 def square(field: str, value: npt.ArrayLike, n: int | None = None) -> FloatArray:
-    """Return a square matrix, of n rows where n is given; a number is a matrix of one row; else refuse it."""
+    """Return a square matrix of n rows; n None: of any number of rows. A number is a matrix of one row."""
     matrix = real_array(field, value)
     matrix = matrix.reshape(1, 1) if matrix.ndim == 0 else matrix
     rows = n or len(matrix)

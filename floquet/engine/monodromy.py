@@ -12,11 +12,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from floquet.engine.coefficients import PeriodicMatrix
+from floquet.engine.formula_steps import proven_propagation
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
 from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.proven import proven_propagation
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import of_type, real_number, whole_number
 from lumped.errors import NumericalError
@@ -150,8 +150,8 @@ def _record(
     )
 
 
-def _proven(system: PeriodicSystem, known: PeriodicMatrix, rtol: float, max_substeps: int) -> Monodromy:
-    propagation, M, delta = proven_propagation(system, known, rtol, max_substeps)
+def _proven(system: PeriodicSystem, A: PeriodicMatrix, rtol: float, max_substeps: int) -> Monodromy:
+    propagation, M, delta = proven_propagation(system, A, rtol, max_substeps)
     size = max(float(np.linalg.norm(M, 2)), _DEAD)
     if not delta <= rtol * size:
         raise NumericalError(
@@ -173,12 +173,13 @@ def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> floa
 def integral_of_trace(system: PeriodicSystem, times: FloatArray) -> float:
     """Integral of tr A over times (N,) by an 8-point Gauss rule between each two, no propagator involved."""
     x, w = leggauss(8)
-    start, end = times[:-1], times[1:]
-    at = start[:, None] + (end - start)[:, None] * 0.5 * (x + 1.0)
+    start = times[:-1]
+    end = times[1:]
+    nodes = start[:, None] + (end - start)[:, None] * 0.5 * (x + 1.0)
     total = 0.0
     for first in range(0, start.size, 4096):
         part = slice(first, first + 4096)
-        inside = system.inside(at[part], start[part, None], end[part, None])
+        inside = system.inside(nodes[part], start[part, None], end[part, None])
         trace = np.trace(system.evaluate(inside.ravel()), axis1=1, axis2=2).reshape(inside.shape)
         total += float(((end - start)[part] * 0.5 * (trace @ w)).sum())
     return total

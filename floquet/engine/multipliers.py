@@ -1,4 +1,4 @@
-"""Eigenvalues of a monodromy matrix that is known only to within an error, with a bound on each.
+"""Eigenvalues of a monodromy matrix that has an error, with a bound on the error of each eigenvalue.
 
 Sources: docs/theory/floquet.md, "From the equations to a matrix"; proven_bounds.md, "Multipliers".
 """
@@ -40,9 +40,9 @@ def _rounding(n: int, *factors: ComplexArray | FloatArray) -> float:
 
 
 def _triangular_error(M: FloatArray, T: ComplexArray, Z: ComplexArray, delta: float) -> float:
-    """Bound on the Frobenius norm of Z^-1 (M + E) Z - T for every |E| <= delta, from what is left of both.
+    """Bound on the Frobenius norm of Z^-1 (M + E) Z - T for every |E| <= delta, from residuals.
 
-    That is Z^-1 (M Z - Z T + E Z), with |Z^-1|^2 <= 1/(1 - q) and |Z|^2 <= 1 + q for q = |Z^H Z - I|.
+    This matrix is Z^-1 (M Z - Z T + E Z), with |Z^-1|^2 <= 1/(1 - q) and |Z|^2 <= 1 + q for q = |Z^H Z - I|.
     """
     n = M.shape[0]
     rest = float(np.linalg.norm(M @ Z - Z @ T)) + _rounding(n, M, Z) + _rounding(n, Z, T)
@@ -57,7 +57,8 @@ def least_separation(first: ComplexArray, second: ComplexArray) -> tuple[float, 
 
     As a matrix K on the columns of X: W being any matrix with q = |I - W K| < 1, |K^-1| <= |W|/(1 - q).
     """
-    m, k = first.shape[0], second.shape[0]
+    m = first.shape[0]
+    k = second.shape[0]
     K = np.kron(np.eye(k), first) - np.kron(second.T, np.eye(m))
     try:
         W = np.linalg.inv(K)
@@ -75,16 +76,17 @@ def _cluster_bound(
 ) -> tuple[ComplexArray, float] | None:
     """Eigenvalues of a cluster and a bound on their errors when M is wrong by delta; None: not separable.
 
-    With the cluster first, T = [[B, C], [0, D]], and [[I, X], [0, I]] with B X - X D ~ -C makes it block
-    diagonal but for what is left of that equation. The diagonal blocks change by at most p e and the
-    off-diagonal ones by p^2 e and e, p^2 = 1 + |X|^2, e the error of the triangular form (Frobenius). With s
-    = sep - 2 p e, sep the smallest singular value of X -> B X - X D, an invariant subspace persists if 4 e f
-    < s^2, f the change of the upper off-diagonal block, and the cluster's block changes by at most p e + 2 e
-    f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). Within the block Elsner's theorem gives
-    the m-th root law that a defective multiplier obeys: |d lambda| <= (2 |B| + e)^(1 - 1/m) e^(1/m), B about
-    its mean.
+    With the cluster first, T = [[B, C], [0, D]]. Let B X - X D ~ -C. Then [[I, X], [0, I]] makes T block
+    diagonal but for the residual of this equation. Let e be the error of the triangular form (Frobenius) and
+    p^2 = 1 + |X|^2. The diagonal blocks change by at most p e, the off-diagonal blocks by p^2 e and e. Let f
+    be the change of the upper off-diagonal block, sep the smallest singular value of X -> B X - X D, and
+    s = sep - 2 p e. If 4 e f < s^2, an invariant subspace persists, and the block of the cluster changes by
+    at most p e + 2 e f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). Within the block
+    Elsner's theorem gives the m-th root law of a defective multiplier, with B about its mean:
+    |d lambda| <= (2 |B| + e)^(1 - 1/m) e^(1/m).
     """
-    n, m = T.shape[0], len(members)
+    n = T.shape[0]
+    m = len(members)
     if m < n:
         select = np.zeros(n, dtype=np.int32)
         select[members] = 1
@@ -103,14 +105,14 @@ def _cluster_bound(
         if sep == 0.0:
             return None
         X = -(W @ corner.T.ravel()).reshape(n - m, m).T
-        left = float(np.linalg.norm(block @ X - X @ rest + corner))
-        left += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))
+        remainder = float(np.linalg.norm(block @ X - X @ rest + corner))
+        remainder += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))
         p = math.hypot(1.0, float(np.linalg.norm(X))) * _SLACK
-        upper = p * p * error + left
-        room = sep - 2.0 * p * error
-        if not (room > 0.5 * sep and 4.0 * error * upper < room * room):
+        upper = p * p * error + remainder
+        separation = sep - 2.0 * p * error
+        if not (separation > 0.5 * sep and 4.0 * error * upper < separation * separation):
             return None
-        change = p * error + 2.0 * error * upper / room
+        change = p * error + 2.0 * error * upper / separation
     if m == 1:
         return np.diagonal(block), change * _SLACK
     departure = _size(block - np.trace(block) / m * np.eye(m))
@@ -121,10 +123,10 @@ def _cluster_bound(
 def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, FloatArray]:
     """Eigenvalues (n,) of M, largest modulus first, each with a bound (n,) on its error.
 
-    A theorem, rounding included: what LAPACK returns is checked by its residuals. ``delta`` bounds the
-    Frobenius norm of the error of M. Multipliers that delta does not allow to be told apart share one bound:
-    each has an exact one within it, and each exact one of theirs is that near to one of them. Source:
-    docs/theory/proven_bounds.md, "Multipliers".
+    PROVEN, rounding included: residuals check the results of LAPACK. ``delta`` bounds the Frobenius norm of
+    the error of M. Multipliers that an error of delta may merge share one bound. Within this bound of each
+    computed multiplier of the group there is an exact one, and within this bound of each exact multiplier of
+    the group there is a computed one. Source: docs/theory/proven_bounds.md, "Multipliers".
     """
     n = M.shape[0]
     T, Z = schur(M, output="complex")
@@ -134,9 +136,9 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
     bounds = [_cluster_bound(M, T, Z, members, delta) for members in clusters]
     while len(clusters) > 1 and None in bounds:
         bad = bounds.index(None)
-        here = eigenvalues[clusters[bad]]
+        cluster_values = eigenvalues[clusters[bad]]
         distance = [
-            math.inf if k == bad else float(np.abs(here[:, None] - eigenvalues[other]).min())
+            math.inf if k == bad else float(np.abs(cluster_values[:, None] - eigenvalues[other]).min())
             for k, other in enumerate(clusters)
         ]
         nearest = int(np.argmin(distance))

@@ -49,26 +49,29 @@ def _step_batch(
     system: PeriodicSystem, method: Propagator, start: FloatArray, end: FloatArray, d: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Step matrices (k, n, n) over [start, end] and max |A| per step, (k,), in balanced coordinates."""
-    n, s = system.dimension, method.nodes.size
+    n = system.dimension
+    s = method.nodes.size
     chunk = max(1, _CHUNK // (s * n) ** 2)
     steps = np.empty((start.size, n, n))
     size = np.empty(start.size)
     for first in range(0, start.size, chunk):
         part = slice(first, first + chunk)
-        t0, t1 = start[part], end[part]
-        times = t0[:, None] + (t1 - t0)[:, None] * method.nodes
-        times = system.inside(times, t0[:, None], t1[:, None]).ravel()
-        A = system.evaluate(times).reshape(t0.size, s, n, n) * (d[None, :] / d[:, None])
+        step_start = start[part]
+        step_end = end[part]
+        times = step_start[:, None] + (step_end - step_start)[:, None] * method.nodes
+        times = system.inside(times, step_start[:, None], step_end[:, None]).ravel()
+        A = system.evaluate(times).reshape(step_start.size, s, n, n) * (d[None, :] / d[:, None])
         # An unstable explicit step shows as a non-finite step, which the caller refuses.
         with np.errstate(over="ignore", invalid="ignore"):
-            steps[part] = method.step_matrices(A, t1 - t0)
+            steps[part] = method.step_matrices(A, step_end - step_start)
             size[part] = np.sqrt(np.square(A).sum(axis=(2, 3)).max(axis=1))
     return steps, size
 
 
 def _initial_grid(system: PeriodicSystem, method: Propagator, d: FloatArray) -> tuple[FloatArray, FloatArray]:
     """First guess: steps of about order/8 radians of the largest |A|, each segment divided evenly."""
-    start, end = [], []
+    start = []
+    end = []
     for a, b in zip(system.edges[:-1], system.edges[1:], strict=True):
         times = a + (b - a) * (np.arange(5) + 0.5) / 5.0
         A = system.evaluate(times) * (d[None, :] / d[:, None])
@@ -90,8 +93,8 @@ def propagate(
 ) -> Propagation:
     """Transition matrices of one period, each step accurate to rtol h/T of its norm in balanced coordinates.
 
-    Every step is taken once whole and once as two halves, which are returned; their difference is the local
-    error. Refused steps are cut according to the order of the method.
+    Every step is computed once in full and once as two halves. The difference is the local error, and the
+    halves are returned. A step with too large an error is cut; the order of the method decides the parts.
     """
     d = system.balancing()
     start, end = _initial_grid(system, method, d)
@@ -108,12 +111,12 @@ def propagate(
                 "rtol or a larger max_substeps; or add missing switch times to breakpoints."
             )
         middle = 0.5 * (start + end)
-        whole, size = _step_batch(system, method, start, end, d)
+        full_step, size = _step_batch(system, method, start, end, d)
         first, _ = _step_batch(system, method, start, middle, d)
         second, _ = _step_batch(system, method, middle, end, d)
         with np.errstate(over="ignore", invalid="ignore"):
             halves = second @ first
-            truncation = np.linalg.norm(whole - halves, axis=(1, 2))
+            truncation = np.linalg.norm(full_step - halves, axis=(1, 2))
             norm = np.linalg.norm(halves, axis=(1, 2))
         h = end - start
         # Rounding of one step: n eps for the product and the solve, and eps |A| h for evaluating A itself.
@@ -160,10 +163,10 @@ def _unseen(
     rtol: float,
     rng: np.random.Generator,
 ) -> BoolArray:
-    """Steps (k,) in which A, at random points, is not what the samples at the nodes let expect.
+    """Steps (k,) in which A at random points differs from the polynomial through its samples at the nodes.
 
-    A is looked at once in each of `LOOKS` parts of a period, and compared with the polynomial through its
-    values at the nodes of both halves of the step.
+    A is evaluated once in each of `LOOKS` parts of a period. The polynomial goes through the values at the
+    nodes of both halves of the step.
     """
     if start.size == 0:
         return np.zeros(0, dtype=bool)
@@ -174,7 +177,8 @@ def _unseen(
     scale = d[None, :] / d[:, None]
 
     def at(places: FloatArray, owner: npt.NDArray[np.intp]) -> FloatArray:
-        low, high = start[owner], end[owner]
+        low = start[owner]
+        high = end[owner]
         times = system.inside(low + (high - low) * 0.5 * (places + 1.0), low, high)
         return system.evaluate(times) * scale
 
@@ -209,10 +213,10 @@ def _cut(start: FloatArray, end: FloatArray, ratio: FloatArray, order: int) -> t
 
 
 def error_of_product(propagation: Propagation) -> tuple[FloatArray, float, float]:
-    """Monodromy matrix in balanced coordinates, a bound on its error, and the part of it due to rounding.
+    """Monodromy matrix in balanced coordinates, an estimate of its error, and the part due to rounding.
 
-    With S_j the product of the steps after step j and Q_j that before it, sum |S_j| |E_j| |Q_j| bounds the
-    first order.
+    S_j is the product of the steps after step j, Q_j the product before step j, E_j the estimated error of
+    step j. The estimate is sum |S_j| |E_j| |Q_j|, of first order.
     """
     steps = propagation.steps
     m, n, _ = steps.shape

@@ -1,8 +1,8 @@
 """Charts over two axes that are evaluated near the edges of instability and interpolated elsewhere.
 
-A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
-cycles in a unit of time, is bilinear in it to the tolerance, and no two multipliers may meet in it; else it
-is cut. Whole rows of the second axis seed the search.
+A box of nodes is a leaf when three conditions hold: all known verdicts in the box are equal; the growth rate
+g = n ln(radius), with n cycles in a unit of time, is bilinear to the tolerance; no two multipliers may meet.
+Any other box is cut. Complete rows of the second axis seed the search.
 
 Sources: docs/theory/floquet.md, "Charts that refine themselves".
 """
@@ -19,19 +19,20 @@ from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray, Progres
 
 #: Largest error of the spectral radius at an interpolated node, above 1 relative to the radius.
 TOLERANCE = 4e-3
-#: Nodes along the first axis of a box to begin with; the second axis is whole.
+#: Nodes along the first axis of the boxes of the first round; these boxes have all nodes of the second axis.
 _FIRST = 64
 #: Misfits along both axes within this factor cut a box along both.
 _ALIKE = 2.0
 _LEAST_RADIUS = 1e-12
-#: Largest excess of the radius over 1 in an unstable box that is no longer cut, over the least: near an edge
-#: it falls to 0, and may do so between nodes.
+#: Largest over least excess of the radius above 1 in an unstable box that is a leaf. Near an edge of
+#: instability the excess falls to 0, perhaps between nodes.
 _EXCESS = 8.0
-#: Change of the `gaps` in a box that is no longer cut for their sake, over the least of them.
+#: Largest change of the `gaps` in a box that is a leaf, over the least of these gaps.
 _PER_DECAY = 1.5
 
 #: Flat indices (k,) of nodes -> their spectral radius, verdict and `gaps` (k,); gaps of 0 are not followed.
 Ask = Callable[[IntArray], tuple[FloatArray, IntArray, FloatArray]]
+#: Indices of the first and the last node along the first axis, then along the second axis.
 Box = tuple[int, int, int, int]
 
 
@@ -42,9 +43,9 @@ class Refined:
     Attributes
     ----------
     radius : spectral radius, interpolated where ``known`` is False
-    verdict : 1 stable, 0 undecided, -1 unstable; of its leaf where it is not known
+    verdict : 1 stable, 0 undecided, -1 unstable; the verdict of the leaf where ``known`` is False
     known : whether the node was evaluated
-    misfit : of an interpolated node the largest misfit known in its leaf, at least the tolerance; 0 else
+    misfit : largest misfit of the evaluated nodes of the leaf, at least the tolerance; 0 at evaluated nodes
     """
 
     radius: FloatArray
@@ -54,10 +55,10 @@ class Refined:
 
 
 def gaps(multipliers: ComplexArray) -> FloatArray:
-    """How near (k,) the two nearest of multipliers (k, n) are to a tongue.
+    """Distance (k,) of multipliers (k, n) from a tongue, by the two multipliers that are nearest to a tongue.
 
-    Of two multipliers the angle between them, or the geometric mean of their decay -ln|.| where that is
-    more: coupled by less than this they are stable however near they are (Hsu 1963).
+    The distance of two multipliers is the angle between them, or the geometric mean of their decays -ln|.|
+    where this is larger. A coupling below the distance leaves both stable (Hsu 1963).
     """
     angle = np.angle(multipliers)
     decay = -np.log(np.maximum(np.abs(multipliers), _LEAST_RADIUS))
@@ -95,7 +96,7 @@ def refine(
     while new:
         nodes = np.concatenate([_nine(box) for box in new])
         state.look(nodes[:, 0], nodes[:, 1])
-        # What was asked for a neighbour may lie in a leaf too: it is judged again.
+        # A node evaluated for a neighbour may lie in a leaf too: this leaf is judged again.
         again = [box for box, count in leaves.items() if state.count(box) != count]
         boxes = [*new, *again]
         new = []
@@ -129,12 +130,12 @@ class _State:
 
     def look(self, i: IntArray, j: IntArray) -> None:
         """Evaluate the nodes that are not known yet."""
-        flat = np.unique(i * self.known.shape[1] + j)
-        flat = flat[~self.known.ravel()[flat]]
-        if not flat.size:
+        new_nodes = np.unique(i * self.known.shape[1] + j)
+        new_nodes = new_nodes[~self.known.ravel()[new_nodes]]
+        if not new_nodes.size:
             return
-        places = np.unravel_index(flat, self.known.shape)
-        self.radius[places], self.verdict[places], self.gap[places] = self.ask(flat)
+        places = np.unravel_index(new_nodes, self.known.shape)
+        self.radius[places], self.verdict[places], self.gap[places] = self.ask(new_nodes)
         self.known[places] = True
         self.growth[places] = self.cycles[places] * np.log(np.maximum(self.radius[places], _LEAST_RADIUS))
 
@@ -146,24 +147,26 @@ class _State:
         """Known nodes of a box, and how far their radius is from the bilinear one."""
         a, b, c, d = box
         i, j = np.nonzero(self.known[a : b + 1, c : d + 1])
-        i, j = i + a, j + c
+        i += a
+        j += c
         result = np.exp(self._bilinear(box, i, j) / self.cycles[i, j])
         return i, j, np.abs(result - self.radius[i, j])
 
     def _bilinear(self, box: Box, i: npt.NDArray[np.intp], j: npt.NDArray[np.intp]) -> FloatArray:
         a, b, c, d = box
-        s, t = (i - a) / max(b - a, 1), (j - c) / max(d - c, 1)
+        s = (i - a) / max(b - a, 1)
+        t = (j - c) / max(d - c, 1)
         g = self.growth
         low = g[a, c] * (1.0 - s) + g[b, c] * s
         high = g[a, d] * (1.0 - s) + g[b, d] * s
         return np.asarray(low * (1.0 - t) + high * t, dtype=np.float64)
 
     def cuts(self, box: Box, tolerance: float) -> list[Box]:
-        """The parts of a box that is no leaf; empty for a leaf."""
+        """The parts into which a box is cut; an empty list: the box is a leaf."""
         a, b, c, d = box
-        wide = b - a > 1
-        tall = d - c > 1
-        if not (wide or tall):
+        divisible_along_first = b - a > 1
+        divisible_along_second = d - c > 1
+        if not (divisible_along_first or divisible_along_second):
             return []
         i, j, error = self.misfit(box)
         verdict = self.verdict[i, j]
@@ -181,9 +184,9 @@ class _State:
                 if not (meeting or (verdict[0] < 0 and excess.max() > _EXCESS * excess.min())):
                     return []
         along, up = self._ways(box, i, j, error, mixed=mixed, meeting=meeting)
-        along = (along and wide) or not tall
-        up = (up and tall) or not wide
-        return parts_of(box, along=along and wide, up=up and tall)
+        along = (along and divisible_along_first) or not divisible_along_second
+        up = (up and divisible_along_second) or not divisible_along_first
+        return parts_of(box, along=along and divisible_along_first, up=up and divisible_along_second)
 
     def _ways(
         self, box: Box, i: IntArray, j: IntArray, error: FloatArray, *, mixed: bool, meeting: bool
@@ -192,9 +195,9 @@ class _State:
         a, b, c, d = box
         if mixed:
             edges = [self.verdict[i[on], j[on]] for on in (j == c, j == d, i == a, i == b)]
-            lower, upper, left, right = (bool((edge != edge[0]).any()) for edge in edges)
+            lower, upper, first_edge, last_edge = (bool((edge != edge[0]).any()) for edge in edges)
             along = lower or upper
-            up = left or right
+            up = first_edge or last_edge
             return (along, up) if along or up else (True, True)
         if meeting:
             gap = self.gap[np.ix_((a, (a + b) // 2, b), (c, (c + d) // 2, d))]
@@ -205,12 +208,12 @@ class _State:
         return across * _ALIKE >= upward, upward * _ALIKE >= across
 
     def filled(self, leaves: dict[Box, int], tolerance: float) -> Refined:
-        """Interpolate what is not known, in the four quarters of each leaf."""
+        """Interpolate the nodes that are not evaluated, in the four quarters of each leaf."""
         misfit = np.zeros(self.known.shape)
         for box in leaves:
             a, b, c, d = box
-            here = slice(a, b + 1), slice(c, d + 1)
-            if self.known[here].all():
+            box_nodes = slice(a, b + 1), slice(c, d + 1)
+            if self.known[box_nodes].all():
                 continue
             _, _, error = self.misfit(box)
             size = max(tolerance, float(error.max()))
@@ -219,7 +222,8 @@ class _State:
                 p, q, r, s = part
                 inner = slice(p, q + 1), slice(r, s + 1)
                 i, j = np.nonzero(~self.known[inner])
-                i, j = i + p, j + r
+                i += p
+                j += r
                 self.radius[i, j] = np.exp(self._bilinear(part, i, j) / self.cycles[i, j])
                 self.verdict[i, j] = verdict
                 misfit[i, j] = size

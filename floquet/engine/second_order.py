@@ -89,8 +89,8 @@ def from_second_order(
     def sampled(times: FloatArray) -> FloatArray:
         return second_order(inverse @ K_of(times) @ T, inverse @ C_of(times) @ T)
 
-    known = [t for B in (damping, stiffness) if isinstance(B, PeriodicMatrix) for t in B.breaks]
-    inside = [t for t in known if 0.0 < t < period]
+    formulas = [t for B in (damping, stiffness) if isinstance(B, PeriodicMatrix) for t in B.breaks]
+    inside = [t for t in formulas if 0.0 < t < period]
     return SecondOrderSystem(sampled, period, (*breakpoints, *inside), vectorized=True, coordinates=T)
 
 
@@ -143,30 +143,31 @@ def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -
     solve = _Solution(M, T)
 
     def pair(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
-        (k, dk), (c, dc) = solve(stiffness), solve(damping)
+        k, dk = solve(stiffness)
+        c, dc = solve(damping)
         errors = np.abs(second_order(dk, dc))
         errors[:n, n:] = 0.0
         return second_order(k, c), errors
 
     none = np.zeros((n, n))
-    constant, off = pair(K.matrices[0], C.matrices[0])
+    constant, error = pair(K.matrices[0], C.matrices[0])
     terms = []
-    errors = [off]
+    errors = [error]
     varying = [(f, B, none) for f, B in zip(K.functions, K.matrices[1:], strict=True)]
     varying += [(f, none, B) for f, B in zip(C.functions, C.matrices[1:], strict=True)]
     for function, stiffness, damping in varying:
-        matrix, off = pair(stiffness, damping)
+        matrix, error = pair(stiffness, damping)
         matrix[:n, n:] = 0.0
         terms.append((function, matrix))
-        errors.append(off)
+        errors.append(error)
     return PeriodicMatrix(constant, *terms, errors=np.stack(errors))
 
 
 class _Solution:
-    """B -> X = (M T)^-1 B T with bounds on the errors of its entries.
+    """B -> X = (M T)^-1 B T with PROVEN bounds on the errors of the entries of X.
 
-    With W an approximate inverse of P = M T and G = I - W P, that is (I - G)^-1 W (B T - P X), in the widest
-    floating point.
+    With W an approximate inverse of P = M T and G = I - W P, the error of X is (I - G)^-1 W (B T - P X). All
+    products are in the widest floating point.
     """
 
     def __init__(self, M: FloatArray, T: FloatArray) -> None:
@@ -189,8 +190,8 @@ class _Solution:
         X = np.zeros(B.shape)
         for _ in range(3):
             X = (X + self.W @ (Q - self.P @ X)).astype(float)
-        rest = Q - self.P @ X
-        left = np.abs(rest).astype(float) + np.abs(B) @ np.abs(self.T).astype(float)
-        left += 2.0 * self.size @ np.abs(X)
-        error = np.abs(self.W @ rest).astype(float) + self.gamma * (self.sizes @ left)
+        residual = Q - self.P @ X
+        moduli = np.abs(residual).astype(float) + np.abs(B) @ np.abs(self.T).astype(float)
+        moduli += 2.0 * self.size @ np.abs(X)
+        error = np.abs(self.W @ residual).astype(float) + self.gamma * (self.sizes @ moduli)
         return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=0)) * (1.0 + 1e-9))

@@ -129,20 +129,20 @@ class PeriodicSystem:
         return values
 
     def inside(self, times: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Move times that touch the ends of their interval [start, end] strictly inside it."""
+        """Move times at the ends of an interval [start, end] strictly inside the interval."""
         inset = np.minimum(_INSET * self.period, 0.25 * (end - start))
         return np.clip(times, start + inset, end - inset)
 
     def balancing(self) -> FloatArray:
         """Return d (n,), powers of two such that A_ij d_j / d_i has rows and columns of like size.
 
-        States of mixed units (displacements and rates) make every norm meaningless; all error bounds of this
-        package are taken in the coordinates x_i / d_i. Multipliers do not depend on d.
+        The norm of a state of mixed units (displacements and rates) has no meaning. So all error bounds of
+        this package are in the coordinates x_i / d_i. Multipliers do not depend on d.
         """
-        # At several places: in the middle alone an entry may happen to be zero.
+        # At several times: in the middle of a segment alone an entry may be zero by chance.
         width = np.diff(self.edges)[:, None]
         places = self.edges[:-1, None] + width * np.array([0.13, 0.5, 0.78])
-        # Their mean over time: a narrow spike must not scale the whole period.
+        # The mean over time: a narrow spike must not scale the whole period.
         magnitude = np.tensordot(np.repeat(width.ravel(), 3), np.abs(self.evaluate(places.ravel())), axes=1)
         _, (scale, _) = matrix_balance(magnitude, permute=False, separate=True)
         return np.asarray(scale, dtype=float)

@@ -58,8 +58,10 @@ def tongue_coordinates(dim: str, tongues: Iterable[Tongue]) -> dict[str, tuple[s
     rows = np.array([(str(t), t.mode_i, t.mode_j, t.sign, t.order) for t in tongues], dtype=object)
     label, *numbers = rows.reshape(-1, 5).T
     names = ("mode_i", "mode_j", "sign", "order")
-    whole = {name: (dim, column.astype(np.int64)) for name, column in zip(names, numbers, strict=True)}
-    return {"label": (dim, label), **whole}
+    numbers_by_name = {
+        name: (dim, column.astype(np.int64)) for name, column in zip(names, numbers, strict=True)
+    }
+    return {"label": (dim, label), **numbers_by_name}
 
 
 def combinations(omega: FloatArray) -> Iterator[tuple[int, int, int, float]]:
@@ -84,24 +86,25 @@ def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> FloatArray:
 def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) -> Tongue:
     """Name the instability of a monodromy matrix by the shape of its fastest growing motion.
 
-    Parametric excitation at Omega couples two rotating motions whose frequencies differ by k Omega: mode i
-    forwards and mode j backwards where omega_i + omega_j = k Omega, both the same way where it is omega_j -
-    omega_i. So the growing eigenvector tells pair and sign; the frequencies tell the order k, and refuse
-    pairs that are detuned by more than 5 % as long as another pair takes part.
+    Parametric excitation at Omega couples two rotating motions whose frequencies differ by k Omega. At
+    omega_i + omega_j = k Omega mode i turns forwards and mode j backwards; at omega_j - omega_i = k Omega
+    both turn in the same direction. So the growing eigenvector gives the pair of modes and the sign, and the
+    frequencies give the order k. A pair detuned by more than 5 % is not chosen while another pair takes part.
 
     matrix : (2m, 2m) monodromy matrix in the modal states (omega eta, eta') of the mean system
     omega, excitation : (m,) natural frequencies of the mean system, Omega = 2 pi/T [rad/s]
     """
     values, vectors = np.linalg.eig(np.asarray(matrix, dtype=float))
     forward, backward = mode_shares(vectors[:, np.argmax(np.abs(values))], omega)
-    fits: list[tuple[bool, float, Tongue]] = []
+    candidates: list[tuple[bool, float, Tongue]] = []
     for i, j, sign, total in combinations(omega):
         along, against = (forward, backward) if sign < 0 else (backward, forward)
         weight = math.sqrt(max(forward[i] * along[j], backward[i] * against[j]))
         order = max(1, round(total / excitation))
         near = abs(total / (order * excitation) - 1.0) <= _DETUNING
-        fits.append((near, weight, Tongue(i + 1, j + 1, sign, order)))
-    return max(fits)[2]
+        candidates.append((near, weight, Tongue(i + 1, j + 1, sign, order)))
+    _, _, tongue = max(candidates)
+    return tongue
 
 
 @dataclass(frozen=True)
@@ -121,9 +124,10 @@ class TongueTip:
 def tongue_tip(
     radius: RadiusAt, window: tuple[float, float], bracket: tuple[float, float], *, xtol: float = 1e-9
 ) -> TongueTip:
-    """Find the damping that closes a tongue, alone in its window: the root of the largest radius - 1.
+    """Find the damping that closes a tongue: the root of the largest radius - 1 in the window.
 
-    NumericalError: ``bracket`` are no damping at which it is open, and one at which it is closed.
+    The window holds no other tongue. ``bracket`` is a damping at which the tongue is open and one at which
+    the tongue is closed; NumericalError: it is not.
     """
     places: dict[float, float] = {}
 
@@ -157,7 +161,8 @@ def _highest(
         if values[k] > top:
             best = float(x[k])
             top = float(values[k])
-        low, high = float(x[max(k - 1, 0)]), float(x[min(k + 1, count - 1)])
+        low = float(x[max(k - 1, 0)])
+        high = float(x[min(k + 1, count - 1)])
     return best, top
 
 
@@ -167,8 +172,8 @@ class UnstableInterval:
 
     Attributes
     ----------
-    lower, upper : its ends; equal to the end of the range where ``open_below`` or ``open_above``
-    peak, peak_radius : where the spectral radius is largest, and its value
+    lower, upper : ends of the interval; ends of the range where ``open_below`` or ``open_above``
+    peak, peak_radius : place of the largest spectral radius, and this radius
     open_below, open_above : whether the interval runs on beyond the range that was searched
     """
 
@@ -195,9 +200,10 @@ def seeded_nodes(lines: FloatArray, low: float, high: float, coarse: int, width:
 def unstable_intervals(
     radius: Radius, nodes: FloatArray, *, xtol: float = 1e-9, threshold: float = 1e-9
 ) -> list[UnstableInterval]:
-    """Find the intervals of instability that the nodes (k,) meet, with their ends to ``xtol``, relative.
+    """Intervals of instability with at least one of the nodes (k,) inside.
 
-    Local maxima of the sampled radius near one are first refined. Above 1 + threshold a radius is unstable.
+    ``xtol`` is the relative error of their ends. First, nodes are added around local maxima of the radius
+    near 1. A radius above 1 + threshold is unstable.
     """
     nodes, values = _refine_maxima(radius, nodes, radius(nodes))
     unstable = values > 1.0 + threshold
@@ -221,7 +227,7 @@ def unstable_intervals(
 def _refine_maxima(
     radius: Radius, nodes: FloatArray, values: FloatArray, rounds: int = 6
 ) -> tuple[FloatArray, FloatArray]:
-    """Add nodes around local maxima, five on either side per round, so that peaks are met near their top."""
+    """Add nodes around local maxima of the radius, five on either side in each round."""
     for _ in range(rounds):
         inner = (values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:])
         top = np.flatnonzero(inner) + 1
@@ -231,9 +237,9 @@ def _refine_maxima(
         if top.size == 0:
             break
         fraction = np.arange(1, 6) / 6.0
-        left = nodes[top - 1][:, None] + (nodes[top] - nodes[top - 1])[:, None] * fraction
-        right = nodes[top][:, None] + (nodes[top + 1] - nodes[top])[:, None] * fraction
-        new = np.setdiff1d(np.concatenate([left.ravel(), right.ravel()]), nodes)
+        below = nodes[top - 1][:, None] + (nodes[top] - nodes[top - 1])[:, None] * fraction
+        above = nodes[top][:, None] + (nodes[top + 1] - nodes[top])[:, None] * fraction
+        new = np.setdiff1d(np.concatenate([below.ravel(), above.ravel()]), nodes)
         if new.size == 0:
             break
         merged = np.concatenate([nodes, new])
@@ -245,17 +251,19 @@ def _refine_maxima(
 
 def _bisect(
     radius: Radius,
-    left: FloatArray,
-    right: FloatArray,
-    left_unstable: npt.NDArray[np.bool_],
+    lower: FloatArray,
+    upper: FloatArray,
+    lower_unstable: npt.NDArray[np.bool_],
     threshold: float,
     xtol: float,
 ) -> FloatArray:
-    """Bisect all brackets at once; left and right differ in stability."""
-    left, right = left.copy(), right.copy()
-    while left.size and ((right - left) > xtol * np.abs(right)).any():
-        middle = 0.5 * (left + right)
+    """Bisect all brackets together; the lower and the upper ends differ in stability."""
+    lower = lower.copy()
+    upper = upper.copy()
+    while lower.size and ((upper - lower) > xtol * np.abs(upper)).any():
+        middle = 0.5 * (lower + upper)
         unique, inverse = np.unique(middle, return_inverse=True)
-        same = (radius(unique)[inverse] > 1.0 + threshold) == left_unstable
-        left, right = np.where(same, middle, left), np.where(same, right, middle)
-    return np.asarray(0.5 * (left + right))
+        same = (radius(unique)[inverse] > 1.0 + threshold) == lower_unstable
+        lower = np.where(same, middle, lower)
+        upper = np.where(same, upper, middle)
+    return np.asarray(0.5 * (lower + upper))

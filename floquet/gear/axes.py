@@ -53,9 +53,10 @@ class GearVariation:
 
     @classmethod
     def of(cls, source: AnyPair | GearVariation, supports: Supports | None = None) -> GearVariation:
-        """A pair as it is on these supports, by default on its shafts if it has them; or a variation of one.
+        """Return a variation as it is, or make one of a pair without any change.
 
-        A variation names its own supports: others are refused.
+        The default supports of a pair are its shafts, if the pair has shafts. A variation already has
+        supports; other supports are refused.
         """
         if not isinstance(source, GearVariation):
             pair = load_gear_pair(source)
@@ -140,9 +141,9 @@ def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
         ("gear", pair.gear, g.base_radius_gear, approach, earlier, -later),
     ):
         changes[f"{name}.tip_diameter"] = 2e3 * math.hypot(radius, flank)
-        for end, relief, moved in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
+        for end, relief, shift in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
             if relief is not None:
-                start = relief.start_roll_angle + moved / radius
+                start = relief.start_roll_angle + shift / radius
                 changes[f"{name}.{end}_relief.start_roll_angle"] = SIValue(start, "rad")
     return replace(variation, pair=pair.with_(changes))
 
@@ -217,9 +218,9 @@ def vary(
 
 
 def speed_range(pair: GearPair) -> tuple[float, float]:
-    """Pinion speeds [rpm] that charts, sweeps and margins cover: ``operating.speed_range``, or its default.
+    """Pinion speeds [rpm] that charts, sweeps and margins cover: ``operating.speed_range`` or a default.
 
-    The default runs from near zero to about twice the operating speed; its upper end has two digits.
+    The default range is from near zero to about twice the operating speed, rounded to two digits.
     """
     request = pair.operating.speed_range
     if request is not None:
@@ -240,7 +241,7 @@ def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float
 
 
 def chart_axes(pair: GearPair, speeds: int = 801, dampings: int = 201) -> dict[str, FloatArray]:
-    """Nodes of the stability chart: so many speeds [rpm] and mesh damping ratios."""
+    """Nodes of the stability chart: numbers of speeds [rpm] and of mesh damping ratios."""
     largest = min(max(0.08, 1.5 * pair.mesh.damping_ratio), 1.0)
     return {
         "speed_rpm": with_point(np.linspace(*speed_range(pair), speeds), operating_rpm(pair)),
@@ -264,9 +265,9 @@ class FrictionFamily:
     ----------
     speed_rpm : the speed whose friction law is the reference
     members : (k,) indices of the speeds
-    level : |mu| of the second function, which only changes sign at the pitch point; None where one is enough
+    level : |mu| of the second function, which only changes sign at the pitch point; None: there is none
     factors : (k, 1) of mu at the reference speed; or (k, 2) of mu less the level, and of the level
-    law : the law at other speeds; None where it is the same at all
+    law : the law at other speeds; None: the law is the same at all speeds
     """
 
     speed_rpm: float
@@ -276,7 +277,7 @@ class FrictionFamily:
     law: _Law | None
 
     def factors_at(self, speeds_rpm: FloatArray) -> FloatArray | None:
-        """Factors (k, 1 or 2) at further speeds; None where these are not all of the family."""
+        """Factors (k, 1 or 2) at further speeds; None: some of these speeds are not of the family."""
         if self.law is None:
             return np.ones((speeds_rpm.size, 1))
         members, weights = self.law.weights(self.speed_rpm, speeds_rpm)
@@ -286,16 +287,16 @@ class FrictionFamily:
 
 
 def depends_on_speed(pair: GearPair) -> bool:
-    """Say whether mu(xi) changes with speed: every law but a constant one whose coefficient is request."""
+    """Say whether mu(xi) changes with speed: true but for a constant law whose coefficient is a parameter."""
     return not law_of(pair.friction).is_constant(pair.friction)
 
 
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
     """Group speeds (k,), all different, over which friction needs but one fit.
 
-    Speed scales law III, and I and IV by their mean coefficient. Law II, a logarithm, rises and falls as a
-    whole as long as its bounds do not move, and law V is each of these where one regime has the whole path:
-    such a law is also evaluated along the path at every speed, and its switches are compared.
+    Speed scales law III, and laws I and IV by their mean coefficient. Law II, a logarithm, rises and falls as
+    a whole as long as its bounds do not move. Law V is one of these laws where one regime has the whole path.
+    Laws II and V are also evaluated along the path at every speed, and their switches are compared.
     """
     pair = variation.pair
     rest = np.arange(speeds_rpm.size)
@@ -333,7 +334,10 @@ class _Law:
         return self.path.at_speed(rpm * np.pi / 30.0)
 
     def in_force(self, rpm: float) -> FrictionLaw | None:
-        """The law in force on the whole path, the law itself unless it is made of others; None: several."""
+        """The law in force on the whole path; None: several laws are in force.
+
+        A law that consists of other laws has the one that is in force. Any other law is in force itself.
+        """
         if self.law.parts is None:
             return self.law
         parts = self.law.parts(self.positions, self.at(rpm), self.settings)
@@ -351,7 +355,7 @@ class _Law:
         return longer_path(self.at(rpm), self.ends, self.law, self.settings), self.settings
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
-        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
+        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and their weights a, b (k, 2)."""
         law = self.in_force(reference)
         members = []
         result = []
@@ -363,27 +367,37 @@ class _Law:
         return np.array(members, dtype=np.intp), np.array(result).reshape(-1, 2)
 
     def _pair(self, law: FrictionLaw | None, reference: float, rpm: float) -> tuple[float, float] | None:
-        """Weights at a speed, by the formula of the law in force alone; None: mu is no such sum."""
+        """Weights a and b of `weights` at one speed; None: mu is not this sum.
+
+        By the formula of the law in force alone.
+        """
         if rpm == reference:
             return 1.0, 0.0
         if law is None or self.in_force(rpm) is not law:
             return None
-        before = self.at(reference)
-        now = self.at(rpm)
+        reference_path = self.at(reference)
+        path = self.at(rpm)
         if law.factor is not None:
-            unit = law.factor(before, self.settings)
-            weights = law.factor(now, self.settings) / unit if unit else 1.0, 0.0
+            unit = law.factor(reference_path, self.settings)
+            weights = law.factor(path, self.settings) / unit if unit else 1.0, 0.0
         elif law.shift is not None:
-            weights = 1.0, law.shift(now, self.settings) - law.shift(before, self.settings)
+            weights = 1.0, law.shift(path, self.settings) - law.shift(reference_path, self.settings)
         else:
             return None
         if law.factor is not None and law is self.law:
             return weights
         # The formula holds as long as no switch moves.
-        (mu, switches), (other, others) = self.values(reference), self.values(rpm)
+        mu, switches = self.values(reference)
+        mu_at_speed, switches_at_speed = self.values(rpm)
         expected = weights[0] * mu + weights[1] * np.sign(self.positions - self.path.L_XP)
-        same = switches.shape == others.shape and np.allclose(switches, others, 0.0, _SAME * self.path.L_XY)
-        return weights if same and np.abs(expected - other).max() <= _SAME * np.abs(other).max() else None
+        same = switches.shape == switches_at_speed.shape and np.allclose(
+            switches, switches_at_speed, 0.0, _SAME * self.path.L_XY
+        )
+        return (
+            weights
+            if same and np.abs(expected - mu_at_speed).max() <= _SAME * np.abs(mu_at_speed).max()
+            else None
+        )
 
     def factors(self, reference: float, apart: bool, weights: FloatArray) -> FloatArray:
         """Factors of mu, or of mu less its mean and of the mean, from the weights of mu and of the sign.

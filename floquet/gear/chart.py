@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from scipy import ndimage
@@ -45,10 +45,10 @@ if TYPE_CHECKING:
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
 _CELLS = ("speed_rpm", "damping_ratio")  # axes of a chart whose cells can be proven
-_LEAST = (800, 200)  # parts of them, in which cells are proven, at least
+_FEWEST_PARTS = (800, 200)  # of each of these axes; a part is proven as a whole
 _CHUNK = 32_768  # points in memory with their matrices
 _LARGEST = 25_000_000
-_NAMED = 200  # regions that are named at most, the largest
+_NAMED = 200  # largest number of regions that are named
 
 
 def stability_chart(
@@ -170,7 +170,10 @@ def _verdicts_of_cells(grid: Mapping[str, FloatArray], cells: IntArray) -> xr.Da
 
 
 def _finer(values: FloatArray, least: int) -> tuple[FloatArray, int]:
-    """Increasing values with each interval in so many equal parts that there are enough, and their number."""
+    """Cut each interval of increasing values into equal parts, so that there are at least ``least`` parts.
+
+    Returns the finer values, and the number of parts of each interval.
+    """
     parts = max(1, -(-least // (values.size - 1)))
     share = np.arange(parts) / parts
     finer = values[:-1, None] * (1.0 - share) + values[1:, None] * share
@@ -178,7 +181,10 @@ def _finer(values: FloatArray, least: int) -> tuple[FloatArray, int]:
 
 
 def _plane(grid: Mapping[str, FloatArray]) -> tuple[str, str] | None:
-    """The two axes to refine over, the inner ones or else the longest first; None: few nodes."""
+    """The two axes over which a chart refines itself; None: there are few nodes.
+
+    Speed, damping and friction come first, then the axes with most nodes.
+    """
     axes = sorted((n for n in grid if grid[n].size > 1), key=lambda n: -grid[n].size)
     axes.sort(key=lambda n: _INNER.index(n) if n in _INNER else len(_INNER))
     if len(axes) < 2 or grid[axes[0]].size * grid[axes[1]].size <= SMALL:
@@ -199,7 +205,7 @@ def solved(
 ) -> ChartPoints:
     """Multipliers of a variation of a pair at all points of a grid, or their spectral radii alone.
 
-    With a ``plane`` of two axes only near the edges of instability in it.
+    With a ``plane`` of two axes only nodes near the edges of instability in this plane are evaluated.
     """
     count = math.prod(values.size for values in grid.values())
     points = ChartPoints(count, everything=everything)
@@ -229,7 +235,7 @@ def solved(
 
 
 class _Points:
-    """Evaluates points of a chart; what those of one value of each slow axis share is kept.
+    """Evaluates points of a chart. Points with the same values of all slow axes share one `ChartSlice`.
 
     Attributes
     ----------
@@ -252,19 +258,19 @@ class _Points:
 
     def __call__(self, places: IntArray) -> None:
         """Put the multipliers at some places of the chart into its points."""
-        at = dict(zip(self.grid, np.unravel_index(places, self.shape), strict=True))
+        indices = dict(zip(self.grid, np.unravel_index(places, self.shape), strict=True))
         key = np.zeros(places.size, dtype=np.intp)
         for name in self.slow:
-            key = key * self.grid[name].size + at[name]
-        for k in np.unique(key):
-            here = np.flatnonzero(key == k)
-            if k not in self._slices:
-                point = {name: float(self.grid[name][at[name][here[0]]]) for name in self.slow}
-                self._slices[k] = ChartSlice(self.variation, self.grid, self.inner, point)
-            some = {name: at[name][here] for name in self.inner}
-            for part in np.split(np.arange(here.size), range(_CHUNK, here.size, _CHUNK)):
-                chosen = {name: values[part] for name, values in some.items()}
-                self._slices[k].solve(places[here[part]], chosen, self.points, self.rtol)
+            key = key * self.grid[name].size + indices[name]
+        for slice_number in np.unique(key):
+            of_slice = np.flatnonzero(key == slice_number)
+            if slice_number not in self._slices:
+                point = {name: float(self.grid[name][indices[name][of_slice[0]]]) for name in self.slow}
+                self._slices[slice_number] = ChartSlice(self.variation, self.grid, self.inner, point)
+            slice_indices = {name: indices[name][of_slice] for name in self.inner}
+            for part in np.split(np.arange(of_slice.size), range(_CHUNK, of_slice.size, _CHUNK)):
+                chosen = {name: values[part] for name, values in slice_indices.items()}
+                self._slices[slice_number].solve(places[of_slice[part]], chosen, self.points, self.rtol)
 
     def cells(self, progress: Progress | None) -> IntArray:
         """Verdicts of the cells of a chart over speed and damping, both increasing."""
@@ -279,24 +285,42 @@ class _Points:
             places = places.T
         places = places[np.ix_(speed, damping)]
         verdict = self.points.verdict[places]
-        wrong = np.zeros(places.shape, dtype=bool)
-        for here in ((a, b) for a in (slice(1, None), slice(-1)) for b in (slice(1, None), slice(-1))):
-            wrong[here] |= (cells == 0) | (cells != verdict[here])
-        return np.asarray(places[wrong & ~self.points.known[places]])
+        undecided = np.zeros(places.shape, dtype=bool)
+        for corner in ((a, b) for a in (slice(1, None), slice(-1)) for b in (slice(1, None), slice(-1))):
+            undecided[corner] |= (cells == 0) | (cells != verdict[corner])
+        return np.asarray(places[undecided & ~self.points.known[places]])
+
+
+class _FamilyBlock(NamedTuple):
+    """What all speeds of one friction family share.
+
+    Attributes
+    ----------
+    system : the feedback block
+    separate : motions that the mesh does not couple
+    levels : number of the parts of the gains that have a factor of friction
+    period_times_rpm : mesh period [s] times pinion speed [rpm]
+    """
+
+    system: RankOneSystem
+    separate: OffLineOfAction
+    levels: int
+    period_times_rpm: float
 
 
 class ChartSlice:
     """Points of a chart that differ in speed, mesh damping and mean friction only.
 
-    Damping only scales wd, the mean friction coefficient only scales what friction adds to w, and speed only
-    changes the period, and with many friction laws scales friction too: one fit of the block serves them all.
+    Damping only scales wd. The mean friction coefficient only scales the part of w by friction. Speed only
+    changes the period; with many friction laws speed scales friction too. So one fit of the feedback block
+    serves all points of the slice.
 
     Parameters
     ----------
     variation : of the chart
     grid : name -> values of its axes
-    inner : names of those along which points of the slice differ
-    point : values of the others
+    inner : names of the axes along which points of the slice differ
+    point : values of the other axes
     """
 
     def __init__(
@@ -306,15 +330,19 @@ class ChartSlice:
         inner: list[str],
         point: Mapping[str, float],
     ) -> None:
-        top = float(grid["friction_coefficient"].max()) if "friction_coefficient" in inner else 1.0
-        # The references to which the factors of the slice relate.
-        references = {"damping_ratio": 1.0, "friction_coefficient": top}
+        largest_friction = (
+            float(grid["friction_coefficient"].max()) if "friction_coefficient" in inner else 1.0
+        )
+        # Damping and friction of the reference, to which the factors of the slice relate.
+        references = {"damping_ratio": 1.0, "friction_coefficient": largest_friction}
         self.reference = vary(variation, {**point, **{n: references[n] for n in inner if n in references}})
-        own = np.array([operating_rpm(self.reference.pair)])
-        self.speeds = grid["speed_rpm"] if "speed_rpm" in inner else own
+        operating_speed = np.array([operating_rpm(self.reference.pair)])
+        self.speeds = grid["speed_rpm"] if "speed_rpm" in inner else operating_speed
         self.damping = grid["damping_ratio"] if "damping_ratio" in inner else np.ones(1)
-        self.friction = grid["friction_coefficient"] / top if "friction_coefficient" in inner else np.ones(1)
-        self._blocks: dict[int, tuple[RankOneSystem, OffLineOfAction, int, float]] = {}
+        self.friction = (
+            grid["friction_coefficient"] / largest_friction if "friction_coefficient" in inner else np.ones(1)
+        )
+        self._blocks: dict[int, _FamilyBlock] = {}
 
     @cached_property
     def families(self) -> list[FrictionFamily]:
@@ -323,7 +351,7 @@ class ChartSlice:
 
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
-        """Family of each speed, and its row there."""
+        """Number of the family of each speed, and the row of the speed in its family."""
         family = np.empty(self.speeds.size, dtype=np.intp)
         row = np.empty(self.speeds.size, dtype=np.intp)
         for k, one in enumerate(self.families):
@@ -331,8 +359,8 @@ class ChartSlice:
             row[one.members] = np.arange(one.members.size)
         return family, row
 
-    def _block(self, k: int, rtol: float) -> tuple[RankOneSystem, OffLineOfAction, int, float]:
-        """Of a family the block, what moves apart from it, its levels of friction, period [s] times rpm."""
+    def _block(self, k: int, rtol: float) -> _FamilyBlock:
+        """Fit the feedback block of family k once."""
         if k not in self._blocks:
             family = self.families[k]
             variation = GEAR_AXES["speed_rpm"].apply(self.reference, family.speed_rpm)
@@ -340,8 +368,8 @@ class ChartSlice:
             levels = [] if variation.pair.friction.law == "none" else [0.0]
             levels += [] if family.level is None else [family.level]
             block = fitted_block(feedback, variation.stiffness_variation, max(0.01 * rtol, 1e-12), levels)
-            turn = block.period * operating_rpm(variation.pair)
-            self._blocks[k] = block, OffLineOfAction.of(feedback), len(levels), turn
+            period_times_rpm = block.period * operating_rpm(variation.pair)
+            self._blocks[k] = _FamilyBlock(block, OffLineOfAction.of(feedback), len(levels), period_times_rpm)
         return self._blocks[k]
 
     def cells(self, rtol: float, progress: Progress | None) -> IntArray:
@@ -350,48 +378,60 @@ class ChartSlice:
         speeds = self.speeds[order]
         damping = np.sort(self.damping)
         verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
-        of = self._rows[0][order]
-        ends = np.concatenate([[0], 1 + np.flatnonzero(np.diff(of)), [of.size]])
+        family_of_speed = self._rows[0][order]
+        ends = np.concatenate([[0], 1 + np.flatnonzero(np.diff(family_of_speed)), [family_of_speed.size]])
         for i, j in pairwise(ends):
             if j - i < 2:
                 continue
-            family = self.families[of[i]]
-            block, separate, levels, turn = self._block(int(of[i]), rtol)
-            # What moves by itself must die out, too: else only instability can be proven.
-            calm = bool((separate.exponents.real + separate.errors < 0.0).all())
-            axes = zip((speeds[i:j], damping), _LEAST if calm else (1, 1), strict=True)
-            (rpm, along), (ratios, up) = (_finer(values, least) for values, least in axes)
+            family = self.families[family_of_speed[i]]
+            block = self._block(int(family_of_speed[i]), rtol)
+            # Motions that the mesh does not couple must die out, too: else only instability can be proven.
+            exponents = block.separate.exponents
+            separate_fade = bool((exponents.real + block.separate.errors < 0.0).all())
+            fewest_speeds, fewest_ratios = _FEWEST_PARTS if separate_fade else (1, 1)
+            rpm, speed_parts = _finer(speeds[i:j], fewest_speeds)
+            ratios, damping_parts = _finer(damping, fewest_ratios)
 
             def factors(
-                T: FloatArray, turn: float = turn, one: FrictionFamily = family, levels: int = levels
+                T: FloatArray, block: _FamilyBlock = block, family: FrictionFamily = family
             ) -> FloatArray | None:
-                result = one.factors_at(turn / T)
-                return None if result is None else result[:, :levels]
+                result = family.factors_at(block.period_times_rpm / T)
+                return None if result is None else result[:, : block.levels]
 
-            result = proven_cells(block, turn / rpm[::-1], ratios, factors, progress)[::-1]
-            parts = result.reshape(j - i - 1, along, damping.size - 1, up)
-            least, most = parts.min(axis=(1, 3)), parts.max(axis=(1, 3))
-            verdict[i : j - 1] = np.where(least == most, np.where(calm, least, np.minimum(least, 0)), 0)
+            periods = block.period_times_rpm / rpm[::-1]
+            result = proven_cells(block.system, periods, ratios, factors, progress)[::-1]
+            parts = result.reshape(j - i - 1, speed_parts, damping.size - 1, damping_parts)
+            lowest = parts.min(axis=(1, 3))
+            highest = parts.max(axis=(1, 3))
+            decided = lowest if separate_fade else np.minimum(lowest, 0)
+            verdict[i : j - 1] = np.where(lowest == highest, decided, 0)
         return verdict
 
-    def solve(self, places: IntArray, at: Mapping[str, IntArray], points: ChartPoints, rtol: float) -> None:
-        """Put multipliers of places (k,) into ``points``; ``at``: inner axis -> index (k,) of its value."""
-        none = np.zeros(places.size, dtype=np.intp)
-        speed = at.get("speed_rpm", none)
-        damping = self.damping[at.get("damping_ratio", none)]
-        friction = self.friction[at.get("friction_coefficient", none)]
-        of, row = self._rows
-        for k in np.unique(of[speed]):
-            part = np.flatnonzero(of[speed] == k)
-            family = self.families[k]
-            block, separate, levels, turn = self._block(int(k), rtol)
-            T = turn / self.speeds[speed[part]]
-            factors = friction[part, None] * family.factors[row[speed[part]]]
-            result = fast_multipliers(block, T, damping[part], factors[:, :levels], tolerance=2e-4 * rtol)
-            values, errors = separate.multipliers(T)
-            values = np.concatenate([result.multipliers, values], axis=1)
-            errors = np.concatenate([result.errors, errors], axis=1)
-            points.put(places[part], values, errors, True, result.multipliers.shape[1])
+    def solve(
+        self, places: IntArray, indices: Mapping[str, IntArray], points: ChartPoints, rtol: float
+    ) -> None:
+        """Put the multipliers at places (k,) into ``points``.
+
+        ``indices`` maps each inner axis to the indices (k,) of its values.
+        """
+        zeros = np.zeros(places.size, dtype=np.intp)
+        speed = indices.get("speed_rpm", zeros)
+        damping = self.damping[indices.get("damping_ratio", zeros)]
+        friction = self.friction[indices.get("friction_coefficient", zeros)]
+        family_of_speed, row_in_family = self._rows
+        for number in np.unique(family_of_speed[speed]):
+            members = np.flatnonzero(family_of_speed[speed] == number)
+            family = self.families[number]
+            block = self._block(int(number), rtol)
+            T = block.period_times_rpm / self.speeds[speed[members]]
+            factors = friction[members, None] * family.factors[row_in_family[speed[members]]]
+            result = fast_multipliers(
+                block.system, T, damping[members], factors[:, : block.levels], tolerance=2e-4 * rtol
+            )
+            separate, separate_errors = block.separate.multipliers(T)
+            values = np.concatenate([result.multipliers, separate], axis=1)
+            errors = np.concatenate([result.errors, separate_errors], axis=1)
+            points.put(places[members], values, errors, True, result.multipliers.shape[1])
 
 
 def label_variation(variation: GearVariation) -> Tongue:
@@ -463,10 +503,10 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
 
 
 def with_regions(variation: GearVariation, chart: xr.Dataset) -> xr.Dataset:
-    """Add the unstable regions of a chart over ``region``, and where the edges next to the pair are.
+    """Add the unstable regions of a chart over ``region``, and the edges of instability next to the pair.
 
-    The attribute ``nearest_edge_<axis>`` is the value nearest to the pair's own at which its stability
-    changes, all else as near as the nodes come; NaN: there is none.
+    The attribute ``nearest_edge_<axis>`` is the value of an axis at which stability changes, the one nearest
+    to the value of the pair. The other axes are at the nodes nearest to the pair. NaN: there is no such edge.
     """
     regions = label_regions(variation, chart)
     names = list(map(str, chart["spectral_radius"].dims))
@@ -489,14 +529,14 @@ def with_regions(variation: GearVariation, chart: xr.Dataset) -> xr.Dataset:
 
 
 def _edge(variation: GearVariation, chart: xr.Dataset, name: str) -> float:
-    """Value of an axis nearest to the pair's own where its stability changes, see `with_regions`."""
-    own = {n: GEAR_AXES[n].own(variation.pair) for n in map(str, chart["verdict"].dims)}
-    others = {n: value for n, value in own.items() if n != name}
+    """Value of an axis where stability changes, nearest to the value of the pair, see `with_regions`."""
+    operating_values = {n: GEAR_AXES[n].own(variation.pair) for n in map(str, chart["verdict"].dims)}
+    others = {n: value for n, value in operating_values.items() if n != name}
     if any(not chart[n].min() <= value <= chart[n].max() for n, value in others.items()):
         return float("nan")
     nearest = {n: int(np.abs(chart[n].to_numpy() - value).argmin()) for n, value in others.items()}
     line = chart["verdict"].isel(nearest).sortby(name)
-    at = line[name].to_numpy()
+    values = line[name].to_numpy()
     unstable = line.to_numpy() < 0
-    edges = 0.5 * (at[1:] + at[:-1])[unstable[1:] != unstable[:-1]]
-    return float(edges[np.argmin(np.abs(edges - own[name]))]) if edges.size else float("nan")
+    edges = 0.5 * (values[1:] + values[:-1])[unstable[1:] != unstable[:-1]]
+    return float(edges[np.argmin(np.abs(edges - operating_values[name]))]) if edges.size else float("nan")

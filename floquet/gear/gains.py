@@ -2,7 +2,8 @@
 
 The laws k, c and mu of a tooth pair are piecewise polynomials, so between two breaks of any law of any
 pair the gains are polynomials of known degree: k (normal + mu (arm_0 + arm_1 xi)) and the like. Where teeth
-differ, polynomials through computed values stand for them, in every mesh cycle between its own touches.
+differ, polynomials through computed values take the place of the gains, in every mesh cycle between the
+instants at which a pair of this cycle touches or leaves.
 
 Sources: docs/theory/proven_bounds.md, "The gains".
 """
@@ -12,11 +13,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from floquet.rank_one.piecewise import series_rounding, to_series
+from floquet.rank_one.piecewise import GainValues, series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.friction.registry import law_of
 from lumped.mesh.places import kinks, linear_form_at
@@ -29,14 +31,14 @@ from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
-#: Roundings on the way to one value but for those of Horner's rule and of the sum over pairs: 10 of arm,
-#: level, products and the factor on stiffness, 20 of the factor on mu by speed.
+#: Roundings of one value, without Horner's rule and the sum over pairs: 10 of arm, level, products and the
+#: factor on stiffness, 20 of the factor on mu by speed.
 _ROUNDINGS = 30
-#: The same of a position, relative to the largest one: offset, phase, product, sum, difference.
+#: Rounding of a position, relative to the largest position: offset, phase, product, sum, difference.
 _PLACE = 16.0 * _U
-#: Error of a switch that is a root, see `ContactPath.crossings`, relative to L_XY.
+#: Error of a switch of a friction law that is a root, see `ContactPath.crossings`, relative to L_XY.
 _SEARCH = 1e-14
-#: Breaks closer than this part of a base pitch may be one segment's end.
+#: Breaks closer than this part of a base pitch may share one end of a segment.
 _MERGED = 1e-12
 #: Degree of the polynomials in place of the factor on stiffness and of its root.
 _FACTOR_DEGREE = 8
@@ -84,15 +86,15 @@ class _Law:
         # A little beyond both ends, where rounding of the position may lead.
         reach = width * (1.0 + 1e-9) + _PLACE * law.breaks[-1]
         terms = np.abs(rows) * reach ** powers[:, None]
-        whole = terms.sum(axis=0)
+        size_of_piece = terms.sum(axis=0)
         slope = (terms * powers[:, None]).sum(axis=0) / reach
         piece = np.clip(np.searchsorted(law.breaks, middle, side="right") - 1, 0, width.size - 1)
         inside = touch & (middle >= law.breaks[0]) & (middle <= law.breaks[-1])
-        size = np.where(inside, whole[piece], 0.0)
+        size = np.where(inside, size_of_piece[piece], 0.0)
         near = np.maximum(np.pad(size, ((0, 0), (1, 0))), np.pad(size, ((0, 0), (0, 1))))
         near[:, [0, -1]] = near[:, [0, -1]].max()
         # Where rounding has made one of several breaks, the pieces between them have no segment of their own.
-        near = np.maximum(near, whole[width < _MERGED * pitch].max(initial=0.0))
+        near = np.maximum(near, size_of_piece[width < _MERGED * pitch].max(initial=0.0))
         return cls(
             np.where(inside, rows[:, piece], 0.0),
             law.breaks[piece],
@@ -116,13 +118,46 @@ class _Law:
         return np.asarray(value)
 
 
-class MeshGains:
-    """Gains on the coordinates of a "mesh" form as `fit_pieces` asks for them.
+class _RowBounds(NamedTuple):
+    """Bounds on what one unit of load adds to a gain, norms of the coordinates.
 
-    In this order: feedback of deflection and of its rate by normal loads (with their friction, unless there
-    are ``levels``), the same by mu less the sum of the levels, and by each level but the first, zero.
-    ``factor`` is on the variation of the total stiffness about its mean; ``edges`` (S+1,) are the ends of the
-    segments as parts of the period.
+    Attributes
+    ----------
+    normal : constant part
+    arm : per |mu|
+    level : level of friction that acts
+    arm_slope : per unit of position and |mu|
+    """
+
+    normal: float
+    arm: float
+    level: float
+    arm_slope: float
+
+
+class _Factors(NamedTuple):
+    """Polynomials in place of the factor f on stiffnesses and of its root, on k pieces.
+
+    Attributes
+    ----------
+    values : of q and of s at the nodes (k, s)
+    errors : of q and of s, bounds (k,)
+    largest : bound (k,) on 1, q and s
+    """
+
+    values: tuple[FloatArray, FloatArray]
+    errors: tuple[FloatArray, FloatArray]
+    largest: FloatArray
+
+
+class MeshGains:
+    """Gains on the coordinates of a "mesh" form, with PROVEN errors, as `fit_pieces` asks for them.
+
+    The gains come in pairs: feedback of the deflection, feedback of the rate of the deflection. Without
+    ``levels`` one pair holds normal loads and friction. With levels of friction, the first of which is zero,
+    the first pair holds normal loads, the second pair mu less the sum of the levels, and each further pair
+    one level. ``factor`` is on the variation of the total stiffness about its mean. ``edges`` (S+1,) are the
+    ends of the segments as parts of the period.
     """
 
     def __init__(
@@ -174,63 +209,66 @@ class MeshGains:
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    ) -> GainValues:
         """See `PolynomialGains`."""
         phases = centre[:, None] + half[:, None] * nodes
         groups = np.zeros((2 * self.parts, *phases.shape, self.normal.size))
         errors = np.zeros((groups.shape[0], centre.size))
         factors = [np.ones_like(phases)] * 2
-        fixed = self._fixed[0][:, segment]
+        rounding_errors = self._fixed[0][:, segment]
         if self.varied:
-            factors, off, most = self._factors(centre, half, segment, nodes)
-            fixed = fixed * most
-            for j, law in enumerate((self.k, self.c)):
-                for p in range(self.parts):
-                    reach = self._reach(law.size, self.mu.size, self.tilt.size, p)[:, segment].sum(axis=0)
-                    errors[2 * p + j] = off[j] * reach
-        for i in range(self.offsets.size):
-            if not self.touch[i, segment].any():
+            polynomials = self._factors(centre, half, segment, nodes)
+            factors = list(polynomials.values)
+            rounding_errors = rounding_errors * polynomials.largest
+            for element, law in enumerate((self.k, self.c)):
+                for part in range(self.parts):
+                    reach = self._reach(law.size, self.mu.size, self.tilt.size, part)[:, segment].sum(axis=0)
+                    errors[2 * part + element] = polynomials.errors[element] * reach
+        for number in range(self.offsets.size):
+            if not self.touch[number, segment].any():
                 continue
-            xi = self.offsets[i] + self.pitch * phases
-            mu = self.mu(xi, i, segment)[..., None]
+            xi = self.offsets[number] + self.pitch * phases
+            mu = self.mu(xi, number, segment)[..., None]
             arm = self.arm[0] + xi[..., None] * self.arm[1]
-            sign = self.side[i, segment][:, None, None]
+            sign = self.side[number, segment][:, None, None]
             rows = [np.broadcast_to(self.normal, (*xi.shape, self.normal.size))]
             if self.apart.any():
-                rows[0] = rows[0] + self.tilt(xi, i, segment)[..., None] * self.apart
+                rows[0] = rows[0] + self.tilt(xi, number, segment)[..., None] * self.apart
             if self.levels:
                 rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
             else:
                 rows[0] = rows[0] + mu * arm
-            for j, law in enumerate((self.k, self.c)):
-                load = law(xi, i, segment) * factors[j]
-                for p, row in enumerate(rows):
-                    groups[2 * p + j] -= load[..., None] * row
-        return groups, errors, fixed
+            for element, law in enumerate((self.k, self.c)):
+                load = law(xi, number, segment) * factors[element]
+                for part, row in enumerate(rows):
+                    groups[2 * part + element] -= load[..., None] * row
+        return GainValues(groups, errors, rounding_errors)
 
-    def _row(self, part: int) -> tuple[float, float, float, float]:
-        """Bounds on a row without tilt: constant, per |mu|, of levels, and per unit of position and |mu|."""
+    def _row(self, part: int) -> _RowBounds:
+        """Bounds on the row of one part of the gains, without tilt."""
         root = np.sqrt(self.metric)
         normal = float(np.linalg.norm(self.normal * root))
         arms = [float(np.linalg.norm(a * root)) for a in self.arm]
         arm = arms[0] + arms[1] * float(self.offsets[0] + self.pitch)
         if not self.levels:
-            return normal, arm, 0.0, arms[1]
+            return _RowBounds(normal, arm, 0.0, arms[1])
         if part == 0:
-            return normal, 0.0, 0.0, 0.0
-        return (
-            (0.0, arm, sum(self.levels), arms[1]) if part == 1 else (0.0, 0.0, self.levels[part - 1], arms[1])
-        )
+            return _RowBounds(normal, 0.0, 0.0, 0.0)
+        if part == 1:
+            return _RowBounds(0.0, arm, sum(self.levels), arms[1])
+        return _RowBounds(0.0, 0.0, self.levels[part - 1], arms[1])
 
     def _apart(self, part: int) -> float:
         """Bound on a row per unit of tilt."""
         return float(np.linalg.norm(self.apart * np.sqrt(self.metric))) if part == 0 else 0.0
 
     def _reach(self, size: FloatArray, mu: FloatArray, tilt: FloatArray, part: int) -> FloatArray:
-        """Bound on the norm of what one pair adds to a gain, from bounds on its load, |mu| and tilt."""
-        normal, arm, level, _ = self._row(part)
-        full = self._row(1)[1] if self.levels and part else arm
-        row = normal + arm * mu + full * level + self._apart(part) * tilt
+        """Bound on the norm of the share of one pair in a gain, from bounds on load, |mu| and tilt."""
+        row_bounds = self._row(part)
+        level_arm = self._row(1).arm if self.levels and part else row_bounds.arm
+        row = (
+            row_bounds.normal + row_bounds.arm * mu + level_arm * row_bounds.level + self._apart(part) * tilt
+        )
         return np.asarray(size * row, dtype=float)
 
     @property
@@ -243,19 +281,22 @@ class MeshGains:
         """Bounds (G, S) by rounding of values and of positions, and ``jumps``."""
         errors = np.zeros((2 * self.parts, self.edges.size - 1))
         jumps = np.zeros((2 * self.parts, self.edges.size))
-        for j, law in enumerate((self.k, self.c)):
-            for p in range(self.parts):
-                _, arm, _, turn = self._row(p)
-                reach = self._reach(law.size, self.mu.size, self.tilt.size, p)
-                moved = self._reach(law.slope, self.mu.size, self.tilt.size, p) + law.size * (
+        for element, law in enumerate((self.k, self.c)):
+            for part in range(self.parts):
+                arm = self._row(part).arm
+                arm_slope = self._row(part).arm_slope
+                reach = self._reach(law.size, self.mu.size, self.tilt.size, part)
+                by_position = self._reach(law.slope, self.mu.size, self.tilt.size, part) + law.size * (
                     arm * self.mu.slope
-                    + turn * (self.mu.size + sum(self.levels))
-                    + self._apart(p) * self.tilt.slope
+                    + arm_slope * (self.mu.size + sum(self.levels))
+                    + self._apart(part) * self.tilt.slope
                 )
                 misfit = law.size * arm * self.mu.misfit
-                errors[2 * p + j] = (self.rounding * reach + self.place * moved + misfit).sum(axis=0)
-                near = self._reach(law.near, self.mu.near, self.tilt.near, p).sum(axis=0)
-                jumps[2 * p + j] = 2.0 * self.slips * self._largest_factor * near
+                errors[2 * part + element] = (self.rounding * reach + self.place * by_position + misfit).sum(
+                    axis=0
+                )
+                near = self._reach(law.near, self.mu.near, self.tilt.near, part).sum(axis=0)
+                jumps[2 * part + element] = 2.0 * self.slips * self._largest_factor * near
         return errors, jumps
 
     @cached_property
@@ -263,63 +304,72 @@ class MeshGains:
         """Bound (S+1,) on 1, f and sqrt f of ``_factors`` on both sides of each edge."""
         if not self.varied:
             return np.ones(self.edges.size)
-        low, high = self.edges[:-1], self.edges[1:]
+        start = self.edges[:-1]
+        end = self.edges[1:]
         total, target = self._total(
-            0.5 * (low + high), 0.5 * (high - low), np.arange(low.size), np.array([-1.0, 1.0])
+            0.5 * (start + end), 0.5 * (end - start), np.arange(start.size), np.array([-1.0, 1.0])
         )
         with np.errstate(divide="ignore"):
             f = np.maximum(1.01 * np.abs(target) / total, 1.0)
         f[~(total > 0.0)] = np.inf
-        both = np.maximum(np.append(f[:, 0], f[-1, 1]), np.insert(f[:, 1], 0, f[0, 0]))
-        both[[0, -1]] = both[[0, -1]].max()
-        return np.asarray(both)
+        largest = np.maximum(np.append(f[:, 0], f[-1, 1]), np.insert(f[:, 1], 0, f[0, 0]))
+        largest[[0, -1]] = largest[[0, -1]].max()
+        return np.asarray(largest)
 
     def _factors(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
-    ) -> tuple[list[FloatArray], list[FloatArray], FloatArray]:
+    ) -> _Factors:
         """The factor f = (mean + factor (k - mean))/k on stiffnesses and its root, by polynomials q and s.
 
-        Bounds (k,) on the errors follow from |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
-        |s^2 - f|/(s + sqrt f), each residual bounded by the sum of its Chebyshev coefficients. The third
-        result (k,) bounds 1, q and s.
+        The bounds on the errors follow from |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
+        |s^2 - f|/(s + sqrt f). The sum of its Chebyshev coefficients bounds each residual.
         """
-        low, into = to_series(_FACTOR_DEGREE + 1)
-        high, onto = to_series(2 * _FACTOR_DEGREE + 1 + self.k.degree)
-        total, target = self._total(centre, half, segment, low)
+        fit_nodes, to_fit_series = to_series(_FACTOR_DEGREE + 1)
+        check_nodes, to_check_series = to_series(2 * _FACTOR_DEGREE + 1 + self.k.degree)
+        total, target = self._total(centre, half, segment, fit_nodes)
         f = target / total
         if not (np.isfinite(f).all() and (f > 0.0).all()):
             bad = centre[~(np.isfinite(f) & (f > 0.0)).all(axis=1)][0]
             raise NumericalError(f"the varied stiffness is not positive near {bad:g} of the period.")
-        q, s = f @ into.T, np.sqrt(f) @ into.T
+        q = f @ to_fit_series.T
+        s = np.sqrt(f) @ to_fit_series.T
         vander = np.polynomial.chebyshev.chebvander
-        total, target = self._total(centre, half, segment, high)
-        q_high = q @ vander(high, _FACTOR_DEGREE).T
-        s_high = s @ vander(high, _FACTOR_DEGREE).T
-        slack = series_rounding(high.size) + 4.0 * _FACTOR_DEGREE**2 * self.rounding
+        total, target = self._total(centre, half, segment, check_nodes)
+        q_high = q @ vander(check_nodes, _FACTOR_DEGREE).T
+        s_high = s @ vander(check_nodes, _FACTOR_DEGREE).T
+        slack = series_rounding(check_nodes.size) + 4.0 * _FACTOR_DEGREE**2 * self.rounding
 
         def sup(values: FloatArray, scale: FloatArray) -> FloatArray:
-            return np.asarray(np.abs(values @ onto.T).sum(axis=1) + slack * scale)
+            return np.asarray(np.abs(values @ to_check_series.T).sum(axis=1) + slack * scale)
 
         def least(values: FloatArray) -> FloatArray:
-            series = values @ onto.T
+            series = values @ to_check_series.T
             return np.asarray(
                 series[:, 0] - np.abs(series[:, 1:]).sum(axis=1) - slack * np.abs(values).max(axis=1)
             )
 
-        most = np.abs(q).sum(axis=1)
-        size = most * total.max(axis=1) + np.abs(target).max(axis=1)
-        # By how much the total is wrong, rounding of its positions included, and what that does.
-        wrong = (self.rounding * self.k.size + self.place * self.k.slope).sum(axis=0)[segment]
-        made = (most + abs(self.factor)) * wrong + abs(1.0 - self.factor) * self.mean_error
+        q_size = np.abs(q).sum(axis=1)
+        size = q_size * total.max(axis=1) + np.abs(target).max(axis=1)
+        # Error of the total stiffness, rounding of the positions included, and its share in the residual.
+        stiffness_error = (self.rounding * self.k.size + self.place * self.k.slope).sum(axis=0)[segment]
+        residual_error = (q_size + abs(self.factor)) * stiffness_error + abs(
+            1.0 - self.factor
+        ) * self.mean_error
         with np.errstate(divide="ignore", invalid="ignore"):
-            floor = least(total) - wrong
-            off = np.where(floor > 0.0, (sup(q_high * total - target, size) + made) / floor, np.inf)
+            floor = least(total) - stiffness_error
+            q_error = np.where(
+                floor > 0.0, (sup(q_high * total - target, size) + residual_error) / floor, np.inf
+            )
             floor = least(s_high)
-            gap = sup(s_high**2 - q_high, np.abs(s).sum(axis=1) ** 2 + most) + off
-            off_root = np.where(floor > 0.0, gap / floor, np.inf)
-        off_root[~np.isfinite(off)] = np.inf
-        at = vander(nodes, _FACTOR_DEGREE)
-        return [q @ at.T, s @ at.T], [off, off_root], np.maximum(most, np.abs(s).sum(axis=1)) + 1.0
+            s_residual = sup(s_high**2 - q_high, np.abs(s).sum(axis=1) ** 2 + q_size) + q_error
+            s_error = np.where(floor > 0.0, s_residual / floor, np.inf)
+        s_error[~np.isfinite(q_error)] = np.inf
+        polynomials_at_nodes = vander(nodes, _FACTOR_DEGREE)
+        return _Factors(
+            values=(q @ polynomials_at_nodes.T, s @ polynomials_at_nodes.T),
+            errors=(q_error, s_error),
+            largest=np.maximum(q_size, np.abs(s).sum(axis=1)) + 1.0,
+        )
 
     def _total(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
@@ -357,7 +407,7 @@ class OwnGains:
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    ) -> GainValues:
         """See `PolynomialGains`."""
         cycle = np.floor(centre)[:, None]
         ends = self.tables.edges
@@ -373,14 +423,16 @@ class OwnGains:
             by += [force["friction"], force["friction_moment"], force["separating"]]
             gains.append(-np.stack(by, axis=-1) @ self.forces)
         nothing = np.zeros((2, centre.size))
-        return np.stack(gains), nothing, nothing
+        return GainValues(np.stack(gains), nothing, nothing)
 
 
-def _slips(raw: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:
+def _slips(breaks: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:
     """How far (S+1,) each edge may be from the breaks that it stands for, in parts of the period."""
-    raw = np.concatenate([raw, raw[raw < 1e-6] + 1.0, raw[raw > 1.0 - 1e-6] - 1.0])
-    after = np.clip(np.searchsorted(edges, raw), 1, edges.size - 1)
-    nearest = np.where(raw - edges[after - 1] < edges[after] - raw, after - 1, after)
+    breaks = np.concatenate([breaks, breaks[breaks < 1e-6] + 1.0, breaks[breaks > 1.0 - 1e-6] - 1.0])
+    edge_after = np.clip(np.searchsorted(edges, breaks), 1, edges.size - 1)
+    nearest = np.where(
+        breaks - edges[edge_after - 1] < edges[edge_after] - breaks, edge_after - 1, edge_after
+    )
     slips = np.zeros(edges.size)
-    np.maximum.at(slips, nearest, np.abs(raw - edges[nearest]))
+    np.maximum.at(slips, nearest, np.abs(breaks - edges[nearest]))
     return slips + rounding

@@ -14,10 +14,10 @@ from typing import get_args
 import numpy as np
 from scipy.linalg import block_diag, eigh
 
+from floquet.engine.formula_steps import proven_product
 from floquet.engine.monodromy import integral_of_trace, monodromy
 from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds, radii_with_bounds
 from floquet.engine.propagators.one_step import Propagator
-from floquet.engine.proven import proven_product
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
 from floquet.gear.gains import MeshGains, OwnGains, own_tables
@@ -40,9 +40,8 @@ MODES = 12
 _EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _LARGEST = 700.0  # growth beyond the largest number, as a logarithm
-# mesh cycles that are worked on together, logarithm of their product
-_BLOCK = 32
-_SMALLEST = -250.0
+_BLOCK = 32  # mesh cycles that are one period of the kernel, at most
+_SMALLEST = -250.0  # logarithm of the smallest product of these cycles
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +52,8 @@ class Feedback:
     ----------
     system : x' = A(t) x in these coordinates; modes of a pair on shafts have unit modal mass
     metric : (m,) weights of the norm of errors; they make the frictionless mesh symmetric
-    separate : decay rates [1/s] and squares of the natural frequencies (k,) of what moves by itself: on
-        springs off the line of action, on shafts the modes that count least
+    separate : decay rates [1/s] and squares of the natural frequencies (k,) of motions that the mesh does not
+        couple: on springs off the line of action, on shafts the modes of least importance
     misfit : (pieces,) bound on the error of the polynomials of mu
     """
 
@@ -65,7 +64,7 @@ class Feedback:
 
 
 def feedback_system(variation: GearVariation) -> Feedback:
-    """Return what the mesh couples of a gear pair."""
+    """Return the coordinates of a gear pair that the mesh couples."""
     system = LTVSystem.of(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
     interval = system.cycle.elements.friction.interval
     misfit = variation.friction_scale * friction_misfit(variation.pair, interval)
@@ -77,19 +76,19 @@ def feedback_system(variation: GearVariation) -> Feedback:
 
 
 def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
-    """The modes that count most of a pair on shafts, the others apart."""
+    """The modes of largest importance of a pair on shafts; the other modes are separate."""
     m = system.deflection.size
     mesh = system.cycle.mean_stiffness * np.outer(system.deflection, system.deflection)
     system = _in_modes(system, eigh(mesh - system.constant[m:, :m])[1])
-    whole = _in_modes(system, _turn(system))
-    order = np.argsort(-importance(whole), kind="stable")
-    leading, rest = (np.sort(part) for part in (order[:MODES], order[MODES:]))
-    separate = -0.5 * np.diag(whole.constant[m:, m:])[rest], _squares(whole)[rest]
-    return Feedback(_in_modes(whole, np.eye(m)[:, leading]), np.ones(leading.size), separate, misfit)
+    all_modes = _in_modes(system, _turn(system))
+    order = np.argsort(-importance(all_modes), kind="stable")
+    leading, separate_modes = (np.sort(part) for part in (order[:MODES], order[MODES:]))
+    separate = -0.5 * np.diag(all_modes.constant[m:, m:])[separate_modes], _squares(all_modes)[separate_modes]
+    return Feedback(_in_modes(all_modes, np.eye(m)[:, leading]), np.ones(leading.size), separate, misfit)
 
 
 def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
-    """The same in the coordinates whose unit vectors are the columns of ``modes`` (m, k), orthonormal."""
+    """The system in the coordinates whose unit vectors are the columns of ``modes`` (m, k), orthonormal."""
     both = block_diag(modes, modes)
     return replace(
         system,
@@ -106,29 +105,32 @@ def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
 
 def _squares(system: LTVSystem) -> FloatArray:
     """Squares of the natural frequencies (m,) with the mean stiffness of the mesh, without friction."""
-    v, m = system.deflection, system.deflection.size
+    v = system.deflection
+    m = v.size
     return np.asarray(system.cycle.mean_stiffness * v**2 - np.diag(system.constant[m:, :m]))
 
 
 def _turn(system: LTVSystem) -> FloatArray:
     """Combinations (m, m) of modes of equal frequency: one has all deflection, one all gyroscopic moments."""
     squares = _squares(system)
-    turn = np.eye(squares.size)
+    combinations = np.eye(squares.size)
     for group in np.split(
         np.arange(squares.size), 1 + np.flatnonzero(np.diff(squares) > _EQUAL * squares[1:])
     ):
-        own = np.ix_(group, group)
+        block = np.ix_(group, group)
         first = system.deflection[group]
-        leading = np.column_stack([first, system.gyroscopic[own] @ first, np.eye(group.size)])
+        leading = np.column_stack([first, system.gyroscopic[block] @ first, np.eye(group.size)])
         leading /= np.maximum(np.linalg.norm(leading, axis=0), np.finfo(float).tiny)
-        turn[own] = np.linalg.qr(leading)[0]
-    return turn
+        combinations[block] = np.linalg.qr(leading)[0]
+    return combinations
 
 
 def importance(system: LTVSystem) -> FloatArray:
-    """Share (m,) of each mode on shafts in the static deflection by the mesh, and what it gets of others.
+    """Importance (m,) of each mode on shafts for the deflection of the mesh.
 
-    By damping and gyroscopic moments, each at the speed where the mesh frequency is that mode's.
+    The share of the mode in the static deflection by the mesh, plus the shares of other modes that damping
+    and gyroscopic moments couple to the mode. The coupling is that at the speed at which the mesh frequency
+    is the frequency of the mode.
     """
     v = system.deflection
     squares = _squares(system)
@@ -138,8 +140,8 @@ def importance(system: LTVSystem) -> FloatArray:
     m = squares.size
     damping = system.constant[m:, m:] + g.omega_pinion * system.gyroscopic
     coupling = omega * (np.abs(damping) + omega / system.pair.pinion.teeth * np.abs(system.gyroscopic))
-    apart = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
-    ratio = coupling / apart
+    distance = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
+    ratio = coupling / distance
     np.fill_diagonal(ratio, 0.0)
     return np.asarray(share + np.square(ratio) @ share)
 
@@ -149,15 +151,15 @@ def gear_block(
 ) -> RankOneSystem:
     """Return z = (q, x_p, x_g) of a gear pair, or on shafts modes: z'' + D z' + L z + w v.z + wd v.z' = 0.
 
-    v . z is the dynamic transmission error, on springs with v = (1, 1, -1); w and wd collect what each pair's
-    normal load and friction do to each coordinate. Torques and unloaded tooth errors force the motion and do
-    not act on its stability. The metric makes the frictionless mesh symmetric: (m_e, m_p, m_g) on springs,
-    and one for modes, which have unit modal mass.
+    v . z is the dynamic transmission error, on springs with v = (1, 1, -1). w and wd are the effects of
+    normal load and friction of all pairs on each coordinate. Torques and unloaded tooth errors force the
+    motion and do not change its stability. The metric makes the frictionless mesh symmetric: (m_e, m_p, m_g)
+    on springs, and one for modes, which have unit modal mass.
 
     Parameters
     ----------
     source : a gear pair, or a variation from a chart
-    rtol : error of the fitted polynomials relative to the largest gain; it becomes part of the error bounds
+    rtol : error of the fitted polynomials relative to the largest gain, which is part of the error bounds
     supports : of a pair: "springs", its ``bearings``, or its "shafts"; by default the shafts if it has them
     """
     rtol = real_number("rtol", rtol, 1e-14, 0.1)
@@ -168,26 +170,27 @@ def gear_block(
 def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
     """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`.
 
-    With levels, what is proportional to mu is ``varied``: a factor on mu costs nothing, and with two levels
-    mu may also rise and fall as a whole.
+    With levels, the part of the gains that is proportional to mu is ``varied``: a factor on mu then needs no
+    new fit. With two levels mu may also rise and fall as a whole.
     """
     system = feedback.system
     metric = feedback.metric
     m = feedback.metric.size
     turning = system.pair.geometry.omega_pinion * system.gyroscopic
     mesh = MeshGains(system, metric, feedback.misfit, factor, levels)
-    phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
-    jumps = np.zeros((phases.size, mesh.jumps.shape[0]))
-    jumps[at] = mesh.jumps.T
+    fits = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
+    jumps = np.zeros((fits.phases.size, mesh.jumps.shape[0]))
+    jumps[fits.edge_indices] = mesh.jumps.T
+    polynomials = fits.polynomials
     parts = [
-        Gains(fitted[k], fitted[k + 1], errors[:, k : k + 2], jumps[:, k : k + 2])
-        for k in range(0, len(fitted), 2)
+        Gains(polynomials[k], polynomials[k + 1], fits.errors[:, k : k + 2], jumps[:, k : k + 2])
+        for k in range(0, len(polynomials), 2)
     ]
     return RankOneSystem(
         stiffness=-system.constant[m:, :m],
         damping=-system.constant[m:, m:] - turning,
         v=system.deflection,
-        phases=phases,
+        phases=fits.phases,
         gains=parts[0],
         period=system.period,
         metric=metric,
@@ -200,15 +203,15 @@ def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequenc
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
-    They do not include the double +1 of the free rotation: angle and speed of the pair are arbitrary.
+    The double +1 of the free rotation is not included: angle and speed of the pair are arbitrary.
 
     Attributes
     ----------
     feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable; on shafts
-        those of the modes that count most
-    oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings;
-        on shafts those of the other modes, each by itself
-    variation : the pair, as it was varied
+        of the modes of largest importance
+    oloa : (4,) of y_p and y_g, two each. Friction drives these motions and they do not act back, so their
+        multipliers are those of the bearings. On shafts of the other modes, each for itself
+    variation : the pair with the changes of the chart point
     """
 
     feedback: ComplexArray
@@ -286,7 +289,8 @@ class _Coefficients:
 class OffLineOfAction:
     """Exponents of the motions y_p, y_g off the line of action, or of separate modes on shafts; closed form.
 
-    m y'' + c y' + K y = 0 for each: s = -d +- sqrt(r), d = c/(2 m), r = d^2 - K/m, multipliers exp(s T).
+    m y'' + c y' + K y = 0 for each motion: s = -d +- sqrt(r), d = c/(2 m), r = d^2 - K/m. The multipliers are
+    exp(s T), with PROVEN bounds on their errors.
 
     Attributes
     ----------
@@ -307,8 +311,8 @@ class OffLineOfAction:
         # Twelve units of rounding: those of m, c and K, of d^2, of K/m and of the difference.
         e = 12.0 * _U * (decay**2 + square)
         with np.errstate(divide="ignore", invalid="ignore"):
-            wrong = np.minimum(np.sqrt(e), np.where(r == 0.0, np.inf, e / np.abs(root)))
-        errors = wrong + 4.0 * _U * (decay + np.abs(root))
+            root_error = np.minimum(np.sqrt(e), np.where(r == 0.0, np.inf, e / np.abs(root)))
+        errors = root_error + 4.0 * _U * (decay + np.abs(root))
         return cls(np.concatenate([-decay + root, -decay - root]), np.concatenate([errors, errors]))
 
     def multipliers(self, periods: FloatArray) -> tuple[ComplexArray, FloatArray]:
@@ -316,8 +320,8 @@ class OffLineOfAction:
         angle = self.exponents * periods[:, None]
         values = np.exp(angle)
         # Sixteen units: the product, and periods that are made of speeds in rpm.
-        wrong = self.errors * periods[:, None] + 16.0 * _U * np.abs(angle)
-        return values, np.abs(values) * (np.expm1(wrong) + 8.0 * _U)
+        exponent_error = self.errors * periods[:, None] + 16.0 * _U * np.abs(angle)
+        return values, np.abs(values) * (np.expm1(exponent_error) + 8.0 * _U)
 
 
 def gear_pair_multipliers(
@@ -354,23 +358,23 @@ def gear_pair_multipliers(
     variation = GearVariation.of(source, supports)
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
     feedback = feedback_system(variation)
-    own: Spectrum
+    spectrum: Spectrum
     if isinstance(method, str) and method == "taylor":
-        own = _proven(feedback, variation.stiffness_variation, rtol)
+        spectrum = _proven(feedback, variation.stiffness_variation, rtol)
     else:
-        own = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
-    (oloa,), (oloa_errors,) = OffLineOfAction.of(feedback).multipliers(np.array([own.period]))
-    values = np.concatenate([own.multipliers, oloa])
-    errors = np.concatenate([own.multiplier_errors, oloa_errors])
+        spectrum = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
+    (oloa,), (oloa_errors,) = OffLineOfAction.of(feedback).multipliers(np.array([spectrum.period]))
+    values = np.concatenate([spectrum.multipliers, oloa])
+    errors = np.concatenate([spectrum.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
     return GearPairMultipliers(
         multipliers=values[order],
         multiplier_errors=errors[order],
-        period=own.period,
-        feedback=own.multipliers,
+        period=spectrum.period,
+        feedback=spectrum.multipliers,
         oloa=oloa,
         variation=variation,
-        certificate=own.certificate,
+        certificate=spectrum.certificate,
     )
 
 
@@ -384,16 +388,18 @@ def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
 
 @dataclass(frozen=True, eq=False)
 class RevolutionMultipliers:
-    """Floquet multipliers over the period of teeth that differ; those smaller than their bound are left out.
+    """Floquet multipliers over the period of teeth that differ.
+
+    Multipliers smaller than the bound on their error are left out.
 
     Attributes
     ----------
     multipliers : over the whole period, largest first; 0 where they are below the smallest number
-    rates : |multiplier|^(1/cycles), growth of each in one mesh cycle
-    rate : the largest one; above 1 the motion is unstable
+    rates : |multiplier|^(1/cycles), growth of each motion in one mesh cycle
+    rate : the largest rate; above 1 the motion is unstable
     error : bound on the error of ``rate``, proven for the polynomials of the gains of every mesh cycle
     cycles : mesh cycles of the period
-    healthy_rate : that of the twin with like teeth, by the same method
+    healthy_rate : rate of the twin with like teeth, by the same method
     certificate : "proven"
     """
 
@@ -407,7 +413,7 @@ class RevolutionMultipliers:
 
     @property
     def stable(self) -> bool:
-        """Whether perturbations fade, beyond the error."""
+        """Whether the rate is below 1 by more than its error: perturbations fade."""
         return self.rate + self.error < 1.0
 
 
@@ -416,10 +422,11 @@ def revolution_multipliers(
 ) -> RevolutionMultipliers:
     """Multipliers over a revolution or hunting period of teeth that differ: docs/theory/teeth.md.
 
-    Perturbations see the tangent of the contact about the own static state of every meeting pair. The maps of
-    the mesh cycles are multiplied one after the other and scaled, so that a hunting period of thousands of
-    cycles neither overflows nor underflows. What the mesh does not couple, y_p and y_g off the line of action
-    or on shafts all but the 12 modes of `gear_pair_multipliers` that count most, moves each by itself.
+    Each tooth pair has its own static state, and perturbations see the tangent of the contact about this
+    state. The maps of the mesh cycles are multiplied one after the other and scaled, so that a hunting period
+    of thousands of cycles neither overflows nor underflows. Motions that the mesh does not couple have
+    multipliers of their own: y_p and y_g off the line of action, or on shafts all but the 12 modes of
+    `gear_pair_multipliers` that count most.
 
     Parameters
     ----------
@@ -436,67 +443,79 @@ def revolution_multipliers(
     pair = load_gear_pair(pair)
     rtol = real_number("rtol", rtol, 1e-11, 0.1)
     feedback = feedback_system(GearVariation.of(pair.healthy, supports))
-    like = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
+    like_teeth = fitted_block(feedback, 1.0, max(0.01 * rtol, 1e-13), [])
     cycles = period_of(pair)
     laws = ToothLaws(pair, every=True)
     # Errors of the teeth force prescribed contact and do not change it.
     alike = not laws.loaded and len(laws.faults) == 1 and not laws.turning()["amplitude"][:RIPPLES].any()
-    healthy = float(_of_cycles(ToothLaws(pair.healthy, every=True), feedback, like, 1, 1, rtol)[1][0])
-    # The product of so many does not vanish, and the kernel has as many steps.
-    most = min(_SMALLEST / np.log(min(healthy, 0.99)), 4e4 / (1e3 + like.modal().omega.max() * like.period))
-    block = int(np.clip(most, 1, _BLOCK))
-    values, rates, error = _of_cycles(laws, feedback, like, 1 if alike else cycles, block, rtol)
+    healthy = float(_of_cycles(ToothLaws(pair.healthy, every=True), feedback, like_teeth, 1, 1, rtol)[1][0])
+    # The product of so many cycles does not vanish, and the kernel has enough steps for them.
+    longest = min(
+        _SMALLEST / np.log(min(healthy, 0.99)),
+        4e4 / (1e3 + like_teeth.modal().omega.max() * like_teeth.period),
+    )
+    block = int(np.clip(longest, 1, _BLOCK))
+    values, rates, error = _of_cycles(laws, feedback, like_teeth, 1 if alike else cycles, block, rtol)
     with np.errstate(under="ignore"):
-        whole = values**cycles if alike else values
+        over_period = values**cycles if alike else values
     # What the mesh does not couple has the same multipliers with any teeth.
-    apart = OffLineOfAction.of(feedback)
-    (separate,), (bounds,) = apart.multipliers(np.array([like.period]))
+    off_line = OffLineOfAction.of(feedback)
+    (separate,), (bounds,) = off_line.multipliers(np.array([like_teeth.period]))
     sizes = np.abs(separate)
     high = max(float(rates[0]) + error, float((sizes + bounds).max(initial=0.0)))
     low = max(float(rates[0]) - error, float((sizes - bounds).max(initial=0.0)))
-    whole = np.append(whole, separate**cycles)
+    over_period = np.append(over_period, separate**cycles)
     rates = np.append(rates, sizes)
     order = np.argsort(-rates, kind="stable")
     rate = float(rates[order[0]])
     error = max(high - rate, rate - low)
     healthy = max(healthy, float(sizes.max(initial=0.0)))
-    return RevolutionMultipliers(whole[order], rates[order], rate, error, cycles, healthy)
+    return RevolutionMultipliers(over_period[order], rates[order], rate, error, cycles, healthy)
 
 
 def _of_cycles(
     laws: ToothLaws, feedback: Feedback, like: RankOneSystem, cycles: int, block: int, rtol: float
 ) -> tuple[ComplexArray, FloatArray, float]:
-    """Multipliers over so many cycles, largest first, their rates, and a bound on the largest one's error."""
-    own = own_tables(laws)
+    """Multipliers over ``cycles`` mesh cycles, largest first, and their rates.
+
+    The third result is a PROVEN bound on the error of the largest rate. ``block`` cycles at a time are one
+    period of the kernel.
+    """
+    tables = own_tables(laws)
     mean = like.mean_of(like.gains.w)
 
     def map_of(first: int) -> FastMonodromy:
         count = min(block, cycles - first)
-        gains = OwnGains(own, feedback.system, first, count)
-        phases, (w, wd), misfit, _ = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
+        gains = OwnGains(tables, feedback.system, first, count)
+        fits = fit_pieces(gains, gains.edges, feedback.metric, rtol=0.1 * rtol)
+        w, wd = fits.polynomials
         period = count * like.period
-        fits = Gains(w, wd, misfit)
+        block_gains = Gains(w, wd, fits.errors)
         turning = None if like.gyroscopic is None else count * like.gyroscopic
-        some = replace(like, phases=phases / count, gains=fits, period=period, gyroscopic=turning, mean=mean)
-        return fast_monodromies(some, tolerance=max(1e-4 * rtol, 1e-14))
+        cycles_of_block = replace(
+            like, phases=fits.phases / count, gains=block_gains, period=period, gyroscopic=turning, mean=mean
+        )
+        return fast_monodromies(cycles_of_block, tolerance=max(1e-4 * rtol, 1e-14))
 
-    found = in_threads(map_of, range(0, cycles, block))
-    maps, errors = (np.concatenate([getattr(f, name) for f in found]) for name in ("matrices", "errors"))
+    flows = in_threads(map_of, range(0, cycles, block))
+    maps, errors = (np.concatenate([getattr(f, name) for f in flows]) for name in ("matrices", "errors"))
     # Powers of two scale without rounding.
     flow = np.eye(maps.shape[1])
     halvings = np.zeros(errors.size, dtype=np.int64)
-    for n, one in enumerate(maps):
-        flow = one @ flow
+    for n, cycle_map in enumerate(maps):
+        flow = cycle_map @ flow
         halvings[n] = np.frexp(np.abs(flow).max())[1]
         flow = np.ldexp(flow, -halvings[n])
     scaled = np.ldexp(maps, -halvings[:, None, None])
     values, bounds = multipliers_with_bounds(*proven_product(scaled, np.ldexp(errors, -halvings)))
     radius, error = map(float, radii_with_bounds(values, bounds))
-    kept = values[(np.abs(values) > bounds) | (values == values[0])]
+    significant = values[(np.abs(values) > bounds) | (values == values[0])]
     logarithm = float(halvings.sum()) * np.log(2.0)
     interval = [max(radius - error, 0.0), radius + error]
     with np.errstate(under="ignore", divide="ignore"):
-        rates, (low, high) = (np.exp((np.log(m) + logarithm) / cycles) for m in (np.abs(kept), interval))
-        whole = kept * np.exp(min(logarithm, _LARGEST))
+        rates, (low, high) = (
+            np.exp((np.log(m) + logarithm) / cycles) for m in (np.abs(significant), interval)
+        )
+        over_period = significant * np.exp(min(logarithm, _LARGEST))
     rounding = 8.0 * _U * (2.0 + abs(np.log(high))) * high
-    return whole, rates, float(max(high - rates[0], rates[0] - low) + rounding)
+    return over_period, rates, float(max(high - rates[0], rates[0] - low) + rounding)

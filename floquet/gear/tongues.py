@@ -99,9 +99,9 @@ def stability_boundaries(
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
 
-    Along speed the search starts from a grid that meets every tongue of a damped pair, whatever its
-    order (`search_grid`), and from a graded cluster at every predicted line (omega_i +- omega_j)/k, for pairs
-    with hardly any damping; ends are found by bisection.
+    Along speed the search starts from a grid that meets every tongue of a damped pair, of any order
+    (`search_grid`). For pairs with hardly any damping a graded cluster of speeds at every predicted line
+    (omega_i +- omega_j)/k is added. Bisection finds the ends of the tongues.
 
     Parameters
     ----------
@@ -131,43 +131,46 @@ def stability_boundaries(
     ------
     ParameterError : unusable range or axis
     """
-    own = GearVariation.of(pair, supports)
+    base = GearVariation.of(pair, supports)
     low, high = checked_range("speed_rpm", speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
-    xtol, rtol = real_number("xtol", xtol, 1e-15, 0.1), real_number("rtol", rtol, 1e-13, 1e-3)
-    checked = gear_grid(axes, own.supports) if axes is not None else {}
+    xtol = real_number("xtol", xtol, 1e-15, 0.1)
+    rtol = real_number("rtol", rtol, 1e-13, 1e-3)
+    checked = gear_grid(axes, base.supports) if axes is not None else {}
     if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
         raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
     name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
     intervals: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
     complete = np.ones(values.size, dtype=bool)
     for index, value in enumerate(values):
-        here = vary(own, {name: float(value)} if axes else {})
-        lines = np.array(list(predicted_lines(here, orders).values()))
-        dense, complete[index] = search_grid(gear_block(here), low, high)
+        variation = vary(base, {name: float(value)} if axes else {})
+        lines = np.array(list(predicted_lines(variation, orders).values()))
+        dense, complete[index] = search_grid(gear_block(variation), low, high)
 
-        def radius(speeds: FloatArray, here: GearVariation = here) -> FloatArray:
-            return solved(here, {"speed_rpm": speeds}, rtol).radius
+        def radius(speeds: FloatArray, variation: GearVariation = variation) -> FloatArray:
+            return solved(variation, {"speed_rpm": speeds}, rtol).radius
 
         start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
         for interval in unstable_intervals(radius, start, xtol=xtol):
-            label = label_variation(vary(here, {"speed_rpm": interval.peak}))
+            label = label_variation(vary(variation, {"speed_rpm": interval.peak}))
             intervals.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)
-    result = _boundaries_dataset(own, intervals, name, values, complete)
+    result = _boundaries_dataset(base, intervals, name, values, complete)
     return result if axes else result.isel({name: 0}, drop=True)
 
 
 def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArray, bool]:
     """Speeds so dense that every tongue of instability of any order raises the radius at one of them.
 
-    Near k Omega = omega_i + omega_j two modes that decay with a and are coupled with strength g have, at the
-    detuning d = (k Omega - omega_i - omega_j)/2, the exponents -a +- sqrt(g^2 - d^2) (Hsu 1963; differences
-    likewise), unstable somewhere only if g > a. Then the larger one stands out of all other modes, of least
-    decay b <= a, over |d| < b at least: steps of b/omega_max put two speeds into this window.
+    Consider two modes near k Omega = omega_i + omega_j that decay with a and are coupled with strength g. At
+    the detuning d = (k Omega - omega_i - omega_j)/2 the exponents are -a +- sqrt(g^2 - d^2) (Hsu 1963; the
+    same for differences). They are unstable at some speed only if g > a. Let b <= a be the least decay of all
+    modes. The larger exponent is then above the exponents of all other modes at least over |d| < b. Steps of
+    b/omega_max put two speeds into this window.
 
-    Returns the speeds, and whether the steps are that small, which would at times take more than 20000.
+    Returns the speeds, and whether the steps are so small. They are larger where more than 20000 speeds would
+    be needed.
     """
     needed = -float(block.mean_exponents().real.max()) / float(block.modal().omega.max())
     span = math.log(high / low)
@@ -176,7 +179,7 @@ def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArr
 
 
 def _boundaries_dataset(
-    own: GearVariation,
+    base: GearVariation,
     result: dict[Tongue, dict[int, list[UnstableInterval]]],
     name: str,
     values: FloatArray,
@@ -185,16 +188,23 @@ def _boundaries_dataset(
     tongues = sorted(result)
     shape = (len(tongues), values.size)
     most = max((len(parts) for columns in result.values() for parts in columns.values()), default=0)
-    ends = np.full((2, *shape, most), np.nan)
-    numbers = np.full((4, *shape), np.nan)
+    interval_lower = np.full((*shape, most), np.nan)
+    interval_upper = np.full((*shape, most), np.nan)
+    lower = np.full(shape, np.nan)
+    upper = np.full(shape, np.nan)
+    peak = np.full(shape, np.nan)
+    peak_radius = np.full(shape, np.nan)
     open_end = np.zeros(shape, dtype=bool)
     count = np.zeros(shape, dtype=np.int64)
     for row, tongue in enumerate(tongues):
         for column, parts in result[tongue].items():
-            lower, upper = np.array([(part.lower, part.upper) for part in parts]).T
-            top = max(parts, key=lambda part: part.peak_radius)
-            ends[:, row, column, : len(parts)] = lower, upper
-            numbers[:, row, column] = lower.min(), upper.max(), top.peak, top.peak_radius
+            strongest = max(parts, key=lambda part: part.peak_radius)
+            interval_lower[row, column, : len(parts)] = [part.lower for part in parts]
+            interval_upper[row, column, : len(parts)] = [part.upper for part in parts]
+            lower[row, column] = min(part.lower for part in parts)
+            upper[row, column] = max(part.upper for part in parts)
+            peak[row, column] = strongest.peak
+            peak_radius[row, column] = strongest.peak_radius
             open_end[row, column] = any(part.open_below or part.open_above for part in parts)
             count[row, column] = len(parts)
     dims = ("tongue", name)
@@ -202,23 +212,23 @@ def _boundaries_dataset(
     axis = GEAR_AXES.get(name)
     return labelled_dataset(
         {
-            "lower": (dims, numbers[0], "rpm", "lower boundary of the tongue"),
-            "upper": (dims, numbers[1], "rpm", "upper boundary of the tongue"),
-            "peak": (dims, numbers[2], "rpm", "speed of the largest spectral radius in the tongue"),
-            "peak_radius": (dims, numbers[3], "1", "largest spectral radius in the tongue"),
+            "lower": (dims, lower, "rpm", "lower boundary of the tongue"),
+            "upper": (dims, upper, "rpm", "upper boundary of the tongue"),
+            "peak": (dims, peak, "rpm", "speed of the largest spectral radius in the tongue"),
+            "peak_radius": (dims, peak_radius, "1", "largest spectral radius in the tongue"),
             "present": (dims, count > 0, "1", "tongue exists at this value"),
             "open_end": (dims, open_end, "1", "tongue runs out of the range searched"),
             "intervals": (dims, count, "1", "number of intervals of this label"),
-            "interval_lower": (each, ends[0], "rpm", "lower ends of the intervals"),
-            "interval_upper": (each, ends[1], "rpm", "upper ends of the intervals"),
+            "interval_lower": (each, interval_lower, "rpm", "lower ends of the intervals"),
+            "interval_upper": (each, interval_upper, "rpm", "upper ends of the intervals"),
             "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
         {name: (values, axis.units, axis.long_name) if axis else (values, "1", "value")},
         {
-            **provenance(own.pair),
-            "title": f"stability boundaries of {own.pair.name}",
-            "friction_law": own.pair.friction.law,
-            "supports": own.supports,
+            **provenance(base.pair),
+            "title": f"stability boundaries of {base.pair.name}",
+            "friction_law": base.pair.friction.law,
+            "supports": base.supports,
         },
     ).assign_coords(tongue_coordinates("tongue", tongues))
 
@@ -234,11 +244,11 @@ def campbell(
 ) -> xr.Dataset:
     """Frequencies of the Floquet solutions over speed, against mesh orders and predicted tongues.
 
-    They are of the linear form with like teeth. A multiplier fixes its frequency up to multiples of the mesh
-    frequency only. The branch is resolved by the mode shape: a solution belongs to the mode of the mean
-    system in which it has the largest share of action, turning forwards, and its frequency is the branch
-    nearest to that mode's. Six multipliers make three such solutions and their conjugates. In a tongue the
-    growing solution stands for the mode.
+    The solutions are of the linear form with like teeth. A multiplier fixes a frequency only up to multiples
+    of the mesh frequency. The mode shape decides which multiple: a solution belongs to the mode of the mean
+    system in which the solution has the largest share of action, turning forwards. The frequency of the
+    solution is the one nearest to the frequency of this mode. Six multipliers make three such solutions and
+    their conjugates. In a tongue the growing solution stands for the mode.
 
     Parameters
     ----------
@@ -247,7 +257,7 @@ def campbell(
     mesh_orders : multiples of the mesh frequency to list
     orders : largest order k of the predicted lines (omega_i +- omega_j)/k
     rtol : of the monodromy matrices
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
+    supports : "springs"; a pair with shafts must ask for springs, on shafts there is no Campbell diagram
 
     Returns
     -------
@@ -270,7 +280,7 @@ def campbell(
     rtol = real_number("rtol", rtol, 1e-13, 1e-3)
     mean = gear_block(pair).modal()
     modes = mean.omega
-    # A mode that leaves the dynamic transmission error alone feeds nothing back: no tongue can involve it.
+    # A mode without dynamic transmission error feeds nothing back: no tongue can involve such a mode.
     meshing = np.abs(mean.v) > 1e-9 * np.abs(mean.v).max()
     frequency = np.empty((speeds.size, modes.size))
     decay = np.empty((speeds.size, modes.size))
@@ -337,7 +347,9 @@ def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> 
 
 @dataclass(frozen=True, eq=False)
 class TongueMargin:
-    """One tongue of instability at zero mesh damping, bearings damped as given, and what closes it.
+    """One tongue of instability at zero mesh damping, and the mesh damping that closes the tongue.
+
+    The bearings have the damping of the pair.
 
     Attributes
     ----------
@@ -346,7 +358,7 @@ class TongueMargin:
     radius : largest multiplier at zero mesh damping
     critical_damping : mesh damping ratio from which on no speed of the tongue is unstable; 1, the largest
         ratio allowed, where the tongue is still open there
-    tip_speed : speed at which it closes [rpm]
+    tip_speed : speed at which the tongue closes [rpm]
     damping, left, right : edges of the tongue, left and right [rpm] over the mesh damping ratio, (k,)
     """
 
@@ -369,11 +381,12 @@ class StabilityMargins:
     ----------
     pair, rpm, damping : the gear pair, its pinion speed [rpm] and mesh damping ratio
     speed_range : range searched [rpm]
-    friction_coefficient : constant coefficient that stands for the friction law here
+    friction_coefficient : constant coefficient in place of the friction law
     tongues : at zero mesh damping, by speed
     above : the next tongue above the range, at zero mesh damping; None: there is none up to the highest line
-    unstable_here : intervals (k, 2) [rpm] that are unstable at the given damping
-    damping_at_speed : mesh damping ratio above which the operating speed is stable; None: it is at any
+    unstable_here : intervals (k, 2) [rpm] that are unstable at the mesh damping of the pair
+    damping_at_speed : mesh damping ratio above which the operating speed is stable; None: the operating speed
+        is stable at any damping
     """
 
     pair: GearPair
@@ -388,7 +401,7 @@ class StabilityMargins:
 
     @property
     def critical_damping(self) -> float:
-        """Mesh damping ratio above which the whole range is stable; 0 where it always is."""
+        """Mesh damping ratio above which the whole range is stable; 0: the range is stable at any damping."""
         return max((t.critical_damping for t in self.tongues), default=0.0)
 
     @property
@@ -399,19 +412,26 @@ class StabilityMargins:
         ``tip_speed`` [rpm] and ``peak_radius`` of each tongue.
         """
         tongues = self.tongues
-        edges = np.full((3, len(tongues), max((t.damping.size for t in tongues), default=0)), np.nan)
+        rows = max((t.damping.size for t in tongues), default=0)
+        damping = np.full((len(tongues), rows), np.nan)
+        lower = np.full((len(tongues), rows), np.nan)
+        upper = np.full((len(tongues), rows), np.nan)
         for index, t in enumerate(tongues):
-            edges[:, index, : t.damping.size] = t.damping, t.left, t.right
-        tips = np.array([(t.critical_damping, t.tip_speed, t.radius) for t in tongues]).reshape(-1, 3).T
+            damping[index, : t.damping.size] = t.damping
+            lower[index, : t.damping.size] = t.left
+            upper[index, : t.damping.size] = t.right
+        critical = np.array([t.critical_damping for t in tongues])
+        tip_speed = np.array([t.tip_speed for t in tongues])
+        peak_radius = np.array([t.radius for t in tongues])
         edge = ("tongue", "row")
         return labelled_dataset(
             {
-                "damping_ratio": (edge, edges[0], "1", "mesh damping ratio of a point of the edges"),
-                "lower": (edge, edges[1], "rpm", "lower edge of the tongue"),
-                "upper": (edge, edges[2], "rpm", "upper edge of the tongue"),
-                "critical_damping": ("tongue", tips[0], "1", "mesh damping that closes the tongue"),
-                "tip_speed": ("tongue", tips[1], "rpm", "pinion speed where the tongue closes"),
-                "peak_radius": ("tongue", tips[2], "1", "largest multiplier without mesh damping"),
+                "damping_ratio": (edge, damping, "1", "mesh damping ratio of a point of the edges"),
+                "lower": (edge, lower, "rpm", "lower edge of the tongue"),
+                "upper": (edge, upper, "rpm", "upper edge of the tongue"),
+                "critical_damping": ("tongue", critical, "1", "mesh damping that closes the tongue"),
+                "tip_speed": ("tongue", tip_speed, "rpm", "pinion speed where the tongue closes"),
+                "peak_radius": ("tongue", peak_radius, "1", "largest multiplier without mesh damping"),
             },
             {},
             {
@@ -428,15 +448,15 @@ def stability_margins(
 ) -> StabilityMargins:
     """Find every tongue over speed and its distance to the operating point, in speed and in damping.
 
-    Tongues are of the linear form with like teeth. Friction is constant at its mean over the path of contact:
-    it moves tongues by far less than their width, and a law that depends on speed would have to be fitted at
-    every speed.
+    Tongues are of the linear form with like teeth. Friction is constant at its mean over the path of contact,
+    because friction moves tongues by far less than their width. A law that depends on speed would need a fit
+    at every speed.
 
     Parameters
     ----------
     pair : the gear pair
     speed_rpm : pinion speeds searched [rpm]
-    supports : "springs", on which alone they are computed; needed for a pair with shafts
+    supports : "springs"; a pair with shafts must ask for springs, on shafts there are no margins
 
     Raises
     ------
@@ -446,7 +466,7 @@ def stability_margins(
     pair = on_springs(load_gear_pair(pair), supports, "stability_margins")
     low, high = checked_range("speed_rpm", speed_rpm)
     rpm = operating_rpm(pair)
-    here = pair.mesh.damping_ratio
+    damping_ratio = pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))
     constant = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
     radius = _radius(constant)
@@ -463,19 +483,19 @@ def stability_margins(
     tongues = tuple(map(tongue, undamped, _windows(undamped, low, high)))
     top = min((1.0 + _PAST) * float(lines.max()), LARGEST_SPEED)
     beyond = unstable(0.0, high, top) if top > high else []
-    # What is open below began within the range.
+    # A tongue that is open below begins within the range.
     above = (pair for pair in zip(beyond, _windows(beyond, high, top), strict=True) if not pair[0].open_below)
     dampings = np.concatenate([[0.0], np.geomspace(1e-7, _LARGEST_DAMPING, 150)])
     at_speed = unstable_intervals(lambda z: radius(rpm, z), dampings, xtol=1e-8)
     return StabilityMargins(
         pair=pair,
         rpm=rpm,
-        damping=here,
+        damping=damping_ratio,
         speed_range=(low, high),
         friction_coefficient=coefficient,
         tongues=tongues,
         above=next(itertools.starmap(tongue, above), None),
-        unstable_here=np.array([(i.lower, i.upper) for i in unstable(here)]).reshape(-1, 2),
+        unstable_here=np.array([(i.lower, i.upper) for i in unstable(damping_ratio)]).reshape(-1, 2),
         damping_at_speed=max((i.upper for i in at_speed), default=None),
     )
 
@@ -494,8 +514,10 @@ def _radius(pair: GearPair) -> Radius:
 
 
 def _windows(intervals: list[UnstableInterval], low: float, high: float) -> list[tuple[float, float]]:
-    """Speeds around each interval: a quarter of its width aside, since damping shifts a tongue a little
-    while it closes it, but not beyond half the way to a neighbour.
+    """Speeds around each interval in which damping closes the tongue.
+
+    A window is wider than its interval by a quarter of the width on either side, because damping shifts a
+    tongue a little. A window ends half the way to the next interval at the latest.
     """
     ends = [low, *(0.5 * (a.upper + b.lower) for a, b in itertools.pairwise(intervals)), high]
     windows = []
@@ -508,7 +530,7 @@ def _windows(intervals: list[UnstableInterval], low: float, high: float) -> list
 def _tongue(
     radius: Radius, pair: GearPair, interval: UnstableInterval, window: tuple[float, float]
 ) -> TongueMargin:
-    """Follow one tongue up to the damping that closes it."""
+    """Follow one tongue from zero damping to the damping that closes the tongue."""
 
     def excess(speeds: FloatArray, damping: float) -> FloatArray:
         return radius(speeds, damping) - _THRESHOLD
@@ -517,7 +539,7 @@ def _tongue(
         tip = TongueTip(_LARGEST_DAMPING, interval.peak)
     else:
         tip = tongue_tip(excess, window, (0.0, _LARGEST_DAMPING))
-    damping, left, right = _edges(radius, interval, window, tip)
+    damping, lower_edge, upper_edge = _edges(radius, interval, window, tip)
     undamped = vary(GearVariation.of(pair), {"damping_ratio": 0.0, "speed_rpm": interval.peak})
     return TongueMargin(
         label=str(label_variation(undamped)),
@@ -527,8 +549,8 @@ def _tongue(
         critical_damping=tip.damping,
         tip_speed=tip.place,
         damping=damping,
-        left=left,
-        right=right,
+        left=lower_edge,
+        right=upper_edge,
     )
 
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.rank_one.kernel_input import own, packed
 from floquet.rank_one.kernels.eigenvalue_bounds import spectra
-from floquet.rank_one.kernels.gains import Limits, most_steps
+from floquet.rank_one.kernels.gains import Limits, Points, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
@@ -102,7 +102,8 @@ def fast_monodromies(
     bound = np.empty(T.size)
 
     def run(part: slice) -> int:
-        failed = propagate_points(problem, factors[part], zeta[part], T[part], limits, M[part], bound[part])
+        points = Points(factors[part], zeta[part], T[part])
+        failed = propagate_points(problem, points, limits, M[part], bound[part])
         return -1 if failed < 0 else part.start + failed
 
     bad = [index for index in _in_slices(run, T.size) if index >= 0]

@@ -14,6 +14,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
@@ -21,25 +22,25 @@ from numpy.polynomial.chebyshev import chebvander
 from floquet.engine.refinement import parts_of
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.kernel_input import own, packed
-from floquet.rank_one.kernels.gains import Limits, Problem
+from floquet.rank_one.kernels.gains import Limits, Point, Problem
 from floquet.rank_one.kernels.taylor import largest_flow
 from floquet.rank_one.piecewise import to_series
 from floquet.rank_one.system import RankOneSystem
-from lumped.typing import FloatArray, IntArray, Progress
+from lumped.typing import ComplexArray, FloatArray, IntArray, Progress
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
 #: Nodes of the polynomial along period and damping, and its terms over a box whose signs count.
 _NODES = (24, 16)
 _TERMS = (8, 4)
-#: What a polynomial may be wrong by; the size of its patch follows.
+#: Largest error of the polynomial of a patch; the size of the patch follows.
 _TOLERANCE = 1e-6
-_RADII = np.geomspace(1.5, 200.0, 40)  # sums of the semi-axes of the ellipses that are tried
-_ANGLE = 0.5  # of half a step whose flows `largest_flow` compares
+_RADII = np.geomspace(1.5, 200.0, 40)  # sums of the semi-axes of the ellipses of the error bound
+_ANGLE = 0.5  # of half a step in `largest_flow`
 _CELLS = 4  # parts of a piece of the gains whose frozen systems are taken
 _ROWS = 8  # rows of cells for which one Lyapunov function is sought
-_BATCH = 512  # boxes at once
+_BATCH = 512  # boxes that are decided together
 
-#: Periods (k,) [s] -> factors (k, Q-1) on the varied gains; None: of no one system.
+#: Periods (k,) [s] -> factors (k, Q-1) on the varied gains; None: one system does not hold for all periods.
 Factors = Callable[[FloatArray], FloatArray | None]
 
 
@@ -65,8 +66,8 @@ def proven_cells(
         return verdict
     ends = ends[[0, -1]]
     for j in range(0, rows, _ROWS):
-        some = damping[[j, min(j + _ROWS, rows)]]
-        verdict[np.searchsorted(periods, slow_period(system, some, ends)) :, j : j + _ROWS] = 1
+        end_values = damping[[j, min(j + _ROWS, rows)]]
+        verdict[np.searchsorted(periods, slow_period(system, end_values, ends)) :, j : j + _ROWS] = 1
     end = int(np.flatnonzero((verdict == 0).any(axis=1)).max(initial=-1)) + 1
     i = 0
     growth = 2.0
@@ -76,7 +77,8 @@ def proven_cells(
         def wide(k: int, i: int = i, size: _Size = size) -> float:
             return 1e3 * size.error(periods[[i, k]], damping[[0, 0]])
 
-        b, c = _last(i, end, wide), 0
+        b = _last(i, end, wide)
+        c = 0
         while c < rows:
 
             def tall(k: int, c: int = c, T: FloatArray = periods[[i, b]], size: _Size = size) -> float:
@@ -84,13 +86,13 @@ def proven_cells(
 
             d = _last(c, rows, tall)
             patch = None
-            here = verdict[i:b, c:d]
-            if not here.all():
+            block_verdict = verdict[i:b, c:d]
+            if not block_verdict.all():
                 patch = FlowPolynomial.of(system, problem, periods[[i, b]], damping[[c, d]], factors)
             if patch is not None:
                 growth = min(1.1 * patch.growth, 10.0)
                 result = _subdivided(patch, periods[i : b + 1], damping[c : d + 1])
-                here[here == 0] = result[here == 0]
+                block_verdict[block_verdict == 0] = result[block_verdict == 0]
             c = d
         i = b
         if progress is not None:
@@ -99,12 +101,12 @@ def proven_cells(
 
 
 def _last(first: int, end: int, error: Callable[[int], float]) -> int:
-    """The last of first + 1 .. end at which an error is small, the first of them anyhow."""
+    """The last index of first + 1 .. end at which an error is small; first + 1 if there is none."""
     return max(first, bisect_left(range(first + 1, end + 1), _TOLERANCE, key=error) + first, first + 1)
 
 
 def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray) -> float:
-    """Period from which on a system is stable for all damping and factors between two values, (2,), (2, Q-1).
+    """Period from which on a system is stable, PROVEN, for all damping (2,) and factors (2, Q-1) in between.
 
     On a cell of the phase |L x| grows at most with the logarithmic norm of L A L^-1, from cell to cell by |L'
     L^-1|; the norm is convex, so that the largest is at a corner. inf: none such, or gyroscopic terms.
@@ -117,14 +119,14 @@ def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray)
     share = np.repeat(np.diff(system.phases) / _CELLS, _CELLS)
     middle = (2.0 * np.arange(_CELLS) + 1.0) / _CELLS - 1.0
     values, spreads = zip(*(_around(poly, middle) for poly in (form.w, form.wd)), strict=True)
-    calm = np.zeros((share.size, 2 * m, 2 * m))
-    calm[:, range(m), range(m, 2 * m)] = form.omega
-    calm[:, range(m, 2 * m), range(m)] = -form.omega
-    calm[:, m:, m:] -= form.C
-    calm[:, m:, :m] += np.outer(form.reference, form.v / form.omega)
+    constant = np.zeros((share.size, 2 * m, 2 * m))
+    constant[:, range(m), range(m, 2 * m)] = form.omega
+    constant[:, range(m, 2 * m), range(m)] = -form.omega
+    constant[:, m:, m:] -= form.C
+    constant[:, m:, :m] += np.outer(form.reference, form.v / form.omega)
 
     def frozen(zeta: float, g: FloatArray) -> FloatArray:
-        A = calm.copy()
+        A = constant.copy()
         A[:, m:, :m] -= np.tensordot(g, values[0], 1)[:, :, None] * (form.v / form.omega)
         A[:, m:, m:] -= zeta * np.tensordot(g, values[1], 1)[:, :, None] * form.v
         return A
@@ -138,25 +140,28 @@ def slow_period(system: RankOneSystem, damping: FloatArray, factors: FloatArray)
     corners = [frozen(z, np.array(g)) for z in damping for g in product(*map(np.unique, gains.T))]
     rate = np.full(share.size, -np.inf)
     for A in corners:
-        turned = L @ A @ V
-        top = np.linalg.eigvalsh(turned + np.conj(np.swapaxes(turned, 1, 2)))[:, -1]
+        transformed = L @ A @ V
+        top = np.linalg.eigvalsh(transformed + np.conj(np.swapaxes(transformed, 1, 2)))[:, -1]
         rate = np.maximum(rate, 0.5 * top + rounding * np.linalg.norm(A, axis=(1, 2)))
     most = np.abs(gains).max(axis=0)
     z = float(damping.max())
     column = np.abs(L[:, :, m:])
     into = np.linalg.norm(form.v / form.omega @ V[:, :m], axis=1), np.linalg.norm(form.v @ V[:, m:], axis=1)
     for spread, factor, row in zip(spreads, (1.0, z), into, strict=True):
-        moved = np.einsum("kij,kj->ki", column, factor * np.tensordot(most, spread, 1))
-        rate += np.linalg.norm(moved, axis=1) * row * (1.0 + 1e-9)
-    lean = np.array([np.linalg.norm(form.v / form.omega), z * np.linalg.norm(form.v)])
-    rate += size * np.repeat(problem.noise + np.tensordot(most, problem.fit_error, 1) @ lean, _CELLS)
-    total = rate @ share + size.max() * (np.tensordot(most, problem.edge_error, 1) @ lean).sum()
-    steps = np.linalg.norm(np.roll(L, -1, axis=0) @ V, 2, axis=(1, 2)) * (1.0 + rounding)
-    return float(np.log(steps).sum() / -total) * (1.0 + 1e-9) if total < 0.0 else math.inf
+        within_cell = np.einsum("kij,kj->ki", column, factor * np.tensordot(most, spread, 1))
+        rate += np.linalg.norm(within_cell, axis=1) * row * (1.0 + 1e-9)
+    norms = np.array([np.linalg.norm(form.v / form.omega), z * np.linalg.norm(form.v)])
+    rate += size * np.repeat(problem.noise + np.tensordot(most, problem.fit_error, 1) @ norms, _CELLS)
+    total = rate @ share + size.max() * (np.tensordot(most, problem.edge_error, 1) @ norms).sum()
+    jump_norms = np.linalg.norm(np.roll(L, -1, axis=0) @ V, 2, axis=(1, 2)) * (1.0 + rounding)
+    return float(np.log(jump_norms).sum() / -total) * (1.0 + 1e-9) if total < 0.0 else math.inf
 
 
 def _around(poly: FloatArray, middle: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Polynomials (Q, P, m, d+1) in the middles of cells, (Q, P cells, m), and how far off within."""
+    """Values of polynomials (Q, P, m, d+1) in the middles of cells, and bounds on their change within cells.
+
+    Both are (Q, P cells, m).
+    """
     j = np.arange(poly.shape[3])
     choose = np.array([[math.comb(a, b) for b in j] for a in j], dtype=float)
     power = np.maximum(j[:, None] - j, 0)
@@ -166,41 +171,50 @@ def _around(poly: FloatArray, middle: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 class _Size:
-    """How large a patch may be: flows within a cycle, at most ``growth`` in its middle, are at most growth
-    exp(growth d) at complex period and damping, d the integral of the change of T A (Gronwall).
+    """Error of the polynomial of a patch as a function of the size of the patch.
+
+    Flows within a cycle are at most ``growth`` in the middle of the patch. At complex period and damping they
+    are at most growth exp(growth d), d being the integral of the change of T A (Gronwall).
     """
 
     def __init__(self, problem: Problem, growth: float, gains: FloatArray | None = None) -> None:
         self.growth = growth
         shares = np.diff(problem.phases)
-        lean = np.linalg.norm(problem.v / problem.omega)
+        v_over_omega = np.linalg.norm(problem.v / problem.omega)
         rates = (problem.sizes + problem.fit_error).transpose(2, 0, 1) @ shares * (1.0 + 1e-9)
         edges = problem.edge_error.sum(axis=1)
         #: Integrals of the norms of the feedback of each part over the cycle.
-        self.each = (rates[0] + edges[:, 0]) * lean, (rates[1] + edges[:, 1]) * np.linalg.norm(problem.v)
+        self.each = (
+            (rates[0] + edges[:, 0]) * v_over_omega,
+            (rates[1] + edges[:, 1]) * np.linalg.norm(problem.v),
+        )
         gains = np.ones(edges.shape[0]) if gains is None else np.abs(gains)
         self.w, self.wd = (float(gains @ part) for part in self.each)
-        self.calm = float(problem.omega.max() + np.linalg.norm(problem.C[0]) + problem.noise)
+        self.constant = float(problem.omega.max() + np.linalg.norm(problem.C) + problem.noise)
 
     def change(
-        self, T: FloatArray, damping: FloatArray, along: FloatArray, up: FloatArray, moved: FloatArray
+        self, T: FloatArray, damping: FloatArray, along: FloatArray, up: FloatArray, factor_change: FloatArray
     ) -> FloatArray:
         """Bounds d of a patch, (radii,), at so many times its half widths; moved (Q, radii): the factors."""
         z = damping.mean()
         dz = 0.5 * up * (damping[1] - damping[0])
         half = 0.5 * along * (T[1] - T[0])
-        turned = dz * self.wd + self.each[0] @ moved + (z + dz) * (self.each[1] @ moved)
-        return np.asarray(half * (self.calm + self.w + z * self.wd) + (T.mean() + half) * turned)
+        by_damping_and_factors = (
+            dz * self.wd + self.each[0] @ factor_change + (z + dz) * (self.each[1] @ factor_change)
+        )
+        return np.asarray(
+            half * (self.constant + self.w + z * self.wd) + (T.mean() + half) * by_damping_and_factors
+        )
 
-    def error(self, T: FloatArray, damping: FloatArray, moved: FloatArray | None = None) -> float:
+    def error(self, T: FloatArray, damping: FloatArray, factor_change: FloatArray | None = None) -> float:
         """Bound on the error of the polynomial (Trefethen, theorem 8.2, along each axis)."""
         semi = 0.5 * (_RADII + 1.0 / _RADII)
         one = np.ones_like(_RADII)
         total = 0.0
-        moved = np.zeros((len(self.each[0]), _RADII.size)) if moved is None else moved
+        factor_change = np.zeros((len(self.each[0]), _RADII.size)) if factor_change is None else factor_change
         for count, reach, weight in (
-            (_NODES[0], (semi, one, moved), 1.0),
-            (_NODES[1], (one, semi, moved[:, :1]), 1.0 + 2.0 / math.pi * math.log(_NODES[0])),
+            (_NODES[0], (semi, one, factor_change), 1.0),
+            (_NODES[1], (one, semi, factor_change[:, :1]), 1.0 + 2.0 / math.pi * math.log(_NODES[0])),
         ):
             log = self.growth * self.change(T, damping, *reach) - (count - 1.0) * np.log(_RADII)
             log += np.log(4.0 * self.growth * weight / (_RADII - 1.0))
@@ -210,7 +224,7 @@ class _Size:
 
 @dataclass(frozen=True, eq=False)
 class FlowPolynomial:
-    """Monodromy matrices of a patch of period and damping as polynomials with a bound on their error.
+    """Monodromy matrices of a patch of period and damping as polynomials with a PROVEN bound on their error.
 
     Attributes
     ----------
@@ -233,28 +247,36 @@ class FlowPolynomial:
         factors: Factors,
     ) -> FlowPolynomial | None:
         """Between two periods and two values of damping; None: factors of no known law."""
-        (x, to_T), (y, to_z) = to_series(_NODES[0]), to_series(_NODES[1])
-        T, z = periods.mean() + 0.5 * np.diff(periods) * x, damping.mean() + 0.5 * np.diff(damping) * y
+        x, to_T = to_series(_NODES[0])
+        y, to_z = to_series(_NODES[1])
+        T = periods.mean() + 0.5 * np.diff(periods) * x
+        z = damping.mean() + 0.5 * np.diff(damping) * y
         t = float(periods.mean())
         zeta = float(damping.mean())
-        at = _scaled(np.append(T, t), factors)
-        if at is None:
+        factor_values = _scaled(np.append(T, t), factors)
+        if factor_values is None:
             return None
         flow = fast_monodromies(
-            system, np.repeat(T, y.size), np.tile(z, x.size), np.repeat(at[:-1], y.size, 0), tolerance=1e-10
+            system,
+            np.repeat(T, y.size),
+            np.tile(z, x.size),
+            np.repeat(factor_values[:-1], y.size, 0),
+            tolerance=1e-10,
         )
         matrices = flow.matrices.reshape(x.size, y.size, *flow.matrices.shape[1:])
-        gains = np.append(1.0, at[-1])
-        largest, wrong = largest_flow(problem, own(gains), zeta, t, Limits(1e-12, _ANGLE))
+        gains = np.append(1.0, factor_values[-1])
+        largest, wrong = largest_flow(problem, Point(own(gains), zeta, t), Limits(1e-12, _ANGLE))
         size = _Size(problem, math.inf, gains)
         # Norms grow within a step, half of which has the angle, by the symmetric part of A alone.
-        lean = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
-        rates = np.tensordot(np.abs(gains), problem.sizes + problem.fit_error, 1) * lean
-        lift = rates @ [0.5, 1.0] + problem.drive + problem.noise + problem.gyroscopic_drive / t
-        within = math.exp(4.0 * _ANGLE * float((lift / (size.calm + rates.sum(axis=1))).max()) * (1.0 + 1e-6))
+        norms = np.array([np.linalg.norm(problem.v / problem.omega), zeta * np.linalg.norm(problem.v)])
+        rates = np.tensordot(np.abs(gains), problem.sizes + problem.fit_error, 1) * norms
+        growth_rates = rates @ [0.5, 1.0] + problem.drive + problem.noise + problem.gyroscopic_drive / t
+        within = math.exp(
+            4.0 * _ANGLE * float((growth_rates / (size.constant + rates.sum(axis=1))).max()) * (1.0 + 1e-6)
+        )
         if largest * wrong < 0.5:
             size.growth = within * largest / (1.0 - largest * wrong)
-        error = size.error(periods, damping, _moved(T / t, at))
+        error = size.error(periods, damping, _factor_change(T / t, factor_values))
         error += (1.0 + 2.0 / math.pi * math.log(x.size)) ** 2 * float(flow.errors.max())  # Lebesgue's
         coefficients = np.einsum("aA,bB,ABij->abij", to_T, to_z, matrices)
         return cls(coefficients, error if math.isfinite(error) else math.inf, size.growth)
@@ -262,64 +284,102 @@ class FlowPolynomial:
 
 def _scaled(T: FloatArray, factors: Factors) -> FloatArray | None:
     """Factors (k, Q-1) at periods, if all are powers of the period or all linear in its logarithm."""
-    at = factors(T)
-    if at is None or not at.shape[1]:
-        return at
-    log, (slope, power) = np.log(T / T[0])[:, None], _slopes(T, at)
-    lines = at[0] + log * slope, at[0] * np.exp(log * power)
-    close = 1e-9 * np.abs(at).max(axis=0)
-    return at if any((np.abs(line - at).max(axis=0) <= close).all() for line in lines) else None
+    values = factors(T)
+    if values is None or not values.shape[1]:
+        return values
+    log = np.log(T / T[0])[:, None]
+    slope, power = _slopes(T, values)
+    lines = values[0] + log * slope, values[0] * np.exp(log * power)
+    close = 1e-9 * np.abs(values).max(axis=0)
+    return values if any((np.abs(line - values).max(axis=0) <= close).all() for line in lines) else None
 
 
-def _slopes(T: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _slopes(T: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Change of factors and of their logarithms (Q-1,) with the logarithm of the period."""
     width = np.log(T[1] / T[0])
-    size = np.maximum(np.abs(at), np.finfo(float).tiny)
-    return (at[1] - at[0]) / width, np.log(size[1] / size[0]) / width
+    size = np.maximum(np.abs(values), np.finfo(float).tiny)
+    return (values[1] - values[0]) / width, np.log(size[1] / size[0]) / width
 
 
-def _moved(x: FloatArray, at: FloatArray) -> FloatArray:
-    """How far (Q, radii) factors move on the ellipses around parts x of the middle period, where the last is.
+def _factor_change(x: FloatArray, values: FloatArray) -> FloatArray:
+    """Bounds (Q, radii) on the change of factors on ellipses around periods, relative to the middle period.
 
-    |ln(1 + z)| <= -ln(1 - |z|) where an ellipse does not reach 0.
+    ``x`` are the periods over the middle period, the middle one last; ``values`` the factors there. Where an
+    ellipse does not reach 0, |ln(1 + z)| <= -ln(1 - |z|).
     """
     reach = 1.01 * np.abs(x - 1.0).max() * 0.5 * (_RADII + 1.0 / _RADII)
     depth = -np.log1p(-np.minimum(reach, 0.999))
-    slope, power = (np.abs(v)[:, None] for v in _slopes(x, at))
-    moved = np.maximum(slope * depth, np.abs(at[-1])[:, None] * np.expm1(power * depth))
-    moved[:, reach > 0.999] = np.where(slope + power > 0.0, 1e30, 0.0)
-    return np.concatenate([np.zeros((1, _RADII.size)), moved])
+    slope, power = (np.abs(v)[:, None] for v in _slopes(x, values))
+    change = np.maximum(slope * depth, np.abs(values[-1])[:, None] * np.expm1(power * depth))
+    change[:, reach > 0.999] = np.where(slope + power > 0.0, 1e30, 0.0)
+    return np.concatenate([np.zeros((1, _RADII.size)), change])
 
 
 def _subdivided(patch: FlowPolynomial, periods: FloatArray, damping: FloatArray) -> IntArray:
-    """Verdicts of the cells of a patch, by boxes that are cut until they are proven or one cell."""
+    """Verdicts of the cells of a patch. A box of cells is cut until it is proven or a single cell."""
     x, y = (2.0 * (v - v[0]) / (v[-1] - v[0]) - 1.0 for v in (periods, damping))
     verdict = np.zeros((x.size - 1, y.size - 1), dtype=np.intp)
     boxes = [(0, x.size - 1, 0, y.size - 1)]
     while boxes:
-        now = boxes[:_BATCH]
+        batch = boxes[:_BATCH]
         boxes = boxes[_BATCH:]
-        a, b, c, d = np.array(now).T
+        a, b, c, d = np.array(batch).T
         result, across, upward = decided(patch, np.stack([x[a], x[b]]), np.stack([y[c], y[d]]))
-        for k, (i, j, p, q) in enumerate(now):
-            wide = j - i > 1
-            tall = q - p > 1
+        for k, (i, j, p, q) in enumerate(batch):
+            divisible_in_period = j - i > 1
+            divisible_in_damping = q - p > 1
             if result[k]:
                 verdict[i:j, p:q] = result[k]
-            elif wide or tall:
-                along = wide and (2.0 * across[k] >= upward[k] or not tall)
-                up = tall and (2.0 * upward[k] >= across[k] or not wide)
+            elif divisible_in_period or divisible_in_damping:
+                along = divisible_in_period and (2.0 * across[k] >= upward[k] or not divisible_in_damping)
+                up = divisible_in_damping and (2.0 * upward[k] >= across[k] or not divisible_in_period)
                 boxes += parts_of((i, j, p, q), along=along, up=up)
     return verdict
 
 
-def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Verdicts (k,) of boxes x, y (2, k) of a patch, and how much its entries vary along both.
+class Decision(NamedTuple):
+    """Verdicts of k boxes.
+
+    Attributes
+    ----------
+    verdict : (k,) 1 stable, -1 unstable everywhere in the box, 0 not proven
+    across, upward : (k,) how much the entries of the matrices vary along period and along damping
+    """
+
+    verdict: IntArray
+    across: FloatArray
+    upward: FloatArray
+
+
+class EntryRanges(NamedTuple):
+    """Ranges of the moduli of the entries of V^-1 M V over k boxes.
+
+    Attributes
+    ----------
+    V : (k, n, n) eigenvectors in the middles of the boxes
+    low, high : (k, n) least and largest modulus of each entry of the diagonal
+    others : (k, n, n) largest modulus of the other entries; zeros on the diagonal
+    across, upward : (k,) how much the entries vary along period and along damping
+    """
+
+    V: ComplexArray
+    low: FloatArray
+    high: FloatArray
+    others: FloatArray
+    across: FloatArray
+    upward: FloatArray
+
+
+def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> Decision:
+    """PROVEN verdicts of boxes x, y (2, k) of a patch.
 
     Where margin_k u_k > sum_j f_kj u_j for some u > 0 (Gershgorin's disks, scaled), no multiplier is on the
-    unit circle, and as many are outside as diagonal entries.
+    unit circle. The number of multipliers outside is then the number of diagonal entries outside.
     """
-    _, low, high, f, across, upward = bounded_entries(patch, x, y)
+    ranges = bounded_entries(patch, x, y)
+    low = ranges.low
+    high = ranges.high
+    f = ranges.others
     margin = np.maximum(1.0 - high, low - 1.0)
     size = margin.shape[1]
     system = -f
@@ -330,62 +390,67 @@ def decided(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> tuple[IntArr
         u = np.zeros_like(margin)
     good = (margin > 0.0).all(axis=1) & (u > 0.0).all(axis=1)
     good &= (margin * u * (1.0 - 1e-12) > np.einsum("kij,kj->ki", f, u) * (1.0 + 1e-12)).all(axis=1)
-    return np.where(good, np.where((low > 1.0).any(axis=1), -1, 1), 0), across, upward
+    verdict = np.where(good, np.where((low > 1.0).any(axis=1), -1, 1), 0)
+    return Decision(verdict, ranges.across, ranges.upward)
 
 
-def bounded_entries(
-    patch: FlowPolynomial, x: FloatArray, y: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """V (k, n, n), eigenvectors in the middles of boxes; moduli of the entries of V^-1 M V; how they vary.
+def bounded_entries(patch: FlowPolynomial, x: FloatArray, y: FloatArray) -> EntryRanges:
+    """Ranges of the entries of V^-1 M V over boxes x, y (2, k) of a patch, V the eigenvectors in the middle.
 
-    Least and largest of the diagonal (k, n), largest of the others (k, n, n) with zeros on the diagonal.
+    Over a box the entries are polynomials. The signs of their first ``_TERMS`` terms count; the other terms
+    are added by modulus.
     """
-    n, (J, K) = patch.coefficients.shape[-1], _TERMS
-    E, F = _restricted(x, _NODES[0]), _restricted(y, _NODES[1])
+    n = patch.coefficients.shape[-1]
+    J, K = _TERMS
+    E = _restricted(x, _NODES[0])
+    F = _restricted(y, _NODES[1])
     count = x.shape[1]
     parts = np.swapaxes(E[:, :, :J], 1, 2) @ patch.coefficients.reshape(_NODES[0], -1)
     parts = np.swapaxes(F[:, None, :, :K], 2, 3) @ parts.reshape(count, J, _NODES[1], -1)
     parts = parts.reshape(count, J * K, n, n)
     sizes = np.linalg.norm(patch.coefficients, axis=(2, 3))
-    tall = np.abs(E)
-    wide = np.abs(F)
-    every = np.einsum("ka,ab,kb->k", tall.sum(axis=2), sizes, wide.sum(axis=2))
-    some = np.einsum("ka,ab,kb->k", tall[:, :, :J].sum(axis=2), sizes, wide[:, :, :K].sum(axis=2))
+    x_weights = np.abs(E)
+    y_weights = np.abs(F)
+    all_terms = np.einsum("ka,ab,kb->k", x_weights.sum(axis=2), sizes, y_weights.sum(axis=2))
+    signed_terms = np.einsum(
+        "ka,ab,kb->k", x_weights[:, :, :J].sum(axis=2), sizes, y_weights[:, :, :K].sum(axis=2)
+    )
     # 64 a^2 units: values of T_a at the nodes, sums over a and b, series and their restriction.
-    rest = every - some + patch.error
-    rest += (64.0 * _NODES[0] ** 2 + 32.0 * (n + 8.0)) * _U * (every + sizes.sum())
+    rest = all_terms - signed_terms + patch.error
+    rest += (64.0 * _NODES[0] ** 2 + 32.0 * (n + 8.0)) * _U * (all_terms + sizes.sum())
     V = np.linalg.eig(parts[:, 0])[1]
     Y = np.linalg.inv(V)
     N = (Y[:, None] @ parts @ V[:, None]).reshape(count, J, K, n, n)
     reach = np.linalg.norm(Y, axis=2)[:, :, None] * np.linalg.norm(V, axis=1)[:, None, :]
     moduli = np.abs(N)
-    off = rest[:, None, None] * reach
-    f = (moduli.sum(axis=(1, 2)) + off) * (1.0 + 1e-12)
+    entry_error = rest[:, None, None] * reach
+    f = (moduli.sum(axis=(1, 2)) + entry_error) * (1.0 + 1e-12)
     # Y is the inverse of V but for q.
     q = (np.abs(np.eye(n) - Y @ V) + 4.0 * (n + 4.0) * _U * reach).sum(axis=2)
     worst = np.minimum(q.max(axis=1), 0.5)
-    turned = (q / (1.0 - worst)[:, None])[:, :, None] * f.max(axis=1)[:, None, :]
-    f = f + turned
-    off = off + turned
-    own = np.einsum("kJKii->kiJK", N)
-    (X, to_X), (Z, to_Z) = to_series(2 * J - 1), to_series(2 * K - 1)
-    square = to_X @ np.abs(chebvander(X, J - 1) @ own @ chebvander(Z, K - 1).T) ** 2 @ to_Z.T
+    by_inverse = (q / (1.0 - worst)[:, None])[:, :, None] * f.max(axis=1)[:, None, :]
+    f = f + by_inverse
+    entry_error = entry_error + by_inverse
+    diagonal = np.einsum("kJKii->kiJK", N)
+    X, to_X = to_series(2 * J - 1)
+    Z, to_Z = to_series(2 * K - 1)
+    square = to_X @ np.abs(chebvander(X, J - 1) @ diagonal @ chebvander(Z, K - 1).T) ** 2 @ to_Z.T
     varied = np.abs(square).sum(axis=(2, 3)) - np.abs(square[:, :, 0, 0])
-    varied += 1e-12 * np.abs(own).sum(axis=(2, 3)) ** 2
-    wrong = np.einsum("kii->ki", off) + np.where(q.max(axis=1) < 0.5, 0.0, np.inf)[:, None]
-    low = np.sqrt(np.maximum(square[:, :, 0, 0] - varied, 0.0)) * (1.0 - 1e-12) - wrong
-    high = np.sqrt(square[:, :, 0, 0] + varied) * (1.0 + 1e-12) + wrong
+    varied += 1e-12 * np.abs(diagonal).sum(axis=(2, 3)) ** 2
+    diagonal_error = np.einsum("kii->ki", entry_error) + np.where(q.max(axis=1) < 0.5, 0.0, np.inf)[:, None]
+    low = np.sqrt(np.maximum(square[:, :, 0, 0] - varied, 0.0)) * (1.0 - 1e-12) - diagonal_error
+    high = np.sqrt(square[:, :, 0, 0] + varied) * (1.0 + 1e-12) + diagonal_error
     f[:, range(n), range(n)] = 0.0
     moduli[..., range(n), range(n)] = 0.0
     across = moduli[:, 1:, 0].sum(axis=(1, 2, 3))
     square = np.abs(square)
     across += square[:, :, 1:, 0].sum(axis=2).max(axis=1)
     upward = moduli[:, :, 1:].sum(axis=(1, 2, 3, 4)) + square[:, :, :, 1:].sum(axis=(2, 3)).max(axis=1)
-    return V, low, high, f, across, upward
+    return EntryRanges(V, low, high, f, across, upward)
 
 
 def _restricted(ends: FloatArray, count: int) -> FloatArray:
-    """T_a on intervals (2, k) as a series of their own: (k, a, j)."""
+    """Chebyshev coefficients (k, a, j) of the polynomials T_a restricted to intervals (2, k)."""
     x, to = to_series(count)
     places = ends.mean(axis=0)[:, None] + 0.5 * (ends[1] - ends[0])[:, None] * x
     return np.asarray(np.swapaxes(chebvander(places, count - 1), 1, 2) @ to.T)

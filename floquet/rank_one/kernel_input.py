@@ -10,7 +10,7 @@ from floquet.rank_one.system import ModalForm, RankOneSystem, padded
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
-_PROPORTIONAL = 1e-12  # wd is rho w where it differs from it by no more than this part
+_PROPORTIONAL = 1e-12  # wd is taken as rho w where wd - rho w is no more than this part of wd
 
 
 def packed(system: RankOneSystem) -> Problem:
@@ -37,7 +37,8 @@ def packed(system: RankOneSystem) -> Problem:
         unequal=unequal,
         fit_error=own(fit_error),
         edge_error=own(np.stack(edges) * (1.0 + 1e-9)),
-        C=own([form.C, form.gyroscopic]),
+        C=own(form.C),
+        gyroscopic=own(form.gyroscopic),
         drive=form.drive,
         noise=noise,
         gyroscopic_drive=form.gyroscopic_drive,
@@ -49,7 +50,9 @@ def packed(system: RankOneSystem) -> Problem:
 
 
 def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, float]:
-    """Bounds on errors by rounding: of the constant part of A [1/s], of G, and the relative one of the gains.
+    """PROVEN bounds on the rounding of the change to modal coordinates.
+
+    Returns the error of the constant part of A [1/s], the error of G, and the relative error of the gains.
 
     Phi^-1 is (I - E)^-1 Phi^T g, E = I - Phi^T g Phi; the gains go through 57 + m roundings of the sum of
     their moduli. Sources: docs/theory/proven_bounds.md, "The matrix of a step".
@@ -58,24 +61,25 @@ def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, flo
     omega = form.omega
     Y = Phi.T * system.metric
     m = omega.size
-    # of a product of three matrices
     absolute = np.abs(Y)
-    twice = (2.0 * m + 6.0) * _U
+    of_three_factors = (2.0 * m + 6.0) * _U
     E = float(np.linalg.norm(np.eye(m) - Y @ Phi) + (m + 5.0) * _U * np.linalg.norm(absolute @ np.abs(Phi)))
     E /= 1.0 - min(E, 0.5)
 
     def moduli(matrix: FloatArray) -> FloatArray:
         return np.asarray(absolute @ np.abs(matrix) @ np.abs(Phi))
 
-    turning = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
-    noise = E * np.linalg.norm(form.C) + twice * np.linalg.norm(moduli(system.damping))
-    moving = E * np.linalg.norm(form.gyroscopic) + twice * np.linalg.norm(moduli(turning))
-    turned = Y @ system.stiffness @ Phi
+    gyroscopic = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
+    noise = E * np.linalg.norm(form.C) + of_three_factors * np.linalg.norm(moduli(system.damping))
+    gyroscopic_noise = E * np.linalg.norm(form.gyroscopic) + of_three_factors * np.linalg.norm(
+        moduli(gyroscopic)
+    )
+    transformed = Y @ system.stiffness @ Phi
     feedback = np.outer(form.reference, form.v)
-    rest = np.abs(turned + feedback - np.diag(omega**2)) + E * np.linalg.norm(turned)
-    rest += twice * (moduli(system.stiffness) + np.abs(feedback) + np.diag(omega**2))
-    noise += np.linalg.norm(rest / omega)
-    # How much the sum of the moduli in v = Phi^T v exceeds what is left of it.
+    stiffness_error = np.abs(transformed + feedback - np.diag(omega**2)) + E * np.linalg.norm(transformed)
+    stiffness_error += of_three_factors * (moduli(system.stiffness) + np.abs(feedback) + np.diag(omega**2))
+    noise += np.linalg.norm(stiffness_error / omega)
+    # Sum of the moduli in v = Phi^T v over the modulus of the sum.
     summed = np.abs(Phi).T @ np.abs(system.v)
     excess = max(
         1.0,
@@ -83,10 +87,10 @@ def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, flo
         float(np.linalg.norm(summed) / np.linalg.norm(form.v)),
     )
     relative = E + (57.0 + m) * _U * excess
-    calm = float(omega.max()) + np.linalg.norm(form.C)
-    calm += np.linalg.norm(form.reference) * np.linalg.norm(form.v / omega)
-    moving += relative * np.linalg.norm(form.gyroscopic)
-    return float(noise + relative * calm), float(moving), float(relative)
+    constant_size = float(omega.max()) + np.linalg.norm(form.C)
+    constant_size += np.linalg.norm(form.reference) * np.linalg.norm(form.v / omega)
+    gyroscopic_noise += relative * np.linalg.norm(form.gyroscopic)
+    return float(noise + relative * constant_size), float(gyroscopic_noise), float(relative)
 
 
 def own(values: object) -> FloatArray:
@@ -100,7 +104,7 @@ def _norms(poly: FloatArray) -> FloatArray:
 
 
 def _degrees(poly: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
-    """Degree (P,) that holds all parts and coordinates."""
+    """Largest degree (P,) over all parts and coordinates."""
     used = (poly != 0.0).any(axis=(0, 2)) * np.arange(poly.shape[3])
     return np.asarray(used.max(axis=1), dtype=np.int64)
 

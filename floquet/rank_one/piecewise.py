@@ -1,8 +1,8 @@
 """Piecewise polynomials of bounded degree in place of periodic gains that are polynomials of higher degree.
 
-On every segment the gains are polynomials of known degree, so their values at as many Chebyshev points
-determine them. What is dropped from the Chebyshev series is bounded by the sum of its coefficients, since
-|T_k| <= 1: the misfit is a bound everywhere in the piece, not only at the points.
+On every segment the gains are polynomials of known degree. Their values at degree + 1 Chebyshev points
+determine the gains. The sum of the dropped coefficients of the Chebyshev series bounds the dropped part,
+since |T_k| <= 1. So the misfit is a bound everywhere in the piece, not only at the points.
 
 Sources: docs/theory/proven_bounds.md, "The gains".
 """
@@ -10,7 +10,7 @@ Sources: docs/theory/proven_bounds.md, "The gains".
 from __future__ import annotations
 
 from functools import cache
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +27,39 @@ _MAX_HALVINGS = 40
 _SHORT = 1.0 / 16.0
 
 
+class GainValues(NamedTuple):
+    """Values of G gains of m components at s nodes on k pieces, with two kinds of error.
+
+    Attributes
+    ----------
+    values : (G, k, s, m)
+    errors : (G, k) bounds on the norm of the gain less the polynomial through its values; halving a piece
+        reduces them
+    rounding : (G, k) bounds on the rounding of values and phases, which halving a piece does not reduce
+    """
+
+    values: FloatArray
+    errors: FloatArray
+    rounding: FloatArray
+
+
+class PieceFits(NamedTuple):
+    """Polynomials of G gains on P pieces of the period.
+
+    Attributes
+    ----------
+    phases : (P+1,) ends of the pieces
+    polynomials : for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first
+    errors : (P, G) bounds on the errors everywhere in each piece, rounding included
+    edge_indices : (S+1,) which of the phases are the ends of the segments
+    """
+
+    phases: FloatArray
+    polynomials: list[FloatArray]
+    errors: FloatArray
+    edge_indices: npt.NDArray[np.intp]
+
+
 class PolynomialGains(Protocol):
     """G gains of m components, polynomials on every segment up to errors that are bounded.
 
@@ -39,12 +72,8 @@ class PolynomialGains(Protocol):
 
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Values (G, k, s, m) at centre + half nodes on k pieces, and bounds (G, k) on two kinds of error.
-
-        The norm of the gain less the polynomial through its values is at most the first, which halving the
-        piece reduces; the second bounds the rounding of values and phases, which it does not.
-        """
+    ) -> GainValues:
+        """Values at the phases centre + half nodes on k pieces, which lie in the segments (k,)."""
         ...
 
 
@@ -53,7 +82,8 @@ def to_series(count: int) -> tuple[FloatArray, FloatArray]:
 
     The angles are reduced as whole numbers, so that every entry is right to 8 units of rounding of 2/count.
     """
-    j, k = np.arange(count), np.arange(count)
+    j = np.arange(count)
+    k = np.arange(count)
     nodes = np.cos((2 * j + 1) * (np.pi / (2 * count)))
     matrix = np.cos(np.mod(np.outer(k, 2 * j + 1), 4 * count) * (np.pi / (2 * count))) * (2.0 / count)
     matrix[0] *= 0.5
@@ -80,28 +110,32 @@ def _power_matrix(degree: int) -> FloatArray:
 
 def fit_pieces(
     gains: PolynomialGains, edges: FloatArray, metric: FloatArray, degree: int = 8, rtol: float = 1e-11
-) -> tuple[FloatArray, list[FloatArray], FloatArray, npt.NDArray[np.intp]]:
-    """Polynomials of G gains on pieces of the period, halved until what is dropped is small enough.
+) -> PieceFits:
+    """Polynomials of G gains on pieces of the period, with PROVEN bounds on their errors.
 
-    ``edges`` (S+1,) are the ends of the segments as parts of the period, ``metric`` (m,) weights of the norm
-    of errors, ``degree`` the largest, ``rtol`` relative to the largest value of each gain; on pieces shorter
-    than 1/16 of the period larger in proportion.
+    A piece is halved until the dropped part of its polynomials is small enough.
 
-    Returns phases (P+1,); for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first; (P, G) bounds on
-    the errors everywhere in each piece, rounding included; (S+1,) which of the phases are ``edges``.
+    Parameters
+    ----------
+    edges : (S+1,) ends of the segments as parts of the period
+    metric : (m,) weights of the norm of errors
+    degree : largest degree of the polynomials
+    rtol : largest dropped part over the largest value of each gain; on pieces shorter than 1/16 of the period
+        larger in proportion
     """
     nodes, matrix = to_series(gains.count)
     root = np.sqrt(metric)
     starts: list[FloatArray] = []
     fits: list[FloatArray] = []
     misfits: list[FloatArray] = []
-    low, high = edges[:-1], edges[1:]
+    low = edges[:-1]
+    high = edges[1:]
     segment = np.arange(low.size)
     sizes: FloatArray | None = None
     for depth in range(_MAX_HALVINGS + 1):
         centre = 0.5 * (low + high)
         half = 0.5 * (high - low)
-        values, errors, fixed = gains(centre, half, segment, nodes)
+        values, errors, rounding = gains(centre, half, segment, nodes)
         values = values * root
         if not np.isfinite(values).all():
             bad = centre[~np.isfinite(values).all(axis=(0, 2, 3))][0]
@@ -119,7 +153,7 @@ def fit_pieces(
             good[:] = True
         if good.any():
             fitted = _padded(series[:, good, : degree + 1], degree)
-            errors = errors[:, good] + beyond[:, good] + fixed[:, good]
+            errors = errors[:, good] + beyond[:, good] + rounding[:, good]
             errors += series_rounding(gains.count) * largest[:, good]
             _drop_powers(fitted, errors, 0.03 * allowed[:, good])
             fits.append(_to_powers(fitted, errors))
@@ -135,11 +169,12 @@ def fit_pieces(
     order = np.argsort(start)
     # The ends of segments are exact, also of one that is a unit in the last place wide.
     phases = np.append(start[order], edges[-1])
-    at = np.searchsorted(phases, edges)
+    edge_indices = np.searchsorted(phases, edges)
     power = np.concatenate(fits, axis=1)[:, order]
     polynomials = [trimmed(p) / root[:, None] for p in power]
     # 1 + 1e-12: rounding of the sums that make the bounds.
-    return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12), at
+    bounds = np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12)
+    return PieceFits(phases, polynomials, bounds, edge_indices)
 
 
 def _padded(series: FloatArray, degree: int) -> FloatArray:
@@ -147,11 +182,11 @@ def _padded(series: FloatArray, degree: int) -> FloatArray:
     return np.pad(series, ((0, 0), (0, 0), (0, max(missing, 0)), (0, 0)))
 
 
-def _drop_powers(series: FloatArray, errors: FloatArray, room: FloatArray) -> None:
-    """Set to zero the highest coefficients whose sum stays within the room, and count them as misfit."""
+def _drop_powers(series: FloatArray, errors: FloatArray, allowed: FloatArray) -> None:
+    """Drop the highest coefficients whose sum is within ``allowed``, and add the sum to the errors."""
     size = np.sqrt(np.square(series).sum(axis=3))  # (G, pieces, d+1); |T_n| <= 1
     beyond = np.cumsum(size[:, :, ::-1], axis=2)[:, :, ::-1]
-    small = beyond <= np.maximum(room, 4e-16 * size.max(axis=2))[:, :, None]
+    small = beyond <= np.maximum(allowed, 4e-16 * size.max(axis=2))[:, :, None]
     small[:, :, 0] = False
     errors += np.where(small, size, 0.0).sum(axis=2)
     series[small] = 0.0

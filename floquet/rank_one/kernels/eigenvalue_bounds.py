@@ -1,4 +1,7 @@
-"""Disks that hold the eigenvalues of small real matrices, proven by residuals, compiled.
+"""Disks that hold the eigenvalues of small real matrices, compiled.
+
+Proven here: each disk of `spectra` that is called safe, by residuals that are computed with their rounding:
+`_entry_bounds`, `_gershgorin`, `_join`. The eigenvalues and eigenvectors need no proof.
 
 Sources: docs/theory/proven_bounds.md, "Multipliers".
 """
@@ -6,6 +9,7 @@ Sources: docs/theory/proven_bounds.md, "Multipliers".
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,62 +22,123 @@ _EPS = 2.220446049250313e-16
 _U = 0.5 * _EPS
 
 
-@compiled(_nrt=False, forceinline=True)
-def _vectors_of(
-    LU: ComplexArray,
-    pivots: npt.NDArray[np.int64],
-    A: FloatArray,
-    shift: complex,
-    x: ComplexArray,
-    y: ComplexArray,
-) -> None:
-    """Right and left null vectors x, y (n,) of A - shift I, y^T x = 1, |x| = |y|.
+class Eigenvectors(NamedTuple):
+    """Approximate eigenvectors of a matrix (n, n).
 
-    By one inverse iteration, for the shift is an eigenvalue to rounding: y from a vector of no symmetry, x
-    from L times that vector, its rows exchanged back.
+    Attributes
+    ----------
+    right, left : (n, n) rows x and y of A x = lambda x and A^T y = lambda y, y^T x = 1, |x| = |y|
+    partner : (n,) index of the conjugate eigenvalue, which stands beside; of a real eigenvalue its own index
     """
-    n = A.shape[0]
+
+    right: ComplexArray
+    left: ComplexArray
+    partner: npt.NDArray[np.int64]
+
+
+class Factors(NamedTuple):
+    """LU factors of A - shift I with exchanged rows.
+
+    Attributes
+    ----------
+    LU : (n, n) the diagonal holds the inverses of the pivots: complex divisions are slow
+    pivots : (n,) row with which each row was exchanged
+    """
+
+    LU: ComplexArray
+    pivots: npt.NDArray[np.int64]
+
+
+class EntryBounds(NamedTuple):
+    """What bounds the entries of X^-1 (A + E) X - diag(values), and scratch.
+
+    Attributes
+    ----------
+    entries : (n, n) bounds f
+    right_norms, left_norms : (n,) norms of the eigenvectors
+    residual_rows : (n,) row sums q_i of |I - Y X|, rounding included
+    images : (n, n) rows A x
+    """
+
+    entries: FloatArray
+    right_norms: FloatArray
+    left_norms: FloatArray
+    residual_rows: FloatArray
+    images: ComplexArray
+
+
+@compiled(_nrt=False, forceinline=True)
+def _shift(A: FloatArray, shift: complex, out: ComplexArray) -> float:
+    """Out = A - shift I; returns the sum of |A_ij|."""
     scale = 0.0
-    for i in range(n):
-        for j in range(n):
-            LU[i, j] = A[i, j]
+    for i in range(A.shape[0]):
+        for j in range(A.shape[0]):
+            out[i, j] = A[i, j]
             scale += abs(A[i, j])
-        LU[i, i] -= shift
-    tiny = _EPS * scale + 1e-300
+        out[i, i] -= shift
+    return scale
+
+
+@compiled(_nrt=False, forceinline=True)
+def _exchange_for_pivot(factors: Factors, k: int) -> float:
+    """Exchange row k with the row of the largest element of column k below; the size of that element."""
+    LU = factors.LU
+    n = LU.shape[0]
+    pivot = k
+    largest = -1.0
+    for i in range(k, n):
+        size = abs(LU[i, k].real) + abs(LU[i, k].imag)
+        if size > largest:
+            pivot = i
+            largest = size
+    factors.pivots[k] = pivot
+    if pivot != k:
+        for j in range(n):
+            element = LU[k, j]
+            LU[k, j] = LU[pivot, j]
+            LU[pivot, j] = element
+    return largest
+
+
+@compiled(_nrt=False, forceinline=True)
+def _inverse(c: complex) -> complex:
+    """1/c; faster than a careful complex division."""
+    square = c.real * c.real + c.imag * c.imag
+    return complex(c.real / square, -c.imag / square)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _factorise(factors: Factors, tiny: float) -> None:
+    """LU factorisation in place; a pivot below ``tiny`` is replaced by it, for A - shift I is singular."""
+    LU = factors.LU
+    n = LU.shape[0]
     for k in range(n):
-        p = k
-        most = -1.0
-        for i in range(k, n):
-            size = abs(LU[i, k].real) + abs(LU[i, k].imag)
-            if size > most:
-                p = i
-                most = size
-        pivots[k] = p
-        if p != k:
-            for j in range(n):
-                other = LU[k, j]
-                LU[k, j] = LU[p, j]
-                LU[p, j] = other
-        if most < tiny:
+        if _exchange_for_pivot(factors, k) < tiny:
             LU[k, k] = tiny
-        # The pivot is kept as its inverse: complex divisions are slow.
-        c = LU[k, k]
-        square = c.real * c.real + c.imag * c.imag
-        inverse = complex(c.real / square, -c.imag / square)
+        inverse = _inverse(LU[k, k])
         LU[k, k] = inverse
         for i in range(k + 1, n):
             factor = LU[i, k] * inverse
             LU[i, k] = factor
             for j in range(k + 1, n):
                 LU[i, j] -= factor * LU[k, j]
-    for i in range(n):
-        x[i] = 1.0 / (1.0 + 0.6180339887 * i)  # no symmetry, which would keep it off a vector
-        y[i] = x[i]
+
+
+@compiled(_nrt=False, forceinline=True)
+def _solve_upper(LU: ComplexArray, x: ComplexArray) -> None:
+    """Replace x by U^-1 x."""
+    n = x.size
     for i in range(n - 1, -1, -1):
         for j in range(i + 1, n):
             x[i] -= LU[i, j] * x[j]
         x[i] *= LU[i, i]
-    _normalise(x)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _solve_transposed(factors: Factors, y: ComplexArray) -> None:
+    """Replace y by (A - shift I)^-T y: solve with U^T, then with L^T, then exchange the rows back."""
+    LU = factors.LU
+    n = y.size
     for i in range(n):
         for j in range(i):
             y[i] -= LU[j, i] * y[j]
@@ -82,22 +147,46 @@ def _vectors_of(
         for j in range(i + 1, n):
             y[i] -= LU[j, i] * y[j]
     for k in range(n - 1, -1, -1):
-        other = y[k]
-        y[k] = y[pivots[k]]
-        y[pivots[k]] = other
-    _normalise(y)
+        element = y[k]
+        y[k] = y[factors.pivots[k]]
+        y[factors.pivots[k]] = element
+
+
+@compiled(_nrt=False, forceinline=True)
+def _scale_to_each_other(x: ComplexArray, y: ComplexArray) -> None:
+    """Scale unit vectors x and y to y^T x = 1 and |x| = |y|; x becomes nan if the vectors are orthogonal."""
+    n = x.size
     dot = 0.0 + 0.0j
     for i in range(n):
         dot += y[i] * x[i]
     size = math.sqrt(dot.real * dot.real + dot.imag * dot.imag)
     if size > 0.0:
         root = 1.0 / math.sqrt(size)
-        turned = complex(dot.real / size, -dot.imag / size) * root
+        conjugate_phase = complex(dot.real / size, -dot.imag / size) * root
         for i in range(n):
             x[i] *= root
-            y[i] *= turned
+            y[i] *= conjugate_phase
     else:
         x[0] = math.nan
+
+
+@compiled(_nrt=False, forceinline=True)
+def _null_vectors(A: FloatArray, shift: complex, factors: Factors, x: ComplexArray, y: ComplexArray) -> None:
+    """Right and left null vectors x, y (n,) of A - shift I, y^T x = 1, |x| = |y|.
+
+    By one inverse iteration, for the shift is an eigenvalue to rounding. y starts from a vector without
+    symmetry, which could be orthogonal to an eigenvector; x starts from L times that vector, rows exchanged.
+    """
+    scale = _shift(A, shift, factors.LU)
+    _factorise(factors, _EPS * scale + 1e-300)
+    for i in range(x.size):
+        x[i] = 1.0 / (1.0 + 0.6180339887 * i)
+        y[i] = x[i]
+    _solve_upper(factors.LU, x)
+    _normalise(x)
+    _solve_transposed(factors, y)
+    _normalise(y)
+    _scale_to_each_other(x, y)
 
 
 @compiled(_nrt=False, forceinline=True)
@@ -118,8 +207,8 @@ def _normalise(x: ComplexArray) -> None:
 
 
 @compiled(_nrt=False, forceinline=True)
-def _partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
-    """Which value is the conjugate of each; conjugates stand side by side."""
+def _find_partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
+    """Index of the conjugate of each eigenvalue; conjugates stand side by side."""
     for p in range(values.size):
         partner[p] = p
         if (
@@ -133,24 +222,18 @@ def _partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
 
 
 @compiled(_nrt=False, forceinline=True)
-def _eigenvectors(
-    A: FloatArray,
-    values: ComplexArray,
-    LU: ComplexArray,
-    pivots: npt.NDArray[np.int64],
-    X: ComplexArray,
-    Y: ComplexArray,
-    partner: npt.NDArray[np.int64],
-) -> None:
-    """Approximate right and left eigenvectors, rows of X and of Y."""
+def _eigenvectors(A: FloatArray, values: ComplexArray, factors: Factors, vectors: Eigenvectors) -> None:
+    """Approximate right and left eigenvectors, once for each conjugate pair of eigenvalues."""
     n = A.shape[0]
+    right = vectors.right
+    left = vectors.left
     for p in range(n):
-        if partner[p] < p:
+        if vectors.partner[p] < p:
             for i in range(n):
-                X[p, i] = X[p - 1, i].conjugate()
-                Y[p, i] = Y[p - 1, i].conjugate()
+                right[p, i] = right[p - 1, i].conjugate()
+                left[p, i] = left[p - 1, i].conjugate()
         else:
-            _vectors_of(LU, pivots, A, values[p], X[p], Y[p])
+            _null_vectors(A, values[p], factors, right[p], left[p])
 
 
 @compiled(_nrt=False, forceinline=True)
@@ -160,85 +243,127 @@ def _modulus(z: complex) -> float:
 
 
 @compiled(_nrt=False, forceinline=True)
-def _entries(
-    A: FloatArray, values: ComplexArray, X: ComplexArray, Y: ComplexArray, partner: npt.NDArray[np.int64],
-    delta: float, sizes: FloatArray, work: ComplexArray, f: FloatArray,
-) -> float:  # fmt: skip
-    """Bounds f (n, n) on the entries of X^-1 (A + E) X - diag(values) for every |E| <= delta.
+def _row_norm(rows: ComplexArray, i: int) -> float:
+    square = 0.0
+    for j in range(rows.shape[1]):
+        square += rows[i, j].real * rows[i, j].real + rows[i, j].imag * rows[i, j].imag
+    return math.sqrt(square)
 
-    X, here by columns, and Y are any matrices with q = |I - Y X| < 1, row sums. With R = I - Y X and G = Y (A
-    + E) X - D the matrix is (I - R)^-1 (G + R D), so that f = |G| + |R||D| plus q_i/(1 - q) times the largest
-    entry of a column. Each entry of R and of G is computed with its rounding: a product of n complex terms is
-    right to 4 (n + 4) u of the norms of row and column. Returns q.
-    """
+
+@compiled(_nrt=False, forceinline=True)
+def _frobenius(A: FloatArray) -> float:
+    squares = 0.0
+    for i in range(A.shape[0]):
+        for j in range(A.shape[1]):
+            squares += A[i, j] * A[i, j]
+    return math.sqrt(squares)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _images(A: FloatArray, vectors: Eigenvectors, images: ComplexArray) -> None:
+    """Rows A x of the right eigenvectors."""
     n = A.shape[0]
-    rounding = 4.0 * (n + 4.0) * _U
-    total = 0.0
-    for i in range(n):
-        square = 0.0
-        for j in range(n):
-            square += X[i, j].real * X[i, j].real + X[i, j].imag * X[i, j].imag
-            total += A[i, j] * A[i, j]
-        sizes[0, i] = math.sqrt(square)
-        square = 0.0
-        for j in range(n):
-            square += Y[i, j].real * Y[i, j].real + Y[i, j].imag * Y[i, j].imag
-        sizes[1, i] = math.sqrt(square)
-    total = math.sqrt(total)
-    for j in range(n):
-        if partner[j] < j:
+    for p in range(n):
+        if vectors.partner[p] < p:
             for i in range(n):
-                work[j, i] = work[j - 1, i].conjugate()
+                images[p, i] = images[p - 1, i].conjugate()
             continue
         for i in range(n):
             real = 0.0
             imaginary = 0.0
             for k in range(n):
-                real += A[i, k] * X[j, k].real
-                imaginary += A[i, k] * X[j, k].imag
-            work[j, i] = complex(real, imaginary)
-    worst = 0.0
-    for i in range(n):
-        if partner[i] < i:  # the conjugate of the row before
-            sizes[2, i] = sizes[2, i - 1]
-            for j in range(n):
-                f[i, j] = f[i - 1, partner[j]]
-            continue
-        row = 0.0
-        for j in range(n):
-            gain = 0.0 + 0.0j
-            rest = 0.0 + 0.0j
-            if i == j:
-                gain = -values[i]
-                rest = -1.0 + 0.0j
-            for k in range(n):
-                gain += Y[i, k] * work[j, k]
-                rest += Y[i, k] * X[j, k]
-            reach = sizes[1, i] * sizes[0, j]
-            off = _modulus(rest) + rounding * (reach + 1.0)
-            f[i, j] = _modulus(gain) + 2.0 * rounding * (reach * total + _modulus(values[i])) + delta * reach
-            f[i, j] += off * _modulus(values[j])
-            row += off
-        sizes[2, i] = row
-        if not row <= worst:
-            worst = row
-    if not worst < 0.5:
-        return worst
+                real += A[i, k] * vectors.right[p, k].real
+                imaginary += A[i, k] * vectors.right[p, k].imag
+            images[p, i] = complex(real, imaginary)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _bound_row(
+    i: int, values: ComplexArray, vectors: Eigenvectors, size: float, delta: float, bounds: EntryBounds
+) -> float:
+    """Bounds |G_ij| + |R_ij| |lambda_j| on row i, rounding and delta included; returns the row sum of |R|.
+
+    ``size`` is |A|. A product of n complex terms is right to 4 (n + 4) u of the norms of row and column.
+    """
+    n = values.size
+    rounding = 4.0 * (n + 4.0) * _U
+    row_sum = 0.0
+    for j in range(n):
+        G = 0.0 + 0.0j
+        R = 0.0 + 0.0j
+        if i == j:
+            G = -values[i]
+            R = -1.0 + 0.0j
+        for k in range(n):
+            G += vectors.left[i, k] * bounds.images[j, k]
+            R += vectors.left[i, k] * vectors.right[j, k]
+        norms = bounds.left_norms[i] * bounds.right_norms[j]
+        R_bound = _modulus(R) + rounding * (norms + 1.0)
+        entry = _modulus(G) + 2.0 * rounding * (norms * size + _modulus(values[i])) + delta * norms
+        bounds.entries[i, j] = entry + R_bound * _modulus(values[j])
+        row_sum += R_bound
+    return row_sum
+
+
+@compiled(_nrt=False, forceinline=True)
+def _conjugate_row(i: int, partner: npt.NDArray[np.int64], bounds: EntryBounds) -> None:
+    """Bounds on row i of a conjugate eigenvalue: those of row i - 1 with conjugate columns exchanged."""
+    bounds.residual_rows[i] = bounds.residual_rows[i - 1]
+    for j in range(partner.size):
+        bounds.entries[i, j] = bounds.entries[i - 1, partner[j]]
+
+
+@compiled(_nrt=False, forceinline=True)
+def _add_inverse(q: float, bounds: EntryBounds) -> None:
+    """Add what (I - R)^-1 makes of a column: q_i/(1 - q) times its largest entry."""
+    n = bounds.residual_rows.size
     for j in range(n):
         largest = 0.0
         for i in range(n):
-            largest = max(largest, f[i, j])
+            largest = max(largest, bounds.entries[i, j])
         for i in range(n):
-            f[i, j] = (f[i, j] + sizes[2, i] / (1.0 - worst) * largest) * (1.0 + 1e-12)
-    return worst
+            entry = bounds.entries[i, j] + bounds.residual_rows[i] / (1.0 - q) * largest
+            bounds.entries[i, j] = entry * (1.0 + 1e-12)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _entry_bounds(
+    A: FloatArray, values: ComplexArray, vectors: Eigenvectors, delta: float, bounds: EntryBounds
+) -> float:
+    """Bounds f (n, n) on the entries of X^-1 (A + E) X - D for every |E| <= delta, D = diag(values).
+
+    X, the right eigenvectors as columns, and Y, the left eigenvectors as rows, may be any matrices with row
+    sums q_i of |R| below 1, R = I - Y X. With G = Y (A + E) X - D the matrix is (I - R)^-1 (G + R D). So
+    f_ij = |G_ij| + |R_ij| |lambda_j| plus q_i/(1 - q) times the largest entry of column j. Each entry of R
+    and of G is computed with its rounding. Returns q, the largest q_i; from 1/2 on there are no bounds.
+    """
+    n = A.shape[0]
+    size = _frobenius(A)
+    for i in range(n):
+        bounds.right_norms[i] = _row_norm(vectors.right, i)
+        bounds.left_norms[i] = _row_norm(vectors.left, i)
+    _images(A, vectors, bounds.images)
+    q = 0.0
+    for i in range(n):
+        if vectors.partner[i] < i:
+            _conjugate_row(i, vectors.partner, bounds)
+            continue
+        row_sum = _bound_row(i, values, vectors, size, delta, bounds)
+        bounds.residual_rows[i] = row_sum
+        if not row_sum <= q:  # also where it is nan
+            q = row_sum
+    if q < 0.5:
+        _add_inverse(q, bounds)
+    return q
 
 
 @compiled(_nrt=False, forceinline=True)
 def _gershgorin(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: FloatArray) -> None:
     """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij, with R_i = sum_j f_ij.
 
-    Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), scaling the i-th coordinate by tau = max_j 2
-    f_ji/|lambda_i - lambda_j| leaves disk i apart and shrinks its radius to f_ii + tau (R_i - f_ii).
+    Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), the i-th coordinate is scaled by
+    tau = max_j 2 f_ji/|lambda_i - lambda_j|. Disk i stays apart, and its radius shrinks to f_ii + tau
+    (R_i - f_ii).
     """
     n = values.size
     for i in range(n):
@@ -259,7 +384,10 @@ def _gershgorin(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: Fl
 
 @compiled(_nrt=False, forceinline=True)
 def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
-    """Widen the radii of overlapping disks: a union of k disks apart from the others holds k eigenvalues."""
+    """Widen each overlapping disk until the disk holds the union of all overlapping disks.
+
+    A union of k disks apart from the other disks holds k eigenvalues.
+    """
     n = values.size
     for i in range(n):
         group[i] = i
@@ -282,35 +410,34 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
 def spectra(
     M: FloatArray, delta: FloatArray, values: ComplexArray, radii: FloatArray, safe: npt.NDArray[np.bool_]
 ) -> None:
-    """Eigenvalues (N, n) of M (N, n, n) wrong by delta (N,), 2-norm, each with a disk for as many exact ones.
+    """Eigenvalues (N, n) of M (N, n, n) wrong by delta (N,), 2-norm, with PROVEN disks of radii (N, n).
 
-    The radii follow from what is left of X^-1 M X - D, computed with its rounding. Where ``safe`` (N,) the
-    eigenvectors are good enough, so that each is a bound for its own eigenvalue; where disks overlap it
-    reaches around all of those that hang together.
+    The radii follow from the residual of X^-1 M X - D, computed with its rounding. Where ``safe`` (N,) is
+    true the eigenvectors are good enough, and each radius bounds the error of its own eigenvalue. Where disks
+    overlap each of them reaches around all disks of their union.
     """
     n = M.shape[1]
     A = np.empty((n, n))
-    f = np.empty((n, n))
-    sizes = np.empty((3, n))
-    vectors = np.empty((3, n, n), np.complex128)
-    pivots = np.empty(n, np.int64)
-    X = vectors[0]
-    Y = vectors[1]
-    LU = vectors[2]
-    partner = np.empty(n, np.int64)
+    vectors = Eigenvectors(
+        np.empty((n, n), np.complex128), np.empty((n, n), np.complex128), np.empty(n, np.int64)
+    )
+    factors = Factors(np.empty((n, n), np.complex128), np.empty(n, np.int64))
+    # The factors are no longer used when the images are computed.
+    bounds = EntryBounds(np.empty((n, n)), np.empty(n), np.empty(n), np.empty(n), factors.LU)
+    scratch = np.empty(n)
     group = np.empty(n, np.int64)
     for point in range(M.shape[0]):
         for i in range(n):
             for j in range(n):
                 A[i, j] = M[point, i, j]
-        found = eigenvalues(A, values[point], sizes[0])
-        _partners(values[point], partner)
-        _eigenvectors(M[point], values[point], LU, pivots, X, Y, partner)
-        q = _entries(M[point], values[point], X, Y, partner, delta[point], sizes, LU, f)
-        _gershgorin(values[point], f, sizes[2], radii[point])
-        _join(values[point], radii[point], sizes[2], group)
-        # Beyond this, values that nearly meet do better as a cluster.
-        good = found and q < 0.01
+        converged = eigenvalues(A, values[point], scratch)
+        _find_partners(values[point], vectors.partner)
+        _eigenvectors(M[point], values[point], factors, vectors)
+        q = _entry_bounds(M[point], values[point], vectors, delta[point], bounds)
+        _gershgorin(values[point], bounds.entries, scratch, radii[point])
+        _join(values[point], radii[point], scratch, group)
+        # Beyond these limits values that nearly meet do better as a cluster.
+        good = converged and q < 0.01
         for i in range(n):
-            good = good and sizes[0, i] * sizes[1, i] < 1e6
+            good = good and bounds.right_norms[i] * bounds.left_norms[i] < 1e6
         safe[point] = good

@@ -94,7 +94,8 @@ def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> No
             if three:
                 H[k + 2, k - 1] = 0.0
         if k < hi - 1:
-            x, y = H[k + 1, k], H[k + 2, k]
+            x = H[k + 1, k]
+            y = H[k + 2, k]
             z = H[k + 3, k] if k + 3 <= hi else 0.0
 
 

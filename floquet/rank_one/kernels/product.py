@@ -1,24 +1,45 @@
-"""The product of the steps of one period, and how their errors reach its end, compiled."""
+"""The product of the steps of one period with a bound on its error, compiled.
+
+Matrices are (n, lanes): n columns, and zeros up to a whole number of `LANES`.
+
+Sources: docs/theory/proven_bounds.md, "The matrix of a step" and "The product".
+"""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from floquet.rank_one.kernels.simd import LANES, load, plus, plus_square, scaled, store, total, zero
+import numpy as np
+import numpy.typing as npt
+
+from floquet.rank_one.kernels.simd import (
+    LANES,
+    aligned_empty,
+    aligned_matrices,
+    aligned_rows,
+    load,
+    plus,
+    plus_square,
+    scaled,
+    store,
+    total,
+    zero,
+)
 from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 BLOCKS = 34
-"""Blocks of steps held at once at most: enough for 2^32 steps."""
+"""Largest number of blocks in the binary counter of `carry`: enough for 2^32 steps."""
 _EPS = 2.220446049250313e-16
-_PIVOT = 0.1  # of the norm of a matrix: larger diagonal elements are pivots without a search
-_SLACK = 1.0 + 1e-11  # rounding of a bound itself
-_FLOOR = 1e-150  # squares of what is smaller may be lost
+_PIVOT = 0.1  # a diagonal element above this part of the norm of its matrix is a pivot without a search
+_SLACK = 1.0 + 1e-11  # covers the rounding of a bound itself
+_FLOOR = 1e-150  # squares of smaller numbers may underflow
 
 
 @compiled(_nrt=False, forceinline=True)
 def frobenius(rows: FloatArray) -> float:
-    """Bound on the norm of rows[:, 0:n], zero beyond; squares may be lost to underflow."""
+    """Bound on the Frobenius norm of a matrix, also where squares of its entries underflow."""
     n = rows.shape[0]
     squares = zero()
     for c in range(0, n, LANES):
@@ -29,7 +50,7 @@ def frobenius(rows: FloatArray) -> float:
 
 @compiled(_nrt=False, forceinline=True)
 def copy(source: FloatArray, out: FloatArray) -> None:
-    """Out = source, as many rows as out has."""
+    """Out = the first rows of source, as many as out has."""
     n = out.shape[0]
     for c in range(0, n, LANES):
         for i in range(n):
@@ -38,7 +59,7 @@ def copy(source: FloatArray, out: FloatArray) -> None:
 
 @compiled(_nrt=False, forceinline=True)
 def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
-    """Out = left[:, 0:n] @ right, all (n, lanes)."""
+    """Out = left @ right."""
     n = left.shape[0]
     for c in range(0, n, LANES):
         for i in range(n):
@@ -49,153 +70,266 @@ def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
 
 
 @compiled(_nrt=False, forceinline=True)
-def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -> None:
-    """Out[:, 0:n] = inverse of A[:, 0:n], (n, lanes), by Gauss-Jordan elimination with row pivots.
+def _pivot_row(A: FloatArray, k: int, small: float) -> int:
+    """Row of the pivot of column k: row k, or the row of the largest element below where A[k, k] is small."""
+    pivot = k
+    if abs(A[k, k]) < small:
+        for i in range(k + 1, A.shape[0]):
+            if abs(A[i, k]) > abs(A[pivot, k]):
+                pivot = i
+    return pivot
 
-    Not finite where A is singular. ``unit`` has the rows of the unit matrix, ``work`` is scratch like A. The
-    diagonal is taken as it is where it is not small: over a short step A is next to the unit matrix.
+
+@compiled(_nrt=False, forceinline=True)
+def _exchange_rows(A: FloatArray, i: int, k: int) -> None:
+    """Exchange rows i and k of A (n, lanes)."""
+    for c in range(0, A.shape[1], LANES):
+        row = load(A, (i, c))
+        store(A, (i, c), load(A, (k, c)))
+        store(A, (k, c), row)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _eliminate(A: FloatArray, inverse: FloatArray, k: int, factor: float) -> None:
+    """Scale row k by a factor, and subtract multiples of row k that clear column k of A in all other rows.
+
+    In place, eight columns after the other. Column k of A holds the multiples, so the eight columns that
+    contain column k come last.
     """
     n = A.shape[0]
     lanes = A.shape[1]
-    copy(A, work)
+    block_of_column = k - k % LANES
+    for offset in range(LANES, lanes + LANES, LANES):
+        c = (block_of_column + offset) % lanes
+        pivot_row = scaled(factor, load(A, (k, c)))
+        pivot_row_of_inverse = scaled(factor, load(inverse, (k, c)))
+        store(A, (k, c), pivot_row)
+        store(inverse, (k, c), pivot_row_of_inverse)
+        for i in range(n):
+            if i != k:
+                multiple = -A[i, k]
+                store(A, (i, c), plus(multiple, pivot_row, load(A, (i, c))))
+                store(inverse, (i, c), plus(multiple, pivot_row_of_inverse, load(inverse, (i, c))))
+
+
+@compiled(_nrt=False, forceinline=True)
+def invert(A: FloatArray, unit: FloatArray, scratch: FloatArray, out: FloatArray) -> None:
+    """Out = inverse of A by Gauss-Jordan elimination with row pivots; not finite where A is singular.
+
+    ``unit`` has the rows of the unit matrix, ``scratch`` is like A. Over a short step A is next to the unit
+    matrix, so a diagonal element that is not small is the pivot without a search.
+    """
+    copy(A, scratch)
     copy(unit, out)
     small = _PIVOT * frobenius(A)
-    for k in range(n):
-        p = k
-        if abs(work[k, k]) < small:
-            for i in range(k + 1, n):
-                if abs(work[i, k]) > abs(work[p, k]):
-                    p = i
-        factor = 1.0 / work[p, k]
-        own = k - k % LANES
-        if p != k:
-            for c in range(0, lanes, LANES):
-                left, right = load(work, (p, c)), load(out, (p, c))
-                store(work, (p, c), load(work, (k, c)))
-                store(out, (p, c), load(out, (k, c)))
-                store(work, (k, c), left)
-                store(out, (k, c), right)
-        for step in range(LANES, lanes + LANES, LANES):
-            c = (own + step) % lanes  # last that of the factors of this round
-            left, right = scaled(factor, load(work, (k, c))), scaled(factor, load(out, (k, c)))
-            store(work, (k, c), left)
-            store(out, (k, c), right)
-            for i in range(n):
-                if i != k:
-                    turned = -work[i, k]
-                    store(work, (i, c), plus(turned, left, load(work, (i, c))))
-                    store(out, (i, c), plus(turned, right, load(out, (i, c))))
+    for k in range(A.shape[0]):
+        pivot = _pivot_row(scratch, k, small)
+        factor = 1.0 / scratch[pivot, k]
+        if pivot != k:
+            _exchange_rows(scratch, pivot, k)
+            _exchange_rows(out, pivot, k)
+        _eliminate(scratch, out, k, factor)
 
 
 @compiled(_nrt=False, forceinline=True)
 def divide(
     end: FloatArray, start: FloatArray, unit: FloatArray, scratch: FloatArray, step: FloatArray
 ) -> tuple[float, float]:
-    """Flow over a step, P = E S^-1, from those from its middle to its end E and to its start S, (n, lanes).
+    """Flow over a step, P = E S^-1; E and S are the flows from the middle to the end and to the start.
 
     Returns |P| and a bound on |P S - E|, Frobenius norms. ``scratch`` is (2, n, lanes).
     """
     n = end.shape[0]
     inverse = scratch[0]
-    back = scratch[1]
-    invert(start, unit, back, inverse)
+    difference = scratch[1]
+    invert(start, unit, difference, inverse)
     multiply(end, inverse, step)
-    multiply(step, start, back)
+    multiply(step, start, difference)
     for c in range(0, n, LANES):
         for i in range(n):
-            store(back, (i, c), plus(-1.0, load(end, (i, c)), load(back, (i, c))))
-    residual = frobenius(back)
+            store(difference, (i, c), plus(-1.0, load(end, (i, c)), load(difference, (i, c))))
+    residual = frobenius(difference)
     size = frobenius(step)
     residual += (n + 1.0) * _EPS * size * frobenius(start)
     return size, residual
 
 
 @compiled(_nrt=False, forceinline=True)
-def spectral(A: FloatArray, square: FloatArray) -> float:
-    """Bound on the 2-norm of A[:, 0:n]: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
-
-    |A|_F where the fourth powers in that would be lost to underflow.
-    """
-    size = frobenius(A)
+def gram(A: FloatArray, out: FloatArray) -> None:
+    """Out = A^T A."""
     n = A.shape[0]
-    if size < 1e-60:
-        return size * _SLACK
     for c in range(0, n, LANES):
         for i in range(n):
             row = zero()
             for q in range(n):
                 row = plus(A[q, i], load(A, (q, c)), row)
-            store(square, (i, c), row)
+            store(out, (i, c), row)
+
+
+@compiled(_nrt=False, forceinline=True)
+def spectral(A: FloatArray, square: FloatArray) -> float:
+    """Bound on the 2-norm: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
+
+    The Frobenius norm where fourth powers of the entries would underflow.
+    """
+    size = frobenius(A)
+    if size < 1e-60:
+        return size * _SLACK
+    gram(A, square)
     return math.sqrt(frobenius(square)) * _SLACK
 
 
+class Steps(NamedTuple):
+    """The steps of one period.
+
+    Attributes
+    ----------
+    matrices : (most, n, lanes)
+    errors : (most,) bounds on the norms of the errors
+    sizes : (most,) Frobenius norms
+    """
+
+    matrices: FloatArray
+    errors: FloatArray
+    sizes: FloatArray
+
+
+class Blocks(NamedTuple):
+    """Products of 2^rank steps each, a binary counter; and the products of the first 1, 2, ... blocks.
+
+    Attributes
+    ----------
+    matrices : (BLOCKS, n, lanes)
+    sizes, errors : (BLOCKS,) Frobenius norms, and bounds on the errors
+    ranks : (BLOCKS,)
+    tails : (BLOCKS, n, lanes) products of the blocks up to each one; the last is the flow from the present
+        step to the end of the period
+    tail_sizes, tail_errors : (BLOCKS,) bounds on the 2-norms of the tails, and on their errors
+    """
+
+    matrices: FloatArray
+    sizes: FloatArray
+    errors: FloatArray
+    ranks: npt.NDArray[np.int64]
+    tails: FloatArray
+    tail_sizes: FloatArray
+    tail_errors: FloatArray
+
+
+class ProductWorkspace(NamedTuple):
+    """Arrays of one thread for `carry`.
+
+    Attributes
+    ----------
+    blocks : see `Blocks`
+    sizes_before : (most,) bounds on the norms of the products of the steps before each step
+    product : (n, lanes)
+    """
+
+    blocks: Blocks
+    sizes_before: FloatArray
+    product: FloatArray
+
+
+@compiled()
+def steps_for(most: int, n: int, lanes: int) -> Steps:
+    """Allocate the steps of one period."""
+    matrices = aligned_empty(most * n * lanes).reshape((most, n, lanes))
+    return Steps(matrices, np.empty(most), np.empty(most))
+
+
+@compiled()
+def product_workspace(most: int, n: int, lanes: int) -> ProductWorkspace:
+    """Allocate the workspace of `carry` for at most ``most`` steps."""
+    blocks = Blocks(
+        matrices=aligned_matrices(BLOCKS, n, lanes),
+        sizes=np.zeros(BLOCKS),
+        errors=np.zeros(BLOCKS),
+        ranks=np.zeros(BLOCKS, dtype=np.int64),
+        tails=aligned_matrices(BLOCKS, n, lanes),
+        tail_sizes=np.zeros(BLOCKS),
+        tail_errors=np.zeros(BLOCKS),
+    )
+    return ProductWorkspace(blocks, np.empty(most), aligned_rows(n, lanes))
+
+
+@compiled(_nrt=False, forceinline=True)
+def _multiply_steps(steps: Steps, count: int, work: ProductWorkspace, flow: FloatArray) -> None:
+    """Flow = product of the steps, first step first; bounds on the norm before each step."""
+    n = flow.shape[0]
+    copy(steps.matrices[0], flow)
+    work.sizes_before[0] = math.sqrt(n) * _SLACK
+    for k in range(1, count):
+        work.sizes_before[k] = frobenius(flow)
+        multiply(steps.matrices[k], flow, work.product)
+        copy(work.product, flow)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _add_step(steps: Steps, k: int, count: int, blocks: Blocks, product: FloatArray) -> int:
+    """Add step k as a block of rank 0 to ``count`` blocks, and join blocks of equal rank; the new count."""
+    copy(steps.matrices[k], blocks.matrices[count])
+    blocks.sizes[count] = steps.sizes[k]
+    blocks.errors[count] = steps.errors[k]
+    blocks.ranks[count] = 0
+    last = count
+    while last > 0 and blocks.ranks[last - 1] == blocks.ranks[last]:
+        _join_blocks(blocks, last, product)
+        last -= 1
+    return last + 1
+
+
+@compiled(_nrt=False, forceinline=True)
+def _join_blocks(blocks: Blocks, last: int, product: FloatArray) -> None:
+    """Replace the last two blocks A and B by A B: its error is a e_B + e_A b + e_A e_B + n eps a b."""
+    n = product.shape[0]
+    a = blocks.sizes[last - 1]
+    b = blocks.sizes[last]
+    error_a = blocks.errors[last - 1]
+    error_b = blocks.errors[last]
+    multiply(blocks.matrices[last - 1], blocks.matrices[last], product)
+    copy(product, blocks.matrices[last - 1])
+    blocks.sizes[last - 1] = frobenius(product)
+    blocks.errors[last - 1] = a * error_b + error_a * b + error_a * error_b + n * _EPS * a * b
+    blocks.ranks[last - 1] += 1
+
+
+@compiled(_nrt=False, forceinline=True)
+def _extend_tail(blocks: Blocks, last: int, product: FloatArray) -> None:
+    """Multiply the tail A of the blocks before the last one by the last block B, and bound size and error."""
+    n = product.shape[0]
+    if last == 0:
+        copy(blocks.matrices[0], blocks.tails[0])
+        blocks.tail_errors[0] = blocks.errors[0]
+    else:
+        multiply(blocks.tails[last - 1], blocks.matrices[last], blocks.tails[last])
+        a = blocks.tail_sizes[last - 1]
+        b = blocks.sizes[last]
+        error_a = blocks.tail_errors[last - 1]
+        error_b = blocks.errors[last]
+        blocks.tail_errors[last] = a * error_b + error_a * (b + error_b) + n * n * _EPS * a * b
+    blocks.tail_sizes[last] = spectral(blocks.tails[last], product)
+
+
 @compiled(_nrt=False)
-def carry(
-    steps: FloatArray,
-    local: FloatArray,
-    sizes: FloatArray,
-    count: int,
-    flow: FloatArray,
-    before: FloatArray,
-    work: FloatArray,
-    table: FloatArray,
-) -> float:
-    """Product of the steps; returns a bound on the Frobenius norm of its error, rounding included.
+def carry(steps: Steps, count: int, work: ProductWorkspace, flow: FloatArray) -> float:
+    """Flow = product of the steps; returns a PROVEN bound on the Frobenius norm of the error of the flow.
 
-    With Q_j the computed product before step j, E_j its error and S_j the *exact* flow behind it, that is
-    the sum of S_j E_j Q_j (docs/theory/proven_bounds.md, "The product"). S_j is known as a
-    product of blocks of 2^k steps, a binary counter from the last step backwards.
-
-    Steps are (count, n, lanes), ``local`` bounds |E_j|, ``sizes`` the Frobenius norms of the steps; the
-    product goes to ``flow``. Scratch: ``before`` bounds |Q_j|, ``work`` is (2 BLOCKS + 1, n, lanes),
-    ``table`` (5, BLOCKS) holds norm, error, rank of the blocks and norm, error of their product.
+    Q_j is the computed product before step j, E_j the error of step j and S_j the *exact* flow after step j.
+    The error of the product is the sum of S_j E_j Q_j (docs/theory/proven_bounds.md, "The product"). S_j is
+    known as a product of blocks of 2^k steps, a binary counter from the last step backwards.
     """
     n = flow.shape[0]
-    product = work[0]
-    copy(steps[0], flow)
-    before[0] = math.sqrt(n) * _SLACK
-    for k in range(1, count):
-        before[k] = frobenius(flow)
-        multiply(steps[k], flow, product)
-        copy(product, flow)
-    top = 0
+    blocks = work.blocks
+    _multiply_steps(steps, count, work, flow)
+    block_count = 0
     bound = 0.0
     for k in range(count - 1, -1, -1):
-        after = table[3, top - 1] + table[4, top - 1] if top > 0 else 1.0
+        size_after = 1.0
+        if block_count > 0:
+            size_after = blocks.tail_sizes[block_count - 1] + blocks.tail_errors[block_count - 1]
         # n eps |P| is the rounding of multiplying by this step.
-        bound += after * (local[k] + n * _EPS * sizes[k]) * before[k]
-        copy(steps[k], work[1 + top])
-        rank = 0
-        table[0, top] = sizes[k]
-        table[1, top] = local[k]
-        table[2, top] = 0.0
-        top += 1
-        while top > 1 and table[2, top - 2] == rank:
-            one = top - 2
-            two = top - 1
-            a = table[0, one]
-            b = table[0, two]
-            da = table[1, one]
-            db = table[1, two]
-            multiply(work[1 + one], work[1 + two], product)
-            copy(product, work[1 + one])
-            rank += 1
-            table[0, one] = frobenius(product)
-            table[1, one] = a * db + da * b + da * db + n * _EPS * a * b
-            table[2, one] = rank
-            top = one + 1
-        # The product of all blocks, which is the flow from here to the end, and its error.
-        last = top - 1
-        base = 1 + BLOCKS
-        if last == 0:
-            copy(work[1], work[base])
-            table[4, 0] = table[1, 0]
-        else:
-            multiply(work[base + last - 1], work[1 + last], work[base + last])
-            a = table[3, last - 1]
-            da = table[4, last - 1]
-            b = table[0, last]
-            db = table[1, last]
-            table[4, last] = a * db + da * (b + db) + n * n * _EPS * a * b
-        table[3, last] = spectral(work[base + last], product)
+        bound += size_after * (steps.errors[k] + n * _EPS * steps.sizes[k]) * work.sizes_before[k]
+        block_count = _add_step(steps, k, block_count, blocks, work.product)
+        _extend_tail(blocks, block_count - 1, work.product)
     return bound * _SLACK

@@ -1,360 +1,492 @@
 """Taylor propagation of a rank-one feedback system with a majorant error bound, compiled.
 
-In energy coordinates x = (omega eta, eta') of `ModalForm` a step of length 2 h has A(u) = sum_j A_j u^j, |u|
-<= 1, with |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|), the others likewise without
-omega and C. The series starts in the middle of the step; its sums at u = 1 and -1 are the flows E and S to
-the end and the start, and P = E S^-1 is that of the step.
+The states are x = (omega eta, eta'), the energy coordinates of `ModalForm`. A step has the length 2 h. In the
+time u of the step, |u| <= 1, the equation of motion has the matrix A(u) = sum_j A_j u^j, see `StepEquation`.
+The Taylor series starts in the middle of the step. Its sums at u = 1 and u = -1 are the flows E and S from
+the middle to the end and to the start. The flow over the step is P = E S^-1.
 
-Sources: docs/theory/proven_bounds.md, "The matrix of a step".
+Proven here: the bound on the error of the flow over a step (`_error_of_step`), and with `carry` the bound on
+the error of the monodromy matrix (`propagate_points`). Sources: docs/theory/proven_bounds.md, "The matrix of
+a step" and "The product".
 """
 
 from __future__ import annotations
 
 import math
-
-import numpy as np
+from typing import Any, NamedTuple
 
 from floquet.rank_one.kernels.gains import (
-    MAX_TERMS,
+    ConstantPart,
     Limits,
     Piece,
+    Point,
+    Points,
     Problem,
+    Series,
+    StepEquation,
+    Workspace,
     enough_terms,
+    load_constant_part,
     load_piece,
-    load_point,
     load_step,
     most_steps,
-    scratch_for,
+    workspace_for,
 )
-from floquet.rank_one.kernels.product import BLOCKS, carry, copy, divide, frobenius, multiply
-from floquet.rank_one.kernels.simd import LANES, load, plus, scaled, store, zero
+from floquet.rank_one.kernels.product import (
+    Steps,
+    carry,
+    copy,
+    divide,
+    frobenius,
+    gram,
+    multiply,
+    product_workspace,
+    steps_for,
+)
+from floquet.rank_one.kernels.simd import LANES, aligned_empty, aligned_rows, load, plus, scaled, store, zero
 from lumped.compiler import compiled
 from lumped.typing import FloatArray
 
 _U = 0.5 * 2.220446049250313e-16
+_BOUND_SLACK = 1.0 + 1e-6  # covers the rounding of the bound on a step, and of the number of terms above all
+
+
+class _Three(NamedTuple):
+    """Eight columns of each of three coordinates, in registers of the processor."""
+
+    first: Any
+    second: Any
+    third: Any
 
 
 @compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
-def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
-    """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
+def _load_three(coefficients: FloatArray, k: int) -> _Three:
+    return _Three(load(coefficients, (k, 0)), load(coefficients, (k, 1)), load(coefficients, (k, 2)))
 
-    With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'. All three coordinates side by
-    side in registers, and the newest values last in every sum: what is older need not wait for them.
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _store_three(coefficients: FloatArray, k: int, x: _Three) -> None:
+    store(coefficients, (k, 0), x.first)
+    store(coefficients, (k, 1), x.second)
+    store(coefficients, (k, 2), x.third)
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _dot(row: FloatArray, x: _Three) -> Any:
+    """Scalar product of a row of three numbers with x."""
+    return plus(row[2], x.third, plus(row[1], x.second, scaled(row[0], x.first)))
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _scale_each(factors: FloatArray, x: _Three) -> _Three:
+    """Each coordinate of x times a factor."""
+    return _Three(scaled(factors[0], x.first), scaled(factors[1], x.second), scaled(factors[2], x.third))
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _scale_all(factor: float, x: _Three) -> _Three:
+    """All coordinates of x times the same factor."""
+    return _Three(scaled(factor, x.first), scaled(factor, x.second), scaled(factor, x.third))
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _add_feedback(gain: FloatArray, deflection: Any, total: _Three) -> _Three:
+    """Total + gain times the deflection; the gain has three coordinates."""
+    return _Three(
+        plus(gain[0], deflection, total.first),
+        plus(gain[1], deflection, total.second),
+        plus(gain[2], deflection, total.third),
+    )
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _add_power(polynomial: FloatArray, i: int, deflection: Any, total: _Three) -> _Three:
+    """Total + coefficient i of the gain times the deflection."""
+    return _Three(
+        plus(polynomial[i, 0], deflection, total.first),
+        plus(polynomial[i, 1], deflection, total.second),
+        plus(polynomial[i, 2], deflection, total.third),
+    )
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _add_row(row: FloatArray, i: int, factor: float, x: _Three, total: Any) -> Any:
+    """Total + factor times row i of a matrix times x."""
+    partial = plus(factor * row[i, 0], x.first, total)
+    partial = plus(factor * row[i, 1], x.second, partial)
+    return plus(factor * row[i, 2], x.third, partial)
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _add_matrix(matrix: FloatArray, factor: float, x: _Three, total: _Three) -> _Three:
+    """Total + factor times a 3 x 3 matrix times x."""
+    return _Three(
+        _add_row(matrix, 0, factor, x, total.first),
+        _add_row(matrix, 1, factor, x, total.second),
+        _add_row(matrix, 2, factor, x, total.third),
+    )
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _add_older(polynomial: FloatArray, degree: int, history: FloatArray, k: int, total: _Three) -> _Three:
+    """Total + the convolution of a gain with a series at power k, without the newest value of the series."""
+    for i in range(min(degree, k), 0, -1):
+        total = _add_power(polynomial, i, load(history, (k - i,)), total)
+    return total
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _expand_three(equation: StepEquation, piece: Piece, terms: int, h: float, series: Series) -> None:
+    """Fill the Taylor coefficients of eta up to power terms + 1, of three coordinates, from those of 0 and 1.
+
+    Power k of the equation of motion gives the coefficient of power k + 2. With wd = ratio w both gains act
+    as one gain w on deflection + (ratio/h) deflection rate. All three coordinates stay in registers. The
+    newest values come last in every sum, so the sum of the older values need not wait for them.
     """
-    v = piece.v
-    C = piece.hC
-    o = piece.h2_omega2
-    ref = piece.h2_reference
-    Z = piece.Z
-    s = piece.s
-    sd = piece.sd
-    w = piece.ws
-    wd = piece.wds
-    merged = not math.isnan(ratio)
-    lag = ratio / h if merged else 0.0
-    dw, dd = piece.degrees[0], piece.degrees[1]
-    x0 = load(Z, (0, 0))
-    x1 = load(Z, (0, 1))
-    x2 = load(Z, (0, 2))
-    y0 = load(Z, (1, 0))
-    y1 = load(Z, (1, 1))
-    y2 = load(Z, (1, 2))
-    here = plus(v[2], x2, plus(v[1], x1, scaled(v[0], x0)))
-    there = plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
+    one_gain = not math.isnan(piece.ratio)
+    lag = piece.ratio / h if one_gain else 0.0
+    position = _load_three(series.eta, 0)
+    velocity = _load_three(series.eta, 1)
+    deflection = _dot(equation.v, position)
+    next_deflection = _dot(equation.v, velocity)
     for k in range(terms):
-        c = k + 1.0
-        rate = scaled(c, there)
-        t0 = scaled(o[0], x0)
-        t1 = scaled(o[1], x1)
-        t2 = scaled(o[2], x2)
-        t0 = plus(ref[0], here, t0)
-        t1 = plus(ref[1], here, t1)
-        t2 = plus(ref[2], here, t2)
-        if merged:
-            for i in range(min(dw, k), 0, -1):
-                old = load(sd, (k - i,))
-                t0 = plus(w[i, 0], old, t0)
-                t1 = plus(w[i, 1], old, t1)
-                t2 = plus(w[i, 2], old, t2)
-            rate = plus(lag * c, there, here)
-            t0 = plus(w[0, 0], rate, t0)
-            t1 = plus(w[0, 1], rate, t1)
-            t2 = plus(w[0, 2], rate, t2)
+        power = k + 1.0
+        rate = scaled(power, next_deflection)
+        force = _scale_each(equation.h2_omega2, position)
+        force = _add_feedback(equation.h2_reference, deflection, force)
+        if one_gain:
+            force = _add_older(equation.h2_w, piece.w_degree, series.deflection_rate, k, force)
+            rate = plus(lag * power, next_deflection, deflection)
+            force = _add_power(equation.h2_w, 0, rate, force)
         else:
-            for i in range(min(dw, k), 0, -1):
-                old = load(s, (k - i,))
-                t0 = plus(w[i, 0], old, t0)
-                t1 = plus(w[i, 1], old, t1)
-                t2 = plus(w[i, 2], old, t2)
-            for i in range(min(dd, k), 0, -1):
-                old = load(sd, (k - i,))
-                t0 = plus(wd[i, 0], old, t0)
-                t1 = plus(wd[i, 1], old, t1)
-                t2 = plus(wd[i, 2], old, t2)
-            t0 = plus(w[0, 0], here, t0)
-            t1 = plus(w[0, 1], here, t1)
-            t2 = plus(w[0, 2], here, t2)
-            t0 = plus(wd[0, 0], rate, t0)
-            t1 = plus(wd[0, 1], rate, t1)
-            t2 = plus(wd[0, 2], rate, t2)
-        store(s, (k,), here)
-        store(sd, (k,), rate)
-        t0 = plus(c * C[0, 0, 2], y2, plus(c * C[0, 0, 1], y1, plus(c * C[0, 0, 0], y0, t0)))
-        t1 = plus(c * C[0, 1, 2], y2, plus(c * C[0, 1, 1], y1, plus(c * C[0, 1, 0], y0, t1)))
-        t2 = plus(c * C[0, 2, 2], y2, plus(c * C[0, 2, 1], y1, plus(c * C[0, 2, 0], y0, t2)))
-        factor = -1.0 / (c * (c + 1.0))
-        x0 = y0
-        x1 = y1
-        x2 = y2
-        y0 = scaled(factor, t0)
-        y1 = scaled(factor, t1)
-        y2 = scaled(factor, t2)
-        store(Z, (k + 2, 0), y0)
-        store(Z, (k + 2, 1), y1)
-        store(Z, (k + 2, 2), y2)
-        here = there
-        there = plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
+            force = _add_older(equation.h2_w, piece.w_degree, series.deflection, k, force)
+            force = _add_older(equation.h_wd, piece.wd_degree, series.deflection_rate, k, force)
+            force = _add_power(equation.h2_w, 0, deflection, force)
+            force = _add_power(equation.h_wd, 0, rate, force)
+        store(series.deflection, (k,), deflection)
+        store(series.deflection_rate, (k,), rate)
+        force = _add_matrix(equation.h_C, power, velocity, force)
+        position = velocity
+        velocity = _scale_all(-1.0 / (power * (power + 1.0)), force)
+        _store_three(series.eta, k + 2, velocity)
+        deflection = next_deflection
+        next_deflection = _dot(equation.v, velocity)
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _convolved(polynomial: FloatArray, degree: int, q: int, history: FloatArray, k: int, total: Any) -> Any:
+    """Total + the convolution of coordinate q of a gain with a series at power k."""
+    for i in range(min(degree, k), -1, -1):
+        total = plus(polynomial[i, q], load(history, (k - i,)), total)
+    return total
 
 
 @compiled(fastmath={"contract"}, _nrt=False)
-def _series_of_many(piece: Piece, terms: int, h: float, ratio: float) -> None:
-    """`_series` for any number of coordinates, eight columns after the other."""
-    v = piece.v
-    C = piece.hC
-    o = piece.h2_omega2
-    ref = piece.h2_reference
-    Z = piece.Z
-    s = piece.s
-    sd = piece.sd
-    w = piece.ws
-    wd = piece.wds
-    merged = not math.isnan(ratio)
-    lag = ratio / h if merged else 0.0
-    dw = piece.degrees[0]
-    dd = piece.degrees[1]
-    m = v.size
-    rates = MAX_TERMS + 2
-    for column in range(0, 2 * m, LANES):
-        here = zero()
+def _expand_many(equation: StepEquation, piece: Piece, terms: int, h: float, series: Series) -> None:
+    """`_expand_three` for any number of coordinates, eight columns after the other.
+
+    Where both gains act as one, ``series.deflection_rate`` holds deflection + (ratio/h) deflection rate.
+    """
+    one_gain = not math.isnan(piece.ratio)
+    lag = piece.ratio / h if one_gain else 0.0
+    m = equation.v.size
+    eta = series.eta
+    for c in range(0, 2 * m, LANES):
+        deflection = zero()
         for q in range(m):
-            here = plus(v[q], load(Z, (0, q, column)), here)
+            deflection = plus(equation.v[q], load(eta, (0, q, c)), deflection)
         for k in range(terms):
-            c = k + 1.0
-            there = zero()
+            power = k + 1.0
+            next_deflection = zero()
             for q in range(m):
-                y = load(Z, (k + 1, q, column))
-                there = plus(v[q], y, there)
-                store(Z, (rates, q, column), scaled(c, y))
-            rate = scaled(c, there)
-            if merged:
-                rate = plus(lag * c, there, here)
-            store(s, (k,), here)
-            store(sd, (k,), rate)
-            factor = -1.0 / (c * (c + 1.0))
+                velocity = load(eta, (k + 1, q, c))
+                next_deflection = plus(equation.v[q], velocity, next_deflection)
+                store(series.newest_rate, (q, c), scaled(power, velocity))
+            rate = scaled(power, next_deflection)
+            if one_gain:
+                rate = plus(lag * power, next_deflection, deflection)
+            store(series.deflection, (k,), deflection)
+            store(series.deflection_rate, (k,), rate)
+            factor = -1.0 / (power * (power + 1.0))
             for q in range(m):
-                t = plus(ref[q], here, scaled(o[q], load(Z, (k, q, column))))
-                if merged:
-                    for i in range(min(dw, k), -1, -1):
-                        t = plus(w[i, q], load(sd, (k - i,)), t)
+                # In one expression: its order decides which product is rounded alone.
+                force = plus(
+                    equation.h2_reference[q], deflection, scaled(equation.h2_omega2[q], load(eta, (k, q, c)))
+                )
+                if one_gain:
+                    force = _convolved(equation.h2_w, piece.w_degree, q, series.deflection_rate, k, force)
                 else:
-                    for i in range(min(dw, k), -1, -1):
-                        t = plus(w[i, q], load(s, (k - i,)), t)
-                    for i in range(min(dd, k), -1, -1):
-                        t = plus(wd[i, q], load(sd, (k - i,)), t)
+                    force = _convolved(equation.h2_w, piece.w_degree, q, series.deflection, k, force)
+                    force = _convolved(equation.h_wd, piece.wd_degree, q, series.deflection_rate, k, force)
                 for p in range(m):
-                    t = plus(C[0, q, p], load(Z, (rates, p, column)), t)
-                store(Z, (k + 2, q, column), scaled(factor, t))
-            here = there
+                    force = plus(equation.h_C[q, p], load(series.newest_rate, (p, c)), force)
+                store(eta, (k + 2, q, c), scaled(factor, force))
+            deflection = next_deflection
 
 
 @compiled(_nrt=False, forceinline=True)
-def _unit_states(problem: Problem, piece: Piece, h: float) -> None:
-    """Unit initial states x = (omega eta, eta') in the first 2m columns."""
+def _start_at_unit_states(problem: Problem, work: Workspace, h: float) -> None:
+    """Unit initial states x = (omega eta, eta') in the first 2m columns: coefficients of powers 0 and 1."""
     m = problem.v.size
     for c in range(0, 2 * m, LANES):
         for q in range(m):
-            store(piece.Z, (0, q, c), scaled(1.0 / problem.omega[q], load(piece.unit, (q, c))))
-            store(piece.Z, (1, q, c), scaled(h, load(piece.unit, (m + q, c))))
+            store(work.series.eta, (0, q, c), scaled(1.0 / problem.omega[q], load(work.unit, (q, c))))
+            store(work.series.eta, (1, q, c), scaled(h, load(work.unit, (m + q, c))))
+
+
+class _PowerSums(NamedTuple):
+    """Sums of the even and of the odd powers of a Taylor series at u = 1, and of its derivative."""
+
+    even: Any
+    odd: Any
+    even_rate: Any
+    odd_rate: Any
 
 
 @compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
-def _ends_of_step(
-    problem: Problem, piece: Piece, terms: int, h: float, end: FloatArray, start: FloatArray
-) -> None:
-    """Energy coordinates at both ends of the step, (2m, lanes), summed from the smallest terms on."""
-    m, Z = problem.v.size, piece.Z
-    top = terms + 1 - (terms + 1) % 2  # the largest even power
+def _power_sums(eta: FloatArray, q: int, c: int, terms: int) -> _PowerSums:
+    """Sums of coordinate q in eight columns from c on, smallest terms first.
+
+    The derivative of an odd power is an even power: odd powers of eta give ``even_rate``.
+    """
+    largest_even = terms + 1 - (terms + 1) % 2
+    even = zero()
+    odd = zero()
+    even_rate = zero()
+    odd_rate = zero()
+    if largest_even == terms:
+        odd = load(eta, (terms + 1, q, c))
+        even_rate = scaled(terms + 1.0, odd)
+    for k in range(largest_even, 0, -2):
+        of_even_power = load(eta, (k, q, c))
+        of_odd_power = load(eta, (k - 1, q, c))
+        even = plus(1.0, of_even_power, even)
+        odd_rate = plus(float(k), of_even_power, odd_rate)
+        odd = plus(1.0, of_odd_power, odd)
+        even_rate = plus(float(k - 1), of_odd_power, even_rate)
+    even = plus(1.0, load(eta, (0, q, c)), even)
+    return _PowerSums(even, odd, even_rate, odd_rate)
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def _sum_at_ends(problem: Problem, terms: int, h: float, work: Workspace) -> None:
+    """Energy coordinates at both ends of the step, u = 1 and u = -1."""
+    m = problem.v.size
     for c in range(0, 2 * m, LANES):
         for q in range(m):
-            even = zero()
-            odd = zero()
-            even_rate = zero()
-            odd_rate = zero()
-            if top == terms:
-                odd = load(Z, (terms + 1, q, c))
-                even_rate = scaled(terms + 1.0, odd)
-            for k in range(top, 0, -2):
-                x, y = load(Z, (k, q, c)), load(Z, (k - 1, q, c))
-                even = plus(1.0, x, even)
-                odd_rate = plus(float(k), x, odd_rate)
-                odd = plus(1.0, y, odd)
-                even_rate = plus(float(k - 1), y, even_rate)
-            even = plus(1.0, load(Z, (0, q, c)), even)
-            store(end, (q, c), scaled(problem.omega[q], plus(1.0, odd, even)))
-            store(start, (q, c), scaled(problem.omega[q], plus(-1.0, odd, even)))
-            store(end, (m + q, c), scaled(1.0 / h, plus(1.0, odd_rate, even_rate)))
-            store(start, (m + q, c), scaled(1.0 / h, plus(-1.0, odd_rate, even_rate)))
+            sums = _power_sums(work.series.eta, q, c, terms)
+            omega = problem.omega[q]
+            store(work.end, (q, c), scaled(omega, plus(1.0, sums.odd, sums.even)))
+            store(work.start, (q, c), scaled(omega, plus(-1.0, sums.odd, sums.even)))
+            store(work.end, (m + q, c), scaled(1.0 / h, plus(1.0, sums.odd_rate, sums.even_rate)))
+            store(work.start, (m + q, c), scaled(1.0 / h, plus(-1.0, sums.odd_rate, sums.even_rate)))
 
 
-@compiled(_nrt=False)
-def steps_of_period(
-    problem: Problem,
-    gains: FloatArray,
-    zeta: float,
-    T: float,
-    limits: Limits,
-    piece: Piece,
-    steps: FloatArray,
-    local: FloatArray,
-    sizes: FloatArray,
-) -> int:
-    """All steps (most, 2m, lanes) of one period at one point, bounds (most,) on their errors and their norms.
+class _MajorantSums(NamedTuple):
+    """Sums of the majorant of a step.
 
-    Returns the number of steps; -1 if there would be more than ``most`` or MAX_TERMS.
+    Attributes
+    ----------
+    degree : of the majorant
+    total : sum of a_j
+    by_modulus : sum of a_j/(j + 1) with the constant part of the gain and the reference added by modulus
+    exponential : bound on exp(sum of a_j/(j + 1)), the sum of the norms of all Taylor terms
     """
-    m = problem.v.size
-    most = steps.shape[0]
-    count = 0
-    load_point(problem, T, piece)
+
+    degree: int
+    total: float
+    by_modulus: float
+    exponential: float
+
+
+@compiled(_nrt=False, forceinline=True)
+def _majorant_sums(work: Workspace, degree: int, h: float, exponential: float) -> _MajorantSums:
+    total = 0.0
+    by_modulus = 2.0 * h * work.norms.reference
+    for j in range(degree + 1):
+        total += work.equation.majorant[j]
+        by_modulus += work.equation.majorant[j] / (j + 1.0)
+    return _MajorantSums(degree, total, by_modulus, exponential)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _rounding_of_ends(m: int, piece: Piece, sums: _MajorantSums) -> float:
+    """Bound on the rounding of the flows to both ends: sqrt(2m) u e^g(1) (N g~ + sum a_j + 10).
+
+    Each coefficient goes through at most N roundings of the sum of the moduli of its terms. The errors grow
+    along the recurrence like its solution. The last two terms are the sums at both ends.
+    """
+    gain_degrees = piece.w_degree + (piece.wd_degree if math.isnan(piece.ratio) else 0)
+    roundings = gain_degrees + 2.0 * max(m, 3) + 14.0
+    return _U * math.sqrt(2.0 * m) * sums.exponential * (roundings * sums.by_modulus + sums.total + 10.0)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _misfit_of_part(piece: Piece, part: int, parts: int, h: float) -> float:
+    """Bound on the integral of the error of A over one of ``parts`` steps of a piece.
+
+    A further error at an end of the piece acts in the step at that end, not in all steps alike.
+    """
+    misfit = 2.0 * h * piece.misfit
+    if part == 0:
+        misfit += piece.start_error
+    if part == parts - 1:
+        misfit += piece.end_error
+    return misfit
+
+
+@compiled(_nrt=False, forceinline=True)
+def _growth_of_half(constant: ConstantPart, sums: _MajorantSums, h: float) -> float:
+    """Bound on the factor by which half of a step lets a state grow, in either direction of time.
+
+    The skew part of A and damping do not let the energy grow; what is left of the majorant lets it grow at
+    most.
+    """
+    return math.exp(sums.total + h * (constant.drive - constant.size)) * (1.0 + 1e-12)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _error_of_step(size: float, residual: float, error_of_ends: float, misfit: float, growth: float) -> float:
+    """PROVEN bound on the error of the flow P over a step, in the 2-norm.
+
+    Parameters
+    ----------
+    size, residual : |P| and a bound on |P S - E|
+    error_of_ends : bound d on the errors of E and S by truncation and rounding
+    misfit : bound on the integral of the error of A over the step
+    growth : bound on |S^-1|
+    """
+    error = (residual + (1.0 + size) * error_of_ends) * growth * _BOUND_SLACK
+    exp_of_misfit = 1.0 + 2.0 * misfit if misfit < 1.0 else math.exp(misfit)  # exp(misfit) at least
+    return error + misfit * (growth * growth * exp_of_misfit)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _expand(problem: Problem, piece: Piece, terms: int, h: float, work: Workspace) -> None:
+    """Taylor series of a step, and its sums at both ends."""
+    _start_at_unit_states(problem, work, h)
+    if problem.v.size <= 3:
+        _expand_three(work.equation, piece, terms, h, work.series)
+    else:
+        _expand_many(work.equation, piece, terms, h, work.series)
+    _sum_at_ends(problem, terms, h, work)
+
+
+@compiled(_nrt=False, forceinline=True)
+def _steps_of_piece(
+    problem: Problem, piece: Piece, constant: ConstantPart, limits: Limits, work: Workspace, first: int,
+    steps: Steps,
+) -> int:  # fmt: skip
+    """Write the steps of one piece from index ``first`` on; the number of steps, -1 if they are too many."""
     log_tolerance = math.log(limits.tolerance)
+    parts = max(1, math.ceil(0.5 * piece.length * piece.size / limits.angle))
+    part = 0
+    while part < parts:
+        if first + parts > steps.errors.size:
+            return -1
+        h = 0.5 * piece.length / parts
+        degree = load_step(problem, piece, constant, part, parts, h, work)
+        terms, exponential = enough_terms(work.equation.majorant, degree, log_tolerance, work.radius_table)
+        if terms < 0:
+            # The polynomials vary too much within the step: begin the piece again with half of the step.
+            part = 0
+            parts *= 2
+            continue
+        _expand(problem, piece, terms, h, work)
+        k = first + part
+        size, residual = divide(work.end, work.start, work.unit, work.matrices, steps.matrices[k])
+        sums = _majorant_sums(work, degree, h, exponential)
+        error_of_ends = limits.tolerance + _rounding_of_ends(problem.v.size, piece, sums)
+        misfit = _misfit_of_part(piece, part, parts, h)
+        growth = _growth_of_half(constant, sums, h)
+        steps.errors[k] = _error_of_step(size, residual, error_of_ends, misfit, growth)
+        steps.sizes[k] = size
+        part += 1
+    return parts
+
+
+@compiled(_nrt=False, forceinline=True)
+def steps_of_period(problem: Problem, point: Point, limits: Limits, work: Workspace, steps: Steps) -> int:
+    """Write all steps of one period at one point, and bounds on the errors of the steps.
+
+    Returns the number of steps; -1 if a period would take more steps than there is memory for, or a step more
+    than MAX_TERMS.
+    """
+    count = 0
+    constant = load_constant_part(problem, point.period, work)
     for i in range(problem.phases.size - 1):
-        length = (problem.phases[i + 1] - problem.phases[i]) * T
-        rate, misfit, ratio, first, last = load_piece(problem, i, gains, zeta, T, piece)
-        parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
-        begin = count
-        while count < begin + parts:
-            part = count - begin
-            if count + parts - part > most:
-                return -1
-            h = 0.5 * length / parts
-            degree = load_step(problem, piece, part, parts, h, ratio)
-            terms, size = enough_terms(piece.a, degree, log_tolerance, piece.powers)
-            if terms < 0:
-                # The polynomials vary too much within the step: begin the piece again with half of it.
-                count = begin
-                parts *= 2
-                continue
-            _unit_states(problem, piece, h)
-            if m <= 3:
-                _series(piece, terms, h, ratio)
-            else:
-                _series_of_many(piece, terms, h, ratio)
-            end = piece.ends[0]
-            start = piece.ends[1]
-            scratch = piece.ends[2:]
-            _ends_of_step(problem, piece, terms, h, end, start)
-            size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
-            # Neither the skew part of A nor damping lets the energy grow; what is left of a at most does.
-            turned = 2.0 * h * piece.sizes[3]
-            total = 0.0
-            for j in range(degree + 1):
-                total += piece.a[j]
-                turned += piece.a[j] / (j + 1.0)
-            growth = total + h * (piece.sizes[4] - piece.sizes[2])
-            # Each coefficient goes through at most this many roundings of the sum of the moduli of its terms,
-            # and errors grow along the recurrence as its solution does; then come the sums at both ends.
-            count_w = piece.degrees[0] + (piece.degrees[1] if math.isnan(ratio) else 0)
-            rounding = (
-                _U * math.sqrt(2.0 * m) * size * ((count_w + 2.0 * max(m, 3) + 14.0) * turned + total + 10.0)
-            )
-            back = math.exp(growth) * (1.0 + 1e-12)
-            # What is wrong at an end of the piece acts in the step at that end, not in all of them alike.
-            off = 2.0 * h * misfit
-            if part == 0:
-                off += first
-            if part == parts - 1:
-                off += last
-            spread = back * back * (1.0 + 2.0 * off if off < 1.0 else math.exp(off))  # exp(off) at least
-            # 1 + 1e-6: rounding of the bound itself, of the number of terms above all.
-            error = (residual + (1.0 + size_step) * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
-            local[count] = error + off * spread
-            sizes[count] = size_step
-            count += 1
+        piece = load_piece(problem, i, point, constant, work)
+        in_piece = _steps_of_piece(problem, piece, constant, limits, work, count, steps)
+        if in_piece < 0:
+            return -1
+        count += in_piece
     return count
 
 
 @compiled(nogil=True)
 def propagate_points(
-    problem: Problem,
-    gains: FloatArray,
-    damping_factor: FloatArray,
-    periods: FloatArray,
-    limits: Limits,
-    M: FloatArray,
-    bound: FloatArray,
+    problem: Problem, points: Points, limits: Limits, M: FloatArray, bound: FloatArray
 ) -> int:
-    """Monodromy matrices M (N, 2m, 2m) in x = (omega eta, eta'), and bounds (N,) on their Frobenius errors.
+    """Monodromy matrices M (N, 2m, 2m) in x = (omega eta, eta') of N points.
 
-    Gains are (N, Q). Returns the index of the first point that needs more than ``most_steps`` or MAX_TERMS.
+    ``bound`` (N,) receives PROVEN bounds on the Frobenius norms of the errors of the matrices.
+
+    Returns the index of the first point that needs more than ``most_steps`` or MAX_TERMS; -1: there is none.
     """
-    piece = scratch_for(problem)
+    work = workspace_for(problem)
     n = 2 * problem.v.size
-    lanes = piece.unit.shape[0]
+    lanes = work.unit.shape[0]
     most = most_steps(n)
-    steps = np.empty((most, n, lanes))
-    local = np.empty(most)
-    sizes = np.empty(most)
-    before = np.empty(most)
-    table = np.zeros((5, BLOCKS))
-    work = np.zeros((2 * BLOCKS + 1, n, lanes))
-    flow = np.zeros((n, lanes))
-    for point in range(periods.size):
-        count = steps_of_period(
-            problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, sizes
-        )
+    steps = steps_for(most, n, lanes)
+    product_work = product_workspace(most, n, lanes)
+    flow = aligned_rows(n, lanes)
+    for k in range(points.periods.size):
+        point = Point(points.weights[k], points.zeta[k], points.periods[k])
+        count = steps_of_period(problem, point, limits, work, steps)
         if count < 0:
-            return point
-        bound[point] = carry(steps, local, sizes, count, flow, before, work, table)
+            return k
+        bound[k] = carry(steps, count, product_work, flow)
         for i in range(n):
             for j in range(n):
-                M[point, i, j] = flow[i, j]
+                M[k, i, j] = flow[i, j]
     return -1
 
 
+@compiled(_nrt=False, forceinline=True)
+def _sharp_two_norm(A: FloatArray, square: FloatArray, fourth: FloatArray, eighth: FloatArray) -> float:
+    """Bound on the 2-norm: |A|^8 <= |(A^T A)^4|_F, too large by at most the 16th root of n."""
+    gram(A, square)
+    multiply(square, square, fourth)
+    multiply(fourth, fourth, eighth)
+    return math.sqrt(math.sqrt(math.sqrt(frobenius(eighth)))) * (1.0 + 1e-11)
+
+
 @compiled(nogil=True)
-def largest_flow(
-    problem: Problem, gains: FloatArray, zeta: float, T: float, limits: Limits
-) -> tuple[float, float]:
+def largest_flow(problem: Problem, point: Point, limits: Limits) -> tuple[float, float]:
     """Largest 2-norm of the computed flows between any two ends of steps, and the sum of the steps' errors.
 
-    |A|^8 <= |(A^T A)^4|_F, too large by at most the 16th root of n. (nan, nan): too many steps.
+    (nan, nan): too many steps.
     """
-    piece = scratch_for(problem)
+    work = workspace_for(problem)
     n = 2 * problem.v.size
-    lanes = piece.unit.shape[0]
+    lanes = work.unit.shape[0]
     most = most_steps(n)
-    steps = np.empty((most, n, lanes))
-    flows = np.empty((most, n, lanes))
-    work = np.zeros((3, n, lanes))
-    local = np.empty(most)
-    sizes = np.empty(most)
-    count = steps_of_period(problem, gains, zeta, T, limits, piece, steps, local, sizes)
+    steps = steps_for(most, n, lanes)
+    flows = aligned_empty(most * n * lanes).reshape((most, n, lanes))
+    product = aligned_rows(n, lanes)
+    square = aligned_rows(n, lanes)
+    fourth = aligned_rows(n, lanes)
+    count = steps_of_period(problem, point, limits, work, steps)
     if count < 0:
         return math.nan, math.nan
     largest = 1.0
     errors = 0.0
     for j in range(count):
-        errors += local[j] + 2.0 * n * n * _U * sizes[j]
-        copy(piece.unit[:n], flows[j])
+        errors += steps.errors[j] + 2.0 * n * n * _U * steps.sizes[j]
+        copy(work.unit[:n], flows[j])
         for i in range(j + 1):
-            multiply(steps[j], flows[i], work[0])
-            copy(work[0], flows[i])
-            if frobenius(work[0]) > largest:
-                for c in range(n):
-                    for q in range(n):
-                        work[1, c, q] = work[0, q, c]
-                multiply(work[1], work[0], work[2])
-                multiply(work[2], work[2], work[0])
-                multiply(work[0], work[0], work[1])
-                largest = max(largest, math.sqrt(math.sqrt(math.sqrt(frobenius(work[1])))) * (1.0 + 1e-11))
+            multiply(steps.matrices[j], flows[i], product)
+            copy(product, flows[i])
+            if frobenius(product) > largest:
+                largest = max(largest, _sharp_two_norm(flows[i], square, fourth, product))
     return largest, errors

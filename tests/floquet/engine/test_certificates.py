@@ -10,7 +10,7 @@ from floquet import (
     PiecewisePolynomial,
     monodromy,
 )
-from floquet.engine.proven import proven_product
+from floquet.engine.formula_steps import proven_product
 from lumped.errors import NumericalError, ParameterError, ResolutionWarning
 
 
@@ -30,10 +30,10 @@ def oscillator(entry, damping):
 
 def test_a_narrow_feature_of_a_callable_is_found_and_told() -> None:
     with pytest.warns(ResolutionWarning, match=r"0\.4|0\.5"):
-        found = monodromy(bumped(3e-4))
-    assert found.spectral_radius == pytest.approx(1.3503742883, abs=1e-8)
-    assert found.certificate == "estimate"
-    assert 0.0 < found.resolution < 1e-3
+        result = monodromy(bumped(3e-4))
+    assert result.spectral_radius == pytest.approx(1.3503742883, abs=1e-8)
+    assert result.certificate == "estimate"
+    assert 0.0 < result.resolution < 1e-3
 
 
 def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
@@ -54,8 +54,8 @@ def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
 def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() -> None:
     # x'' + 3.43 (1 + cos t) x = 0: at t = T/2 nothing balances the 1.
     wave = FourierSeries(2.0 * np.pi, 3.43, [3.43])
-    found = monodromy(PeriodicSystem(oscillator(-wave, 0.0), 2.0 * np.pi))
-    assert found.matrix_error < 1e-10
+    result = monodromy(PeriodicSystem(oscillator(-wave, 0.0), 2.0 * np.pi))
+    assert result.matrix_error < 1e-10
 
 
 def test_the_product_keeps_terms_of_second_order() -> None:

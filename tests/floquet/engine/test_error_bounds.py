@@ -139,10 +139,12 @@ def test_the_bound_of_a_multiplier_holds_for_the_worst_error_of_the_matrix(share
     E = delta / p * np.array([[1.0, 0.0], [-a, 0.0]])
     assert np.linalg.norm(E, 2) == pytest.approx(delta, rel=1e-14)
     trace = 1.0 + delta / p
-    moved = 2.0 * p * delta / (trace + np.sqrt(trace**2 - 4.0 * p * delta))
-    assert moved > p * delta
+    exact_error = 2.0 * p * delta / (trace + np.sqrt(trace**2 - 4.0 * p * delta))
+    assert exact_error > p * delta
     assert values[1] == 0.0
-    assert moved <= bounds[1] <= 2.0 * p * delta  # nor is it more than 2 (p delta)^2 / (1 / 2) above p delta
+    assert (
+        exact_error <= bounds[1] <= 2.0 * p * delta
+    )  # nor is it more than 2 (p delta)^2 / (1 / 2) above p delta
 
 
 def test_rounding_of_the_eigenvalues_themselves_is_in_the_bound() -> None:
@@ -249,5 +251,5 @@ def test_a_step_is_exact_on_all_products_of_powers_up_to_its_order(method) -> No
             for one in reversed(e):
                 power += one + 1
                 exact /= power
-            found = method.step_matrices(A[None], np.ones(1))[0, 0, -1]
-            assert found == pytest.approx(exact, rel=1e-12), e
+            corner = method.step_matrices(A[None], np.ones(1))[0, 0, -1]
+            assert corner == pytest.approx(exact, rel=1e-12), e

@@ -12,7 +12,7 @@ pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 from flint import arb, arb_mat, arb_poly, ctx
 
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, monodromy
-from floquet.engine.proven import _size, _steps, _two_norm
+from floquet.engine.formula_steps import _size, _steps, _two_norm
 from floquet.engine.second_order import from_second_order
 from lumped.errors import NumericalError
 from tests.floquet.engine.judge.balls import worst_ratio
@@ -48,12 +48,12 @@ def ratios(function, exact, start, length, degree) -> np.ndarray:
     """Largest error over the bound of each of some steps."""
     ctx.prec = 256
     series, bounds = function.taylor(np.asarray(start), np.asarray(length), degree)
-    found = []
+    error_ratios = []
     for t, h, row, bound in zip(start, length, series, bounds, strict=True):
         poly = arb_poly([arb(c) for c in row])
         errors = [least(exact(t, arb(t) + arb(h) * arb(s)) - poly(arb(s))) for s in _PLACES]
-        found.append(max(errors) / bound)
-    return np.array(found)
+        error_ratios.append(max(errors) / bound)
+    return np.array(error_ratios)
 
 
 def test_polynomials_with_terms_of_one_sign_attain_their_bound() -> None:
@@ -62,20 +62,20 @@ def test_polynomials_with_terms_of_one_sign_attain_their_bound() -> None:
     function = PiecewisePolynomial(ends, rows)
     exact = exact_polynomial(ends, rows)
     for degree in (0, 1, 3):
-        found = ratios(function, exact, [0.0, 1.0, 0.5, 2.0], [1.0, 1.5, 0.5, 0.5], degree)
-        assert (found <= 1.0).all()
-        assert (found > 1.0 - 1e-10).all()  # rounding
+        error_ratios = ratios(function, exact, [0.0, 1.0, 0.5, 2.0], [1.0, 1.5, 0.5, 0.5], degree)
+        assert (error_ratios <= 1.0).all()
+        assert (error_ratios > 1.0 - 1e-10).all()  # rounding
     # 2 s - 2 s^2 is 0 at both ends, and 1/2 between them.
     signed = [[1.0, 2.0, -2.0]]
-    found = ratios(
+    error_ratios = ratios(
         PiecewisePolynomial([0.0, 1.0], signed), exact_polynomial([0.0, 1.0], signed), [0.0], [1.0], 0
     )
-    assert found == pytest.approx(0.5 / 4.0, rel=1e-10)
+    assert error_ratios == pytest.approx(0.5 / 4.0, rel=1e-10)
 
 
 @pytest.mark.parametrize("degree", [2, 6, 14])
 def test_signed_coefficients_are_inside_their_bounds(degree: int) -> None:
-    """Sums and products, on steps between breaks, one of them an ulp wide, one to an ulp before a break."""
+    """Sums and products on steps between breaks. One step is an ulp wide, one ends an ulp before a break."""
     rng = np.random.default_rng(degree)
     rows = rng.normal(size=(2, 5)) * (-1.0) ** np.arange(5)
     a, b = rng.normal(size=3), rng.normal(size=3)
@@ -86,22 +86,22 @@ def test_signed_coefficients_are_inside_their_bounds(degree: int) -> None:
     before = float(np.nextafter(1.0, 0.0))
     start = [0.1, 0.75, 1.0, 0.0, before, 1.0, 0.999]
     length = [0.3, 0.25, 1.0, 1.0, 1.0 - before, 2.0**-52, before - 0.999]
-    found = ratios(formula, lambda t, x: wave(t, x) * poly(t, x) - arb(0.7), start, length, degree)
-    assert (found <= 1.0).all()
+    error_ratios = ratios(formula, lambda t, x: wave(t, x) * poly(t, x) - arb(0.7), start, length, degree)
+    assert (error_ratios <= 1.0).all()
     # Over long steps truncation counts, where the largest of three harmonics does not meet the others.
-    assert found[:4].max() > (0.1 if degree < 14 else 1e-4)
+    assert error_ratios[:4].max() > (0.1 if degree < 14 else 1e-4)
 
 
 def test_a_harmonic_nearly_attains_lagranges_remainder() -> None:
-    """Its next derivative is largest at a place of the step, but for what the one after it takes off."""
+    """The derivative in the remainder is nearly the largest possible one at a point of the step."""
     for cosine, sine in ((1.0, 0.0), (0.0, -1.0)):
         function = FourierSeries(1.0, 5.0, [cosine], [sine])
         exact = exact_series(1.0, 5.0, [cosine], [sine])
         start = 0.25 if cosine else 0.5  # odd terms alone of the cosine, and of the sine
         for degree in (4, 8):
-            found = ratios(function, exact, [start, start + 0.01], [0.05, 0.05], degree)
-            assert (found <= 1.0).all()
-            assert found[0] > 0.9
+            error_ratios = ratios(function, exact, [start, start + 0.01], [0.05, 0.05], degree)
+            assert (error_ratios <= 1.0).all()
+            assert error_ratios[0] > 0.9
 
 
 def test_errors_of_second_order_of_a_product_and_of_a_sum_are_attained() -> None:
@@ -136,15 +136,15 @@ def test_errors_of_the_matrices_are_those_of_all_products() -> None:
 def test_rounding_of_a_shifted_origin_and_of_a_large_angle_is_inside() -> None:
     """(t - 1e3)^6 in powers of t near 1e3, where all cancels; a wave after a million periods."""
     rows = [[float(c) for c in np.poly1d([1.0, -1e3]) ** 6][::-1]]
-    found = ratios(
+    error_ratios = ratios(
         PiecewisePolynomial([0.0, 2e3], rows), exact_polynomial([0.0, 2e3], rows), [1e3 - 0.7], [0.3], 6
     )
-    assert 1e-4 < found[0] <= 1.0  # of 4 m + 8 roundings of all moduli at the largest time
+    assert 1e-4 < error_ratios[0] <= 1.0  # of 4 m + 8 roundings of all moduli at the largest time
     wave = FourierSeries(0.3, 0.0, [1.0], [0.5])
     exact = exact_series(0.3, 0.0, [1.0], [0.5])
-    found = ratios(wave, exact, np.array([1.1e5, 2.3e5, 3.1e5]), np.full(3, 1e-3), 14)
-    assert (found <= 1.0).all()
-    assert found.max() > 0.05  # of 4 roundings of the angle, three products' and that of pi
+    error_ratios = ratios(wave, exact, np.array([1.1e5, 2.3e5, 3.1e5]), np.full(3, 1e-3), 14)
+    assert (error_ratios <= 1.0).all()
+    assert error_ratios.max() > 0.05  # of 4 roundings of the angle, three products' and that of pi
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -155,8 +155,8 @@ def test_the_tail_of_a_step_is_in_its_bound(a: float, loose: float, sign: float)
     The bound is exp(a R^15/15) R^-40/(R - 1) for R = 1.5, the smallest one that is tried: not the best here.
     """
     rows = [[0.0] * 14 + [sign * a]]
-    known = PeriodicMatrix(0.0, (PiecewisePolynomial([0.0, 1.0], rows), 1.0))
-    flow, bounds, good = _steps(known, np.zeros(1), np.ones(1), np.ones(1, dtype=bool), np.ones(1), 1.0)
+    A = PeriodicMatrix(0.0, (PiecewisePolynomial([0.0, 1.0], rows), 1.0))
+    flow, bounds, good = _steps(A, np.zeros(1), np.ones(1), np.ones(1, dtype=bool), np.ones(1), 1.0)
     assert good.all()
     ctx.prec = 256
     error = least((arb(sign * a) / 15).exp() - arb(flow[0, 0, 0]))
@@ -168,8 +168,8 @@ def test_an_error_of_the_coefficient_grows_with_the_flow() -> None:
     """x' = (c + e) x: the flow is off by exp(c) (exp(e) - 1), of which the bound takes exp(2 c)."""
     e, c = 1e-4, 0.9
     for sign in (-1.0, 1.0):
-        known = PeriodicMatrix(sign * c, errors=np.array([[[e]]]))
-        flow, bounds, good = _steps(known, np.zeros(1), np.ones(1), np.zeros(1, dtype=bool), np.ones(1), 1.0)
+        A = PeriodicMatrix(sign * c, errors=np.array([[[e]]]))
+        flow, bounds, good = _steps(A, np.zeros(1), np.ones(1), np.zeros(1, dtype=bool), np.ones(1), 1.0)
         assert good.all()
         error = np.exp(sign * c + e) - flow[0, 0, 0]
         assert error <= bounds[0] < 1.01 * error * np.exp(2.0 * c - sign * c)
@@ -222,7 +222,7 @@ def test_a_pulse_is_proven_whatever_its_width_and_sign(pulse: str, impulse: floa
 
 @pytest.mark.parametrize("impulse", [-20.0, 20.0])
 def test_a_pulse_too_strong_for_one_step_is_cut_or_refused(impulse: float) -> None:
-    """One ulp cannot be cut, and what its impulse may make of rounding is above 1e-10."""
+    """A step of one ulp cannot be cut, and the bound on the rounding of its impulse is above 1e-10."""
     system, exact = pulsed(0.3, 0.3 + 1e-9, impulse)
     result = monodromy(system, 1e-10)
     assert worst_ratio(result.multipliers, result.multiplier_errors, exact)[0] <= 1.0

@@ -23,34 +23,34 @@ def chart(shape, centres, widths):
 
 
 def refined(shape, x, radius, verdict):
-    asked: list[int] = []
+    evaluated: list[int] = []
 
-    def ask(flat):
-        asked.extend(flat.tolist())
-        return radius.ravel()[flat], verdict.ravel()[flat], np.zeros(flat.size)
+    def ask(nodes):
+        evaluated.extend(nodes.tolist())
+        return radius.ravel()[nodes], verdict.ravel()[nodes], np.zeros(nodes.size)
 
-    return refine(shape, x, ask), asked
+    return refine(shape, x, ask), evaluated
 
 
 def test_what_is_evaluated_grows_as_the_edges_do_and_no_tongue_is_lost():
     """Nodes near edges grow with N, those of the grid with N^2 (docs/theory/floquet.md); one tongue thin."""
-    asked = []
+    evaluated = []
     for n in (401, 801, 1601):
         shape = (n, n // 4)
         x, radius, verdict = chart(shape, [2.0, 4.5, 7.0], [0.3, 0.02, 0.4])
         got, _ = refined(shape, x, radius, verdict)
         assert (got.verdict == verdict).all()
-        asked.append(got.known.sum())
-    assert asked[2] / asked[1] < 2.6
-    assert asked[1] / asked[0] < 2.6
-    assert asked[2] < 0.03 * 1601 * 400
+        evaluated.append(got.known.sum())
+    assert evaluated[2] / evaluated[1] < 2.6
+    assert evaluated[1] / evaluated[0] < 2.6
+    assert evaluated[2] < 0.03 * 1601 * 400
 
 
 def test_interpolated_radii_are_within_the_tolerance_where_the_growth_is_smooth():
     shape = (801, 61)
     x, radius, verdict = chart(shape, [], [])
-    got, asked = refined(shape, x, radius, verdict)
-    assert len(asked) == len(set(asked)) == got.known.sum() < got.known.size
+    got, evaluated = refined(shape, x, radius, verdict)
+    assert len(evaluated) == len(set(evaluated)) == got.known.sum() < got.known.size
     assert np.abs(got.radius - radius).max() <= TOLERANCE
     assert (got.misfit[~got.known] >= TOLERANCE).all()
 
@@ -90,9 +90,9 @@ def test_a_plateau_at_one_is_one_leaf_and_keeps_its_verdict():
     """Undamped bearings have multipliers of modulus one: nothing there is decided, and nothing is cut."""
     radius = np.ones((257, 33))
     verdict = np.zeros((257, 33), dtype=int)
-    got, asked = refined(radius.shape, np.linspace(1.0, 2.0, 257), radius, verdict)
+    got, evaluated = refined(radius.shape, np.linspace(1.0, 2.0, 257), radius, verdict)
     assert (got.verdict == 0).all()
-    assert len(asked) < 257 + 9 * 8
+    assert len(evaluated) < 257 + 9 * 8
 
 
 @pytest.mark.parametrize("shape", [(2, 2), (2, 90), (90, 2), (3, 3), (65, 5)])

@@ -32,10 +32,10 @@ def matrices(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray,
 
 def test_meissners_trace_is_exact_within_a_proven_bound():
     jump = PiecewisePolynomial([0.0, 0.5 * PERIOD, PERIOD], [[0.4], [-0.4]])
-    found = monodromy(from_second_order(2.0, 0.0, PeriodicMatrix(2.6, (jump, 2.0)), PERIOD))
-    assert found.certificate == "proven"
+    result = monodromy(from_second_order(2.0, 0.0, PeriodicMatrix(2.6, (jump, 2.0)), PERIOD))
+    assert result.certificate == "proven"
     exact = meissner_trace(1.3, 0.4, PERIOD)
-    assert abs(np.trace(found.matrix) - exact) <= 2.0 * found.matrix_error < 1e-11
+    assert abs(np.trace(result.matrix) - exact) <= 2.0 * result.matrix_error < 1e-11
 
 
 def test_matrices_in_all_forms_give_the_same_multipliers():
@@ -53,27 +53,29 @@ def test_matrices_in_all_forms_give_the_same_multipliers():
     def plain(t: float) -> np.ndarray:
         return np.block([[np.zeros((4, 4)), np.eye(4)], [-np.linalg.solve(M, np.hstack([K_at(t), C_at(t)]))]])
 
-    known = monodromy(from_second_order(M, C_of, K_of, PERIOD))
+    of_formulas = monodromy(from_second_order(M, C_of, K_of, PERIOD))
     others = [
         from_second_order(M, C_at, K_at, PERIOD, [1.0]),
         from_second_order(M, C_of, K_at, PERIOD),
         PeriodicSystem(plain, PERIOD, [1.0]),
     ]
-    assert known.certificate == "proven"
-    assert known.spectral_radius > 1e-3
+    assert of_formulas.certificate == "proven"
+    assert of_formulas.spectral_radius > 1e-3
     for other in map(monodromy, others):
         assert other.certificate == "estimate"
-        assert abs(other.spectral_radius - known.spectral_radius) <= other.error + known.error < 1e-8
+        assert (
+            abs(other.spectral_radius - of_formulas.spectral_radius) <= other.error + of_formulas.error < 1e-8
+        )
 
 
 def test_free_vibrations_keep_their_norm():
     # A clamped rod of 12 elements, in whose own coordinates free vibrations seem to grow by its stiffness.
     n = 12
     K = 1e8 * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
-    found = monodromy(from_second_order(np.diag(np.geomspace(1.0, 100.0, n)), np.zeros((n, n)), K, 1e-3))
-    balanced = found.matrix / found.scaling[:, None] * found.scaling
+    result = monodromy(from_second_order(np.diag(np.geomspace(1.0, 100.0, n)), np.zeros((n, n)), K, 1e-3))
+    balanced = result.matrix / result.scaling[:, None] * result.scaling
     assert np.linalg.norm(balanced, 2) < 2.0  # powers of two in the place of frequencies
-    assert np.abs(np.abs(found.multipliers) - 1.0).max() <= found.multiplier_errors.max() < 1e-10
+    assert np.abs(np.abs(result.multipliers) - 1.0).max() <= result.multiplier_errors.max() < 1e-10
 
 
 @pytest.mark.parametrize(("M", "C", "K", "breaks", "field", "word"), [
@@ -94,9 +96,9 @@ def test_unusable_matrices_are_refused_by_name(M, C, K, breaks, field, word):
 
 
 def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
-    def family(at: dict[str, float]) -> PeriodicSystem:
-        wave = FourierSeries(np.pi, 0.0, [-2.0 * at["q"]])
-        return from_second_order(1.0, at["c"], PeriodicMatrix(1.0, (wave, 1.0)), np.pi)
+    def family(point: dict[str, float]) -> PeriodicSystem:
+        wave = FourierSeries(np.pi, 0.0, [-2.0 * point["q"]])
+        return from_second_order(1.0, point["c"], PeriodicMatrix(1.0, (wave, 1.0)), np.pi)
 
     axes = {"q": [0.0, 0.3], "c": [0.0, 0.1]}
     chart = scan(family, axes, labels={"c": ("1/s", "damping")})
@@ -113,6 +115,6 @@ def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
 def test_a_high_harmonic_is_proven_where_its_own_steps_are_short():
     # A mesh seen over a turn of its gear: far above 2 omega = 20, nothing grows, |mu| = exp(-c T/2).
     wave = FourierSeries(0.3, 0.0, [0.0] * 59 + [1.0])
-    found = monodromy(from_second_order(1.0, 0.1, PeriodicMatrix(100.0, (wave, 20.0)), 0.3))
-    assert found.spectral_radius == pytest.approx(np.exp(-0.015), abs=found.error + 1e-15)
-    assert found.error < 1e-11
+    result = monodromy(from_second_order(1.0, 0.1, PeriodicMatrix(100.0, (wave, 20.0)), 0.3))
+    assert result.spectral_radius == pytest.approx(np.exp(-0.015), abs=result.error + 1e-15)
+    assert result.error < 1e-11

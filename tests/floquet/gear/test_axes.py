@@ -74,11 +74,11 @@ def test_frequencies_are_those_of_the_mean_system_between_the_tongues(pair) -> N
     # The exponents are the logarithms of the multipliers, on whatever branch.
     for speed in result.speed_rpm.values:
         one = result.sel(speed_rpm=speed)
-        found = gear_pair_multipliers(pair.with_(operating__pinion_speed=float(speed)))
-        values = np.exp((-one.decay.values + 2j * np.pi * one.frequency.values) * found.period)
-        gap = np.abs(values[:, None] - found.feedback).min(axis=1)
+        multipliers = gear_pair_multipliers(pair.with_(operating__pinion_speed=float(speed)))
+        values = np.exp((-one.decay.values + 2j * np.pi * one.frequency.values) * multipliers.period)
+        gap = np.abs(values[:, None] - multipliers.feedback).min(axis=1)
         assert gap.max() < 1e-7  # rtol 1e-9, angle of up to 100 rad
-        assert float(one.spectral_radius) == pytest.approx(np.abs(found.feedback).max(), abs=1e-8)
+        assert float(one.spectral_radius) == pytest.approx(np.abs(multipliers.feedback).max(), abs=1e-8)
 
 
 def test_frequencies_lock_in_a_tongue(pair) -> None:

@@ -14,11 +14,11 @@ from tests.evidence.floquet.reference_systems import mathieu
 from tests.unlike_pairs import unlike_pair
 
 
-def nodes_beside(found: xr.Dataset, chart: xr.Dataset) -> tuple[int, int, int]:
+def nodes_beside(boundaries: xr.Dataset, chart: xr.Dataset) -> tuple[int, int, int]:
     """Unstable nodes of a chart; those outside every interval; and stable nodes inside of one."""
     speed = chart["speed_rpm"]
     verdict = chart["verdict"]
-    inside = (speed >= found["interval_lower"]) & (speed <= found["interval_upper"])
+    inside = (speed >= boundaries["interval_lower"]) & (speed <= boundaries["interval_upper"])
     inside = inside.any(("tongue", "interval"))
     counts = (verdict == -1, (verdict == -1) & ~inside, (verdict == 1) & inside)
     unstable, missed, excess = (int(count.sum()) for count in counts)
@@ -39,11 +39,13 @@ def test_mathieu_tongues_end_on_the_characteristic_values() -> None:
     def radius(a: np.ndarray) -> np.ndarray:
         return np.array([monodromy(mathieu(float(x), q), rtol=1e-11).spectral_radius for x in a])
 
-    found = unstable_intervals(radius, np.linspace(0.3, 5.0, 48), xtol=1e-8, threshold=1e-6)
+    intervals = unstable_intervals(radius, np.linspace(0.3, 5.0, 48), xtol=1e-8, threshold=1e-6)
     expected = [(mathieu_b(1, q), mathieu_a(1, q)), (mathieu_b(2, q), mathieu_a(2, q))]
     ends = sorted(float(x) for pair_of_ends in expected for x in pair_of_ends)
     inside = [x for x in ends if 0.3 < x < 5.0]
-    computed = [i.lower for i in found if not i.open_below] + [i.upper for i in found if not i.open_above]
+    computed = [i.lower for i in intervals if not i.open_below] + [
+        i.upper for i in intervals if not i.open_above
+    ]
     assert len(computed) == len(inside)
     # The radius leaves one like a square root, so the threshold 1e-6 moves an end by far less than 1e-7.
     assert np.abs(np.array(sorted(computed)) - np.array(inside)).max() < 1e-7
@@ -58,9 +60,9 @@ def test_a_thin_tongue_near_its_line_is_not_lost() -> None:
     def radius(x: np.ndarray) -> np.ndarray:
         return 0.999 + 0.01 * np.sqrt(np.clip(1 - ((x - centre) / half) ** 2, 0, None))
 
-    (found,) = unstable_intervals(radius, seeded_nodes(np.array([line]), 500.0, 20000.0, 100))
+    (intervals,) = unstable_intervals(radius, seeded_nodes(np.array([line]), 500.0, 20000.0, 100))
     reach = half * np.sqrt(1 - 0.1**2)  # 0.01 sqrt(1 - s^2) = 0.001
-    assert (found.lower, found.upper) == pytest.approx((centre - reach, centre + reach), rel=1e-8)
+    assert (intervals.lower, intervals.upper) == pytest.approx((centre - reach, centre + reach), rel=1e-8)
     assert not unstable_intervals(radius, np.linspace(500.0, 20000.0, 100))  # the even grid alone loses it
 
 
@@ -70,12 +72,12 @@ def test_a_peak_above_one_between_two_samples_below_one_is_found() -> None:
 
     nodes = np.arange(0.0, 11.0, 2.0)
     assert radius(nodes).max() < 1.0
-    (found,) = unstable_intervals(radius, nodes)
+    (intervals,) = unstable_intervals(radius, nodes)
     reach = np.sqrt(np.log(2.0))
-    assert (found.lower, found.upper) == pytest.approx((5.0 - reach, 5.0 + reach), rel=1e-6)
-    assert found.peak == pytest.approx(5.0, abs=0.01)
-    assert not found.open_below
-    assert not found.open_above
+    assert (intervals.lower, intervals.upper) == pytest.approx((5.0 - reach, 5.0 + reach), rel=1e-6)
+    assert intervals.peak == pytest.approx(5.0, abs=0.01)
+    assert not intervals.open_below
+    assert not intervals.open_above
     (cut,) = unstable_intervals(radius, np.array([0.0, 3.0, 4.5, 5.0]))
     assert cut.open_above
     assert cut.upper == 5.0
@@ -100,13 +102,13 @@ def test_lines_are_sums_and_differences_of_frequencies(pair) -> None:
 def test_no_unstable_node_of_a_dense_chart_is_missed(name: str, slowest: float, fastest: float) -> None:
     pair = unlike_pair(name).with_(friction__law="coulomb", friction__coefficient=0.05)
     axes = {"damping_ratio": [0.002, 0.006, 0.02]}
-    found = stability_boundaries(pair, (slowest, fastest), axes, xtol=1e-6)
+    boundaries = stability_boundaries(pair, (slowest, fastest), axes, xtol=1e-6)
     chart = stability_chart(pair, {"speed_rpm": np.linspace(slowest, fastest, 2000), **axes})
-    unstable, *beside = nodes_beside(found, chart)
+    unstable, *beside = nodes_beside(boundaries, chart)
     assert unstable > 20
     assert beside == [0, 0]
     # A tongue that is left out would be seen.
-    assert nodes_beside(found.isel(tongue=slice(1, None)), chart)[1] > 0
+    assert nodes_beside(boundaries.isel(tongue=slice(1, None)), chart)[1] > 0
 
 
 @pytest.mark.parametrize(
@@ -121,19 +123,23 @@ def test_no_unstable_node_of_a_dense_chart_is_missed(name: str, slowest: float, 
 )
 def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, values, law: str) -> None:
     if law == "coulomb":
-        here = pair.with_(friction__law=law, friction__coefficient=0.05, friction__sharpness=None)
+        varied_pair = pair.with_(friction__law=law, friction__coefficient=0.05, friction__sharpness=None)
     else:  # fitting law II anew at every speed is most of the work, and least for equal gears
-        here = load_gear_pair("nasa_28_28").with_(
+        varied_pair = load_gear_pair("nasa_28_28").with_(
             mesh__relief="ignored", mesh__damping_ratio=0.002, friction__law=law
         )
-    found = stability_boundaries(here, (13000.0, 19500.0), {name: values}, nodes=60, orders=2, xtol=1e-5)
+    boundaries = stability_boundaries(
+        varied_pair, (13000.0, 19500.0), {name: values}, nodes=60, orders=2, xtol=1e-5
+    )
     speeds = np.linspace(13000.0, 19500.0, 120)
-    unstable, *beside = nodes_beside(found, stability_chart(here, {name: values, "speed_rpm": speeds}))
+    unstable, *beside = nodes_beside(
+        boundaries, stability_chart(varied_pair, {name: values, "speed_rpm": speeds})
+    )
     assert beside == [0, 0]
     if name == "stiffness_variation":
         # Without variation nothing is parametric. With it width^2 = (a variation)^2 - d^2 to first order, d
         # by damping (Hsu), so that its differences are those of the variation's square.
-        width = (found.upper - found.lower).sel(tongue=found.label == "2w3/2").values[0]
+        width = (boundaries.upper - boundaries.lower).sel(tongue=boundaries.label == "2w3/2").values[0]
         assert np.isnan(width[0])
         assert np.isfinite(width[1:]).all()
         assert np.divide(*np.diff(width[:0:-1] ** 2)) == pytest.approx(0.36 / 0.28, rel=0.1)
@@ -142,11 +148,11 @@ def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, valu
 
 
 def test_damping_closes_tongues_and_absence_is_marked(pair) -> None:
-    found = stability_boundaries(pair, (15000.0, 18500.0), {"damping_ratio": [0.01, 0.1]})
-    assert found.present.values.tolist() == [[True, False]]
-    assert np.isnan(found.lower.values[0, 1])
-    assert found.lower.attrs["units"] == "rpm"
-    assert found.damping_ratio.attrs["long_name"]
+    boundaries = stability_boundaries(pair, (15000.0, 18500.0), {"damping_ratio": [0.01, 0.1]})
+    assert boundaries.present.values.tolist() == [[True, False]]
+    assert np.isnan(boundaries.lower.values[0, 1])
+    assert boundaries.lower.attrs["units"] == "rpm"
+    assert boundaries.damping_ratio.attrs["long_name"]
 
 
 @pytest.mark.parametrize(("speeds", "axes", "word"), [
@@ -166,20 +172,20 @@ def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
     changes |= {f"bearings.{gear}.loa_damping_ratio": 5e-4 for gear in ("pinion", "gear")}
     pair = load_gear_pair("nasa_28_28").with_(changes, mesh__relief="ignored")
     ends = (500.0, 900.0)
-    found = stability_boundaries(pair, ends, xtol=1e-6)
-    assert found.complete
-    assert found.order.max() > 40
+    boundaries = stability_boundaries(pair, ends, xtol=1e-6)
+    assert boundaries.complete
+    assert boundaries.order.max() > 40
     speeds = np.geomspace(*ends, 20_001)  # steps of 3e-5, a quarter of those of the search
 
     def radius(x: np.ndarray) -> np.ndarray:
         return np.ravel(stability_chart(pair, {"speed_rpm": x}, rtol=1e-9).spectral_radius)
 
-    unstable, missed, _ = nodes_beside(found, stability_chart(pair, {"speed_rpm": speeds}, rtol=1e-9))
+    unstable, missed, _ = nodes_beside(boundaries, stability_chart(pair, {"speed_rpm": speeds}, rtol=1e-9))
     assert unstable > 500
     assert missed == 0
     lines = np.array(list(predicted_lines(pair).values()))
     seeded = unstable_intervals(radius, seeded_nodes(lines, *ends, 400))
-    assert len(seeded) < int(found.intervals.sum())  # what the grid is for
+    assert len(seeded) < int(boundaries.intervals.sum())  # what the grid is for
 
 
 def test_search_says_when_damping_is_too_low_for_its_grid() -> None:

@@ -63,23 +63,25 @@ CASES |= {
 @pytest.mark.parametrize("case", CASES)
 def test_a_refined_chart_has_the_verdicts_of_the_full_grid(case) -> None:
     name, changes, axis = CASES[case]
-    here = unlike_pair(name) if name in UNLIKE else load_gear_pair(name)
-    here = here if case == name else here.with_(COULOMB | changes)
+    varied_pair = unlike_pair(name) if name in UNLIKE else load_gear_pair(name)
+    varied_pair = varied_pair if case == name else varied_pair.with_(COULOMB | changes)
     axes = {**axis, "speed_rpm": SPEEDS}
-    got = stability_chart(here, axes, rtol=1e-8)
-    full = stability_chart(here, axes, rtol=1e-8, refine=False)
+    got = stability_chart(varied_pair, axes, rtol=1e-8)
+    full = stability_chart(varied_pair, axes, rtol=1e-8, refine=False)
     assert 0.0 < float(got.known.mean()) < 0.95
     assert bool(full.known.all())
     assert got.spectral_radius.dims == full.spectral_radius.dims == tuple(axes)
     assert (got.verdict == full.verdict).all()
-    known = got.known.to_numpy()
+    evaluated = got.known.to_numpy()
     for name in ("spectral_radius", "error"):  # the same to rounding: batches do not change a point
-        np.testing.assert_allclose(got[name].values[known], full[name].values[known], rtol=1e-9, atol=1e-12)
-    assert not got.proven.values[~known].any()
+        np.testing.assert_allclose(
+            got[name].values[evaluated], full[name].values[evaluated], rtol=1e-9, atol=1e-12
+        )
+    assert not got.proven.values[~evaluated].any()
     # The misfit is that of evaluated nodes; where two multipliers change places the radius bends between.
-    off = np.abs(got.spectral_radius - full.spectral_radius).to_numpy()
-    assert np.mean(off <= got.error.to_numpy()) > 0.98
-    assert off.max() < 0.05
+    difference = np.abs(got.spectral_radius - full.spectral_radius).to_numpy()
+    assert np.mean(difference <= got.error.to_numpy()) > 0.98
+    assert difference.max() < 0.05
 
 
 def test_axes_in_any_order_and_a_third_one_plane_by_plane(pair) -> None:
@@ -89,28 +91,28 @@ def test_axes_in_any_order_and_a_third_one_plane_by_plane(pair) -> None:
         "damping_ratio": rng.permutation(np.linspace(0.0, 0.04, 21)),
         "speed_rpm": rng.permutation(SPEEDS),
     }
-    told: list[float] = []
-    mixed = stability_chart(pair, axes, rtol=1e-8, progress=told.append)
+    fractions: list[float] = []
+    mixed = stability_chart(pair, axes, rtol=1e-8, progress=fractions.append)
     alone = {name: np.sort(values) for name, values in axes.items() if name != "torque"}
     one = stability_chart(pair.with_(operating__pinion_torque=40.0), alone, rtol=1e-8)
     plane = mixed.sel(torque=40.0).sortby(["damping_ratio", "speed_rpm"])
     assert mixed.spectral_radius.dims == tuple(axes)
     assert (plane.verdict == one.verdict).all()
     assert (plane.known == one.known).all()
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
 
 
 def test_the_full_grid_is_the_same_in_pieces_and_tells_its_progress(pair, monkeypatch) -> None:
     axes = {"damping_ratio": [0.0, 0.02, 0.05], "speed_rpm": np.linspace(2000.0, 18000.0, 400)}
-    whole = stability_chart(pair, axes, rtol=1e-8, store="all", refine=False)
+    in_one_piece = stability_chart(pair, axes, rtol=1e-8, store="all", refine=False)
     monkeypatch.setattr(module, "_CHUNK", 450)
-    told: list[float] = []
-    pieces = stability_chart(pair, axes, rtol=1e-8, refine=False, progress=told.append)
-    assert np.array_equal(pieces["spectral_radius"], whole["spectral_radius"])
-    assert told == pytest.approx([450 / 1200, 900 / 1200, 1.0])
-    assert (np.abs(whole.multipliers).max("multiplier") == whole.spectral_radius).all()
-    assert (np.diff(np.abs(whole.multipliers), axis=-1) <= 0.0).all()
+    fractions: list[float] = []
+    pieces = stability_chart(pair, axes, rtol=1e-8, refine=False, progress=fractions.append)
+    assert np.array_equal(pieces["spectral_radius"], in_one_piece["spectral_radius"])
+    assert fractions == pytest.approx([450 / 1200, 900 / 1200, 1.0])
+    assert (np.abs(in_one_piece.multipliers).max("multiplier") == in_one_piece.spectral_radius).all()
+    assert (np.diff(np.abs(in_one_piece.multipliers), axis=-1) <= 0.0).all()
     assert "multipliers" not in pieces
 
 
@@ -119,53 +121,53 @@ def test_cells_are_proven_and_others_evaluated() -> None:
     pair = load_gear_pair("nasa_art_25_31").with_(COULOMB)
     axes = {"damping_ratio": np.linspace(0.02, 0.0, 21), "speed_rpm": np.linspace(12000.0, 20000.0, 81)}
     for changes in ({}, {"friction.law": "xu_kahraman"}, UNDAMPED):
-        here = pair.with_(changes)
+        varied_pair = pair.with_(changes)
         rng = np.random.default_rng(5)
-        chart = stability_chart(here, axes, rtol=1e-8, prove=True)
+        chart = stability_chart(varied_pair, axes, rtol=1e-8, prove=True)
         cells = chart.cell_verdict.to_numpy()
         share = chart.proven_share
         assert share == pytest.approx((cells != 0).mean())
         assert (cells < 0).any()
         assert (share < 0.5 and not (cells > 0).any()) if changes is UNDAMPED else share > 0.94
-        known = chart.known.transpose("speed_rpm", "damping_ratio")[:, ::-1].to_numpy()
+        evaluated = chart.known.transpose("speed_rpm", "damping_ratio")[:, ::-1].to_numpy()
         for i, j in np.argwhere(cells == 0):
-            assert known[i : i + 2, j : j + 2].all()
+            assert evaluated[i : i + 2, j : j + 2].all()
         more = {}
         for name, count in (("damping_ratio", 2), ("speed_rpm", 2)):
             edges = np.sort(axes[name])
             more[name] = (edges[:-1] + rng.uniform(0.0, 1.0, (count, 1)) * np.diff(edges)).T.ravel()
-        full = stability_chart(here, more, rtol=1e-8, refine=False).verdict
+        full = stability_chart(varied_pair, more, rtol=1e-8, refine=False).verdict
         wanted = np.repeat(np.repeat(cells, 2, axis=0), 2, axis=1)
         assert (full.transpose("speed_rpm", "damping_ratio").to_numpy() == wanted)[wanted != 0].all()
 
 
 def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     axes = {"speed_rpm": np.array([4000.0, 5000.0]), "torque": np.array([20.0, 60.0, 90.0])}
-    told: list[float] = []
-    found = stability_chart(pair, axes, progress=told.append)
-    assert told == pytest.approx([1 / 3, 2 / 3, 1.0])
-    assert found["spectral_radius"].dims == ("speed_rpm", "torque")
+    fractions: list[float] = []
+    chart = stability_chart(pair, axes, progress=fractions.append)
+    assert fractions == pytest.approx([1 / 3, 2 / 3, 1.0])
+    assert chart["spectral_radius"].dims == ("speed_rpm", "torque")
 
 
 def test_regions_are_named_measured_and_found_nearest(pair) -> None:
-    here = pair.with_({"mesh.damping_ratio": 0.01, "operating.pinion_speed": 15000.0})
-    chart = stability_chart(here, rtol=1e-8)
+    varied_pair = pair.with_({"mesh.damping_ratio": 0.01, "operating.pinion_speed": 15000.0})
+    chart = stability_chart(varied_pair, rtol=1e-8)
     assert chart.spectral_radius.shape == (801, 201)
-    regions = label_regions(here, chart)
+    regions = label_regions(varied_pair, chart)
     assert [str(r.label) for r in regions] == list(chart.region_label.values)
     assert sum(r.nodes for r in regions) == int((chart.verdict < 0).sum())
     assert chart.thinnest_width == pytest.approx(min(r.width for r in regions))
     for region in regions:
-        at = chart.sel(region.point)
-        assert at.known
-        assert at.spectral_radius == region.radius
+        node = chart.sel(region.point)
+        assert node.known
+        assert node.spectral_radius == region.radius
     # Single speeds on either side: stable from the pair's own speed up to the edge, unstable beyond.
     edge = float(chart.nearest_edge_speed_rpm)
     step = 0.5 * float(np.median(np.diff(chart.speed_rpm)))
     beyond = edge - step if edge < 15000.0 else edge + step
-    calm = np.linspace(15000.0, edge + np.sign(15000.0 - edge) * step, 50)
-    assert (stability_chart(here, {"speed_rpm": calm}).verdict > 0).all()
-    assert (stability_chart(here, {"speed_rpm": [beyond]}).verdict < 0).all()
+    stable_speeds = np.linspace(15000.0, edge + np.sign(15000.0 - edge) * step, 50)
+    assert (stability_chart(varied_pair, {"speed_rpm": stable_speeds}).verdict > 0).all()
+    assert (stability_chart(varied_pair, {"speed_rpm": [beyond]}).verdict < 0).all()
 
 
 def mathieu_point(point: dict[str, float]) -> PeriodicSystem:
@@ -215,8 +217,8 @@ def test_refinement_finds_the_tongues_of_mathieu() -> None:
     """To m = 6, undecided where |multiplier| = 1, and be they thinner than a step of a."""
     a, q = np.linspace(0.5, 42.0, 401), np.linspace(0.0, 12.0, 81)
 
-    def ask(flat):
-        i, j = np.unravel_index(flat, (a.size, q.size))
+    def ask(nodes):
+        i, j = np.unravel_index(nodes, (a.size, q.size))
         values, errors = mathieu_many(a[i], q[j])
         radius, error = radii_with_bounds(values, errors)
         return radius, verdicts(radius, error).astype(np.intp), gaps(values)

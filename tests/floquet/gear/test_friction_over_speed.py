@@ -100,10 +100,12 @@ def test_charts_are_proven_and_share_the_polynomials_of_single_speeds(name) -> N
     for speed in SPEEDS[[0, 3, 4]]:
         there = friction_path_function(pair.with_(operating__pinion_speed=float(speed)))
         (family,) = friction_families(GearVariation(pair, supports="springs"), SPEEDS)
-        here = friction_path_function(vary(pair, {"speed_rpm": family.speed_rpm}).pair)
+        mu_at_speed = friction_path_function(vary(pair, {"speed_rpm": family.speed_rpm}).pair)
         factor = family.factors[speed == SPEEDS, 0].item()
-        np.testing.assert_array_equal(there.breaks, here.breaks)
-        np.testing.assert_allclose(there.coefficients, factor * here.coefficients, rtol=2e-15, atol=0.0)
+        np.testing.assert_array_equal(there.breaks, mu_at_speed.breaks)
+        np.testing.assert_allclose(
+            there.coefficients, factor * mu_at_speed.coefficients, rtol=2e-15, atol=0.0
+        )
 
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # of some of these laws
@@ -116,7 +118,7 @@ def test_charts_over_speed_rest_on_formulas_and_are_proven(law) -> None:
     record = LAWS[law]
     xi = np.linspace(path.L_XA, path.L_XD, 40)
     slow, fast = (path.at_speed(omega) for omega in (30.0, 60.0))
-    mu, before = (record.signed(xi, at, pair.friction) for at in (fast, slow))
+    mu, before = (record.signed(xi, contact, pair.friction) for contact in (fast, slow))
     if record.factor is not None:
         ratio = record.factor(fast, pair.friction) / record.factor(slow, pair.friction)
         np.testing.assert_allclose(mu, ratio * before, rtol=1e-13)
@@ -134,18 +136,18 @@ def test_the_error_of_the_polynomials_is_in_the_bound(law, monkeypatch) -> None:
     monkeypatch.setattr(base, "FIT_TOLERANCE", 1e-4)  # of a load that no cache knows
     other = pair.with_(operating__pinion_torque=pair.operating.pinion_torque * (1.0 + 1e-13))
     coarse = stability_chart(other, axes)
-    off = np.abs(fine.spectral_radius - coarse.spectral_radius)
-    assert (off > 5.0 * fine.error).all()
-    assert (off <= fine.error + coarse.error).all()
+    difference = np.abs(fine.spectral_radius - coarse.spectral_radius)
+    assert (difference > 5.0 * fine.error).all()
+    assert (difference <= fine.error + coarse.error).all()
 
 
 def test_level_apart_changes_nothing() -> None:
     variation = with_law("benedict_kelley")
-    whole = gear_block(variation)
+    one_part = gear_block(variation)
     apart = fitted_block(feedback_system(variation), 1.0, 1e-11, [0.0, 0.04])
     assert len(apart.parts) == 3
-    t = np.linspace(0.01, 0.99, 50) * whole.period
-    one, other = (as_periodic_system(block).evaluate(t) for block in (whole, apart))
+    t = np.linspace(0.01, 0.99, 50) * one_part.period
+    one, other = (as_periodic_system(block).evaluate(t) for block in (one_part, apart))
     assert np.abs(one - other).max() <= 1e-10 * np.abs(one).max()
 
 

@@ -52,7 +52,7 @@ def test_an_error_of_friction_is_in_the_bound(name: str, levels: tuple[float, ..
     mesh = mesh_of(name, error=e, levels=levels)
     sure = mesh_of(name, levels=levels)
     centre, half, segment = whole_segments(mesh)
-    told = mesh(centre, half, segment, NODES)[2] - sure(centre, half, segment, NODES)[2]
+    declared = mesh(centre, half, segment, NODES)[2] - sure(centre, half, segment, NODES)[2]
     part = 2 if levels else 0  # of the gains by mu
     phases = centre[:, None] + half[:, None] * NODES
     for j, law in enumerate((mesh.k, mesh.c)):
@@ -62,9 +62,9 @@ def test_an_error_of_friction_is_in_the_bound(name: str, levels: tuple[float, ..
             arm = mesh.arm[0] + xi[..., None] * mesh.arm[1]
             worst += np.abs(law(xi, i, segment)) * e * np.sqrt(np.square(arm) @ mesh.metric)
         worst = worst.max(axis=1)
-        assert (worst <= told[part + j] * (1.0 + 1e-9)).all()
+        assert (worst <= declared[part + j] * (1.0 + 1e-9)).all()
         # Laws count by the sum of the moduli of their terms, arms at the farthest place and by their parts.
-        assert (told[part + j] < 25.0 * worst).all()
+        assert (declared[part + j] < 25.0 * worst).all()
 
 
 @pytest.mark.parametrize("least", [0.9, 0.1, 0.01])
@@ -81,12 +81,12 @@ def test_polynomials_in_place_of_a_varied_stiffness_are_as_near_as_is_said(name:
     mesh = mesh_of(name, factor)
     f = (mesh.mean + factor * (total - mesh.mean)) / total
     values, errors, fixed = mesh(centre, half, segment, NODES)
-    given, _, _ = plain(centre, half, segment, NODES)
+    loads, _, _ = plain(centre, half, segment, NODES)
     loose = []
     for j, exact in enumerate((f, np.sqrt(f))):
-        off = np.sqrt(np.square(values[j] - exact[..., None] * given[j]) @ mesh.metric).max(axis=1)
-        assert (off <= errors[j] + fixed[j]).all()
-        loose += [errors[j, k] / off[k] for k in range(off.size) if off[k] > 1000.0 * fixed[j, k]]
+        error = np.sqrt(np.square(values[j] - exact[..., None] * loads[j]) @ mesh.metric).max(axis=1)
+        assert (error <= errors[j] + fixed[j]).all()
+        loose += [errors[j, k] / error[k] for k in range(error.size) if error[k] > 1000.0 * fixed[j, k]]
     # A residual by the sum of the moduli of its terms, over the least stiffness or the least root.
     assert all(ratio < 3.0 for ratio in loose)
     assert loose or least > 0.01
@@ -106,13 +106,13 @@ def test_a_moved_break_changes_the_gain_by_no_more_than_is_said(name: str, level
     for law in (mesh.k, mesh.c, mesh.mu):  # a tooth pair that leaves counts on the side where it is gone
         assert (law.near[:, :-1] >= law.size).all()
         assert (law.near[:, 1:] >= law.size).all()
-    told = mesh.jumps / mesh.slips
-    assert (told[:, -1] == told[:, 0]).all()  # of both ends of the period
+    bound = mesh.jumps / mesh.slips
+    assert (bound[:, -1] == bound[:, 0]).all()  # of both ends of the period
     before = np.roll(ends[:, :, 1], 1, axis=1)
     jump = np.sqrt(np.square(before - ends[:, :, 0]) @ mesh.metric)
-    assert (jump <= told[:, :-1] * (1.0 + 1e-12)).all()
+    assert (jump <= bound[:, :-1] * (1.0 + 1e-12)).all()
     if levels:  # laws count by the moduli of their terms, arms by their parts and at the farthest place
-        assert told[2].max() < 30.0 * jump[2].max()
+        assert bound[2].max() < 30.0 * jump[2].max()
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -127,15 +127,15 @@ def test_a_moved_break_of_a_varied_stiffness_changes_the_gain_by_no_more_than_is
     values = mesh(*whole_segments(mesh), np.array([-1.0, 1.0]))[0]
     before = np.roll(values[:, :, 1], 1, axis=1)
     jump = np.sqrt(np.square(before - values[:, :, 0]) @ mesh.metric)
-    told = mesh.jumps / mesh.slips
-    assert (jump <= told[:, :-1]).all()
+    bound = mesh.jumps / mesh.slips
+    assert (jump <= bound[:, :-1]).all()
     # Each side counts by the moduli of its terms, with the larger factor of both.
-    assert (told[:, 0] < 10.0 * jump[:, 0]).all()
+    assert (bound[:, 0] < 10.0 * jump[:, 0]).all()
 
 
 def test_each_break_is_within_the_slip_of_its_edge() -> None:
     """Several breaks for one edge: the farthest counts, and those of 0 count at the end of the period too."""
     edges = np.array([0.0, 0.25, 0.5, 1.0])
     raw = np.array([3e-13, 0.25 - 1e-13, 0.25 + 4e-13, 0.25, np.nextafter(0.5, 1.0), 1.0 - 2e-13])
-    found = _slips(raw, edges, 1e-16)
-    assert found - 1e-16 == pytest.approx([3e-13, 4e-13, 2.0**-53, 3e-13], rel=1e-3, abs=0.0)
+    slips = _slips(raw, edges, 1e-16)
+    assert slips - 1e-16 == pytest.approx([3e-13, 4e-13, 2.0**-53, 3e-13], rel=1e-3, abs=0.0)

@@ -26,11 +26,11 @@ def pair():
 
 def unmatched(computed: np.ndarray, reference: np.ndarray) -> float:
     """Largest distance when every multiplier is paired with a partner of the other set."""
-    left = list(reference)
+    remaining = list(reference)
     worst = 0.0
     for value in computed:
-        nearest = int(np.argmin([abs(value - other) for other in left]))
-        worst = max(worst, abs(value - left.pop(nearest)))
+        nearest = int(np.argmin([abs(value - other) for other in remaining]))
+        worst = max(worst, abs(value - remaining.pop(nearest)))
     return worst
 
 
@@ -39,21 +39,21 @@ def test_block_and_closed_form_equal_the_ten_states(name: str) -> None:
     """Each pair has a law, a stiffness model and four bearings of its own."""
     one = unlike_pair(name)
     parts = gear_pair_multipliers(one, supports="springs")
-    whole = monodromy(gear_pair_system(one, "elastic", supports="springs"))
+    ten_states = monodromy(gear_pair_system(one, "elastic", supports="springs"))
     assert parts.multipliers.shape == (10,)
     # 1e-8: both runs at rtol 1e-10; where bearings make two multipliers coincide, rounding is magnified.
-    assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
-    assert abs(parts.spectral_radius - whole.spectral_radius) <= parts.error + whole.error
-    assert parts.verdict == whole.verdict
+    assert unmatched(parts.multipliers, ten_states.multipliers) < 1e-8
+    assert abs(parts.spectral_radius - ten_states.spectral_radius) <= parts.error + ten_states.error
+    assert parts.verdict == ten_states.verdict
     # Both sides of Liouville's formula are 0.01 and less; each is right to some roundings.
     assert parts.liouville_residual < 1e-14
 
 
 def test_low_speeds_are_proven_too(pair) -> None:
     """All but the slowest decay of a bearing have died away after a mesh cycle at 5 rpm."""
-    found = gear_pair_multipliers(pair.with_(operating__pinion_speed=5))
-    assert (found.certificate, found.verdict) == ("proven", "stable")
-    assert found.spectral_radius + found.error < 1e-50
+    multipliers = gear_pair_multipliers(pair.with_(operating__pinion_speed=5))
+    assert (multipliers.certificate, multipliers.verdict) == ("proven", "stable")
+    assert multipliers.spectral_radius + multipliers.error < 1e-50
     with pytest.raises(ParameterError, match="rtol"):
         gear_pair_multipliers(pair, 1e-14)
 
@@ -81,10 +81,10 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
 
 def test_stiffness_variation_keeps_the_damping_law(pair) -> None:
     # c_i goes with sqrt(k_i): scaling every k_i by f scales every c_i by sqrt(f), in the same row of x_p.
-    given = gear_pair_system(pair, "mesh")
+    unvaried = gear_pair_system(pair, "mesh")
     varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4, supports="springs"), "mesh")
-    times = np.array([0.1, 0.5, 0.9]) * given.period
-    before, after = given.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
+    times = np.array([0.1, 0.5, 0.9]) * unvaried.period
+    before, after = unvaried.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
     f = after[:, 0] / before[:, 0]
     assert np.abs(f - 1.0).min() > 0.05
     assert np.allclose(after[:, 3] / before[:, 3], np.sqrt(f), rtol=1e-12)  # rounding

@@ -50,8 +50,8 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
         margins = stability_margins(base.with_(changes), (1.8 * rpm, 2.2 * rpm))
         (tongue,) = margins.tongues
         assert tongue.label == "2w1/1"
-        found = tongue.critical_damping, tongue.tip_speed, margins.unstable_here[0, 0] - margins.rpm
-        errors.append(np.array(found) / [critical, top(critical).x * rpm, low - margins.rpm] - 1.0)
+        margin = tongue.critical_damping, tongue.tip_speed, margins.unstable_here[0, 0] - margins.rpm
+        errors.append(np.array(margin) / [critical, top(critical).x * rpm, low - margins.rpm] - 1.0)
     coarse, fine = errors
     assert (np.abs(fine) < 2.5e-3).all()
     # What is left is the give of the bearings, k/K: twice as stiff, twice as close, and gone in the limit.
@@ -104,16 +104,16 @@ def test_damping_at_the_operating_speed_is_a_root(pair) -> None:
 
 
 def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
-    found = stability_margins(pair, (1000.0, 1100.0))
-    assert found.tongues == ()
-    assert found.critical_damping == 0.0
-    assert found.unstable_here.size == 0
-    assert found.dataset.sizes["tongue"] == 0
+    margins = stability_margins(pair, (1000.0, 1100.0))
+    assert margins.tongues == ()
+    assert margins.critical_damping == 0.0
+    assert margins.unstable_here.size == 0
+    assert margins.dataset.sizes["tongue"] == 0
 
 
 def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds(pair) -> None:
-    wide = stability_margins(pair, (26000.0, 50000.0))
-    below, target = wide.tongues[-2:]
+    wider_search = stability_margins(pair, (26000.0, 50000.0))
+    below, target = wider_search.tongues[-2:]
     narrow = stability_margins(pair, (26000.0, 0.5 * (below.upper + target.lower)))
     assert narrow.above.label == target.label
     assert narrow.above.lower == pytest.approx(target.lower, rel=1e-7)
@@ -122,7 +122,7 @@ def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds(pa
     # A tongue that begins within the range is not the next one.
     inside = stability_margins(pair, (26000.0, 0.5 * (below.lower + below.upper)))
     assert inside.above.lower == pytest.approx(target.lower, rel=1e-7)
-    assert wide.above is None
+    assert wider_search.above is None
 
 
 def test_the_search_above_stays_within_the_speeds_of_the_schema() -> None:

@@ -34,8 +34,8 @@ def slender() -> GearPair:
     return on_shafts((30.0, 200.0), (32.0, 195.0), max_frequency=14e3)
 
 
-def matched(found: np.ndarray, exact: np.ndarray) -> np.ndarray:
-    return np.asarray(np.abs(found[:, None] - exact).min(axis=1))
+def matched(multipliers: np.ndarray, exact: np.ndarray) -> np.ndarray:
+    return np.asarray(np.abs(multipliers[:, None] - exact).min(axis=1))
 
 
 def test_charts_are_the_general_engine_at_every_speed(slender: GearPair) -> None:
@@ -59,11 +59,11 @@ def test_charts_are_the_general_engine_at_every_speed(slender: GearPair) -> None
 
 def test_modes_left_out_hardly_count(slender: GearPair) -> None:
     """The lumped model propagates all modes together, by another method; what is left out counts least."""
-    found = gear_pair_multipliers(slender, supports="shafts")
+    multipliers = gear_pair_multipliers(slender, supports="shafts")
     everything = lumped.steady_state(slender, supports="shafts", samples_per_cycle=64)
-    assert found.certificate == "proven"
-    assert found.feedback.size == 2 * MODES
-    assert abs(found.spectral_radius - everything.spectral_radius) < 1e-4
+    assert multipliers.certificate == "proven"
+    assert multipliers.feedback.size == 2 * MODES
+    assert abs(multipliers.spectral_radius - everything.spectral_radius) < 1e-4
     decay, squares = feedback_system(GearVariation.of(slender, "shafts")).separate
     assert decay.size > MODES
     # What the shafts' damping ratio says, apart from what the mesh does to a mode.
@@ -72,10 +72,10 @@ def test_modes_left_out_hardly_count(slender: GearPair) -> None:
 
 def test_boundaries_are_where_the_radius_is_one() -> None:
     pair = on_shafts((60.0, 80.0), (60.0, 80.0))
-    found = stability_boundaries(pair, (5500.0, 6200.0), nodes=0, orders=2, supports="shafts")
-    assert found.complete
-    assert found.present.values.any()
-    ends = np.unique([end for end in found.lower.values if 5500.0 < end < 6200.0])
+    boundaries = stability_boundaries(pair, (5500.0, 6200.0), nodes=0, orders=2, supports="shafts")
+    assert boundaries.complete
+    assert boundaries.present.values.any()
+    ends = np.unique([end for end in boundaries.lower.values if 5500.0 < end < 6200.0])
     beside = np.concatenate([ends * (1.0 - 1e-5), ends * (1.0 + 1e-5)])
     chart = stability_chart(pair, {"speed_rpm": beside}, supports="shafts")
     assert (chart.verdict.values == np.repeat([1, -1], ends.size)).all()
@@ -92,9 +92,9 @@ def test_stiff_shafts_are_springs() -> None:
     }  # fmt: skip
     both = {"damping_ratio": springs.loa_damping_ratio, "pinion": shaft, "gear": shaft}
     for speed in (3000.0, 12000.0):
-        at = pair.with_(operating__pinion_speed=speed)
-        sprung = gear_pair_multipliers(at)
-        shafted = gear_pair_multipliers(at.with_(shafts=both), supports="shafts")
+        pair_at_speed = pair.with_(operating__pinion_speed=speed)
+        sprung = gear_pair_multipliers(pair_at_speed)
+        shafted = gear_pair_multipliers(pair_at_speed.with_(shafts=both), supports="shafts")
         assert matched(sprung.multipliers, shafted.multipliers).max() < 1e-2
         assert shafted.verdict == sprung.verdict
 
@@ -113,8 +113,8 @@ def test_what_shafts_do_not_have_is_refused(slender: GearPair) -> None:
 def test_teeth_that_differ_have_the_modes_of_like_teeth(slender: GearPair) -> None:
     like = slender.with_(mesh__contact="prescribed")
     expected = gear_pair_multipliers(like, supports="shafts")
-    found = floquet.revolution_multipliers(
+    multipliers = floquet.revolution_multipliers(
         like.with_(pinion__mounting={"eccentricity": 1e-9}), supports="shafts"
     )
-    assert abs(found.rate - abs(expected.feedback).max()) <= found.error + expected.error
-    assert found.error < 1e-8
+    assert abs(multipliers.rate - abs(expected.feedback).max()) <= multipliers.error + expected.error
+    assert multipliers.error < 1e-8

@@ -46,16 +46,16 @@ def by_gauss_steps(pair, times, rate):
 @pytest.mark.parametrize("change", [CLASS_6, ECCENTRIC, cracked(3), HUNTING])
 def test_rates_are_those_of_gauss_steps_and_of_finer_polynomials(contact, change, monkeypatch):
     pair = PAIR.with_({"mesh.contact": contact, "mesh.relief": "ignored"} | change)
-    found = revolution_multipliers(pair)
+    result = revolution_multipliers(pair)
     monkeypatch.setattr(multipliers, "_BLOCK", 4)
     finer = revolution_multipliers(pair, 1e-11)
-    times, most, kept = (8, 1e-7, 4) if found.cycles <= 60 else (2, 1e-6, 2)
-    coarse, fine = (by_gauss_steps(pair, times * n, found.rate)[0] for n in (1, 2))
+    times, most, compared = (8, 1e-7, 4) if result.cycles <= 60 else (2, 1e-6, 2)
+    coarse, fine = (by_gauss_steps(pair, times * n, result.rate)[0] for n in (1, 2))
     assert 4.0 * abs(fine - coarse) < most
-    assert abs(found.rate - fine) <= found.error + 4.0 * abs(fine - coarse)
-    assert abs(found.rate - finer.rate) < 1e-3 * found.error
-    assert (found.rates.size, found.error < 1e-9) == (kept + 4, True)
-    assert np.abs(found.multipliers[0]) == pytest.approx(found.rate**found.cycles, rel=1e-9, abs=0.0)
+    assert abs(result.rate - fine) <= result.error + 4.0 * abs(fine - coarse)
+    assert abs(result.rate - finer.rate) < 1e-3 * result.error
+    assert (result.rates.size, result.error < 1e-9) == (compared + 4, True)
+    assert np.abs(result.multipliers[0]) == pytest.approx(result.rate**result.cycles, rel=1e-9, abs=0.0)
 
 
 @pytest.mark.parametrize("contact", ["prescribed", "loaded"])
@@ -66,11 +66,11 @@ def test_like_teeth_have_the_multipliers_of_the_mesh_cycle_to_the_power_of_the_c
     power = np.poly(expected.feedback[:2] ** 20)
     like = {"pinion.deviations": {"index": [0.0] * 20, "first_order": "steps"}}
     for change in (like, {"pinion.mounting": {"eccentricity": 1e-9}}):  # which makes the cycles' maps differ
-        found = revolution_multipliers(pair.with_(change))
-        assert (found.cycles, found.certificate, found.stable) == (20, "proven", True)
-        assert abs(found.rate - rate) <= found.error + expected.error < 1e-9
-        assert np.poly(found.multipliers[:2]) == pytest.approx(power, rel=1e-7, abs=0.0)
-        assert found.rate == pytest.approx(found.healthy_rate, rel=1e-9)
+        result = revolution_multipliers(pair.with_(change))
+        assert (result.cycles, result.certificate, result.stable) == (20, "proven", True)
+        assert abs(result.rate - rate) <= result.error + expected.error < 1e-9
+        assert np.poly(result.multipliers[:2]) == pytest.approx(power, rel=1e-7, abs=0.0)
+        assert result.rate == pytest.approx(result.healthy_rate, rel=1e-9)
 
 
 def test_the_rate_is_that_of_all_motions_also_off_the_line_of_action():
@@ -79,40 +79,40 @@ def test_the_rate_is_that_of_all_motions_also_off_the_line_of_action():
     pair = PAIR.with_({"mesh.contact": "prescribed"} | light)
     expected = gear_pair_multipliers(pair)
     assert expected.spectral_radius > 1.1 * np.abs(expected.feedback).max()
-    found = revolution_multipliers(pair.with_({"pinion.mounting": {"eccentricity": 1e-9}}))
-    assert found.rate == pytest.approx(expected.spectral_radius, rel=1e-6)
+    result = revolution_multipliers(pair.with_({"pinion.mounting": {"eccentricity": 1e-9}}))
+    assert result.rate == pytest.approx(expected.spectral_radius, rel=1e-6)
 
 
 def test_all_multipliers_have_the_product_of_the_determinants_of_gauss_steps():
     pair = PAIR.with_({"operating.pinion_speed": 60000, "mesh.contact": "loaded"} | cracked(3))
-    found = revolution_multipliers(pair)
-    assert found.rates.size == 10
+    result = revolution_multipliers(pair)
+    assert result.rates.size == 10
     # m y'' + c y' + K y = 0 of both gears: the product of its multipliers is exp(-c T/m).
     body = bodies(pair)
     bearings = pair.bearings
     apart = 0.0
     for mass, bearing in ((body.mass_pinion, bearings.pinion), (body.mass_gear, bearings.gear)):
         apart -= 2.0 * bearing.oloa_damping_ratio * np.sqrt(bearing.oloa_stiffness / mass)
-    expected = by_gauss_steps(pair, 8, found.rate)[1] + apart * pair.geometry.mesh_period
-    assert np.log(found.rates).sum() == pytest.approx(expected, rel=1e-6)
+    expected = by_gauss_steps(pair, 8, result.rate)[1] + apart * pair.geometry.mesh_period
+    assert np.log(result.rates).sum() == pytest.approx(expected, rel=1e-6)
 
 
 def test_the_bound_holds_for_maps_that_are_off_as_far_as_they_may(monkeypatch):
     pair = PAIR.with_(cracked(3))
-    off = 1e-6
+    map_error = 1e-6
     maps = multipliers.fast_monodromies
 
     def shrunk(*arguments, **named):
-        found = maps(*arguments, **named)
-        wrong = off * np.linalg.norm(found.matrices, axis=(1, 2))
-        return replace(found, matrices=(1.0 - off) * found.matrices, errors=found.errors + wrong)
+        flow = maps(*arguments, **named)
+        wrong = map_error * np.linalg.norm(flow.matrices, axis=(1, 2))
+        return replace(flow, matrices=(1.0 - map_error) * flow.matrices, errors=flow.errors + wrong)
 
     exact = revolution_multipliers(pair).rate
     monkeypatch.setattr(multipliers, "fast_monodromies", shrunk)
-    found = revolution_multipliers(pair)
-    moved = exact - found.rate
-    assert moved == pytest.approx(off / 20 * exact, rel=1e-3)
-    assert moved < found.error < 100.0 * moved
+    result = revolution_multipliers(pair)
+    rate_error = exact - result.rate
+    assert rate_error == pytest.approx(map_error / 20 * exact, rel=1e-3)
+    assert rate_error < result.error < 100.0 * rate_error
 
 
 def test_pieces_end_where_a_pair_touches_its_damper_is_full_or_its_tip_leaves_the_line():
@@ -128,7 +128,7 @@ def test_a_softer_tooth_moves_the_rate_by_its_share_of_the_pairs():
     # To first order a change of one cycle in 20 moves the logarithm by 1/20 of what it does in every cycle.
     pair = PAIR.with_({"mesh.contact": "prescribed", "mesh.relief": "ignored"})
     both = (revolution_multipliers(pair.with_(cracked(*teeth))) for teeth in ([3], range(1, 21)))
-    one, every = (np.log(found.rate / found.healthy_rate) for found in both)
+    one, every = (np.log(result.rate / result.healthy_rate) for result in both)
     assert abs(every) > 1e-4
     # What is left is of second order in the stiffness that the crack takes away.
     assert 20.0 * one == pytest.approx(every, rel=0.01)

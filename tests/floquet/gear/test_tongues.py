@@ -47,12 +47,12 @@ def test_shape_decides_where_two_lines_cross() -> None:
     # 2 omega_1 = omega_2 - omega_3' by construction: 2.0 is both 2 w1 and w2 - w1 with omega = (1, 3). The
     # frequencies cannot tell; the coupling, and with it the motion, can.
     omega = np.array([1.0, 3.0])
-    own = np.zeros((2, 2))
+    diagonal_block = np.zeros((2, 2))
     skew = np.zeros((2, 2))
-    own[0, 0] = 0.1
+    diagonal_block[0, 0] = 0.1
     skew[0, 1] = 0.2
     skew[1, 0] = -0.2
-    assert label_tongue(coupled(omega, own, 2.0), omega, 2.0) == Tongue(1, 1, 1, 1)
+    assert label_tongue(coupled(omega, diagonal_block, 2.0), omega, 2.0) == Tongue(1, 1, 1, 1)
     assert label_tongue(coupled(omega, skew, 2.0), omega, 2.0) == Tongue(1, 2, -1, 1)
 
 

@@ -112,11 +112,11 @@ def test_radii_without_bounds_are_those_with_them() -> None:
     flow = fast_monodromies(system, periods, tolerance=1e-11)
     assert np.unique(_quick(flow.matrices, flow.errors)[2]).size == 2
     expected = np.abs(fast_multipliers(system, periods, tolerance=1e-11).multipliers).max(axis=1)
-    found = batch.spectral_radii(system, periods, 1.0, tolerance=1e-11)
-    np.testing.assert_allclose(found, expected, rtol=1e-10)
+    radii = batch.spectral_radii(system, periods, 1.0, tolerance=1e-11)
+    np.testing.assert_allclose(radii, expected, rtol=1e-10)
     near = expected > 0.95
     assert near.any()
-    assert np.array_equal(found[near], expected[near])  # searches decide there
+    assert np.array_equal(radii[near], expected[near])  # searches decide there
 
 
 def test_limits_are_reported() -> None:

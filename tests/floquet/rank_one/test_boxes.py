@@ -68,8 +68,8 @@ def test_proven_cells_are_those_of_the_closed_form(case) -> None:
     assert min((verdict > 0).sum(), (verdict < 0).sum()) > 200
     rng = np.random.default_rng(1)
     for t, z in zip(inside(rng, T, 3), inside(rng, zeta, 3), strict=True):
-        found = radius(np.repeat(t, z.size), np.tile(z, t.size)).reshape(verdict.shape)
-        assert ((found < 1.0) == (verdict > 0))[verdict != 0].all()
+        exact_radius = radius(np.repeat(t, z.size), np.tile(z, t.size)).reshape(verdict.shape)
+        assert ((exact_radius < 1.0) == (verdict > 0))[verdict != 0].all()
 
 
 def test_slow_variation_is_stable_from_the_period_of_the_closed_form() -> None:
@@ -101,9 +101,11 @@ def test_bounds_of_the_polynomial_hold_where_it_is_bad() -> None:
     constant = replace(system, phases=np.array([0.0, 1.0]), gains=Gains(one, 0.0 * one, np.zeros((1, 2))))
     damping = np.array([0.0, 1.0])
     u = np.linspace(0.0, 1.0, 101)
-    for given, width, z, loose in ((system, 1e-3, u, np.inf), (constant, 24.0, 0.0 * u, 3e3)):
-        patch = FlowPolynomial.of(given, packed(given), 60.0 + width * damping, damping * z[-1], no_factors)
-        M = fast_monodromies(given, 60.0 + width * u, z).matrices
+    for one_system, width, z, loose in ((system, 1e-3, u, np.inf), (constant, 24.0, 0.0 * u, 3e3)):
+        patch = FlowPolynomial.of(
+            one_system, packed(one_system), 60.0 + width * damping, damping * z[-1], no_factors
+        )
+        M = fast_monodromies(one_system, 60.0 + width * u, z).matrices
         x, y = (np.polynomial.chebyshev.chebvander(2.0 * v - 1.0, n - 1) for v, n in ((u, 24), (z, 16)))
         model = np.einsum("ka,abij,kb->kij", x, patch.coefficients, y)
         error = np.linalg.norm(M - model, 2, axis=(1, 2)).max()
@@ -120,7 +122,7 @@ def test_bounds_of_the_polynomial_hold_where_it_is_bad() -> None:
 
 @pytest.mark.parametrize("terms", [(8, 4), (3, 1)])
 def test_bounds_hold_everywhere_in_boxes(terms, monkeypatch) -> None:
-    """Of the polynomial, of the moduli of its entries, and none of them is loose; its error counts."""
+    """Bounds on the polynomial and on the moduli of its entries hold and are not loose; its error counts."""
     variation = GearVariation(load_gear_pair("nasa_art_25_31"), supports="springs")
     block = fitted_block(feedback_system(variation), 1.0, 1e-11, [0.0])
 
@@ -135,8 +137,8 @@ def test_bounds_hold_everywhere_in_boxes(terms, monkeypatch) -> None:
     ends[:, 1, :50] = ends[:, 0, :50] + 0.1 * np.diff(ends, axis=1)[:, 0, :50]
     ends[:, :, 50:] = np.array([-1.0, 1.0])[:, None]  # the whole patch, where the series is cut off
     monkeypatch.setattr(boxes, "_TERMS", terms)
-    assert decided(patch, *ends)[0].any()
-    assert not decided(replace(patch, error=1.0), *ends)[0].any()
+    assert decided(patch, *ends).verdict.any()
+    assert not decided(replace(patch, error=1.0), *ends).verdict.any()
     V, low, high, f, _, _ = bounded_entries(replace(patch, error=0.0), *ends)
     places = (
         ends[:, 0, :, None]
@@ -151,14 +153,14 @@ def test_bounds_hold_everywhere_in_boxes(terms, monkeypatch) -> None:
     model = np.einsum("ka,abij,kb->kij", x, patch.coefficients, y)
     assert np.linalg.norm(M - model, 2, axis=(1, 2)).max() <= patch.error < 1e-2
     moduli = np.abs(np.linalg.inv(V)[:, None] @ model.reshape(60, 5, 6, 6) @ V[:, None])
-    own = np.einsum("kpii->kpi", moduli).copy()
-    assert (own <= high[:, None]).all()
-    assert (own >= low[:, None]).all()
+    diagonal = np.einsum("kpii->kpi", moduli).copy()
+    assert (diagonal <= high[:, None]).all()
+    assert (diagonal >= low[:, None]).all()
     moduli[..., range(6), range(6)] = 0.0
     assert (moduli <= f[:, None]).all()
     if terms == (3, 1):  # then most is only bounded
         return
-    assert (high - low)[:50].sum() < 1.5 * np.ptp(own, axis=1)[:50].sum()
+    assert (high - low)[:50].sum() < 1.5 * np.ptp(diagonal, axis=1)[:50].sum()
     assert f[:50].sum() < 1.2 * moduli.max(axis=1)[:50].sum()
 
 
@@ -169,7 +171,7 @@ def signed_system(
     flip: float = 1.0,
     gyroscopic: bool = False,
 ) -> RankOneSystem:
-    """Two coordinates, and two varied gains of alternating signs, each times a sign of its own.
+    """Two coordinates and two varied gains of alternating signs; each gain is multiplied by a sign.
 
     The coordinates may be turned by an angle and mirrored, and v and all gains have the other sign: the same
     motion.
@@ -191,7 +193,7 @@ def signed_system(
 
 
 def powers_of_the_period(signs):
-    """Factors on both varied gains, one that rises and one that falls, times a sign each."""
+    """Factors on both varied gains: one rises, one falls; each is multiplied by a sign."""
     return lambda T: np.array(signs) * [0.3, 0.5] * T[:, None] ** [0.7, -0.4]
 
 
@@ -254,13 +256,13 @@ def test_the_change_of_factors_is_bounded_on_ellipses_of_the_period(law, signs) 
     T = np.linspace(2.0, 2.6, 9)
     middle = 2.3
     factors = law(signs)
-    at = factors(np.append(T, middle))
-    bound = boxes._moved(np.append(T, middle) / middle, at)
+    values = factors(np.append(T, middle))
+    bound = boxes._factor_change(np.append(T, middle) / middle, values)
     assert (bound[0] == 0.0).all()  # of the gains that have no factor
     inside = boxes._RADII < 14.0  # beyond, an ellipse reaches the period 0
     assert (bound[1:, boxes._RADII > 16.0] > 1e29).all()
     w = boxes._RADII[inside, None] * np.exp(2j * np.pi * np.arange(64) / 64)
-    change = factors((middle + 0.15 * (w + 1.0 / w)).ravel()) - at[-1]
+    change = factors((middle + 0.15 * (w + 1.0 / w)).ravel()) - values[-1]
     largest = np.abs(change).reshape(*w.shape, 2).max(axis=1).T
     assert (largest <= bound[1:, inside]).all()
     # Of both laws the larger bound counts: a line is taken as a power too, from its end of least modulus on.
@@ -288,13 +290,13 @@ def change_over(system, factors, T, zeta):
     It is the integral of |T A - T_0 A_0|, by Gauss's formula at 12 points a piece.
     """
     middle = T.mean()
-    at = factors(np.append(np.linspace(*T, 9), middle))
-    moved = boxes._moved(np.append(np.linspace(*T, 9), middle) / middle, at)
-    size = boxes._Size(packed(system), 1.7, np.append(1.0, at[-1]))
+    values = factors(np.append(np.linspace(*T, 9), middle))
+    factor_change = boxes._factor_change(np.append(np.linspace(*T, 9), middle) / middle, values)
+    size = boxes._Size(packed(system), 1.7, np.append(1.0, values[-1]))
     semi = 0.5 * (boxes._RADII + 1.0 / boxes._RADII)
     one = np.ones_like(boxes._RADII)
-    along = size.change(T, zeta, semi, one, moved)
-    up = size.change(T, zeta, one, semi, np.repeat(moved[:, :1], semi.size, axis=1))
+    along = size.change(T, zeta, semi, one, factor_change)
+    up = size.change(T, zeta, one, semi, np.repeat(factor_change[:, :1], semi.size, axis=1))
     nodes, weights = np.polynomial.legendre.leggauss(12)
     low = system.phases[:-1, None]
     width = np.diff(system.phases)[:, None]
@@ -305,12 +307,12 @@ def change_over(system, factors, T, zeta):
     def rates(T_, z, gains):
         return np.array([energy_rates(form, system.phases, p, T_, z, np.append(1.0, gains)) for p in phases])
 
-    still = rates(middle, zeta.mean(), at[-1])
+    still = rates(middle, zeta.mean(), values[-1])
 
     def change(T_, z):
         # The law of the factors, continued: powers and logarithms of complex periods.
-        now = rates(T_, z, factors(np.array([T_]))[0])
-        return weights @ np.linalg.norm(now - still, 2, axis=(1, 2))
+        changed_rates = rates(T_, z, factors(np.array([T_]))[0])
+        return weights @ np.linalg.norm(changed_rates - still, 2, axis=(1, 2))
 
     return along, up, change
 
@@ -402,8 +404,8 @@ def test_the_slow_period_is_that_of_its_formula() -> None:
     corners = [frozen(z, g) for z in zeta for g in factors.ravel()]
     rate = 0.0
     for k, share in enumerate(np.diff(system.phases)):
-        turned = [np.linalg.solve(V[k], A[k] @ V[k]) for A in corners]
-        rate += share * max(np.linalg.eigvalsh(0.5 * (B + B.conj().T))[-1] for B in turned)
+        transformed = [np.linalg.solve(V[k], A[k] @ V[k]) for A in corners]
+        rate += share * max(np.linalg.eigvalsh(0.5 * (B + B.conj().T))[-1] for B in transformed)
     steps = sum(np.log(np.linalg.norm(np.linalg.solve(V[(k + 1) % 3], V[k]), 2)) for k in range(3))
     # The bound itself is raised by 1e-9 for its rounding.
     assert 1.0 <= slow_period(system, zeta, factors) / (steps / -rate) < 1.0 + 3e-9
@@ -437,13 +439,13 @@ def test_errors_of_the_gains_make_slow_variation_slower() -> None:
     width = 1e-3
     gains = replace(system.gains, w=w)
 
-    def slow(given):
-        return slow_period(replace(system, gains=given), zeta, np.empty((2, 0)))
+    def slow(gains):
+        return slow_period(replace(system, gains=gains), zeta, np.empty((2, 0)))
 
-    def longest(given, phases=system.phases):
+    def longest(gains, phases=system.phases):
         T = np.pi * np.sqrt(17.0) + np.linspace(-0.5, 1.0, 3000)
-        found = fast_multipliers(replace(system, gains=given, phases=phases), T, zeta[0]).multipliers
-        return T[np.abs(found).max(axis=1) > 1.0].max()
+        multipliers = fast_multipliers(replace(system, gains=gains, phases=phases), T, zeta[0]).multipliers
+        return T[np.abs(multipliers).max(axis=1) > 1.0].max()
 
     pulse = np.array([0.0, e / width, 0.0])[:, None, None]
     thinner = Gains(w[[0, 0, 1]], gains.wd[[0, 0, 1]] - pulse, np.zeros((3, 2)))
@@ -459,18 +461,18 @@ def test_errors_of_the_gains_make_slow_variation_slower() -> None:
 
 
 def test_errors_of_the_nodes_are_in_that_of_the_polynomial() -> None:
-    """All gains are off by what is declared, so all of the polynomial is off by what its nodes are."""
+    """All gains have exactly the declared error, so the polynomial has the error of its nodes."""
     system, _ = meissner()
     T = np.array([3.0, 3.2])
     zeta = np.array([0.01, 0.05])
     e = 1e-6
     declared = replace(system, gains=replace(system.gains, fit_errors=np.full((2, 2), e)))
-    off = replace(system, gains=replace(system.gains, w=system.gains.w + e, wd=system.gains.wd - e))
+    with_errors = replace(system, gains=replace(system.gains, w=system.gains.w + e, wd=system.gains.wd - e))
     patch = FlowPolynomial.of(declared, packed(declared), T, zeta, no_factors)
     middle = np.einsum("abij,a,b->ij", patch.coefficients, np.cos(np.pi / 2 * np.arange(24)),
                        np.cos(np.pi / 2 * np.arange(16)))  # fmt: skip
-    S = np.linalg.solve(state_matrix(declared.modal()), state_matrix(off.modal()))
-    M = S @ fast_monodromies(off, [3.1], 0.03).matrices[0] @ np.linalg.inv(S)
+    S = np.linalg.solve(state_matrix(declared.modal()), state_matrix(with_errors.modal()))
+    M = S @ fast_monodromies(with_errors, [3.1], 0.03).matrices[0] @ np.linalg.inv(S)
     distance = np.linalg.norm(M - middle, 2)
     # The constants of Lebesgue are 3.02^2, and the bound of a node is up to ten times its error.
     assert distance <= patch.error < 10.0 * 9.2 * distance

@@ -13,8 +13,8 @@ from flint import arb_mat
 from floquet import RankOneSystem, fast_monodromies
 from floquet.rank_one.batch import _quick
 from floquet.rank_one.kernels.eigenvalue_bounds import _gershgorin, _join
-from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, powers_of_radii
-from floquet.rank_one.kernels.product import BLOCKS, carry, divide
+from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, table_of_radii
+from floquet.rank_one.kernels.product import Steps, carry, divide, product_workspace
 from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import Gains
 from tests.evidence.floquet.extended import state_matrix
@@ -32,8 +32,8 @@ from tests.floquet.engine.judge.enclosures import (
 
 def test_too_many_terms_are_said() -> None:
     for a in (40.0, np.nan, np.inf):
-        assert enough_terms(np.array([a]), 0, np.log(1e-10), powers_of_radii(1))[0] == -1
-    assert enough_terms(np.array([20.0]), 0, np.log(1e-4), powers_of_radii(1))[0] <= MAX_TERMS
+        assert enough_terms(np.array([a]), 0, np.log(1e-10), table_of_radii(1))[0] == -1
+    assert enough_terms(np.array([20.0]), 0, np.log(1e-4), table_of_radii(1))[0] <= MAX_TERMS
 
 
 @pytest.mark.parametrize("n", [2, 4, 6])
@@ -53,8 +53,8 @@ def test_step_from_its_halves(n: int) -> None:
         exact = float(np.sqrt(np.square(P @ S - E).sum()))
         assert exact <= residual <= exact + 100 * n * 2.2e-16 * size * np.linalg.norm(start)
         inverse = np.linalg.inv(start[:, :n])
-        off = np.linalg.norm(step[:, :n] - end[:, :n] @ inverse)
-        assert off < 1e-13 * np.linalg.norm(inverse, 2) ** 2 * size
+        error = np.linalg.norm(step[:, :n] - end[:, :n] @ inverse)
+        assert error < 1e-13 * np.linalg.norm(inverse, 2) ** 2 * size
         assert not step[:, n:].any()
 
 
@@ -68,14 +68,14 @@ def test_supports_that_feed_energy_in_enter_the_bound() -> None:
         stiffness=np.array([[1e-3]]), damping=np.array([[-4.0]]), v=np.array([1.0]),
         phases=np.array([0.0, 1.0]), gains=declared, period=1.0, metric=np.array([1.0]),
     )  # fmt: skip
-    found = fast_monodromies(system)
+    flow = fast_monodromies(system)
     S = state_matrix(system.modal())
     exact = np.linalg.solve(S, expm(np.array([[0.0, 1.0], [-0.251 - e, 4.0]])) @ S)
-    distance = np.linalg.norm(found.matrices[0] - exact)
-    assert distance <= found.errors[0]
+    distance = np.linalg.norm(flow.matrices[0] - exact)
+    assert distance <= flow.errors[0]
     silent = fast_monodromies(replace(system, gains=replace(declared, fit_errors=np.zeros((1, 2)))))
     assert distance > 1000 * silent.errors[0]
-    assert found.errors[0] < 1000 * distance
+    assert flow.errors[0] < 1000 * distance
 
 
 def test_a_break_that_is_off_enters_the_bound() -> None:
@@ -93,17 +93,17 @@ def test_a_break_that_is_off_enters_the_bound() -> None:
         )  # fmt: skip
 
     exact = system(0.7 + e, None)
-    given = system(0.7, jump)
+    declared = system(0.7, jump)
     silent = system(0.7, None)
-    S = np.linalg.solve(state_matrix(given.modal()), state_matrix(exact.modal()))
-    moved = S @ fast_monodromies(exact).matrices[0] @ np.linalg.inv(S)
-    found = fast_monodromies(given)
-    distance = np.linalg.norm(found.matrices[0] - moved)
-    assert distance <= found.errors[0]
-    told = 2000.0 * e * exact.period * np.linalg.norm(1.0 / given.modal().omega)
-    assert found.errors[0] - fast_monodromies(silent).errors[0] >= 0.99 * told
+    S = np.linalg.solve(state_matrix(declared.modal()), state_matrix(exact.modal()))
+    exact_flow = S @ fast_monodromies(exact).matrices[0] @ np.linalg.inv(S)
+    flow = fast_monodromies(declared)
+    distance = np.linalg.norm(flow.matrices[0] - exact_flow)
+    assert distance <= flow.errors[0]
+    bound_of_jump = 2000.0 * e * exact.period * np.linalg.norm(1.0 / declared.modal().omega)
+    assert flow.errors[0] - fast_monodromies(silent).errors[0] >= 0.99 * bound_of_jump
     assert distance > 1000.0 * fast_monodromies(silent).errors[0]
-    assert found.errors[0] < 1000.0 * distance
+    assert flow.errors[0] < 1000.0 * distance
 
 
 def spectrum(M: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
@@ -150,57 +150,60 @@ def ratios(M: np.ndarray, delta: float) -> tuple[float, float, bool]:
     values, radii, safe = (part[0] for part in _quick(M[None], np.array([delta])))
     if not safe:
         return 0.0, False, False
-    found = [worst_ratio(values, radii, disks(balls(M) + balls(E)))[0] for E in worst_errors(M, delta)]
+    error_ratios = [worst_ratio(values, radii, disks(balls(M) + balls(E)))[0] for E in worst_errors(M, delta)]
     apart = np.abs(values[:, None] - values) > radii[:, None] + radii
-    return max(found), True, int((~apart).sum()) > 6
+    return max(error_ratios), True, int((~apart).sum()) > 6
 
 
 def test_disks_hold_the_worst_errors_until_they_are_called_unsafe() -> None:
-    """Of three multipliers whose eigenvectors nearly are parallel; their condition is 10 2^(2 power).
+    """Three multipliers have nearly parallel eigenvectors with the condition 10 2^(2 power).
 
-    Above 1e6 they are called unsafe. Disks that overlap are widened around all that hang together, so that
-    each holds as many as it says.
+    Above a condition of 1e6 the disks are called unsafe. Overlapping disks are widened to their union, so
+    that a union of k disks holds k multipliers.
     """
-    whole = {}
+    worst_ratios = {}
     overlapping = 0
     for power in (2, 4, 6, 8, 12):
         for delta in (1e-14, 1e-9, 1e-7, 1e-5):
-            whole[power, delta], safe, overlap = ratios(nearly_defective(power), delta)
-            assert whole[power, delta] <= 1.0
+            worst_ratios[power, delta], safe, overlap = ratios(nearly_defective(power), delta)
+            assert worst_ratios[power, delta] <= 1.0
             assert safe == (power <= 8)
             overlapping += overlap
     assert overlapping >= 3
     # Above the rounding of the residuals, 1e-12, the worst error moves one of them by all of its radius.
-    assert min(whole[power, delta] for power in (2, 4) for delta in (1e-9, 1e-7)) > 0.95
+    assert min(worst_ratios[power, delta] for power in (2, 4) for delta in (1e-9, 1e-7)) > 0.95
 
 
-@pytest.mark.parametrize("own", [-1.0, 1.0])
+@pytest.mark.parametrize("diagonal_sign", [-1.0, 1.0])
 @pytest.mark.parametrize("coupling", [-1.0, 1.0])
-def test_a_scaled_disk_holds_what_its_coupling_moves(own: float, coupling: float) -> None:
-    """Of 2 x 2 with entries of modulus f the first moves by f_11 + f_12 f_21/gap, more if both attract."""
+def test_a_scaled_disk_holds_what_its_coupling_moves(diagonal_sign: float, coupling: float) -> None:
+    """Errors of modulus f move the first eigenvalue of a 2 x 2 matrix by f_11 + f_12 f_21/gap.
+
+    By more where both eigenvalues attract each other.
+    """
     values = np.array([0.5 + 0j, 0.75])
     rows = np.empty(2)
     radii = np.empty(2)
     f = np.array([[1e-6, 1e-2], [2e-2, 1e-6]])
     _gershgorin(values, f, rows, radii)
-    F = f * [[own, 1.0], [coupling, own]]
-    moved = min(abs(disk[0] - 0.5) for disk in disks(balls(np.diag(values) + F)))
-    assert moved <= radii[0] < 2.03 * moved  # the theorem allows for twice f_12 f_21/gap
-    if own > coupling:
-        assert moved > 1e-6 + 2e-4 / 0.25
+    F = f * [[diagonal_sign, 1.0], [coupling, diagonal_sign]]
+    distance = min(abs(disk[0] - 0.5) for disk in disks(balls(np.diag(values) + F)))
+    assert distance <= radii[0] < 2.03 * distance  # the theorem allows for twice f_12 f_21/gap
+    if diagonal_sign > coupling:
+        assert distance > 1e-6 + 2e-4 / 0.25
 
 
 def test_disks_that_hang_together_are_widened_around_all_of_them() -> None:
     """A union of k disks holds k eigenvalues, each anywhere in it: here a chain of three."""
     values = np.array([0.0, 1.0 + 0j, 1.9, 5.0, 3.4j])
     radii = np.array([0.6, 0.7, 0.4, 0.5, 0.1])
-    given = radii.copy()
+    radii_before = radii.copy()
     _join(values, radii, np.empty(5), np.empty(5, dtype=np.int64))
-    chain = np.abs(values[:3, None] - values[:3]) + given[:3]
+    chain = np.abs(values[:3, None] - values[:3]) + radii_before[:3]
     apart = np.array([3, 4])
     assert radii[:3] == pytest.approx(chain.max(axis=1), rel=1e-10)
     assert (radii[:3] >= chain.max(axis=1)).all()
-    assert (radii[apart] == given[apart]).all()
+    assert (radii[apart] == radii_before[apart]).all()
     # Row sums of three entries of 6e-4 overlap over a gap of 1e-3; the third disk is scaled by 2 6e-4/0.8.
     values, radii, safe = (part[0] for part in _quick(np.diag([0.5, 0.501, -0.3])[None], np.array([6e-4])))
     assert safe
@@ -215,10 +218,8 @@ def test_the_product_keeps_terms_of_second_order_and_of_blocks() -> None:
         steps = np.zeros((count, 1, LANES))
         steps[:, 0, 0] = sizes
         flow = np.zeros((1, LANES))
-        work = np.zeros((2 * BLOCKS + 1, 1, LANES))
-        before = np.empty(count)
-        table = np.zeros((5, BLOCKS))
-        bound = carry(steps, np.full(count, e), np.abs(sizes), count, flow, before, work, table)
+        work = product_workspace(count, 1, LANES)
+        bound = carry(Steps(steps, np.full(count, e), np.abs(sizes)), count, work, flow)
         exact = np.prod(np.abs(sizes) + e) - np.prod(np.abs(sizes))
         assert flow[0, 0] == pytest.approx(np.prod(sizes), rel=1e-14)
         assert exact * (1.0 - 1e-12) <= bound <= 1.001 * exact
@@ -246,8 +247,8 @@ def error_of(
     system: RankOneSystem, exact: arb_mat, tolerance: float = 1e-13, zeta: float = 1.0
 ) -> tuple[float, float]:
     """Error of the monodromy matrix against balls, and its bound."""
-    found = fast_monodromies(system, [system.period], zeta, tolerance=tolerance)
-    return least_norm(exact - real_balls(found.matrices[0])), found.errors[0]
+    flow = fast_monodromies(system, [system.period], zeta, tolerance=tolerance)
+    return least_norm(exact - real_balls(flow.matrices[0])), flow.errors[0]
 
 
 @pytest.mark.parametrize("driver", ["supports", "gain", "gain like that of the deflection"])
@@ -259,10 +260,12 @@ def test_the_tail_of_the_series_is_in_the_bound(c: float, driver: str) -> None:
     """
     system = driven(c) if driver == "supports" else driven(0.0, wd=-c, w=1e-3 * ("like" in driver))
     exact = exact_matrix(system)
-    found = [np.divide(*error_of(system, exact, tolerance)) for tolerance in np.geomspace(1e-1, 1e-5, 13)]
-    assert max(found) <= 1.0
+    error_ratios = [
+        np.divide(*error_of(system, exact, tolerance)) for tolerance in np.geomspace(1e-1, 1e-5, 13)
+    ]
+    assert max(error_ratios) <= 1.0
     # Of a gain the bound does not know that it damps: exp(2 |c|) more.
-    assert max(found) > (0.03 if c > 0.0 else 1e-4)
+    assert max(error_ratios) > (0.03 if c > 0.0 else 1e-4)
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
@@ -290,13 +293,15 @@ def test_errors_at_an_end_count_on_each_side_that_it_has(end: int) -> None:
     ends = np.array([0.0, 0.3, 0.6, 1.0])
     declared = np.zeros((4, 2))
     declared[end, 1] = e
-    given = replace(driven(4.0), phases=ends, gains=Gains(zero, zero, np.zeros((3, 2)), declared))
+    with_declared_errors = replace(
+        driven(4.0), phases=ends, gains=Gains(zero, zero, np.zeros((3, 2)), declared)
+    )
     phases = np.unique(np.clip([*ends, ends[end] - width, ends[end] + width], 0.0, 1.0))
     pulse = np.abs(0.5 * (phases[1:] + phases[:-1]) - ends[end]) < width
     wd = np.where(pulse, e / width, 0.0)[:, None, None]
     none = np.zeros((pulse.size, 1, 1))
-    moved = replace(driven(4.0), phases=phases, gains=Gains(none, wd, np.zeros((pulse.size, 2))))
-    error, bound = error_of(given, exact_matrix(moved))
+    with_pulses = replace(driven(4.0), phases=phases, gains=Gains(none, wd, np.zeros((pulse.size, 2))))
+    error, bound = error_of(with_declared_errors, exact_matrix(with_pulses))
     assert error <= bound < 1.5 * error
 
 

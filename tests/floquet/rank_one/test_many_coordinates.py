@@ -34,9 +34,9 @@ def shafts(m: int, seed: int = 1) -> RankOneSystem:
 def test_errors_are_below_bounds_that_allow_a_verdict(m: int) -> None:
     system = shafts(m)
     exact = extended_matrix(system)
-    found = fast_monodromies(system)
-    error = float(np.sqrt(np.square(found.matrices[0] - exact).sum()))
-    assert 1e-6 * found.errors[0] < error <= found.errors[0] < 1e-7
+    flow = fast_monodromies(system)
+    error = float(np.sqrt(np.square(flow.matrices[0] - exact).sum()))
+    assert 1e-6 * flow.errors[0] < error <= flow.errors[0] < 1e-7
     multipliers = fast_multipliers(system)
     distance = np.abs(multipliers.multipliers[0][:, None] - np.linalg.eigvals(exact.astype(float)))
     # LAPACK's own error in the eigenvalues of the reference is no error of ours.
@@ -49,13 +49,13 @@ def test_general_engine_and_other_speeds_agree() -> None:
     # One call over periods: the gyroscopic part goes with speed, that of the general engine too.
     system = shafts(4)
     periods = np.array([3e-4, 8e-4])
-    found = fast_multipliers(system, periods)
-    for T, values, errors in zip(periods, found.multipliers, found.errors, strict=True):
+    fast = fast_multipliers(system, periods)
+    for T, values, errors in zip(periods, fast.multipliers, fast.errors, strict=True):
         slow = monodromy(as_periodic_system(replace(system, period=float(T))), rtol=1e-9)
         distance = np.abs(values[:, None] - slow.multipliers)
         assert (distance.min(axis=1) <= errors + slow.multiplier_errors.max()).all()
     still = fast_multipliers(replace(system, gyroscopic=None), periods)
-    assert np.abs(found.multipliers - still.multipliers).max() > 1e-4
+    assert np.abs(fast.multipliers - still.multipliers).max() > 1e-4
 
 
 def test_a_matrix_that_is_not_skew_drives_and_enters_the_bound() -> None:
@@ -81,12 +81,12 @@ def test_equal_shafts_have_double_multipliers_within_small_bounds() -> None:
     C[5, 5] = C[4, 4]
     gains = replace(system.gains, w=w, wd=1e-6 * w)
     equal = replace(system, v=v, gains=gains, stiffness=np.diag(L), damping=C, gyroscopic=None)
-    found = fast_multipliers(equal)
+    spectrum = fast_multipliers(equal)
     s = -0.5 * C[4, 4] + 1j * np.sqrt(L[4] - 0.25 * C[4, 4] ** 2)
-    distance = np.abs(found.multipliers[0] - np.exp(s * equal.period))
+    distance = np.abs(spectrum.multipliers[0] - np.exp(s * equal.period))
     twice = np.argsort(distance)[:2]
-    assert (distance[twice] <= found.errors[0][twice]).all()
-    assert found.errors.max() < 1e-8
+    assert (distance[twice] <= spectrum.errors[0][twice]).all()
+    assert spectrum.errors.max() < 1e-8
 
 
 def test_what_is_too_much_is_said() -> None:

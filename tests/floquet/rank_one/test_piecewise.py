@@ -44,32 +44,32 @@ class Series:
 
 def ratios(gains: Series, rtol: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Phases; largest error in the metric, and bound on it, of every piece and gain (P, G)."""
-    phases, polynomials, bounds, at = fit_pieces(gains, gains.edges, METRIC, rtol=rtol)
-    assert (phases[at] == gains.edges).all()
+    phases, polynomials, bounds, edge_indices = fit_pieces(gains, gains.edges, METRIC, rtol=rtol)
+    assert (phases[edge_indices] == gains.edges).all()
     ctx.prec = 256
     errors = np.zeros_like(bounds)
     for g, rows in enumerate(polynomials):
         for p, row in enumerate(rows):
-            j = int(np.searchsorted(at, p, side="right")) - 1
+            j = int(np.searchsorted(edge_indices, p, side="right")) - 1
             low, high = arb(gains.edges[j]), arb(gains.edges[j + 1])
             first, last = arb(phases[p]), arb(phases[p + 1])
             fits = [arb_poly([arb(c) for c in component]) for component in row]
             for u in map(arb, np.cos(np.pi * np.arange(19) / 18)):
                 place = (first + last + (last - first) * u - low - high) / (high - low)
                 values = [place.chebyshev_t(k) for k in range(gains.count)]
-                off = [
+                errors_on_piece = [
                     sum((arb(c) * T for c, T in zip(gains.series[g, j, :, m], values, strict=True)), arb(0))
                     - fits[m](u)
                     for m in range(2)
                 ]
-                norm = (off[0] ** 2 * METRIC[0] + off[1] ** 2 * METRIC[1]).sqrt()
+                norm = (errors_on_piece[0] ** 2 * METRIC[0] + errors_on_piece[1] ** 2 * METRIC[1]).sqrt()
                 errors[p, g] = max(errors[p, g], least(norm))
     return phases, errors, bounds
 
 
 @pytest.mark.parametrize("signs", [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0)])
 def test_what_is_dropped_is_the_bound_where_all_of_it_is_largest(signs) -> None:
-    """T_9 and T_10 at both ends or at one: the sum of their moduli. What else is known to be off is added."""
+    """T_9 and T_10 attain the sum of their moduli at one or both ends. Other declared errors are added."""
     series = np.zeros((2, 1, 11, 2))
     series[:, 0, 0] = [1.0, -2.0]
     series[:, 0, 8] = [-0.1, 0.3]
@@ -78,9 +78,9 @@ def test_what_is_dropped_is_the_bound_where_all_of_it_is_largest(signs) -> None:
     for errors, fixed in ((0.0, 0.0), (1e-4, 0.0), (0.0, 1e-4)):
         _, error, bound = ratios(Series(np.array([0.0, 1.0]), series, errors, fixed), 1e-2)
         assert bound.shape == (1, 2)
-        known = bound - errors - fixed
-        assert (error <= known).all()
-        assert (known < error * (1.0 + 1e-8)).all()
+        dropped_bound = bound - errors - fixed
+        assert (error <= dropped_bound).all()
+        assert (dropped_bound < error * (1.0 + 1e-8)).all()
 
 
 def test_powers_within_the_tolerance_are_dropped_and_counted() -> None:
@@ -98,7 +98,7 @@ def test_powers_within_the_tolerance_are_dropped_and_counted() -> None:
 
 
 def test_signed_gains_on_segments_of_one_ulp_and_at_their_ends_are_inside() -> None:
-    """Degree 20, halved within segments; the middle of the one that is an ulp wide rounds to an end of it."""
+    """Degree 20, halved within segments. The middle of the segment of one ulp rounds to its end."""
     rng = np.random.default_rng(3)
     edges = np.array([0.0, 0.3, np.nextafter(0.3, 1.0), 0.55, 1.0])
     series = rng.normal(size=(2, 4, 21, 2)) * 0.6 ** np.arange(21)[:, None] * (-1.0) ** np.arange(21)[:, None]
@@ -119,13 +119,13 @@ def test_values_at_nodes_give_their_series_to_the_rounding_that_is_said() -> Non
     for count in (2, 9, 25):
         nodes, matrix = to_series(count)
         values = rng.choice([-1.0, 1.0], count)
-        found = matrix @ values
-        off = 0.0
+        series = matrix @ values
+        largest_error = 0.0
         for k in range(count):
             exact = sum(
                 (arb(v) * (arb(k) * arb(2 * j + 1) / (2 * count)).cos_pi() for j, v in enumerate(values)),
                 arb(0),
             )
-            off += least(exact * (1 if k == 0 else 2) / count - arb(found[k]))
-        assert 0.0 < off <= series_rounding(count)
+            largest_error += least(exact * (1 if k == 0 else 2) / count - arb(series[k]))
+        assert 0.0 < largest_error <= series_rounding(count)
         assert np.abs(nodes - np.cos(np.pi * (np.arange(count) + 0.5) / count)).max() < 4e-16

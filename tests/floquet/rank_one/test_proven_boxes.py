@@ -45,14 +45,14 @@ def exact_entries(
     inverse = balls(V).inv()
     vectors = balls(V)
     parts = arb_mat([real_balls(M).entries() for M in terms.values()])
-    found = []
+    entries = []
     for x, y in box[:, 0] + SHARES * (box[:, 1] - box[:, 0]):
         row = arb_mat([[arb(x).chebyshev_t(a) * arb(y).chebyshev_t(b) for a, b in terms]]) * parts
         M = arb_mat(6, 6, row.entries())
-        found.append(least_moduli(inverse * M * vectors))
+        entries.append(least_moduli(inverse * M * vectors))
     rows = np.linalg.norm(least_moduli(inverse), axis=1)
     reach = rows[:, None] * np.linalg.norm(np.abs(V), axis=0) * (1.0 - 1e-14)  # rounding of the norms
-    return found, reach
+    return entries, reach
 
 
 def judged(
@@ -68,9 +68,9 @@ def judged(
     allowed = ALLOWED * sum(np.linalg.norm(M) for M in terms.values())
     sums = []
     for k, box in enumerate(boxes):
-        found, reach = exact_entries(terms, V[k], box)
-        largest = np.maximum.reduce(found) + error * reach
-        least = np.minimum.reduce(found) * (1.0 + 1e-14) - error * reach  # moduli from above
+        entries, reach = exact_entries(terms, V[k], box)
+        largest = np.maximum.reduce(entries) + error * reach
+        least = np.minimum.reduce(entries) * (1.0 + 1e-14) - error * reach  # moduli from above
         assert (np.diagonal(largest) <= high[k]).all()
         assert (np.diagonal(least) >= low[k]).all()
         largest[range(6), range(6)] = 0.0
@@ -123,7 +123,7 @@ def test_eigenvectors_that_are_parallel_to_rounding_bound_nothing() -> None:
     _, low, high, _, _, _ = bounded_entries(patch, x, y)
     assert (high == np.inf).all()
     assert (low == -np.inf).all()
-    assert decided(patch, x, y)[0].tolist() == [0]
+    assert decided(patch, x, y).verdict.tolist() == [0]
 
 
 def test_a_box_is_decided_up_to_where_its_largest_multiplier_is_1() -> None:
@@ -138,8 +138,8 @@ def test_a_box_is_decided_up_to_where_its_largest_multiplier_is_1() -> None:
     ends = np.array([[-1.0, -1e-8], [-1.0, 0.0], [-1e-8, 1e-8], [0.0, 1.0], [1e-8, 1e-5]])
     all_y = np.tile([-1.0, 1.0], (len(ends), 1))
     expected = [1, 0, 0, 0, -1]
-    assert decided(patch_of({(0, 0): middle, (1, 0): change}), ends.T, all_y.T)[0].tolist() == expected
+    assert decided(patch_of({(0, 0): middle, (1, 0): change}), ends.T, all_y.T).verdict.tolist() == expected
     # An error of the patch moves the crossing by at most 8 error reach, and reach is below 10 here.
     wrong = patch_of({(0, 0): middle, (1, 0): change}, 1e-3)
     ends = np.array([[-1.0, -1e-3], [-1.0, -0.1], [1e-3, 1.0], [0.1, 1.0]])
-    assert decided(wrong, ends.T, all_y[:4].T)[0].tolist() == [0, 1, 0, -1]
+    assert decided(wrong, ends.T, all_y[:4].T).verdict.tolist() == [0, 1, 0, -1]

@@ -35,10 +35,10 @@ def polynomial(poly: arb_poly) -> Coefficients:
     """An entry that is a polynomial of the time itself."""
 
     def coefficients(start: arb, length: arb, count: int) -> list[arb]:
-        moved = poly(arb_poly([start, length]))
-        if moved.degree() >= count:
+        shifted = poly(arb_poly([start, length]))
+        if shifted.degree() >= count:
             raise ValueError("the degree is too high")
-        return [moved[k] for k in range(min(count, moved.degree() + 1))]
+        return [shifted[k] for k in range(min(count, shifted.degree() + 1))]
 
     return coefficients
 
@@ -119,9 +119,9 @@ def _flow(piece: Piece, n: int, start: arb, length: arb, terms: int, bits: int) 
 
 def multipliers(M: arb_mat) -> list[tuple[complex, float]]:
     """Midpoint and radius of a disk about each eigenvalue."""
-    found = acb_mat(M).eig(multiple=True)
+    eigenvalues = acb_mat(M).eig(multiple=True)
     disks = []
-    for value in found:
+    for value in eigenvalues:
         middle = complex(value.mid())
         disks.append((middle, float((value - type(value)(middle)).abs_upper())))
     return disks

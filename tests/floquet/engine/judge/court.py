@@ -70,22 +70,22 @@ def _special(rng: np.random.Generator, kind: str, pair: GearPair) -> GearPair:
         changes["friction.law"] = "none"
     pair = pair.with_(changes)
     block = gear_block(pair)
-    own = operating_rpm(pair)
-    speeds = own * np.exp(np.linspace(-0.7, 0.7, 400))
+    operating_speed = operating_rpm(pair)
+    speeds = operating_speed * np.exp(np.linspace(-0.7, 0.7, 400))
 
     def measure(speed: np.ndarray) -> np.ndarray:
-        found = fast_multipliers(block, block.period * own / speed).multipliers
-        return np.asarray(np.abs(found).max(axis=1) - 1.0 - (1e-6 if kind == "collision" else 0.0))
+        multipliers = fast_multipliers(block, block.period * operating_speed / speed).multipliers
+        return np.asarray(np.abs(multipliers).max(axis=1) - 1.0 - (1e-6 if kind == "collision" else 0.0))
 
     values = measure(speeds)
     changes_at = np.flatnonzero(values[1:] * values[:-1] < 0.0)
     if changes_at.size == 0:
         raise NumericalError("no tongue is near")
-    at = int(rng.choice(changes_at))
-    low, high = speeds[at], speeds[at + 1]
+    chosen = int(rng.choice(changes_at))
+    low, high = speeds[chosen], speeds[chosen + 1]
     for _ in range(int(rng.choice([15, 30, 45]))):
         middle = 0.5 * (low + high)
-        if measure(np.array([middle]))[0] * values[at] > 0.0:
+        if measure(np.array([middle]))[0] * values[chosen] > 0.0:
             low = middle
         else:
             high = middle
@@ -93,21 +93,21 @@ def _special(rng: np.random.Generator, kind: str, pair: GearPair) -> GearPair:
 
 
 def _routes(kind: str, pair: GearPair, truth: Disks) -> list[Finding]:
-    found = fast_multipliers(gear_block(pair))
+    fast = fast_multipliers(gear_block(pair))
     chart = stability_chart(pair, {"speed_rpm": [operating_rpm(pair)]}, rtol=1e-8, store="all", refine=False)
-    own = gear_pair_multipliers(pair, 1e-9)
+    general = gear_pair_multipliers(pair, 1e-9)
     return [
-        finding(kind, "kernel", found.multipliers[0], found.errors[0], truth, "proven"),
-        *_of_ten(kind, "chart", chart.isel(speed_rpm=0), own.oloa, truth),
-        *_of_ten(kind, "pair", own, own.oloa, truth),
+        finding(kind, "kernel", fast.multipliers[0], fast.errors[0], truth, "proven"),
+        *_of_ten(kind, "chart", chart.isel(speed_rpm=0), general.oloa, truth),
+        *_of_ten(kind, "pair", general, general.oloa, truth),
     ]
 
 
-def _of_ten(kind: str, route: str, found: Any, oloa: np.ndarray, truth: Disks) -> list[Finding]:
+def _of_ten(kind: str, route: str, result: Any, oloa: np.ndarray, truth: Disks) -> list[Finding]:
     """Finding on the six multipliers that are not the bearings' off the line of action, if they differ."""
-    values = np.asarray(found.multipliers)
-    errors = np.asarray(found.multiplier_errors)
-    certificate = found.attrs["certificate"] if route.startswith("chart") else found.certificate
+    values = np.asarray(result.multipliers)
+    errors = np.asarray(result.multiplier_errors)
+    certificate = result.attrs["certificate"] if route.startswith("chart") else result.certificate
     feedback = np.abs(values[:, None] - oloa).min(axis=1) > 1e-12 * (1.0 + np.abs(values))
     if feedback.sum() != 6:
         return []
@@ -122,12 +122,12 @@ def table(findings: Sequence[Finding]) -> str:
     ]
     keys = dict.fromkeys((f.kind, f.route, f.certificate) for f in findings)
     for kind, route, certificate in sorted(keys, key=lambda k: (KINDS.index(k[0]), k[1], k[2])):
-        here = [f for f in findings if (f.kind, f.route, f.certificate) == (kind, route, certificate)]
-        false = sum(f.ratio > 1.0 for f in here)
-        wrong = sum(f.wrong for f in here)
-        undecided = sum(f.undecided for f in here)
-        worst = max(f.ratio for f in here)
-        cells = (kind, route, certificate, len(here), f"{worst:.1e}", false, wrong, undecided)
+        group = [f for f in findings if (f.kind, f.route, f.certificate) == (kind, route, certificate)]
+        false = sum(f.ratio > 1.0 for f in group)
+        wrong = sum(f.wrong for f in group)
+        undecided = sum(f.undecided for f in group)
+        worst = max(f.ratio for f in group)
+        cells = (kind, route, certificate, len(group), f"{worst:.1e}", false, wrong, undecided)
         lines.append("| " + " | ".join(map(str, cells)) + " |")
     return "\n".join(lines)
 
@@ -141,23 +141,23 @@ def main() -> None:
     parser.add_argument("--kind", choices=KINDS, nargs="+", default=KINDS)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--minutes", type=float, default=math.inf, help="end with what is done by then")
-    given = parser.parse_args()
-    tasks = [(kind, given.seed * 100_000 + i) for i in range(given.count) for kind in given.kind]
+    arguments = parser.parse_args()
+    tasks = [(kind, arguments.seed * 100_000 + i) for i in range(arguments.count) for kind in arguments.kind]
     findings: list[Finding] = []
-    with ProcessPoolExecutor(given.jobs) as pool:
+    with ProcessPoolExecutor(arguments.jobs) as pool:
         waiting = {pool.submit(judge, *task): task for task in tasks}
-        end = time.monotonic() + 60.0 * given.minutes
+        end = time.monotonic() + 60.0 * arguments.minutes
         for future in as_completed(waiting):
             if time.monotonic() > end:
                 pool.shutdown(wait=False, cancel_futures=True)
                 break
             try:
-                found = future.result()
+                findings_of_pair = future.result()
             except ValueError as error:
                 print(*waiting[future], error, file=sys.stderr, flush=True)
                 continue
-            findings += found
-            for one in found:
+            findings += findings_of_pair
+            for one in findings_of_pair:
                 if one.ratio > 1.0 or one.wrong:
                     print(*waiting[future], one, file=sys.stderr, flush=True)
     print(table(findings))

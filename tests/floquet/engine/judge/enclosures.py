@@ -55,11 +55,11 @@ def least_norm(matrix: acb_mat | arb_mat) -> float:
 
 def disks(matrix: acb_mat | arb_mat) -> list[tuple[complex, float]]:
     """Middle and radius of a disk about each eigenvalue."""
-    found = acb_mat(matrix).eig(multiple=True)
-    middles = [complex(value.mid()) for value in found]
+    eigenvalues = acb_mat(matrix).eig(multiple=True)
+    middles = [complex(value.mid()) for value in eigenvalues]
     return [
         (middle, float((value - acb(middle)).abs_upper()))
-        for value, middle in zip(found, middles, strict=True)
+        for value, middle in zip(eigenvalues, middles, strict=True)
     ]
 
 
@@ -84,11 +84,11 @@ def nearly_defective(power: int) -> np.ndarray:
 def worst_errors(M: np.ndarray, delta: float) -> list[np.ndarray]:
     """Errors (n, n) of this norm that move one eigenvalue each as far as they can, to first order."""
     vectors = np.linalg.eig(M)[1]
-    found = []
+    errors = []
     for row, column in zip(np.linalg.inv(vectors), vectors.T, strict=True):
         E = np.outer(row.conj(), column.conj())
-        found.append(delta * (1.0 - 1e-14) / np.linalg.norm(E) * E)
-    return found
+        errors.append(delta * (1.0 - 1e-14) / np.linalg.norm(E) * E)
+    return errors
 
 
 def energy_monodromy(system: RankOneSystem, period: float, zeta: float, gains: Sequence[float]) -> arb_mat:

@@ -15,10 +15,10 @@ def _analytic(entry: Callable[..., object]) -> Callable[[arb, arb, int], list[ar
     """Taylor coefficients of an entire function of the time, by arithmetic of power series."""
 
     def coefficients(start: arb, length: arb, count: int) -> list[arb]:
-        kept = ctx.cap
+        cap_before = ctx.cap
         ctx.cap = count
         series = entry(arb_series([start, length], count))
-        ctx.cap = kept
+        ctx.cap = cap_before
         return [series[k] for k in range(count)]  # type: ignore[index]
 
     return coefficients
@@ -89,9 +89,9 @@ def formula(rng: np.random.Generator) -> list[Finding]:
     truth = exact_multipliers(lambda: exact, 2)
     findings = []
     for method in ("auto", "gauss"):
-        found = monodromy(system, 1e-8, method=method)
+        result = monodromy(system, 1e-8, method=method)
         kind = "formula"
         route = "engine" if method == "auto" else "engine, sampled"
-        errors = found.multiplier_errors
-        findings.append(finding(kind, route, found.multipliers, errors, truth, found.certificate))
+        errors = result.multiplier_errors
+        findings.append(finding(kind, route, result.multipliers, errors, truth, result.certificate))
     return findings

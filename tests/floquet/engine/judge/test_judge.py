@@ -56,9 +56,9 @@ def test_faults_in_the_bound_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     # The misfit of the gains, dropped.
     coarse = gear_block(pair, rtol=1e-3)
     silent = replace(coarse, gains=replace(coarse.gains, fit_errors=np.zeros_like(coarse.gains.fit_errors)))
-    found = fast_multipliers(coarse)
+    result = fast_multipliers(coarse)
     blind = fast_multipliers(silent)
-    assert ratio(found.multipliers, found.errors) <= 1.0 < ratio(blind.multipliers, blind.errors)
+    assert ratio(result.multipliers, result.errors) <= 1.0 < ratio(blind.multipliers, blind.errors)
     # The knots, ignored: not in the pieces alone, since their distance to the ends of pieces is in the bound.
     monkeypatch.setattr(MeshCycle, "breaks", property(lambda cycle: cycle.edges))
     assert fast_multipliers(gear_block(pair)).errors.min() > 1.0
