@@ -35,11 +35,11 @@ from floquet.gear.motions import (
 from floquet.gear.unilateral import ContactForm, unilateral_family
 from floquet.orbits.bifurcations import Kind
 from floquet.orbits.branch import Limits
+from floquet.orbits.branch_search import STARTS, find_branches
+from floquet.orbits.closing import closing_residual
 from floquet.orbits.deadline import Deadline
 from floquet.orbits.long_run import LongRun, Settled
-from floquet.orbits.orbit import one_pass
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
-from floquet.orbits.search import STARTS, find_response
 from floquet.orbits.settling import settle
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
@@ -371,7 +371,7 @@ def response_branches(
     limit = None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
     if limit is not None:
         compile_kernels(result)
-    response = find_response(result, periods=wanted, seeds=seeds, progress=progress, deadline=Deadline(limit))
+    response = find_branches(result, periods=wanted, seeds=seeds, progress=progress, deadline=Deadline(limit))
     return ResponseBranches(pair, (low, high), back_side, response, result)
 
 
@@ -403,7 +403,7 @@ def compile_kernels(one: Member) -> None:
     rate = one.limits.fastest
     state, parameter = one.start(1.0 / rate)
     with contextlib.suppress(NumericalError):
-        one_pass(one.family.at(1.0 / rate), state, 1.0 / rate, 1, parameter)
+        closing_residual(one.family.at(1.0 / rate), state, 1.0 / rate, 1, parameter)
     settle(one.family, one.limits, state[None], np.array([1.0 / rate]), np.array([parameter]))
 
 

@@ -12,8 +12,9 @@ from typing import Literal
 
 import numpy as np
 
+from floquet.orbits.closing import closing_residual
 from floquet.orbits.deadline import ENDLESS, Deadline
-from floquet.orbits.orbit import Orbit, one_pass
+from floquet.orbits.orbit import Orbit
 from floquet.orbits.system import ContactSystem
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -130,7 +131,7 @@ class Continuation:
         """
         x, T, parameter = self._values(X)
         system = self.family.at(T)
-        r, J, run = one_pass(system, x, T, self.n, parameter)
+        r, J, run = closing_residual(system, x, T, self.n, parameter)
         if not self.family.constant:
             J[:, self.size] += self.by_coefficients(X) if by_coefficients is None else by_coefficients
         J[:, self.size] *= -T

@@ -60,7 +60,7 @@ def states_from_motion(
             states[i] = RECOVERING
 
 
-@called
+@inlined
 def find_crossings(
     series: Series, laws: ContactLaws, period: float, step: float, contacts: Contacts
 ) -> float:
@@ -89,7 +89,7 @@ def find_crossings(
     return first
 
 
-@called
+@inlined
 def _load_sign(
     alpha: FloatArray, beta: FloatArray, d: FloatArray, rate: FloatArray, period: float, product: FloatArray
 ) -> None:

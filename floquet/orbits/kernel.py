@@ -71,7 +71,7 @@ def _over_cycles(
     states = contacts.states
     phases = system.phases
     for cycle in range(request.cycles):
-        samples_taken = 0
+        record.summary.samples_in_cycle = 0
         for piece in range(phases.size - 1):
             phase = phases[piece]
             end = phases[piece + 1]
@@ -86,9 +86,7 @@ def _over_cycles(
                 step = min(longest, first_event)
                 _add_output(series.z, system.output, step, polynomial, record.summary)
                 _add_loads(series.load, states, step, polynomial, record.summary)
-                samples_taken = _take_samples(
-                    series, states, request, cycle, samples_taken, phase, step, record
-                )
+                _take_samples(series, states, request, cycle, phase, step, record)
                 move_to_end(series, step)
                 if not math.isfinite(series.v[0, 0, 0]):
                     return GREW
@@ -126,10 +124,8 @@ def _clear(summary: Any) -> None:
     summary.events = 0
 
 
-@called
-def _add_output(
-    z: FloatArray, output: FloatArray, step: float, polynomial: FloatArray, summary: Any
-) -> None:
+@inlined
+def _add_output(z: FloatArray, output: FloatArray, step: float, polynomial: FloatArray, summary: Any) -> None:
     """Integrals of y and y^2 over the step by Gauss's 12 points, and extremes of y = output . z."""
     for g in range(_GAUSS_NODES.size):
         place = 0.5 * step * (1.0 + _GAUSS_NODES[g])
@@ -148,10 +144,8 @@ def _add_output(
     summary.most_output = most
 
 
-@called
-def _add_loads(
-    load: FloatArray, states: IntArray, step: float, polynomial: FloatArray, summary: Any
-) -> None:
+@inlined
+def _add_loads(load: FloatArray, states: IntArray, step: float, polynomial: FloatArray, summary: Any) -> None:
     """Largest load of one contact, and least load of all contacts together, on the step; times T^2."""
     for i in range(states.size):
         if states[i] == CLOSED:
@@ -168,12 +162,12 @@ def _add_loads(
 
 @called
 def _take_samples(
-    series: Series, states: IntArray, request: Request, cycle: int, taken: int, phase: float, step: float,
-    record: Record,
-) -> int:  # fmt: skip
-    """State and loads at the samples in [phase, phase + step); return the number taken in this cycle."""
+    series: Series, states: IntArray, request: Request, cycle: int, phase: float, step: float, record: Record
+) -> None:
+    """State and loads at the samples in [phase, phase + step)."""
     m = series.z.shape[1]
     samples = request.samples
+    taken = record.summary.samples_in_cycle
     while taken < samples.size and samples[taken] < phase + step:
         place = samples[taken] - phase
         row = cycle * samples.size + taken
@@ -186,7 +180,7 @@ def _take_samples(
                 load = value(series.load[i, : request.order, 0], place)
                 record.loads[row, i] = load / (request.period * request.period)
         taken += 1
-    return taken
+    record.summary.samples_in_cycle = taken
 
 
 @called

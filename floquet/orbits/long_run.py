@@ -11,8 +11,9 @@ from typing import Literal
 
 import numpy as np
 
+from floquet.orbits.closing import close_orbit, primitive
 from floquet.orbits.deadline import ENDLESS, Deadline
-from floquet.orbits.orbit import Orbit, find_orbit, primitive, state_scale
+from floquet.orbits.orbit import Orbit, state_scale
 from floquet.orbits.system import ContactSystem, Run
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -160,7 +161,7 @@ def _periodic(
     for n in recurs[:1] or range(1, most_cycles + 1):
         deadline.check()
         try:
-            orbit = primitive(find_orbit(system, seen.end, period, n, parameter))
+            orbit = primitive(close_orbit(system, seen.end, period, n, parameter))
         except NumericalError:
             continue
         if orbit.stable and (recurs or _near(orbit, seen)):

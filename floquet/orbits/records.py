@@ -13,17 +13,18 @@ from lumped.compiler import compiled
 from lumped.typing import BoolArray, FloatArray, IntArray
 
 #: Of functions that only other kernels call, and that allocate nothing. A function that Python can call takes
-#: twice as long to compile.
+#: longer to compile.
 called = compiled(_nrt=False, no_cpython_wrapper=True)
-#: The same for the formulas of one Taylor coefficient: a call for each coefficient would take most of the time.
+#: The same for formulas of one coefficient or step: calls would take a tenth of the time.
 inlined = compiled(_nrt=False, no_cpython_wrapper=True, forceinline=True)
 
-#: States of a contact. ABSENT: the pair of teeth does not exist in this piece of the cycle. GAP: the flanks do
-#: not touch. RECOVERING: the flanks overlap, but spring and damper together would pull. CLOSED: the contact
-#: carries load.
+#: States of a contact. The contact does not exist in this piece of the cycle:
 ABSENT = -1
+#: The flanks do not touch.
 GAP = 0
+#: The flanks overlap, but spring and damper together would pull.
 RECOVERING = 1
+#: The contact carries load.
 CLOSED = 2
 
 #: How a propagation ended.
@@ -36,6 +37,7 @@ MOST_EVENTS = 1000
 
 #: One change of the state of a contact.
 EVENT = np.dtype((np.record, [("phase", np.float64), ("contact", np.int64), ("state", np.int64)]))
+EventArray = np.ndarray[Any, np.dtype[np.void]]
 #: One number each for the whole run. The output is y = output . z. While the run goes on, the means hold
 #: integrals over the phase, and the loads hold T^2 N.
 SUMMARY = np.dtype(
@@ -49,6 +51,7 @@ SUMMARY = np.dtype(
             ("largest_load", np.float64),  # of one contact
             ("least_load", np.float64),  # of all contacts together
             ("events", np.int64),  # how many changes of contact states happened
+            ("samples_in_cycle", np.int64),  # how many samples of the present cycle are recorded
         ],
     )
 )
@@ -168,7 +171,7 @@ class Record(NamedTuple):
 
     states: FloatArray
     loads: FloatArray
-    events: np.ndarray[Any, np.dtype[np.void]]
+    events: EventArray
     summary: Any
     end: FloatArray
 

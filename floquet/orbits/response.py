@@ -13,9 +13,10 @@ import numpy as np
 from floquet.orbits.attractors import Attractor, Motion, Survey
 from floquet.orbits.bifurcations import Bifurcation
 from floquet.orbits.branch import End, Family, Limits
+from floquet.orbits.closing import close_orbit
 from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.long_run import LongRun, grown, long_run
-from floquet.orbits.orbit import Orbit, find_orbit, same_motion, state_scale
+from floquet.orbits.orbit import Orbit, same_motion, state_scale
 from floquet.orbits.settling import alike
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -80,7 +81,7 @@ class Branch:
             start = (1.0 - part) * one.start + part * two.start
             parameter = (1.0 - part) * one.parameter + part * two.parameter
             try:
-                orbit = find_orbit(system, start, period, self.n, parameter)
+                orbit = close_orbit(system, start, period, self.n, parameter)
             except NumericalError:
                 continue
             if not any(same_motion(orbit, other) for other in result):

@@ -281,10 +281,8 @@ def _linear_acceleration(runs: _Runs, linear: LinearPart, work: _Stage) -> None:
 
 
 @inlined
-def _penetration(
-    laws: _SteppedLaws, direction: FloatArray, s: int, place: int, i: int, work: _Stage
-) -> None:
-    """d = u . z - e and d' = u . v - e' of contact i."""
+def _penetration(laws: _SteppedLaws, direction: FloatArray, s: int, place: int, i: int, work: _Stage) -> None:
+    """Penetration d = u . z - e and d' = u . v - e' of contact i."""
     for q in range(work.penetration.size):
         work.penetration[q] = -laws.clearance[s, place, i]
         work.penetration_rate[q] = -laws.clearance_rate[s, place, i]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -17,6 +18,7 @@ from floquet.orbits.records import (
     FINISHED,
     SUMMARY,
     ContactLaws,
+    EventArray,
     LinearPart,
     Record,
     Request,
@@ -73,7 +75,8 @@ class Run:
     mean, mean_square, least, most : of the output over the phase
     largest_load : of one contact
     least_load : of all contacts together
-    events : (E, 3) phase in cycles, contact and its new state (0 gap, 1 recovering, 2 closed)
+    events : (E,) with the fields "phase" in cycles, "contact", and "state", the new state of the contact:
+        0 gap, 1 recovering, 2 closed
     phases : (S,) of the samples in cycles
     states : (S, 2m)
     loads : (S, I)
@@ -89,7 +92,7 @@ class Run:
     most: float
     largest_load: float
     least_load: float
-    events: FloatArray
+    events: EventArray
     phases: FloatArray
     states: FloatArray
     loads: FloatArray
@@ -145,9 +148,7 @@ class ContactSystem:
         object.__setattr__(self, "phases", phases)
         linear = LinearPart(stiffness, damping, force, np.ascontiguousarray(parameter_force, dtype=float))
         direction = np.ascontiguousarray([np.asarray(x.direction, dtype=float) for x in self.contacts])
-        tables = SystemTables(
-            phases, self._present(), self._laws(), direction, linear, output
-        )
+        tables = SystemTables(phases, self._present(), self._laws(), direction, linear, output)
         object.__setattr__(self, "tables", tables)
 
     def _present(self) -> BoolArray:

@@ -20,19 +20,16 @@ from floquet.orbits.records import (
     LinearPart,
     Request,
     Series,
-    called,
     inlined,
 )
 from lumped.typing import FloatArray, IntArray
 
 
-@called
-def shift_laws(
-    table: ContactLaws, piece: int, phase: float, states: IntArray, laws: ContactLaws
-) -> None:
-    """Laws of the present contacts over the phase since the start of the step, ``phase`` behind the piece's start.
+@inlined
+def shift_laws(table: ContactLaws, piece: int, phase: float, states: IntArray, laws: ContactLaws) -> None:
+    """Laws of the present contacts as polynomials from the start of the step, ``phase`` behind that of the piece.
 
-    The recursion multiplies laws by series, so that both must be polynomials from the same place.
+    The recursion multiplies laws by series, so that both must be polynomials from the same phase.
     """
     for i in range(states.size):
         if states[i] == ABSENT:
@@ -47,7 +44,7 @@ def shift_laws(
             shift(table.acceleration[piece, i, r], phase, laws.acceleration[i, r])
 
 
-@called
+@inlined
 def taylor_coefficients(
     series: Series, laws: ContactLaws, states: IntArray, direction: FloatArray, linear: LinearPart,
     request: Request,
@@ -83,7 +80,7 @@ def _displacement(series: Series, j: int) -> None:
 
 @inlined
 def _penetration(series: Series, laws: ContactLaws, direction: FloatArray, i: int, j: int) -> None:
-    """d = u . z - e and d' = u . v - e' of contact i."""
+    """Penetration d = u . z - e and d' = u . v - e' of contact i."""
     d = series.penetration
     rate = series.penetration_rate
     for q in range(d.shape[2]):
@@ -156,7 +153,7 @@ def _contact_acceleration(series: Series, laws: ContactLaws, i: int, r: int, j: 
             series.v[j + 1, r, q] += a * series.load[i, j - p, q]
 
 
-@called
+@inlined
 def step_size(series: Series, request: Request, longest: float) -> float:
     """Longest step whose last two terms are below the tolerance, each column relative to its own size."""
     order = request.order
@@ -183,7 +180,7 @@ def _largest(coefficients: FloatArray) -> float:
     return largest
 
 
-@called
+@inlined
 def move_to_end(series: Series, step: float) -> None:
     """State and derivatives at the end of the step, as order 0 of the next one.
 

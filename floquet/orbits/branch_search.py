@@ -16,9 +16,10 @@ import numpy as np
 from floquet.orbits.attractors import Attractor, Motion, Survey
 from floquet.orbits.bifurcations import Bifurcation, bifurcations, doubling_direction, with_bifurcations
 from floquet.orbits.branch import Continuation, End, Limits, Path
+from floquet.orbits.closing import close_orbit, closing_residual, primitive
 from floquet.orbits.deadline import ENDLESS, Deadline, OutOfTimeError
 from floquet.orbits.long_run import LongRun, grown
-from floquet.orbits.orbit import Orbit, find_orbit, one_pass, primitive, same_motion
+from floquet.orbits.orbit import Orbit, same_motion
 from floquet.orbits.response import Branch, Member, Response, lost_stability
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray, Progress
@@ -71,7 +72,7 @@ class Agenda:
         return abs(float(np.log(rate / self.first)))
 
 
-def find_response(
+def find_branches(
     member: Member, *, periods: Collection[int] = (1, 2, 3), seeds: int = 20,
     progress: Progress | None = None, agenda: Agenda | None = None, deadline: Deadline = ENDLESS,
 ) -> Response:  # fmt: skip
@@ -89,7 +90,7 @@ def find_response(
     return search.response
 
 
-def find_stack(
+def find_branches_of_stack(
     members: Sequence[Member],
     *,
     periods: Collection[int] = (1, 2),
@@ -295,7 +296,7 @@ class _Search:
     # The order of the search.
 
     def explore(self, seeds: int, progress: Progress | None = None) -> None:
-        """Look everywhere: see `find_response`."""
+        """Look everywhere: see `find_branches`."""
         report = progress or (lambda done: None)
         self.primaries(report)
         self.slot = self.deadline.share(_WINDOW)
@@ -503,7 +504,7 @@ class _Search:
     def follow_near(self, start: FloatArray, period: float, n: int, parameter: float) -> bool:
         """Whether there is a motion near a start; its branch is followed unless it has fewer cycles."""
         try:
-            orbit = find_orbit(self.family.at(period), start, period, n, parameter)
+            orbit = close_orbit(self.family.at(period), start, period, n, parameter)
         except NumericalError:
             return False
         if primitive(orbit) is orbit and not (n == 1 and self._calm(orbit)):
@@ -595,7 +596,7 @@ class _Search:
         ]
 
     def _double(self, along: Continuation, single: Orbit) -> None:
-        run = one_pass(single.system, single.start, single.period, along.n, single.parameter)[2]
+        run = closing_residual(single.system, single.start, single.period, along.n, single.parameter)[2]
         twice = Orbit(single.system, single.period, along.n, single.parameter, run)
         try:
             path = along.follow(twice, tangent=doubling_direction(along, single), deadline=self.following)
