@@ -302,7 +302,7 @@ def _run_through(
 
 
 def _observed(one: Member, start: FloatArray, period: float, parameter: float, settle: int) -> Run | None:
-    """What a run does after it has settled; None where it grows beyond what is followed."""
+    """The settled run; None where the run grows beyond the largest motion that is followed."""
     system = one.family.at(period)
     try:
         settled = system.run(start, period, settle, parameter)
@@ -413,7 +413,10 @@ def jumps_removed_by(
 
 
 def search_range(axis: str, own: float, within: tuple[float, float] | None = None) -> tuple[float, float]:
-    """Range in which an axis is searched, or mapped, by default, in its units; ``within`` is another one."""
+    """Default range of an axis for searches and maps, in units of the axis.
+
+    ``within`` replaces the default.
+    """
     if within is None:
         return {
             "torque": (0.25 * own, 4.0 * own),

@@ -399,7 +399,7 @@ def within(
 
 
 def compile_kernels(one: Member) -> None:
-    """Call what is compiled at its first call: that shall not count as time of a search."""
+    """Compile all kernels by calling them once: compilation shall not count as time of a search."""
     rate = one.limits.fastest
     state, parameter = one.start(1.0 / rate)
     with contextlib.suppress(NumericalError):
@@ -408,9 +408,9 @@ def compile_kernels(one: Member) -> None:
 
 
 def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:
-    """What the search for branches needs of a gear pair, for speeds from ``low`` to ``high`` [rpm].
+    """System, limits and starts of a gear pair for the search for branches from ``low`` to ``high`` [rpm].
 
-    The range is widened to speeds of the grid, so that what is found at a speed depends on it little.
+    The range is extended to speeds of the grid. The motions found at a speed then hardly depend on the range.
     """
     cycle = pair.geometry.mesh_period * operating_rpm(pair)
     frequency = _natural_frequency(pair)

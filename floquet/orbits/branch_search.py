@@ -97,9 +97,10 @@ def find_branches_of_stack(
     seeds: int = 0,
     progress: Progress | None = None,
 ) -> list[Response]:
-    """Return the branches of several systems, as over a second parameter, each also from its neighbours.
+    """Return the branches of several systems, for example over a second parameter.
 
-    So an isolated branch is found wherever it exists once one member has shown it.
+    Each search also starts from motions of the neighbouring systems. An isolated branch found in one system
+    is therefore also found in the neighbours.
     """
     searches: list[_Search] = []
     for j, member in enumerate(members):
@@ -147,7 +148,7 @@ class _Trace:
 
     @property
     def ends(self) -> tuple[End, End]:
-        """Why it ends at its first and at its last motion."""
+        """Reasons of the ends at the first and at the last motion."""
         return self.first_end if self.down is None else self.down.end, self.up.end
 
     @property
@@ -247,7 +248,7 @@ class _Search:
     # Windows and what is left of them.
 
     def windows(self) -> tuple[Window, ...]:
-        """Those asked for, and the speeds to which branches have led, without overlap."""
+        """The windows of the agenda and the speeds to which branches have led, without overlap."""
         if self.agenda is None:
             return (self.reported,)
         parts = [*self.asked]
@@ -258,7 +259,7 @@ class _Search:
         return merged(parts, self.reported)
 
     def _open(self, windows: tuple[Window, ...]) -> tuple[Window, ...]:
-        """Speeds at which something is left to do, and those to which what is left may lead."""
+        """Ranges of 1/T with unfinished work, and ranges to which unfinished branches may lead."""
         if not self.deadline.limited:
             return ()
         high = self.reported[1]
@@ -423,7 +424,7 @@ class _Search:
     # Isolated motions.
 
     def settle(self, rates: FloatArray, report: Callable[[float], None]) -> None:
-        """Let runs settle at the speeds, follow the motions to which they come where they are new."""
+        """Let runs settle at some speeds, and follow the branches of new motions."""
         starts = []
         for rate in map(float, rates):
             # The same numbers at a speed, whatever the range.
@@ -447,7 +448,7 @@ class _Search:
         return run.run is not None and (run.orbit is None or run.orbit.n not in self.periods)
 
     def identify(self, motion: Motion) -> LongRun:
-        """What a settled run has come to exactly; where it repeats and is new its branch is followed."""
+        """The exact motion of a settled run. The branch of a new periodic motion is followed."""
         known = self.response_at(1.0 / motion.rate)
         run = self.member.exactly(motion, known, self.deadline)
         if run.orbit is not None and run.orbit not in known:
@@ -512,7 +513,7 @@ class _Search:
         return True
 
     def from_settled(self, orbit: Orbit) -> None:
-        """Follow a stable motion, or the one that it has doubled from where it has too many cycles."""
+        """Follow a stable motion. With too many cycles: the motion from which it has doubled."""
         for n in sorted((n for n in self.periods if orbit.n % n == 0), reverse=True):
             if self.follow_near(orbit.start, orbit.period, n, orbit.parameter):
                 return
@@ -540,7 +541,7 @@ class _Search:
         return replace(self.limits, fastest=min(self.limits.fastest, step * self.reported[1]))
 
     def add(self, trace: _Trace) -> None:
-        """Keep a path as a branch, unless it turns out to be one that is known."""
+        """Add a path to the branches, unless its motions lie on a branch found before."""
         orbits = trace.path.orbits
         if self.twice(orbits):
             return
@@ -554,7 +555,7 @@ class _Search:
         return trace.branch()
 
     def _resume(self, trace: _Trace) -> None:
-        """Go on with a branch for which there was no time, unless another one has come to be the same."""
+        """Continue a branch that the deadline has cut, or drop it where it repeats another branch."""
         index = next(i for i, other in self._cut.items() if other is trace)
         if not self.twice(trace.path.orbits, self.branches[index]):
             try:

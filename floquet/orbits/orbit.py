@@ -127,9 +127,9 @@ def state_scale(start: FloatArray) -> FloatArray:
 
 
 def same_motion(one: Orbit, other: Orbit, tolerance: float = 1e-6) -> bool:
-    """Whether two orbits at one period are the same motion, started in any of its cycles.
+    """Whether two orbits at one period are the same motion, started in any of the cycles.
 
-    A motion of n cycles that repeats after a divisor of n is the same as that of the divisor.
+    A motion of n cycles may repeat after a divisor of n. The orbit with the divisor is the same motion.
     """
     scale = state_scale(one.start) * tolerance
     return any(bool((np.abs(start - one.start) <= scale).all()) for start in other.shifted())

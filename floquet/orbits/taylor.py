@@ -27,7 +27,9 @@ from lumped.typing import FloatArray, IntArray
 
 @inlined
 def shift_laws(table: ContactLaws, piece: int, phase: float, states: IntArray, laws: ContactLaws) -> None:
-    """Laws of the present contacts as polynomials from the start of the step, ``phase`` behind that of the piece.
+    """Laws of the present contacts as polynomials from the start of the step.
+
+    The step starts ``phase`` after its piece.
 
     The recursion multiplies laws by series, so that both must be polynomials from the same phase.
     """
