@@ -23,8 +23,6 @@ from floquet.orbits.records import (
     GREW,
     MOST_EVENTS,
     TOO_MANY_EVENTS,
-    ContactLaws,
-    Contacts,
     Record,
     Request,
     Series,
@@ -56,18 +54,6 @@ def propagate(start: FloatArray, request: Request, system: SystemTables, record:
     polynomial = np.empty(request.order + 1)
     _set_start(series, start, request)
     _clear(record.summary)
-    outcome = _over_cycles(request, system, series, laws, contacts, polynomial, record)
-    if outcome == FINISHED:
-        _finish(series, request, record)
-    return outcome
-
-
-@called
-def _over_cycles(
-    request: Request, system: SystemTables, series: Series, laws: ContactLaws, contacts: Contacts,
-    polynomial: FloatArray, record: Record,
-) -> int:  # fmt: skip
-    """The loop over cycles, pieces of a cycle and steps."""
     states = contacts.states
     phases = system.phases
     for cycle in range(request.cycles):
@@ -97,6 +83,7 @@ def _over_cycles(
                     if record.summary.events > MOST_EVENTS * request.cycles:
                         return TOO_MANY_EVENTS
                 phase = end if end - (phase + step) <= _NO_PHASE else phase + step
+    _finish(series, request, record)
     return FINISHED
 
 
