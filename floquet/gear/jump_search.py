@@ -15,10 +15,10 @@ import numpy as np
 from floquet.gear.axes import checked_range, operating_rpm, speed_range
 from floquet.gear.motions import MOST_CYCLES, GearAttractor, GearOrbit
 from floquet.gear.response import Jump, ResponseBranches, compile_kernels, member, within
+from floquet.orbits.branch_search import Agenda, find_branches, merged
 from floquet.orbits.deadline import Deadline
 from floquet.orbits.orbit import Orbit, state_scale
 from floquet.orbits.response import Member, Response
-from floquet.orbits.search import Agenda, find_response, merged
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from lumped.model.periodic_system import Supports, on_springs
@@ -194,7 +194,7 @@ def search_jumps(
     one = replace(one, limits=replace(one.limits, calm=_as_linear(one, inside)))
     compile_kernels(one)
     deadline = Deadline(seconds)
-    response = find_response(
+    response = find_branches(
         one,
         periods=wanted,
         seeds=seeds,

@@ -19,10 +19,10 @@ from floquet.gear.motions import JUMP
 from floquet.gear.response import ResponseBranches, member
 from floquet.gear.unilateral import unilateral_family
 from floquet.orbits.branch import Continuation, Family, Limits
+from floquet.orbits.branch_search import find_branches, find_branches_of_stack
 from floquet.orbits.folds import FoldContinuation
 from floquet.orbits.orbit import Orbit
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
-from floquet.orbits.search import find_response, find_stack
 from lumped.arguments import one_of, real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
@@ -159,7 +159,7 @@ def jump_map(
         if progress is not None:
             progress(done)
 
-    stack = find_stack(
+    stack = find_branches_of_stack(
         members, periods=wanted, seeds=seeds, progress=lambda done, text="", /: report(0.8 * done)
     )
     rows = list[_Row]()
@@ -302,7 +302,7 @@ def _run_through(
 
 
 def _observed(one: Member, start: FloatArray, period: float, parameter: float, settle: int) -> Run | None:
-    """What a run does after it has settled; None where it grows beyond what is followed."""
+    """The settled run; None where the run grows beyond the largest motion that is followed."""
     system = one.family.at(period)
     try:
         settled = system.run(start, period, settle, parameter)
@@ -413,7 +413,10 @@ def jumps_removed_by(
 
 
 def search_range(axis: str, own: float, within: tuple[float, float] | None = None) -> tuple[float, float]:
-    """Range in which an axis is searched, or mapped, by default, in its units; ``within`` is another one."""
+    """Default range of an axis for searches and maps, in units of the axis.
+
+    ``within`` replaces the default.
+    """
     if within is None:
         return {
             "torque": (0.25 * own, 4.0 * own),
@@ -471,7 +474,7 @@ class _Removal:
             if (limit - value) * sign <= 0.0:
                 break
             here = member(self.varied(value), *self.branches.speeds_rpm)
-            folds = _folds(find_response(here, periods=self.periods, seeds=0))
+            folds = _folds(find_branches(here, periods=self.periods, seeds=0))
             if not folds:
                 return value - 0.5 * sign * margin, 0.5 * margin, speed
             margin *= 2.0

@@ -17,8 +17,9 @@ from floquet.gear.axes import operating_rpm
 from floquet.gear.unilateral import ContactForm, contact_cycle, unilateral_system
 from floquet.orbits import long_run as runs
 from floquet.orbits.attractors import Attractor, AttractorEnd
+from floquet.orbits.closing import close_orbit
 from floquet.orbits.long_run import BLOCKS, LongRun, Settled
-from floquet.orbits.orbit import Orbit, find_orbit
+from floquet.orbits.orbit import Orbit
 from floquet.orbits.response import Member, Response
 from floquet.orbits.system import Run
 from lumped.arguments import real_array, whole_number
@@ -140,7 +141,8 @@ class GearOrbit:
     @property
     def events(self) -> FloatArray:
         """(E, 3) time [s], tooth pair (index of ``MeshCycle.offsets``), 0 gap, 1 recovering or 2 contact."""
-        return np.asarray(self.orbit.run.events * [self.orbit.period, 1.0, 1.0])
+        events = self.orbit.run.events
+        return np.stack([events["phase"] * self.orbit.period, events["contact"], events["state"]], axis=1)
 
     @cached_property
     def whole(self) -> Orbit:
@@ -149,7 +151,7 @@ class GearOrbit:
         if o.start.size == 2 * _WHOLE:
             return o
         system = unilateral_system(self.pair, form="elastic")
-        return find_orbit(system, _wide(o.start), o.period, o.n, o.parameter)
+        return close_orbit(system, _wide(o.start), o.period, o.n, o.parameter)
 
     @cached_property
     def motion(self) -> xr.Dataset:
@@ -266,7 +268,7 @@ def periodic_orbit(
     form = form_with(back_side=back_side)
     state, parameter = start_of(pair, start, form)
     system = unilateral_system(pair, form=form)
-    return GearOrbit(pair, find_orbit(system, state, pair.geometry.mesh_period, n, parameter))
+    return GearOrbit(pair, close_orbit(system, state, pair.geometry.mesh_period, n, parameter))
 
 
 def long_run(

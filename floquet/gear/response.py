@@ -35,11 +35,11 @@ from floquet.gear.motions import (
 from floquet.gear.unilateral import ContactForm, unilateral_family
 from floquet.orbits.bifurcations import Kind
 from floquet.orbits.branch import Limits
+from floquet.orbits.branch_search import STARTS, find_branches
+from floquet.orbits.closing import closing_residual
 from floquet.orbits.deadline import Deadline
 from floquet.orbits.long_run import LongRun, Settled
-from floquet.orbits.orbit import one_pass
 from floquet.orbits.response import MARGINAL, Branch, Member, Response, lost_stability
-from floquet.orbits.search import STARTS, find_response
 from floquet.orbits.settling import settle
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
@@ -371,7 +371,7 @@ def response_branches(
     limit = None if seconds is None else real_number("seconds", seconds, 0.0, above=True, unit="s")
     if limit is not None:
         compile_kernels(result)
-    response = find_response(result, periods=wanted, seeds=seeds, progress=progress, deadline=Deadline(limit))
+    response = find_branches(result, periods=wanted, seeds=seeds, progress=progress, deadline=Deadline(limit))
     return ResponseBranches(pair, (low, high), back_side, response, result)
 
 
@@ -399,18 +399,18 @@ def within(
 
 
 def compile_kernels(one: Member) -> None:
-    """Call what is compiled at its first call: that shall not count as time of a search."""
+    """Compile all kernels by calling them once: compilation shall not count as time of a search."""
     rate = one.limits.fastest
     state, parameter = one.start(1.0 / rate)
     with contextlib.suppress(NumericalError):
-        one_pass(one.family.at(1.0 / rate), state, 1.0 / rate, 1, parameter)
+        closing_residual(one.family.at(1.0 / rate), state, 1.0 / rate, 1, parameter)
     settle(one.family, one.limits, state[None], np.array([1.0 / rate]), np.array([parameter]))
 
 
 def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:
-    """What the search for branches needs of a gear pair, for speeds from ``low`` to ``high`` [rpm].
+    """System, limits and starts of a gear pair for the search for branches from ``low`` to ``high`` [rpm].
 
-    The range is widened to speeds of the grid, so that what is found at a speed depends on it little.
+    The range is extended to speeds of the grid. The motions found at a speed then hardly depend on the range.
     """
     cycle = pair.geometry.mesh_period * operating_rpm(pair)
     frequency = _natural_frequency(pair)

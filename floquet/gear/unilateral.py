@@ -205,7 +205,7 @@ def unilateral_family(
 
 
 class _Parts:
-    """The system of a family of speeds, as a sum of what is without friction and of its one or two parts."""
+    """The system of a family of speeds: one without friction, and one or two parts of the friction law."""
 
     def __init__(self, pair: GearPair, family: FrictionFamily, form: ContactForm) -> None:
         self.family = family

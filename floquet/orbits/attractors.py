@@ -32,7 +32,7 @@ _NONE = np.zeros(3)
 
 @dataclass(eq=False)
 class Motion:
-    """What runs at one speed have come to.
+    """A motion to which runs at one speed have settled.
 
     Attributes
     ----------
@@ -54,12 +54,12 @@ class Motion:
 
     @property
     def run(self) -> LongRun:
-        """What it is exactly."""
+        """The exact motion, or its exponent where the motion does not repeat."""
         assert self.identified is not None
         return self.identified
 
     def identify(self, run: LongRun) -> None:
-        """Say what it is exactly."""
+        """Store the exact motion, and its size."""
         self.identified = run
         if run.run is not None:
             self.size = np.array([run.run.rms, run.run.least, run.run.most])
@@ -99,16 +99,17 @@ class Attractor:
 
 
 class Survey:
-    """Motions to which runs settle at speeds (k,) that increase, those of neighbours followed both ways.
+    """Steady motions at each of k increasing speeds.
 
-    ``starts`` are the rate, state and parameter of each run; each rate is one of ``rates``. ``grown`` are the
-    starts from which runs grow; ``told`` gets the finished fraction. OutOfTimeError: the deadline has passed.
+    A motion found at one speed is also followed to the next lower and higher speed. ``starts`` are the rate,
+    state and parameter of each run; each rate is one of ``rates``. ``grown`` are the starts from which runs
+    grow. ``report`` is called with the finished fraction. OutOfTimeError: the deadline has passed.
     """
 
     def __init__(
         self, family: Family, limits: Limits, rates: FloatArray,
         starts: list[tuple[float, FloatArray, float]],
-        told: Callable[[float], object] = lambda done: None, deadline: Deadline = ENDLESS,
+        report: Callable[[float], object] = lambda done: None, deadline: Deadline = ENDLESS,
     ) -> None:  # fmt: skip
         self.family = family
         self.limits = limits
@@ -124,7 +125,7 @@ class Survey:
                     self.grown.append(motion)
                 else:
                     self._enter(j, result, i, motion.parameter).starts += 1
-            told((j + 1) / rates.size)
+            report((j + 1) / rates.size)
         while sum(self._carry(j, way) for way in (1, -1) for j in range(rates.size)[::way]):
             pass
 
@@ -138,7 +139,10 @@ class Survey:
         return result, result.grown(self.limits.amplitude)
 
     def _enter(self, j: int, result: Settled, i: int, parameter: float) -> Motion:
-        """The motion at a speed that a run is like; a new one where there is none and room is left."""
+        """The motion at speed j that is like run i.
+
+        Without such a motion: a new one, or the motion nearest in size where the level is full.
+        """
         level = self.levels[j]
         size = result.sizes[i]
         like = [motion for motion in level if alike(motion.size, size)]
@@ -148,12 +152,12 @@ class Survey:
         return level[-1]
 
     def _carry(self, j: int, way: int) -> bool:
-        """Let the motions at a speed go on at the next one that way; whether any had not yet."""
-        moved = [motion for motion in self.levels[j] if way not in motion.next]
-        if not moved or not 0 <= j + way < self.rates.size:
+        """Let motions at speed j run on at the next speed; return whether there was one that had not yet."""
+        waiting = [motion for motion in self.levels[j] if way not in motion.next]
+        if not waiting or not 0 <= j + way < self.rates.size:
             return False
-        result, grows = self._settle(moved, np.full(len(moved), self.rates[j + way]))
-        for i, motion in enumerate(moved):
+        result, grows = self._settle(waiting, np.full(len(waiting), self.rates[j + way]))
+        for i, motion in enumerate(waiting):
             motion.next[way] = None if grows[i] else self._enter(j + way, result, i, motion.parameter)
         return True
 
@@ -189,7 +193,10 @@ class Survey:
     def _onward(
         self, last: Motion, way: int, to: int, level: list[Motion]
     ) -> tuple[Motion, AttractorEnd | None]:
-        """The motion at the next speed that one leads to, taken out of the level; or where it ends before."""
+        """The motion at the next speed to which the last motion leads, removed from the level of that speed.
+
+        Where the last motion ends before the next speed: the place of this end as well.
+        """
         for other in level:
             linked = last.next.get(way) is other or other.next.get(-way) is last
             if linked and alike(last.size, other.size, _FOLLOWS):
@@ -203,7 +210,7 @@ class Survey:
         return motion, end
 
     def _walk(self, last: Motion, rate: float) -> tuple[Motion, AttractorEnd | None]:
-        """Go on from a motion in small steps to another speed: the motion there, or where it ended before."""
+        """Follow a motion in small steps to another speed; return the last motion, and its end or None."""
         good = last
         states = self._replicas(last)
         for step in last.rate * (rate / last.rate) ** (np.arange(1.0, _STEPS + 1.0) / _STEPS):
@@ -223,7 +230,7 @@ class Survey:
         return good, AttractorEnd(good.rate, size, 1.0 / good.rate, good.run)
 
     def _lasts(self, motion: Motion) -> bool:
-        """Whether runs stay on a motion; chaos that they leave soon is a way to another motion."""
+        """Whether runs stay on a motion. Runs leave some chaos soon, on their way to another motion."""
         states = self._replicas(motion)
         count = 0
         for _ in range(_LONG):
@@ -235,7 +242,7 @@ class Survey:
         return True
 
     def _left(self, states: FloatArray, rate: float, motion: Motion) -> tuple[Settled, BoolArray]:
-        """Runs at a speed, and which of them are no longer like a motion."""
+        """Settled runs at a speed, and which runs are no longer like a motion."""
         result, grows = self._settle(
             [Motion(rate, state, motion.parameter, motion.size) for state in states],
             np.full(len(states), rate),

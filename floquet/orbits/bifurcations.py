@@ -57,9 +57,10 @@ class Bifurcation:
 
 
 def with_bifurcations(along: Continuation, path: Path, result: list[Bifurcation]) -> list[Orbit]:
-    """The orbits of a path with those of its bifurcations in their places, so that folds are among them.
+    """The orbits of a path and the orbits of its bifurcations, in order along the path.
 
-    Between two bifurcations of one step stands a motion as well: theirs do not say whether it is stable.
+    Two bifurcations of one step have a motion between them, because bifurcations are marginally stable: this
+    motion shows whether the branch is stable there.
     """
     places = [
         *((float(j), orbit) for j, orbit in enumerate(path.orbits)),
@@ -107,7 +108,7 @@ def doubling_direction(along: Continuation, orbit: Orbit) -> FloatArray:
 
 
 def _tests(path: Path, j: int) -> list[tuple[Kind, _Test]]:
-    """What happens between points j and j + 1, with a function that changes its sign there."""
+    """Kinds of bifurcations between points j and j + 1, each with its test function, which changes sign."""
     one, two = ends = [(path.orbits[i], path.tangents[i]) for i in (j, j + 1)]
     tests: list[tuple[Kind, _Test]] = [("fold", _speed_along), ("period doubling", _doubling)]
     if abs(_unstable_pairs(one[0]) - _unstable_pairs(two[0])) == 2:
@@ -148,11 +149,11 @@ def _turns(orbit: Orbit) -> bool:
 
 
 def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -> Bifurcation:
-    """Where the test changes its sign between points j and j + 1, in planes across their chord."""
+    """The zero of a test function between points j and j + 1, by Newton's method across the chord."""
     chord = path.X[j + 1] - path.X[j]
     chord = chord / np.linalg.norm(chord)
     places = [0.0, 1.0]
-    known = [_Known(path.X[i], path.orbits[i], path.tangents[i], test) for i in (j, j + 1)]
+    known = [_TestedPoint(path.X[i], path.orbits[i], path.tangents[i], test) for i in (j, j + 1)]
     around = max(abs(one.value) for one in known)
 
     def value(part: float) -> float:
@@ -163,7 +164,7 @@ def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -
             share = (part - places[at - 1]) / (places[at] - places[at - 1])
             X, orbit, turned, _ = along.correct(_between(one, two, chord, share), chord)
             places.insert(at, part)
-            known.insert(at, _Known(X, orbit, turned, test))
+            known.insert(at, _TestedPoint(X, orbit, turned, test))
         return known[at].value
 
     try:
@@ -177,7 +178,7 @@ def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -
     return Bifurcation(kind, result.orbit, j + part, sharp)
 
 
-class _Known:
+class _TestedPoint:
     """A point between two of a path, with its tangent and the value of a test there."""
 
     def __init__(self, X: FloatArray, orbit: Orbit, tangent: FloatArray, test: _Test) -> None:
@@ -187,7 +188,7 @@ class _Known:
         self.value = test(orbit, tangent)
 
 
-def _between(one: _Known, two: _Known, chord: FloatArray, t: float) -> FloatArray:
+def _between(one: _TestedPoint, two: _TestedPoint, chord: FloatArray, t: float) -> FloatArray:
     """A point of the cubic through two with their tangents; straight where these turn away from the chord."""
     X, Y = one.X, two.X
     length = float(chord @ (Y - X))

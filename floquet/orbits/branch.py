@@ -12,8 +12,9 @@ from typing import Literal
 
 import numpy as np
 
+from floquet.orbits.closing import closing_residual
 from floquet.orbits.deadline import ENDLESS, Deadline
-from floquet.orbits.orbit import Orbit, one_pass
+from floquet.orbits.orbit import Orbit
 from floquet.orbits.system import ContactSystem
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -81,9 +82,9 @@ class Limits:
 
 @dataclass(eq=False)
 class Path:
-    """Points of a branch in one direction: scaled unknowns X, motions, unit tangents, and why it ends.
+    """Points of a branch in one direction: scaled unknowns X, motions, unit tangents, reason of the end.
 
-    Where it ends for want of "time", ``step`` is the one with which it goes on.
+    ``step`` is the length of the next step. A path that ends because of "time" continues with this step.
     """
 
     X: list[FloatArray]
@@ -99,7 +100,7 @@ class Path:
 
 
 class Continuation:
-    """Follows orbits of n cycles in (x, p, log 1/T), scaled so that each is of order one."""
+    """Follows orbits of n cycles in the unknowns (x, p, log 1/T), each scaled to order one."""
 
     def __init__(self, family: Family, n: int, limits: Limits) -> None:
         self.family = family
@@ -124,13 +125,14 @@ class Continuation:
     def evaluate(
         self, X: FloatArray, by_coefficients: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray, Orbit]:
-        """Scaled residual F, its derivative by X, and the motion, an orbit where F vanishes.
+        """Scaled residual F of the closing conditions, its derivative by X, and the motion.
 
-        ``by_coefficients`` is what `by_coefficients` gave nearby, where it need not be computed again.
+        The motion is periodic where F = 0. ``by_coefficients`` is a result of the method `by_coefficients`
+        at a place nearby. None: the result is computed here.
         """
         x, T, parameter = self._values(X)
         system = self.family.at(T)
-        r, J, run = one_pass(system, x, T, self.n, parameter)
+        r, J, run = closing_residual(system, x, T, self.n, parameter)
         if not self.family.constant:
             J[:, self.size] += self.by_coefficients(X) if by_coefficients is None else by_coefficients
         J[:, self.size] *= -T
@@ -149,7 +151,7 @@ class Continuation:
         )
 
     def by_coefficients(self, X: FloatArray) -> FloatArray:
-        """What T does to the residual through coefficients that depend on it."""
+        """Derivative of the residual by T through the coefficients alone, by central differences."""
         x, T, parameter = self._values(X)
         ends = []
         for sign in (1.0, -1.0):
@@ -158,7 +160,7 @@ class Continuation:
         return np.asarray((ends[0] - ends[1]) / (2.0 * _PERIOD_STEP * T))
 
     def _by_coefficients_near(self, X: FloatArray) -> FloatArray | None:
-        """The same, of a place near by where it is known; None where no coefficient depends on T.
+        """Result of `by_coefficients` at a place within reach; None where no coefficient depends on T.
 
         Folds stay where they are: the speed component of a tangent vanishes with the determinant of the
         derivatives by the other unknowns.
@@ -246,7 +248,7 @@ class Continuation:
                 step *= 0.6
 
     def _falls_back(self, path: Path, orbit: Orbit) -> bool:
-        """Whether a motion lies behind that of half the cycles: the halves have changed places."""
+        """Whether the path has passed the motion of half the cycles: both halves have changed places."""
         first = path.orbits[1] if len(path.orbits) > 1 else orbit
         one, two = (o.run.states[self.n // 2] - o.start for o in (first, orbit))
         scale = self.scale[: self.size]

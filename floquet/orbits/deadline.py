@@ -1,7 +1,7 @@
 """A limit of processor time for a search.
 
-Whoever works with one asks it between short pieces of work. What is found before is as right as without a
-limit; what is left has to be named by the search.
+A search asks its deadline between short pieces of work. Motions found before the deadline are as exact as
+without a limit. The search names the ranges that it did not search.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Deadline:
 
     @property
     def used(self) -> float:
-        """Processor time since it was set [s]."""
+        """Processor time since the deadline was set [s]."""
         return time.process_time() - self._start
 
     @property
@@ -52,7 +52,7 @@ class Deadline:
             raise OutOfTimeError
 
     def share(self, part: float) -> Deadline:
-        """One that ends after a part of what is left."""
+        """A new deadline after a part of the time left."""
         return Deadline(part * self.left if self.limited else None)
 
 

@@ -11,8 +11,9 @@ from typing import Literal
 
 import numpy as np
 
+from floquet.orbits.closing import close_orbit, primitive
 from floquet.orbits.deadline import ENDLESS, Deadline
-from floquet.orbits.orbit import Orbit, find_orbit, primitive, state_scale
+from floquet.orbits.orbit import Orbit, state_scale
 from floquet.orbits.system import ContactSystem, Run
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -36,7 +37,7 @@ _PART = 32
 
 @dataclass(frozen=True, eq=False)
 class LongRun:
-    """What a run has settled to.
+    """The motion to which a run has settled.
 
     Attributes
     ----------
@@ -78,7 +79,7 @@ def long_run(
     amplitude: float = np.inf,
     deadline: Deadline = ENDLESS,
 ) -> LongRun:
-    """Let a motion settle and say what it is.
+    """Let a motion settle, and find out whether it is periodic, beats, chaos, or grows.
 
     First it is compared with itself after 1 to 8 n cycles, then Newton's method looks for a stable motion of
     1 to n cycles near it, since near a bifurcation settling takes long; what is left has its Lyapunov
@@ -160,7 +161,7 @@ def _periodic(
     for n in recurs[:1] or range(1, most_cycles + 1):
         deadline.check()
         try:
-            orbit = primitive(find_orbit(system, seen.end, period, n, parameter))
+            orbit = primitive(close_orbit(system, seen.end, period, n, parameter))
         except NumericalError:
             continue
         if orbit.stable and (recurs or _near(orbit, seen)):
@@ -169,9 +170,9 @@ def _periodic(
 
 
 def _near(orbit: Orbit, seen: Run) -> bool:
-    """Whether a motion may be the one that a run is settling to: its extremes are near."""
-    room = _NEAR * (seen.most - seen.least)
-    return abs(orbit.run.least - seen.least) < room and abs(orbit.run.most - seen.most) < room
+    """Whether a run may be settling to a periodic motion: both have nearly equal extremes."""
+    near = _NEAR * (seen.most - seen.least)
+    return abs(orbit.run.least - seen.least) < near and abs(orbit.run.most - seen.most) < near
 
 
 def grown(parameter: float) -> LongRun:

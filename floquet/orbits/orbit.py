@@ -1,4 +1,6 @@
-"""Periodic motions by Newton's method on the map over n cycles.
+"""A periodic motion: its multipliers, whether it closes, and whether two are the same motion.
+
+`floquet.orbits.closing` finds one.
 
 Sources: docs/theory/orbits.md, "Periodic motions".
 """
@@ -10,9 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from floquet.orbits.kernel import CLOSED
+from floquet.orbits.records import CLOSED
 from floquet.orbits.system import ContactSystem, Run
-from lumped.errors import NumericalError
 from lumped.typing import ComplexArray, FloatArray
 
 #: Residual of a motion that counts as periodic, over the largest displacement or phase rate.
@@ -20,10 +21,7 @@ CLOSED_TO = 1e-11
 #: Rounding of the accumulated row over what the parameter alone gathers: at low speeds, where the cycle is
 #: long, that is far more than a state, and no number for the parameter closes the row better.
 _BALANCED_TO = 16.0 * float(np.finfo(np.float64).eps)
-_MOST_ITERATIONS = 15
 _LOWER_ORDER = 14
-_MOST_EVENTS = 1024
-_CYCLE_STARTS = np.zeros(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +100,13 @@ class Orbit:
     @property
     def signature(self) -> tuple[tuple[int, int], ...]:
         """The order of contact events, (contact, new state)."""
-        return tuple((int(i), int(new)) for _, i, new in self.run.events)
+        events = self.run.events
+        return tuple(zip(events["contact"].tolist(), events["state"].tolist(), strict=True))
 
     @property
     def contact_lost(self) -> bool:
         """Whether a contact changes its state in the motion."""
-        return bool(self.run.events.shape[0])
+        return bool(self.run.events.size)
 
     @property
     def strikes(self) -> bool:
@@ -127,65 +126,10 @@ def state_scale(start: FloatArray) -> FloatArray:
     return np.repeat([length, rate], m)
 
 
-def one_pass(
-    system: ContactSystem, start: FloatArray, period: float, n: int, parameter: float
-) -> tuple[FloatArray, FloatArray, Run]:
-    """Mismatch (2m + r,) of n cycles and of the accumulated rows, its derivatives, and the run.
-
-    The derivatives (2m + r, 2m + 2) are by the start, T and the parameter.
-    """
-    run = system.run(
-        start, period, n, parameter, derivatives=True, logged=_MOST_EVENTS, samples=_CYCLE_STARTS
-    )
-    J = run.derivative.copy()
-    J[: system.size, : system.size] -= np.eye(system.size)
-    return np.concatenate([run.end - run.start, run.accumulated]), J, run
-
-
-def find_orbit(
-    system: ContactSystem, start: FloatArray, period: float, n: int = 1, parameter: float = 0.0
-) -> Orbit:
-    """Periodic motion of n cycles by Newton's method at a fixed period T [s].
-
-    It starts from displacements and phase rates (2m,), and from ``parameter`` where the system has an
-    accumulated row. Raises NumericalError where no motion is found.
-    """
-    x = np.array(start, dtype=float)
-    size = system.size
-    unknowns = [*range(size), *([size + 1] if system.balanced else [])]
-    for _ in range(_MOST_ITERATIONS):
-        r, J, run = one_pass(system, x, period, n, parameter)
-        orbit = Orbit(system, period, n, parameter, run)
-        if orbit.closes:
-            return orbit
-        rows = np.linalg.norm(J[:, unknowns], axis=1)
-        if not (np.isfinite(rows).all() and rows.all()):
-            break
-        try:
-            step = np.linalg.solve(J[:, unknowns] / rows[:, None], -r / rows)
-        except np.linalg.LinAlgError:
-            break
-        x = x + step[:size]
-        parameter += float(step[size]) if system.balanced else 0.0
-    raise NumericalError(
-        f"no motion of {n} cycles was found from this start. Start from a settled run, or nearer to it."
-    )
-
-
 def same_motion(one: Orbit, other: Orbit, tolerance: float = 1e-6) -> bool:
-    """Whether two orbits at one period are the same motion, started in any of its cycles.
+    """Whether two orbits at one period are the same motion, started in any of the cycles.
 
-    A motion of n cycles that repeats after a divisor of n is the same as that of the divisor.
+    A motion of n cycles may repeat after a divisor of n. The orbit with the divisor is the same motion.
     """
     scale = state_scale(one.start) * tolerance
     return any(bool((np.abs(start - one.start) <= scale).all()) for start in other.shifted())
-
-
-def primitive(orbit: Orbit) -> Orbit:
-    """The orbit with the least number of cycles after which it repeats."""
-    for n in range(1, orbit.n // 2 + 1):
-        if orbit.n % n == 0:
-            scale = state_scale(orbit.start) * 1e-7
-            if bool((np.abs(orbit.run.states[n] - orbit.start) <= scale).all()):
-                return find_orbit(orbit.system, orbit.start, orbit.period, n, orbit.parameter)
-    return orbit

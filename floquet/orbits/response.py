@@ -13,9 +13,10 @@ import numpy as np
 from floquet.orbits.attractors import Attractor, Motion, Survey
 from floquet.orbits.bifurcations import Bifurcation
 from floquet.orbits.branch import End, Family, Limits
+from floquet.orbits.closing import close_orbit
 from floquet.orbits.deadline import ENDLESS, Deadline
 from floquet.orbits.long_run import LongRun, grown, long_run
-from floquet.orbits.orbit import Orbit, find_orbit, same_motion, state_scale
+from floquet.orbits.orbit import Orbit, same_motion, state_scale
 from floquet.orbits.settling import alike
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -80,7 +81,7 @@ class Branch:
             start = (1.0 - part) * one.start + part * two.start
             parameter = (1.0 - part) * one.parameter + part * two.parameter
             try:
-                orbit = find_orbit(system, start, period, self.n, parameter)
+                orbit = close_orbit(system, start, period, self.n, parameter)
             except NumericalError:
                 continue
             if not any(same_motion(orbit, other) for other in result):
@@ -115,7 +116,7 @@ class Response:
     limited: bool = False
 
     def at(self, period: float) -> list[Orbit]:
-        """All orbits that were found at a period, of few cycles first."""
+        """All orbits at a period, in order of their numbers of cycles."""
         result: list[Orbit] = []
         for branch in sorted(self.branches, key=lambda branch: branch.n):
             result += [o for o in branch.at(period) if not any(same_motion(o, other) for other in result)]
@@ -138,7 +139,7 @@ class Response:
 
 
 def _same(one: Motion, other: Motion) -> bool:
-    """Whether two that were identified at one speed are one motion."""
+    """Whether two identified motions at one speed are equal."""
     a, b = one.run.orbit, other.run.orbit
     if a is None or b is None:
         return a is b and alike(one.size, other.size)
@@ -178,9 +179,10 @@ class Member:
         return [(rate, one, parameter) for one in states]
 
     def leads_to(self, orbit: Orbit, period: float, deadline: Deadline = ENDLESS) -> LongRun:
-        """What a run from a motion settles to at another period.
+        """The motion to which a run from an orbit settles at another period.
 
-        It is a run to rounding, not of `settle`: basins beside a motion that doubles can be thin.
+        The run is exact to rounding, unlike a run of `settle`, because basins beside a motion
+        that doubles can be thin.
         """
         return long_run(
             self.family.at(period), orbit.start, period, orbit.parameter,
@@ -189,7 +191,7 @@ class Member:
         )  # fmt: skip
 
     def exactly(self, motion: Motion, orbits: list[Orbit], deadline: Deadline = ENDLESS) -> LongRun:
-        """What a settled run has come to: one of the orbits that were found there, or something else."""
+        """The exact motion of a settled run: one of the given orbits, or the result of a longer run."""
         period = 1.0 / motion.rate
         for orbit in orbits:
             close = _CLOSE * state_scale(motion.state)

@@ -8,20 +8,29 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from floquet.orbits.kernel import propagate
+from floquet.orbits.records import (
+    EVENT,
+    FINISHED,
+    SUMMARY,
+    ContactLaws,
+    EventArray,
+    LinearPart,
+    Record,
+    Request,
+    SystemTables,
+)
 from lumped.errors import NumericalError
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 #: Order of the Taylor series: the error of the state at 18 is that of rounding (docs/theory/orbits.md).
 ORDER = 18
 TOLERANCE = 1e-13
 _ROUNDING = 1e-15
-_ACCELERATION = 8  # place in the arguments of the kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +75,8 @@ class Run:
     mean, mean_square, least, most : of the output over the phase
     largest_load : of one contact
     least_load : of all contacts together
-    events : (E, 3) phase in cycles, contact and its new state (0 gap, 1 recovering, 2 closed)
+    events : (E,) with the fields "phase" in cycles, "contact", and "state", the new state of the contact:
+        0 gap, 1 recovering, 2 closed
     phases : (S,) of the samples in cycles
     states : (S, 2m)
     loads : (S, I)
@@ -82,7 +92,7 @@ class Run:
     most: float
     largest_load: float
     least_load: float
-    events: FloatArray
+    events: EventArray
     phases: FloatArray
     states: FloatArray
     loads: FloatArray
@@ -123,38 +133,46 @@ class ContactSystem:
     phases: FloatArray
     output: FloatArray
     parameter_force: FloatArray | None = None
-    _packed: tuple[Any, ...] = field(init=False, repr=False)
+    tables: SystemTables = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         phases = np.ascontiguousarray(self.phases, dtype=float)
-        K, C, F = (np.ascontiguousarray(x, dtype=float) for x in (self.stiffness, self.damping, self.force))
-        n = K.shape[0]
-        H = np.zeros(n) if self.parameter_force is None else self.parameter_force
-        H = np.ascontiguousarray(H, dtype=float)  # another layout would be another compilation
-        for name, value in (("stiffness", K), ("damping", C), ("force", F), ("phases", phases)):
+        # Arrays of one layout: another layout would be another compilation.
+        stiffness, damping, force, output = (
+            np.ascontiguousarray(x, dtype=float)
+            for x in (self.stiffness, self.damping, self.force, self.output)
+        )
+        parameter_force = np.zeros(force.size) if self.parameter_force is None else self.parameter_force
+        for name, value in (("stiffness", stiffness), ("damping", damping), ("force", force)):
             object.__setattr__(self, name, value)
-        P = phases.size - 1
-        parts: dict[str, list[FloatArray]] = {name: [] for name in ("k", "c", "e", "b", "alpha", "beta", "a")}
-        for contact in self.contacts:
-            k, c = _pieces(contact.stiffness, P), _pieces(contact.damping, P)
-            e = _pieces(contact.clearance, P)
-            b = _derivative(e) if contact.clearance_rate is None else _pieces(contact.clearance_rate, P)
-            sign = contact.sign
-            alpha, beta = (k, c) if sign is None else (_pieces(sign[0], P), _pieces(sign[1], P))
-            a = np.asarray(contact.acceleration, dtype=float)
-            a = np.broadcast_to(a[:, None], (P, n, 1)) if a.ndim == 1 else a
-            for name, value in zip(parts, (k, c, e, b, alpha, beta, a), strict=True):
-                parts[name].append(value)
-        lengths = np.diff(phases)
-        parts = {name: [_trimmed(x, lengths) for x in rows] for name, rows in parts.items()}
-        width = max(x.shape[-1] for name in parts if name != "a" for x in parts[name])
-        packed = [_stacked(parts[name], width) for name in ("k", "c", "e", "b", "alpha", "beta")]
-        packed.append(_stacked(parts["a"], max(x.shape[-1] for x in parts["a"])))
-        there = [True if x.present is None else np.asarray(x.present, bool) for x in self.contacts]
-        present = np.ascontiguousarray(np.stack([np.broadcast_to(x, P) for x in there], axis=1))
-        u = np.ascontiguousarray([np.asarray(x.direction, dtype=float) for x in self.contacts])
-        output = np.ascontiguousarray(self.output, dtype=float)
-        object.__setattr__(self, "_packed", (phases, present, *packed, u, K, C, F, H, output))
+        object.__setattr__(self, "phases", phases)
+        linear = LinearPart(stiffness, damping, force, np.ascontiguousarray(parameter_force, dtype=float))
+        direction = np.ascontiguousarray([np.asarray(x.direction, dtype=float) for x in self.contacts])
+        tables = SystemTables(phases, self._present(), self._laws(), direction, linear, output)
+        object.__setattr__(self, "tables", tables)
+
+    def _present(self) -> BoolArray:
+        """(P, I) whether a contact exists in a piece."""
+        pieces = self.phases.size - 1
+        rows = [True if x.present is None else np.asarray(x.present, bool) for x in self.contacts]
+        return np.ascontiguousarray(np.stack([np.broadcast_to(row, pieces) for row in rows], axis=1))
+
+    def _laws(self) -> ContactLaws:
+        """Laws of all contacts as polynomials of one width, without powers that are rounding."""
+        lengths = np.diff(self.phases)
+        laws = [_laws_of(contact, lengths.size, self.force.size) for contact in self.contacts]
+        trimmed = [ContactLaws(*(_trimmed(rows, lengths) for rows in law)) for law in laws]
+        width = max(rows.shape[-1] for law in trimmed for rows in law[:-1])
+        acceleration_width = max(law.acceleration.shape[-1] for law in trimmed)
+        return ContactLaws(
+            stiffness=_stacked([law.stiffness for law in trimmed], width),
+            damping=_stacked([law.damping for law in trimmed], width),
+            clearance=_stacked([law.clearance for law in trimmed], width),
+            clearance_rate=_stacked([law.clearance_rate for law in trimmed], width),
+            sign_by_penetration=_stacked([law.sign_by_penetration for law in trimmed], width),
+            sign_by_rate=_stacked([law.sign_by_rate for law in trimmed], width),
+            acceleration=_stacked([law.acceleration for law in trimmed], acceleration_width),
+        )
 
     @property
     def size(self) -> int:
@@ -168,16 +186,15 @@ class ContactSystem:
 
     def with_acceleration(self, acceleration: FloatArray) -> ContactSystem:
         """The same system with other accelerations per unit load, (P, I, n, D + 1) of all contacts."""
+        laws = self.tables.laws._replace(acceleration=np.ascontiguousarray(acceleration))
         other = copy.copy(self)
-        packed = list(self._packed)
-        packed[_ACCELERATION] = np.ascontiguousarray(acceleration)
-        object.__setattr__(other, "_packed", tuple(packed))
+        object.__setattr__(other, "tables", self.tables._replace(laws=laws))
         return other
 
     @property
     def acceleration(self) -> FloatArray:
         """Accelerations per unit load, (P, I, n, D + 1) of all contacts."""
-        return np.asarray(self._packed[_ACCELERATION], dtype=np.float64)
+        return self.tables.laws.acceleration
 
     def run(
         self, start: FloatArray, period: float, cycles: int = 1, parameter: float = 0.0, *,
@@ -191,46 +208,66 @@ class ContactSystem:
         """
         n, m = self.stiffness.shape
         samples = np.empty(0) if samples is None else np.ascontiguousarray(samples, dtype=float)
-        contacts = len(self.contacts)
-        states = np.zeros((cycles * samples.size, 2 * m))
-        loads = np.zeros((cycles * samples.size, contacts))
-        log = np.zeros((logged, 3))
-        totals = np.zeros(6)
-        final = np.zeros((m + n, 2 * m + 3 if derivatives else 1))
         start = np.ascontiguousarray(start, dtype=float)
-        arguments: tuple[Any, ...] = (
-            *(start, period, parameter, cycles, derivatives, order, TOLERANCE),
-            *self._packed,
-            *(samples, states, loads, log, totals, final),
+        request = Request(period, parameter, cycles, derivatives, order, TOLERANCE, samples)
+        record = Record(
+            states=np.zeros((cycles * samples.size, 2 * m)),
+            loads=np.zeros((cycles * samples.size, len(self.contacts))),
+            events=np.zeros(logged, EVENT),
+            summary=np.zeros(1, SUMMARY)[0],
+            end=np.zeros((m + n, 2 * m + 3 if derivatives else 1)),
         )
-        count = propagate(*arguments)
-        if count < 0:
+        if propagate(start, request, self.tables, record) != FINISHED:
             raise NumericalError(
                 "the motion grew beyond all numbers or has more than 1000 contact events in a cycle. "
                 "Start nearer to the motion looked for, or change the speed."
             )
+        summary = record.summary
         return Run(
             start=start,
-            end=final[: 2 * m, 0],
-            accumulated=final[2 * m :, 0],
-            derivatives=final[:, 1:] if derivatives else None,
-            mean=totals[0] / cycles,
-            mean_square=totals[1] / cycles,
-            least=float(totals[2]),
-            most=float(totals[3]),
-            largest_load=float(totals[4]),
-            least_load=float(totals[5]),
-            events=log[: min(count, logged)],
+            end=record.end[: 2 * m, 0],
+            accumulated=record.end[2 * m :, 0],
+            derivatives=record.end[:, 1:] if derivatives else None,
+            mean=float(summary.output_mean),
+            mean_square=float(summary.output_mean_square),
+            least=float(summary.least_output),
+            most=float(summary.most_output),
+            largest_load=float(summary.largest_load),
+            least_load=float(summary.least_load),
+            events=record.events[: min(int(summary.events), logged)],
             phases=(np.arange(cycles)[:, None] + samples).ravel(),
-            states=states,
-            loads=loads,
+            states=record.states,
+            loads=record.loads,
         )
 
 
-def _pieces(value: ArrayLike, count: int) -> FloatArray:
+def _laws_of(contact: Contact, pieces: int, rows: int) -> ContactLaws:
+    """Laws of one contact as polynomials (P, D + 1), the acceleration (P, n, D + 1)."""
+    stiffness = _polynomials(contact.stiffness, pieces)
+    damping = _polynomials(contact.damping, pieces)
+    clearance = _polynomials(contact.clearance, pieces)
+    if contact.clearance_rate is None:
+        clearance_rate = _derivative(clearance)
+    else:
+        clearance_rate = _polynomials(contact.clearance_rate, pieces)
+    if contact.sign is None:
+        sign_by_penetration = stiffness
+        sign_by_rate = damping
+    else:
+        sign_by_penetration = _polynomials(contact.sign[0], pieces)
+        sign_by_rate = _polynomials(contact.sign[1], pieces)
+    acceleration = np.asarray(contact.acceleration, dtype=float)
+    if acceleration.ndim == 1:
+        acceleration = np.broadcast_to(acceleration[:, None], (pieces, rows, 1))
+    return ContactLaws(
+        stiffness, damping, clearance, clearance_rate, sign_by_penetration, sign_by_rate, acceleration
+    )
+
+
+def _polynomials(value: ArrayLike, pieces: int) -> FloatArray:
     """A number or polynomials (P, D + 1) -> (P, D + 1)."""
     array = np.asarray(value, dtype=float)
-    return np.full((count, 1), float(array)) if array.ndim == 0 else array
+    return np.full((pieces, 1), float(array)) if array.ndim == 0 else array
 
 
 def _derivative(rows: FloatArray) -> FloatArray:

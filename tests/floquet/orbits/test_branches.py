@@ -6,11 +6,11 @@ from scipy.linalg import expm
 
 from floquet.orbits.bifurcations import doubling_direction
 from floquet.orbits.branch import Continuation, Family, Limits
+from floquet.orbits.branch_search import _Trace, find_branches
+from floquet.orbits.closing import close_orbit
 from floquet.orbits.deadline import Deadline, OutOfTimeError
 from floquet.orbits.long_run import _run, long_run, lyapunov_exponent
-from floquet.orbits.orbit import find_orbit
 from floquet.orbits.response import Member
-from floquet.orbits.search import _Trace, find_response
 from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 
@@ -33,7 +33,7 @@ def meissner_map(T, e=0.4, damping=0.1):
 
 def test_where_contact_holds_the_multipliers_are_meissners():
     T = 4.0
-    orbit = find_orbit(meissner(), np.array([1.0, 0.0]), T)
+    orbit = close_orbit(meissner(), np.array([1.0, 0.0]), T)
     assert not orbit.contact_lost
     expected = np.linalg.eigvals(meissner_map(T))
     assert np.sort_complex(orbit.multipliers) == pytest.approx(np.sort_complex(expected), abs=1e-12)
@@ -47,7 +47,7 @@ def start(T):
 def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
     """While contact holds, a period doubling is where the trace of the closed map is -1 - det."""
     system = meissner(e=0.6, damping=0.1)
-    found = find_response(Member(Family(lambda T: system, True), LIMITS, start), periods=(1, 2), seeds=1)
+    found = find_branches(Member(Family(lambda T: system, True), LIMITS, start), periods=(1, 2), seeds=1)
     doublings = [
         1.0 / b.orbit.period
         for branch in found.branches
@@ -73,7 +73,7 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
 def test_a_fold_ends_the_jump_of_the_bouncing_resonance():
     """At speeds beyond a fold no motion of its branch is left, and at the fold a multiplier is 1."""
     system = meissner(e=0.3, damping=0.3)
-    found = find_response(Member(Family(lambda T: system, True), LIMITS, start), periods=(1,), seeds=0)
+    found = find_branches(Member(Family(lambda T: system, True), LIMITS, start), periods=(1,), seeds=0)
     folds = [b for branch in found.branches for b in branch.bifurcations if b.kind == "fold" and b.sharp]
     assert len(folds) == 2
     for fold in folds:
@@ -82,13 +82,13 @@ def test_a_fold_ends_the_jump_of_the_bouncing_resonance():
         counts = [len(found.at(1.0 / (rate * (1.0 + off)))) for off in (-1e-4, 1e-4)]
         assert abs(counts[0] - counts[1]) == 2
     with pytest.raises(NumericalError, match="no motion of 3 cycles"):
-        find_orbit(system, np.array([-1e6, -1e6]), 5.0, 3)
+        close_orbit(system, np.array([-1e6, -1e6]), 5.0, 3)
 
 
 def test_a_long_run_tells_chaos_from_a_periodic_motion():
     """The exponent of a periodic motion is the log of its largest multiplier, whatever the contact does."""
     system = meissner(e=0.4, damping=0.1)
-    orbit = find_orbit(system, np.array([1.0, 0.0]), 4.0)
+    orbit = close_orbit(system, np.array([1.0, 0.0]), 4.0)
     exponent, _ = lyapunov_exponent(system, orbit.start, 4.0, cycles=200)
     assert exponent == pytest.approx(np.log(orbit.spectral_radius), abs=2e-2)
     run = long_run(system, 1.3 * orbit.start, 4.0)
@@ -122,7 +122,7 @@ def test_a_branch_followed_in_parts_is_the_branch_followed_at_once(rate):
     """The same points, folds at the same speeds and in their places, however often the time ends."""
     system = meissner(e=0.3, damping=0.3)
     along = Continuation(Family(lambda T: system, True), 1, LIMITS)
-    orbit = find_orbit(system, np.array([1.0, 0.0]), 1.0 / rate)
+    orbit = close_orbit(system, np.array([1.0, 0.0]), 1.0 / rate)
 
     def trace(looks):
         limit = Looks(looks)

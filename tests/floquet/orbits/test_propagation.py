@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from floquet.orbits.kernel import CLOSED, GAP
 from floquet.orbits.polynomials import crossing
+from floquet.orbits.records import CLOSED, GAP
 from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError
 
@@ -48,7 +48,7 @@ def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact():
     T = flight + contact
     run = BOUNCER.run(np.array([0.0, -2.0 * T]), T, 3, logged=10, derivatives=True)
     assert run.end == pytest.approx([0.0, -2.0 * T], rel=1e-12, abs=1e-12)
-    assert run.events[:5, 2].tolist() == [CLOSED, GAP, CLOSED, GAP, CLOSED]
+    assert run.events["state"][:5].tolist() == [CLOSED, GAP, CLOSED, GAP, CLOSED]
     # After half of the flight the mass is v0^2/2g above the spring.
     assert run.least == pytest.approx(-(2.0**2) / (2.0 * GRAVITY), rel=1e-12)
     # The end over the start speed: the return time moves by dT/dv0, during which the mass falls on.
@@ -69,7 +69,7 @@ def test_a_contact_that_opens_under_its_dampers_load_jumps_back():
     T = 1.0
     step = 1e-6
     run = system.run(x, T, 1, derivatives=True, logged=4)
-    assert run.events[:, 2].tolist() == [GAP]
+    assert run.events["state"].tolist() == [GAP]
     columns = [
         (system.run(x + step * e, T, 1).end - system.run(x - step * e, T, 1).end) / (2 * step)
         for e in np.eye(2)

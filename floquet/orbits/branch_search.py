@@ -16,9 +16,10 @@ import numpy as np
 from floquet.orbits.attractors import Attractor, Motion, Survey
 from floquet.orbits.bifurcations import Bifurcation, bifurcations, doubling_direction, with_bifurcations
 from floquet.orbits.branch import Continuation, End, Limits, Path
+from floquet.orbits.closing import close_orbit, closing_residual, primitive
 from floquet.orbits.deadline import ENDLESS, Deadline, OutOfTimeError
 from floquet.orbits.long_run import LongRun, grown
-from floquet.orbits.orbit import Orbit, find_orbit, one_pass, primitive, same_motion
+from floquet.orbits.orbit import Orbit, same_motion
 from floquet.orbits.response import Branch, Member, Response, lost_stability
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray, Progress
@@ -71,7 +72,7 @@ class Agenda:
         return abs(float(np.log(rate / self.first)))
 
 
-def find_response(
+def find_branches(
     member: Member, *, periods: Collection[int] = (1, 2, 3), seeds: int = 20,
     progress: Progress | None = None, agenda: Agenda | None = None, deadline: Deadline = ENDLESS,
 ) -> Response:  # fmt: skip
@@ -89,16 +90,17 @@ def find_response(
     return search.response
 
 
-def find_stack(
+def find_branches_of_stack(
     members: Sequence[Member],
     *,
     periods: Collection[int] = (1, 2),
     seeds: int = 0,
     progress: Progress | None = None,
 ) -> list[Response]:
-    """Return the branches of several systems, as over a second parameter, each also from its neighbours.
+    """Return the branches of several systems, for example over a second parameter.
 
-    So an isolated branch is found wherever it exists once one member has shown it.
+    Each search also starts from motions of the neighbouring systems. An isolated branch found in one system
+    is therefore also found in the neighbours.
     """
     searches: list[_Search] = []
     for j, member in enumerate(members):
@@ -146,7 +148,7 @@ class _Trace:
 
     @property
     def ends(self) -> tuple[End, End]:
-        """Why it ends at its first and at its last motion."""
+        """Reasons of the ends at the first and at the last motion."""
         return self.first_end if self.down is None else self.down.end, self.up.end
 
     @property
@@ -246,7 +248,7 @@ class _Search:
     # Windows and what is left of them.
 
     def windows(self) -> tuple[Window, ...]:
-        """Those asked for, and the speeds to which branches have led, without overlap."""
+        """The windows of the agenda and the speeds to which branches have led, without overlap."""
         if self.agenda is None:
             return (self.reported,)
         parts = [*self.asked]
@@ -257,7 +259,7 @@ class _Search:
         return merged(parts, self.reported)
 
     def _open(self, windows: tuple[Window, ...]) -> tuple[Window, ...]:
-        """Speeds at which something is left to do, and those to which what is left may lead."""
+        """Ranges of 1/T with unfinished work, and ranges to which unfinished branches may lead."""
         if not self.deadline.limited:
             return ()
         high = self.reported[1]
@@ -295,7 +297,7 @@ class _Search:
     # The order of the search.
 
     def explore(self, seeds: int, progress: Progress | None = None) -> None:
-        """Look everywhere: see `find_response`."""
+        """Look everywhere: see `find_branches`."""
         report = progress or (lambda done: None)
         self.primaries(report)
         self.slot = self.deadline.share(_WINDOW)
@@ -422,7 +424,7 @@ class _Search:
     # Isolated motions.
 
     def settle(self, rates: FloatArray, report: Callable[[float], None]) -> None:
-        """Let runs settle at the speeds, follow the motions to which they come where they are new."""
+        """Let runs settle at some speeds, and follow the branches of new motions."""
         starts = []
         for rate in map(float, rates):
             # The same numbers at a speed, whatever the range.
@@ -446,7 +448,7 @@ class _Search:
         return run.run is not None and (run.orbit is None or run.orbit.n not in self.periods)
 
     def identify(self, motion: Motion) -> LongRun:
-        """What a settled run has come to exactly; where it repeats and is new its branch is followed."""
+        """The exact motion of a settled run. The branch of a new periodic motion is followed."""
         known = self.response_at(1.0 / motion.rate)
         run = self.member.exactly(motion, known, self.deadline)
         if run.orbit is not None and run.orbit not in known:
@@ -503,7 +505,7 @@ class _Search:
     def follow_near(self, start: FloatArray, period: float, n: int, parameter: float) -> bool:
         """Whether there is a motion near a start; its branch is followed unless it has fewer cycles."""
         try:
-            orbit = find_orbit(self.family.at(period), start, period, n, parameter)
+            orbit = close_orbit(self.family.at(period), start, period, n, parameter)
         except NumericalError:
             return False
         if primitive(orbit) is orbit and not (n == 1 and self._calm(orbit)):
@@ -511,7 +513,7 @@ class _Search:
         return True
 
     def from_settled(self, orbit: Orbit) -> None:
-        """Follow a stable motion, or the one that it has doubled from where it has too many cycles."""
+        """Follow a stable motion. With too many cycles: the motion from which it has doubled."""
         for n in sorted((n for n in self.periods if orbit.n % n == 0), reverse=True):
             if self.follow_near(orbit.start, orbit.period, n, orbit.parameter):
                 return
@@ -539,7 +541,7 @@ class _Search:
         return replace(self.limits, fastest=min(self.limits.fastest, step * self.reported[1]))
 
     def add(self, trace: _Trace) -> None:
-        """Keep a path as a branch, unless it turns out to be one that is known."""
+        """Add a path to the branches, unless its motions lie on a branch found before."""
         orbits = trace.path.orbits
         if self.twice(orbits):
             return
@@ -553,7 +555,7 @@ class _Search:
         return trace.branch()
 
     def _resume(self, trace: _Trace) -> None:
-        """Go on with a branch for which there was no time, unless another one has come to be the same."""
+        """Continue a branch that the deadline has cut, or drop it where it repeats another branch."""
         index = next(i for i, other in self._cut.items() if other is trace)
         if not self.twice(trace.path.orbits, self.branches[index]):
             try:
@@ -595,7 +597,7 @@ class _Search:
         ]
 
     def _double(self, along: Continuation, single: Orbit) -> None:
-        run = one_pass(single.system, single.start, single.period, along.n, single.parameter)[2]
+        run = closing_residual(single.system, single.start, single.period, along.n, single.parameter)[2]
         twice = Orbit(single.system, single.period, along.n, single.parameter, run)
         try:
             path = along.follow(twice, tangent=doubling_direction(along, single), deadline=self.following)
