@@ -16,30 +16,28 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import brentq
-
-from lumped.errors import refuse
-from lumped.faults.base import ToothFault
-from lumped.faults.chip import Chip
-from lumped.faults.crack import Crack, root_section
-from lumped.faults.spall import Spall
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.gear import Gear
-from lumped.schema.meeting_teeth import first_teeth, own_teeth
 from lumped.schema.pair import GearPair
-from lumped.schema.relief import ProfileRelief
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import event_table
 from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
-from multibody.contact.undercut import undercut_edge
-from multibody.gears.cut_teeth import profile_shifts, root_radius
+from multibody.gears.circles import base_tooth_angle, circles, reliefs
+from multibody.gears.own_teeth import (
+    DrawnGear,
+    drawn_gears,
+    fault_places,
+    gear_teeth,
+    own_faults,
+    own_ripples,
+)
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
@@ -49,8 +47,6 @@ Supports = Literal["springs", "shafts"]
 #: transmission error by some thousandths of its peak to peak (docs/theory/shafts.md).
 _MESH_FREQUENCIES = 4.0
 _MESH_ORDERS = 5.0
-#: Largest operating pressure angle that is looked for [rad].
-_STEEPEST = 1.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,13 +212,14 @@ def machine(
         p[kn.FRICTION + fr.COLUMNS] = law.coefficients.shape[0] + 2
         p = np.append(p, pack(law))
         friction = [(True, place) for place in law.switches.tolist()]
-    own = own_block(pair)
+    gears = drawn_gears(pair, drawn)
+    own = own_block(pair, gears)
     p[kn.OWN] = p.size if own.size else 0.0
     p = np.append(p, own)
     starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
-    for which, gear in enumerate((pair.pinion, pair.gear)):
-        kinks = [place for fault in gear.faults for place in fault.kinks(pair.flank(which))]
-        starts += [l_xy - place if which else place for place in kinks]
+    for gear in gears:
+        kinks = [place for fault in gear.section.faults for place in fault_places(gear, fault)]
+        starts += [l_xy - place if gear.number else place for place in kinks]
     places = [place for _, place in friction]
     table = pack(stiffness)
     switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, l_xd, pitch)
@@ -253,60 +250,16 @@ def machine(
     return replace(found, bearing_stiffness=none, bearing_damping=none, train=shafts)
 
 
-def own_block(pair: GearPair) -> FloatArray:
+def own_block(pair: GearPair, gears: Sequence[DrawnGear]) -> FloatArray:
     """Teeth that differ, as numbers behind the parameters (see ``kinematics``); empty for like teeth."""
     if pair.healthy is pair:
         return np.zeros(0)
-    teeth = own_teeth(pair)
-    firsts = first_teeth(pair)
-    turned = [2.0 * math.pi * first / one.error.size for one, first in zip(teeth, firsts, strict=True)]
-    rows = [
-        (one.eccentricity, one.phase + angle, one.error.size, first)
-        for one, angle, first in zip(teeth, turned, firsts, strict=True)
-    ]
-    ripples = []
-    for one in pair.operating.torque_ripple:
-        which = int(one.shaft == "gear")
-        ripples += [which, one.order, one.amplitude, one.phase + one.order * turned[which]]
-    faults = [
-        _fault(pair, which, fault)
-        for which, gear in enumerate((pair.pinion, pair.gear))
-        for fault in gear.faults
-    ]
-    flanks = (pair.flank(0), pair.flank(1))
-    rises = [-one.slope / (flank.tip - flank.start) for one, flank in zip(teeth, flanks, strict=True)]
-    counts = [len(faults), len(pair.operating.torque_ripple)]
-    lists = [one.error for one in teeth] + rises + [one.relief for one in teeth]
-    return np.concatenate([np.ravel(rows), counts, *lists, *faults, ripples])
-
-
-def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
-    """A fault as a row of ``kinematics``; the crack's strip is that of ``lumped.faults``, its arm is not."""
-    flank = pair.flank(which)
-    gear = (pair.pinion, pair.gear)[which]
-    row = np.zeros(kn.FAULT_COLUMNS)
-    row[[kn.FAULT_GEAR, kn.FAULT_TOOTH, kn.FLANK_END]] = which, fault.tooth - 1, flank.tip
-    radius = flank.wheel.tooth.base_radius
-    if isinstance(fault, Crack):
-        centre, half = root_section(flank.wheel.tooth)
-        x = fault.depth * math.sin(fault.angle) / (2.0 * half)
-        strip = x**2 / (1.0 - x) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)
-        row[kn.CRACK] = 6.0 * strip / (gear.youngs_modulus * flank.face_width * half**2)
-        row[kn.ROOT] = centre
-        row[kn.HALF_TOOTH] = 0.5 * base_tooth_angle(pair, which, radius)
-    elif isinstance(fault, Spall):
-        row[kn.SPALL_START] = fault.start_roll_angle * radius
-        row[kn.SPALL_END] = fault.end_roll_angle * radius
-        width = flank.face_width if fault.width is None else fault.width
-        if width < flank.face_width:
-            row[kn.SPALL] = flank.hertz * (flank.face_width / (flank.face_width - width) - 1.0)
-        else:
-            row[kn.PIT] = fault.pit_depth
-    elif isinstance(fault, Chip):
-        row[kn.FLANK_END] = min(flank.tip, fault.roll_angle * radius)
-    else:
-        raise refuse("faults", fault.kind, "crack, spall, chip in the multibody model", "Leave it out.")
-    return row
+    teeth = [gear_teeth(pair, gear) for gear in gears]
+    rows = [(one.eccentricity, one.angle, one.gap.size, one.first) for one in teeth]
+    faults = [np.array(fault) for fault in own_faults(pair, gears)]
+    ripples = own_ripples(pair, gears)
+    lists = [one.gap for one in teeth] + [one.rise for one in teeth] + [one.relief for one in teeth]
+    return np.concatenate([np.ravel(rows), [len(faults), len(ripples)], *lists, *faults, np.ravel(ripples)])
 
 
 def _highest(machine: Machine) -> float:
@@ -371,68 +324,6 @@ def switch_phases(places: Sequence[float], l_xa: float, l_xd: float, pitch: floa
     return phases[phases < 1.0 - 1e-11]
 
 
-@dataclass(frozen=True)
-class Circles:
-    """Circles and path of contact of a pair: base radii, base pitch, tip radii, centre distance [m].
-
-    An undercut ends a flank at the length ``edge_pinion`` or ``edge_gear`` on its base tangent; 0 without
-    one.
-    """
-
-    base_pinion: float
-    base_gear: float
-    pitch: float
-    tip_pinion: float
-    tip_gear: float
-    centre_distance: float
-    edge_pinion: float
-    edge_gear: float
-
-    @property
-    def reach_pinion(self) -> float:
-        """Length on the pinion's base tangent from X to its tip circle."""
-        return math.sqrt(self.tip_pinion**2 - self.base_pinion**2)
-
-    @property
-    def reach_gear(self) -> float:
-        """Length on the gear's base tangent from Y to its tip circle."""
-        return math.sqrt(self.tip_gear**2 - self.base_gear**2)
-
-    @property
-    def start(self) -> float:
-        """L_XA: where the gear's tip or the pinion's edge begins contact."""
-        return max(self.tangent - self.reach_gear, self.edge_pinion)
-
-    @property
-    def end(self) -> float:
-        """L_XD: where the pinion's tip or the gear's edge ends contact."""
-        return min(self.reach_pinion, self.tangent - self.edge_gear)
-
-    @property
-    def tangent(self) -> float:
-        """Length L_XY of the line of action between the base circles."""
-        return math.sqrt(self.centre_distance**2 - (self.base_pinion + self.base_gear) ** 2)
-
-
-def circles(pair: GearPair) -> Circles:
-    """Circles of a pair."""
-    rack = pair.basic_rack
-    cosine = math.cos(rack.pressure_angle)
-    r_p, r_g = (0.5 * rack.module * gear.teeth * cosine for gear in (pair.pinion, pair.gear))
-    centre = _close_mesh(pair, r_p + r_g) if pair.centre_distance is None else pair.centre_distance
-    shifts = profile_shifts(pair)
-    return Circles(
-        base_pinion=r_p,
-        base_gear=r_g,
-        pitch=math.pi * rack.module * cosine,
-        tip_pinion=_tip_radius(pair, 0, centre),
-        tip_gear=_tip_radius(pair, 1, centre),
-        centre_distance=centre,
-        edge_pinion=undercut_edge(pair.basic_rack, pair.pinion.teeth, shifts[0]),
-        edge_gear=undercut_edge(pair.basic_rack, pair.gear.teeth, shifts[1]),
-    )
-
-
 def masses(pair: GearPair) -> tuple[FloatArray, FloatArray]:
     """Masses [kg] and polar inertias [kg m^2] of pinion and gear, each (2,).
 
@@ -455,88 +346,6 @@ def bearing_constants(pair: GearPair, mass: FloatArray) -> tuple[FloatArray, Flo
         ratio = np.array([bearing.loa_damping_ratio, bearing.oloa_damping_ratio])
         damping[row] = 2.0 * ratio * np.sqrt(stiffness[row] * mass[row])
     return stiffness, damping
-
-
-def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, float, float]]:
-    """Reliefs that act: gear (0 pinion, 1 gear), roll angles of start and end [rad], amount [m], power.
-
-    A tip relief ends at the tip, a root relief where contact starts or ends on its flank. Without
-    ``mesh.relief = "static"`` none acts but what single teeth have beyond it, with the amount 0 here.
-    """
-    rows = []
-    for which, gear, base, tip, root in (
-        (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.start),
-        (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.tangent - drawn.end),
-    ):
-        for relief, end, sense in ((gear.tip_relief, tip, -1.0), (gear.root_relief, root, 1.0)):
-            own = gear.deviations is not None and gear.deviations.tip_relief is not None
-            acts = pair.mesh.relief == "static"
-            if relief is None or not (own or (acts and relief.amount != 0.0)):
-                continue
-            power = 1.0 if relief.shape == "linear" else 2.0
-            amount = relief.amount if acts else 0.0
-            start = _relief_start(relief, base, end, sense)
-            rows.append((which, start, end / base, amount, power))
-    return rows
-
-
-def _relief_start(relief: ProfileRelief, base: float, end: float, sense: float) -> float:
-    """Roll angle at which a relief starts [rad], of what the file states; `end` is the reach of its end [m].
-
-    The profile angle at radius r is arccos(r_b/r), and its tangent the roll angle.
-    """
-    if relief.length is not None:
-        return (end + sense * relief.length) / base
-    if relief.start_diameter is not None:
-        return math.tan(math.acos(2.0 * base / relief.start_diameter))
-    return relief.start_roll_angle
-
-
-def base_tooth_angle(pair: GearPair, which: int, base: float) -> float:
-    """Angle between both flanks of a tooth on the base circle, thinned by its share of the backlash [rad].
-
-    ``which``: pinion (0) or gear (1), with the base radius ``base`` [m].
-    """
-    rack = pair.basic_rack
-    gear = (pair.pinion, pair.gear)[which]
-    shift = profile_shifts(pair)[which]
-    alpha = rack.pressure_angle
-    at_reference = (0.5 * math.pi + 2.0 * shift * math.tan(alpha)) / (0.5 * gear.teeth)
-    return at_reference + 2.0 * (math.tan(alpha) - alpha) - 0.5 * pair.mesh.backlash / base
-
-
-def _tip_radius(pair: GearPair, which: int, centre_distance: float) -> float:
-    """Tip radius of the pinion (0) or the gear (1) [m]: of the file, else as the rack leaves room for it.
-
-    The tip stays off the mate's root by the clearance of the rack, and does not reach beyond the addendum
-    that the rack gives.
-    """
-    gear = (pair.pinion, pair.gear)[which]
-    rack = pair.basic_rack
-    if gear.tip_diameter is not None:
-        return gear.tip_diameter / 2.0
-    if gear.addendum is not None:
-        return rack.module * gear.teeth / 2.0 + gear.addendum
-    full = rack.module * (0.5 * gear.teeth + rack.addendum_coefficient + profile_shifts(pair)[which])
-    if gear.tip_alteration is not None:
-        return full + gear.tip_alteration
-    clearance = rack.module * (rack.dedendum_coefficient - rack.addendum_coefficient)
-    return min(full, centre_distance - root_radius(pair, 1 - which) - clearance)
-
-
-def _close_mesh(pair: GearPair, base: float) -> float:
-    """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
-    alpha = pair.basic_rack.pressure_angle
-    teeth = pair.pinion.teeth + pair.gear.teeth
-    shift = sum(profile_shifts(pair))
-
-    def gap(angle: float) -> float:
-        grown = (math.tan(angle) - angle) - (math.tan(alpha) - alpha)
-        return grown - 2.0 * shift / teeth * math.tan(alpha)
-
-    if shift == 0.0:
-        return base / math.cos(alpha)
-    return base / math.cos(float(brentq(gap, 0.0, _STEEPEST, xtol=1e-15, rtol=1e-14)))
 
 
 def _disc(pair: GearPair, gear: Gear) -> tuple[float, float]:

@@ -17,13 +17,14 @@ from lumped.model.periodic_system import LTVSystem
 from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
-from lumped.schema.meeting_teeth import ripples
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, Supports, loaded_phase, machine
+from multibody.gears.circles import circles
+from multibody.gears.own_teeth import drawn_gears, own_ripples
 from multibody.run.effects import EFFECTS, active_effects, effect_flags, form_of
 from multibody.run.integration import Segment, integrate
 from multibody.run.linear_motion import LinearMotion, energy_residual, linear_motion
@@ -243,10 +244,12 @@ def _on_shafts(
     q, v = motion.state.copy().reshape(2, -1)
     mesh = np.pad(np.outer(numbers.overlap, numbers.overlap), (0, train.size - 6))
     stiffness = train.stiffness + system.cycle.mean_stiffness * mesh
-    for which, angle, phase, amplitude, _ in ripples(pair):  # else they would push the free train off
-        turning = 1j * angle / numbers.period
+    # Without this start ripples would push the free train away.
+    for ripple in own_ripples(pair, drawn_gears(pair, circles(pair))):
+        turning = 1j * ripple.order * (omega_p, omega_g)[ripple.gear]
         dynamic = stiffness + turning * train.damping + turning**2 * train.mass
-        moved = np.linalg.solve(dynamic, -amplitude * np.exp(1j * phase) * train.torques[int(which)])
+        torque = ripple.amplitude * np.exp(1j * ripple.phase)
+        moved = np.linalg.solve(dynamic, -torque * train.torques[ripple.gear])
         q, v = q + moved.real, v + (turning * moved).real
     return numbers, q, v, mean_balance, motion
 
