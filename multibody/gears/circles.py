@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from scipy.optimize import brentq
 
@@ -83,27 +84,43 @@ def circles(pair: GearPair) -> Circles:
     )
 
 
-def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, float, float]]:
-    """Reliefs that act: gear (0 pinion, 1 gear), roll angles of start and end [rad], amount [m], power.
+class Relieved(NamedTuple):
+    """A relief of one flank.
+
+    gear : 0 pinion, 1 gear
+    start, end : roll angles at which it starts, and at which it has its amount [rad]
+    amount : material missing there [m]
+    power : of its growth
+    """
+
+    gear: int
+    start: float
+    end: float
+    amount: float
+    power: float
+
+
+def reliefs(pair: GearPair, drawn: Circles) -> list[Relieved]:
+    """Reliefs that act.
 
     A tip relief ends at the tip, a root relief where contact starts or ends on its flank. Without
-    ``mesh.relief = "static"`` none acts but what single teeth have beyond it, with the amount 0 here.
+    ``mesh.relief = "static"`` only the relief of single teeth beyond the design acts, with the amount 0 here.
     """
-    rows = []
-    for which, gear, base, tip, root in (
-        (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.start),
-        (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.tangent - drawn.end),
+    acts = pair.mesh.relief == "static"
+    acting = []
+    for number, gear, base, tip, root in (
+        (0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.start),
+        (1, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.tangent - drawn.end),
     ):
         for relief, end, sense in ((gear.tip_relief, tip, -1.0), (gear.root_relief, root, 1.0)):
-            own = gear.deviations is not None and gear.deviations.tip_relief is not None
-            acts = pair.mesh.relief == "static"
-            if relief is None or not (own or (acts and relief.amount != 0.0)):
+            of_single_teeth = gear.deviations is not None and gear.deviations.tip_relief is not None
+            if relief is None or not (of_single_teeth or (acts and relief.amount != 0.0)):
                 continue
             power = 1.0 if relief.shape == "linear" else 2.0
             amount = relief.amount if acts else 0.0
             start = _relief_start(relief, base, end, sense)
-            rows.append((which, start, end / base, amount, power))
-    return rows
+            acting.append(Relieved(number, start, end / base, amount, power))
+    return acting
 
 
 def _relief_start(relief: ProfileRelief, base: float, end: float, sense: float) -> float:
