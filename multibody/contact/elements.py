@@ -13,7 +13,7 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.typing import FloatArray
 from multibody.contact.kinematics import CONTACT_LAW
-from multibody.contact.records import Record, Records
+from multibody.contact.records import Record, Records, inlined, inner, uncounted
 
 #: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the mean
 #: load. Acting at once it would make the load jump by c times the speed of approach at the first touch.
@@ -37,14 +37,14 @@ class ContactLaw(NamedTuple):
     nominal_force: float
 
 
-@compiled
+@inlined
 def contact_law(machine: Record, flags: int) -> ContactLaw:
     """The law of a machine; without the effect of Hertz's contact every pair is a linear spring."""
     law = machine.pair_law
     return ContactLaw(law.softening if flags & CONTACT_LAW else 0.0, law.nominal_force)
 
 
-@compiled
+@inlined
 def polynomial(piece: FloatArray, s: float) -> tuple[float, float]:
     """Value and slope of a polynomial piece at the distance s from its left end."""
     value = slope = 0.0
@@ -54,7 +54,7 @@ def polynomial(piece: FloatArray, s: float) -> tuple[float, float]:
     return value, slope
 
 
-@compiled
+@uncounted
 def table_value_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
     """Value of a piecewise polynomial at xi, and its slope. Beyond its ends the value stays constant.
 
@@ -73,13 +73,13 @@ def table_value_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
     return value, slope if x == xi else 0.0
 
 
-@compiled
+@uncounted
 def table_value(table: FloatArray, xi: float) -> float:
     """Value of a piecewise polynomial at xi, see ``table_value_and_slope``."""
     return float(table_value_and_slope(table, xi)[0])
 
 
-@compiled
+@uncounted
 def compliances(load: float, stiffness: float, law: ContactLaw) -> tuple[float, float, float]:
     """Compression of one tooth pair over its load p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2].
 
@@ -97,7 +97,7 @@ def compliances(load: float, stiffness: float, law: ContactLaw) -> tuple[float, 
     return secant, secant - softening * share, bend
 
 
-@compiled
+@uncounted
 def elastic_load(compression: float, stiffness: float, law: ContactLaw) -> float:
     """Load of one tooth pair alone [N], by Chebyshev's method."""
     if stiffness <= 0.0:
@@ -115,7 +115,7 @@ def elastic_load(compression: float, stiffness: float, law: ContactLaw) -> float
     return load
 
 
-@compiled
+@uncounted
 def stored_energy(load: float, stiffness: float, slope: float, law: ContactLaw) -> tuple[float, float]:
     """Energy U = N p - C that one pair stores [J], and its slope over xi at constant compression [J/m].
 
@@ -136,7 +136,7 @@ def stored_energy(load: float, stiffness: float, slope: float, law: ContactLaw) 
     return stored - 0.5 * law.softening * (load * load * rise - 0.5 * ends), along
 
 
-@compiled
+@inner
 def two_loads(one: Record, other: Record, coupling: float, law: ContactLaw) -> tuple[float, float]:
     """Loads of two tooth pairs that touch and move each other [N].
 
@@ -168,57 +168,58 @@ def two_loads(one: Record, other: Record, coupling: float, law: ContactLaw) -> t
     return load_one, load_other
 
 
-@compiled
-def _newton_equations(
-    count: int, pairs: Records, law: ContactLaw, matrix: FloatArray, rest: FloatArray
-) -> None:
-    """Derivatives of the compressions by the loads, and what is left of p_i = N_i c_i + sum_j w_ij N_j."""
+@inner
+def _newton_equations(count: int, pairs: Records, law: ContactLaw) -> None:
+    """Write derivatives and residual of p_i = N_i c_i + sum_j w_ij N_j into each pair."""
     for i in range(count):
         pair = pairs[i]
         secant = 1.0
         tangent = 1.0
         if pair.touches:
             secant, tangent, _ = compliances(pair.elastic_load, pair.stiffness, law)
-        rest[i] = pair.elastic_load * secant - pair.compression if pair.touches else 0.0
+        residual = pair.elastic_load * secant - pair.compression if pair.touches else 0.0
         for j in range(count):
-            matrix[i, j] = pair.couplings[j] if pair.touches and pairs[j].touches else 0.0
-            rest[i] += matrix[i, j] * pairs[j].elastic_load
-        matrix[i, i] = tangent
+            derivative = pair.couplings[j] if pair.touches and pairs[j].touches else 0.0
+            pair.equation[j] = derivative
+            residual += derivative * pairs[j].elastic_load
+        pair.equation[i] = tangent
+        pair.residual = residual
 
 
-@compiled
-def _eliminate(count: int, matrix: FloatArray, rest: FloatArray) -> None:
+@inner
+def _eliminate(count: int, pairs: Records) -> None:
     """Gauss's elimination below the diagonal; the matrix is symmetric and positive definite."""
     for i in range(count):
+        pivot = pairs[i]
         for k in range(i + 1, count):
-            share = matrix[k, i] / matrix[i, i]
+            below = pairs[k]
+            share = below.equation[i] / pivot.equation[i]
             for j in range(i, count):
-                matrix[k, j] -= share * matrix[i, j]
-            rest[k] -= share * rest[i]
+                below.equation[j] -= share * pivot.equation[j]
+            below.residual -= share * pivot.residual
 
 
-@compiled
+@inner
 def _many_loads(count: int, pairs: Records, law: ContactLaw) -> None:
     """Loads of more than two pairs that touch, by Newton's steps from the loads that they have."""
-    matrix = np.empty((count, count))
-    rest = np.empty(count)
     for _ in range(_MOST_STEPS):
-        _newton_equations(count, pairs, law, matrix, rest)
-        _eliminate(count, matrix, rest)
+        _newton_equations(count, pairs, law)
+        _eliminate(count, pairs)
         step = total = 0.0
         for i in range(count - 1, -1, -1):
+            pair = pairs[i]
             for j in range(i + 1, count):
-                rest[i] -= matrix[i, j] * rest[j]
-            rest[i] /= matrix[i, i]
-            if pairs[i].touches:
-                pairs[i].elastic_load -= rest[i]
-                step += abs(rest[i])
-                total += abs(pairs[i].elastic_load)
+                pair.residual -= pair.equation[j] * pairs[j].residual
+            pair.residual /= pair.equation[i]
+            if pair.touches:
+                pair.elastic_load -= pair.residual
+                step += abs(pair.residual)
+                total += abs(pair.elastic_load)
         if step <= _LAST_STEP * total:
             break
 
 
-@compiled
+@inner
 def _loads_of_touching(count: int, pairs: Records, law: ContactLaw) -> None:
     """Write the loads of the pairs that touch."""
     number = 0
@@ -240,7 +241,7 @@ def _loads_of_touching(count: int, pairs: Records, law: ContactLaw) -> None:
         _many_loads(count, pairs, law)
 
 
-@compiled
+@inner
 def _change_touching(count: int, pairs: Records) -> bool:
     """Let pairs go that would pull, and take in those that would overlap; whether one changed."""
     changed = False
@@ -260,7 +261,7 @@ def _change_touching(count: int, pairs: Records) -> bool:
     return changed
 
 
-@compiled
+@uncounted
 def shared_loads(count: int, pairs: Records, law: ContactLaw) -> None:
     """Write the loads N_i of tooth pairs that move each other, PAIR records.
 
@@ -281,14 +282,14 @@ def shared_loads(count: int, pairs: Records, law: ContactLaw) -> None:
             break
 
 
-@compiled
+@uncounted
 def gradual(share: float) -> float:
     """Smooth step from 0 at 0 to 1 at 1."""
     x = min(max(share, 0.0), 1.0)
     return x * x * (3.0 - 2.0 * x)
 
 
-@compiled
+@uncounted
 def relief_at(machine: Record, xi: float, own_p: float, own_g: float) -> tuple[float, float]:
     """Material that reliefs take off both flanks at xi [m], and its slope. Each grows over its roll angle.
 
@@ -313,7 +314,7 @@ def relief_at(machine: Record, xi: float, own_p: float, own_g: float) -> tuple[f
     return error, slope
 
 
-@compiled
+@inner
 def coupling_at(machine: Record, apart: int, xi: float) -> tuple[float, float]:
     """Motion of a pair by a unit load on another one [m/N], and its slope over xi [1/N].
 

@@ -42,6 +42,7 @@ from multibody.contact.records import (
     Record,
     Records,
     contacts_of,
+    inner,
     machine_of,
 )
 
@@ -125,14 +126,14 @@ def _change(law: PathFunction, j: int, step: float) -> float:
     return total / largest if largest > 0.0 else 0.0
 
 
-@compiled
+@inner
 def edge_reach(gap: float, edge: float, length: float, radius: float) -> float:
     """About how far back from an edge a gap is closed [m], to the leading order of ``corner_off``."""
     bend = (edge / radius) ** 2 * (1.0 / edge + 1.0 / (length - edge))
     return math.sqrt(2.0 * max(gap, 0.0) / bend)
 
 
-@compiled
+@inner
 def let_go(
     gap: float, stiffness: float, line: Line, rates: GearRates, machine: Record, flags: int
 ) -> float:
@@ -175,7 +176,7 @@ class Neighbours(NamedTuple):
     count: int
 
 
-@compiled
+@inner
 def moved_by_neighbours(position: float, neighbours: Neighbours, machine: Record) -> float:
     """How much of the approach of a pair at a position xi the loads of other pairs take [m]."""
     pitch = machine.geometry.pitch
@@ -200,7 +201,7 @@ class CornerReach(NamedTuple):
     gap: float
 
 
-@compiled
+@inner
 def reach_before_start(mesh: MeshPosition, neighbours: Neighbours, machine: Record) -> CornerReach:
     """Where the gear's tip corner first touches, before A.
 
@@ -217,7 +218,7 @@ def reach_before_start(mesh: MeshPosition, neighbours: Neighbours, machine: Reco
     return CornerReach(beyond, gap)
 
 
-@compiled
+@inner
 def reach_behind_end(
     event: Record, mesh: MeshPosition, rates: GearRates, neighbours: Neighbours, machine: Record, flags: int
 ) -> CornerReach:
@@ -237,7 +238,7 @@ def reach_behind_end(
     return CornerReach(beyond, gap)
 
 
-@compiled
+@inner
 def distance_to_start(mesh: MeshPosition, reach: CornerReach, machine: Record, flags: int) -> float:
     """Distance to where a pair enters contact [m]. Undercut of the pinion may end its flank before.
 
@@ -254,7 +255,7 @@ def distance_to_start(mesh: MeshPosition, reach: CornerReach, machine: Record, f
     return start - mesh.rho
 
 
-@compiled
+@inner
 def distance_to_end(mesh: MeshPosition, reach: CornerReach, machine: Record, flags: int) -> float:
     """Distance to where a pair leaves contact [m]. Undercut of the gear may end its flank before.
 
@@ -271,7 +272,7 @@ def distance_to_end(mesh: MeshPosition, reach: CornerReach, machine: Record, fla
     return end - mesh.rho
 
 
-@compiled
+@inner
 def distance_to_sliding(
     place: float, mesh: MeshPosition, rates: GearRates, machine: Record
 ) -> float:
@@ -291,7 +292,7 @@ def distance_to_sliding(
     return float((sought - slide) / (rates.omega_g - rates.omega_p))
 
 
-@compiled
+@inner
 def distance_to_event(
     event: Record, t: float, state: FloatArray, machine: Record, flags: int, neighbours: Neighbours
 ) -> float:
@@ -317,7 +318,7 @@ def distance_to_event(
     return float(event.place - mesh.xi)
 
 
-@compiled
+@inner
 def nearest_event(
     t: float, state: FloatArray, machine: Record, flags: int, events: Records, neighbours: Neighbours
 ) -> tuple[float, int]:
@@ -333,7 +334,7 @@ def nearest_event(
     return shortest, number
 
 
-@compiled
+@inner
 def continued(state: FloatArray, q: FloatArray, v: FloatArray, a: FloatArray, wait: float) -> None:
     """Write coordinates and rates into ``state`` as a Taylor polynomial continues them over a time [s]."""
     for j in range(6):

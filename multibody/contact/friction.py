@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
@@ -24,7 +23,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact.elements import table_value
 from multibody.contact.kinematics import FRICTION_LOAD, SLIDING
-from multibody.contact.records import Record, machine_of, opened, table_of
+from multibody.contact.records import Record, inner, machine_of, opened, table_of, uncounted
 
 #: Codes of the laws, by their names in parameter files.
 LAWS = {
@@ -58,13 +57,13 @@ _LAW_TWO = (AT_ZERO, AT_MAXIMUM, _II)
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
-@compiled
+@uncounted
 def hertz_pressure(f: Record, radius: float, w: float) -> float:
     """Largest pressure of a line contact [Pa], equation (16): sqrt(w E'/(2 pi rho))."""
     return math.sqrt(w * f.modulus / (2.0 * math.pi * radius))
 
 
-@compiled
+@uncounted
 def film_parameter(f: Record, rolling: float, radius: float, w: float) -> float:
     """Film parameter Lambda, equation (21): Dowson and Toyoda's central film over the filtered roughness."""
     if w <= 0.0:
@@ -78,7 +77,7 @@ def film_parameter(f: Record, rolling: float, radius: float, w: float) -> float:
     return float(thickness / f.composite_roughness * math.sqrt(f.film_length / band))
 
 
-@compiled
+@uncounted
 def benedict_kelley(f: Record, sliding: float, rolling: float, w: float) -> float:
     """Law II before its bounds, equation (14); w in N/mm, eta in mPa s, S in um there; v_s >= ``slowest``."""
     if w <= 0.0:
@@ -88,7 +87,7 @@ def benedict_kelley(f: Record, sliding: float, rolling: float, w: float) -> floa
     return float(0.0127 * 1.13 / (1.13 - 1e6 * f.roughness) * math.log10(number))
 
 
-@compiled
+@uncounted
 def xu_kahraman(f: Record, sliding: float, rolling: float, radius: float, w: float) -> float:
     """Law III, equation (18); p_h in GPa, V_e = v_e/2 in m/s, eta in mPa s, R in m, S in um there."""
     if w <= 0.0 or sliding == 0.0:
@@ -104,21 +103,21 @@ def xu_kahraman(f: Record, sliding: float, rolling: float, radius: float, w: flo
     return math.exp(exponent)
 
 
-@compiled
+@uncounted
 def smoothed_coulomb(f: Record, distance: float) -> float:
     """Magnitude of law IV at a distance from the pitch point [m], equation (19)."""
     s = f.sharpness * abs(distance)
     return float(2.0 * f.mean / math.pi * (math.atan(s) + s / (1.0 + s * s)))
 
 
-@compiled
+@uncounted
 def reduced_radius(rho_p: float, rho_g: float) -> float:
     """Reduced radius of curvature [m], equation (15); above 0 also past a base circle, without involute."""
     least = 1e-6 * (rho_p + rho_g)
     return max(rho_p, least) * max(rho_g, least) / (rho_p + rho_g)
 
 
-@compiled
+@uncounted
 def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float, w: float) -> int:
     """Which formula is in force: a number that changes where the coefficient jumps or has a kink."""
     law = f.law
@@ -132,7 +131,7 @@ def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float
     return law
 
 
-@compiled
+@uncounted
 def magnitude(
     f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float, distance: float, w: float
 ) -> float:
@@ -175,7 +174,7 @@ class SurfaceMotion(NamedTuple):
     rho_g: float
 
 
-@compiled
+@inner
 def friction_size(
     machine: Record, table: FloatArray, surface: SurfaceMotion, distance: float, load: float
 ) -> float:
@@ -192,7 +191,7 @@ def friction_size(
     return float(mu)
 
 
-@compiled
+@inner
 def at_edge(machine: Record, xi: float) -> float:
     """Position at which a law is evaluated [m]: xi, or the edge of an undercut where xi lies beyond it."""
     geometry = machine.geometry
@@ -203,7 +202,7 @@ def at_edge(machine: Record, xi: float) -> float:
     return xi
 
 
-@compiled
+@inner
 def nominal_surface(machine: Record, xi: float) -> SurfaceMotion:
     """Motion of the surfaces in the nominal motion with the contact at xi; the sliding without its sign."""
     rolling = machine.rolling
@@ -212,7 +211,7 @@ def nominal_surface(machine: Record, xi: float) -> SurfaceMotion:
     return SurfaceMotion(sliding, rolling.omega_p * xi + rolling.omega_g * rho_g, xi, rho_g)
 
 
-@compiled
+@inner
 def friction_of_nominal_motion(machine: Record, table: FloatArray, xi: float) -> float:
     """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
     xi = at_edge(machine, xi)
@@ -222,14 +221,14 @@ def friction_of_nominal_motion(machine: Record, table: FloatArray, xi: float) ->
     return math.copysign(mu, distance) if distance != 0.0 else 0.0
 
 
-@compiled
+@uncounted
 def nominal_friction(packed: FloatArray, xi: float) -> float:
     """``friction_of_nominal_motion`` of a packed machine."""
     machine = machine_of(packed)[0]
     return float(friction_of_nominal_motion(machine, table_of(packed, machine.blocks.friction), xi))
 
 
-@compiled
+@uncounted
 def nominal_branch(packed: FloatArray, xi: float) -> int:
     """``branch`` of the nominal motion of a packed machine at xi."""
     machine = machine_of(packed)[0]
@@ -238,7 +237,7 @@ def nominal_branch(packed: FloatArray, xi: float) -> int:
     return branch(f, surface.sliding, surface.rolling, surface.rho_p, surface.rho_g, f.nominal_load)
 
 
-@compiled
+@uncounted
 def signed_friction(
     machine: Record,
     table: FloatArray,

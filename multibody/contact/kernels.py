@@ -58,6 +58,8 @@ from multibody.contact.records import (
     Record,
     Records,
     contacts_of,
+    inlined,
+    inner,
     machine_of,
     opened_contacts,
     table_of,
@@ -67,10 +69,10 @@ from multibody.contact.tooth_pairs import (
     OwnPair,
     OwnTeeth,
     TurnedArcs,
-    base_circle_motion,
     moments_about_axes,
     own_teeth_of,
     ripple_torques,
+    set_base_circle_motion,
     teeth_of_pair,
     tooth_pair,
     turned_arcs,
@@ -102,6 +104,19 @@ class SideMotion(NamedTuple):
     contact_rate: float
 
 
+class Workspace(NamedTuple):
+    """Memory of one evaluation.
+
+    pairs : PAIR (MAX_PAIRS,)
+    arms : (MAX_PAIRS, 2) flank distances of the pairs found
+    base_circles : (3, 6) coordinates, rates and ways of the base circles' centres of eccentric gears
+    """
+
+    pairs: Records
+    arms: FloatArray
+    base_circles: FloatArray
+
+
 class TeethMotion(NamedTuple):
     """Records of all teeth, and how far the base circles have turned."""
 
@@ -109,7 +124,7 @@ class TeethMotion(NamedTuple):
     arcs: TurnedArcs
 
 
-@compiled
+@inner
 def side_motion(
     t: float, q: FloatArray, rates: GearRates, machine: Record, flags: int, flank: float
 ) -> SideMotion:
@@ -126,13 +141,13 @@ def side_motion(
     return SideMotion(position, rates, approach_rate, psi_rate, length_rate, 0.5 * flank * turning)
 
 
-@compiled
+@inlined
 def like_teeth(machine: Record) -> OwnPair:
     """A pair of teeth without errors and faults."""
     return OwnPair(0.0, 0.0, 0.0, 0.0, machine.geometry.tip_p, machine.geometry.tip_g, 0.0, 0.0)
 
 
-@compiled
+@inner
 def set_corner_gap(
     pair: Record, side: SideMotion, machine: Record, own: OwnPair, error: float, error_slope: float
 ) -> bool:
@@ -162,7 +177,7 @@ def set_corner_gap(
     return True
 
 
-@compiled
+@inlined
 def set_corner_slopes(pair: Record, corners: Corners) -> None:
     """Write the slopes of the gap of tip corners into a pair."""
     pair.corner_by_p = corners.by_p
@@ -170,7 +185,7 @@ def set_corner_slopes(pair: Record, corners: Corners) -> None:
     pair.corner_by_length = corners.by_length
 
 
-@compiled
+@inner
 def set_gap(pair: Record, side: SideMotion, machine: Record, flags: int, own: OwnPair) -> bool:
     """Write compression, its rate and the slopes of the gap into a pair at ``pair.position``.
 
@@ -195,7 +210,7 @@ def set_gap(pair: Record, side: SideMotion, machine: Record, flags: int, own: Ow
     return True
 
 
-@compiled
+@inner
 def set_stiffness(pair: Record, stiffness: FloatArray, own: OwnPair) -> None:
     """Write the stiffness of a pair, softened by the faults of its teeth, and its slope over xi."""
     k, slope = table_value_and_slope(stiffness, pair.position)
@@ -204,12 +219,13 @@ def set_stiffness(pair: Record, stiffness: FloatArray, own: OwnPair) -> None:
     pair.stiffness_slope = share * share * (slope - k * k * own.compliance_slope)
 
 
-@compiled
+@inner
 def pairs_near_contact(
-    side: SideMotion, machine: Record, flags: int, tables: Tables, motion: TeethMotion, pairs: Records
+    side: SideMotion, machine: Record, flags: int, tables: Tables, motion: TeethMotion, work: Workspace
 ) -> int:
     """Write the pairs of one side that touch or may touch, without their loads; returns their number."""
-    arms = np.empty((MAX_PAIRS, 2))
+    arms = work.arms
+    pairs = work.pairs
     position = side.position
     own = like_teeth(machine)
     count = int(np.int64(0))
@@ -233,7 +249,7 @@ def pairs_near_contact(
     return count
 
 
-@compiled
+@inner
 def set_couplings(count: int, pairs: Records, machine: Record) -> None:
     """Write how far the load of each pair moves each other one. The newest, furthest behind, comes first."""
     for i in range(count):
@@ -246,7 +262,7 @@ def set_couplings(count: int, pairs: Records, machine: Record) -> None:
             pairs[j].coupling_slopes[i] = slope
 
 
-@compiled
+@inner
 def set_elastic_loads(count: int, pairs: Records, machine: Record, coupled: bool, law: ContactLaw) -> None:
     """Write the load of each pair without its damper."""
     if coupled:
@@ -266,7 +282,7 @@ class MovedByNeighbours(NamedTuple):
     slope: float
 
 
-@compiled
+@inlined
 def moved_by_neighbours(number: int, count: int, pairs: Records, coupled: bool) -> MovedByNeighbours:
     """How far the loads of the other pairs move the pair of a number."""
     way = 0.0
@@ -280,7 +296,7 @@ def moved_by_neighbours(number: int, count: int, pairs: Records, coupled: bool) 
     return MovedByNeighbours(way, slope)
 
 
-@compiled
+@inlined
 def damping_of(pair: Record, machine: Record, flags: int, own_compression: float) -> float:
     """Coefficient c of a pair's damper, which takes hold gradually with the load [N s/m].
 
@@ -294,7 +310,7 @@ def damping_of(pair: Record, machine: Record, flags: int, own_compression: float
     return float(damping)
 
 
-@compiled
+@inlined
 def surface_motion(pair: Record, side: SideMotion) -> SurfaceMotion:
     """How both surfaces move at the contact point of a pair, which turns with the line of action."""
     line = side.position.line
@@ -306,7 +322,7 @@ def surface_motion(pair: Record, side: SideMotion) -> SurfaceMotion:
     return SurfaceMotion(sliding, line.flank * rolling, arm_p, arm_g)
 
 
-@compiled
+@inner
 def add_contact_wrench(
     wrench: FloatArray, pair: Record, side: SideMotion, flags: int, surface: SurfaceMotion, contact: Record
 ) -> None:
@@ -321,7 +337,7 @@ def add_contact_wrench(
         add_gradient(wrench, line, by_p, by_g, normal * pair.corner_by_length)
 
 
-@compiled
+@inner
 def set_contact(
     contact: Record,
     pair: Record,
@@ -355,7 +371,7 @@ def set_contact(
     contact.path_rate = side.contact_rate
 
 
-@compiled
+@inlined
 def set_friction(
     contact: Record, surface: SurfaceMotion, machine: Record, flags: int, table: FloatArray
 ) -> None:
@@ -366,7 +382,7 @@ def set_friction(
     contact.sliding_velocity = surface.sliding
 
 
-@compiled
+@inner
 def add_side(
     side: SideMotion,
     machine: Record,
@@ -417,32 +433,38 @@ def contact_forces(
     -------
     Number of contacts, or -1 when a force is not finite
     """
+    work = Workspace(np.empty(MAX_PAIRS, PAIR), np.empty((MAX_PAIRS, 2)), np.empty((3, 6)))
+    return forces_with(t, state, packed, flags, contacts_of(flat_contacts), work)
+
+
+@inner
+def forces_with(
+    t: float, state: FloatArray, packed: FloatArray, flags: int, contacts: Records, work: Workspace
+) -> int:
+    """``contact_forces`` in given memory."""
     machine = machine_of(packed)[0]
     blocks = machine.blocks
     tables = Tables(table_of(packed, blocks.stiffness), table_of(packed, blocks.friction))
-    contacts = contacts_of(flat_contacts)
-    pairs = np.empty(MAX_PAIRS, PAIR)
     motion = TeethMotion(own_teeth_of(packed), turned_arcs(machine, t, state[COORDINATES]))
     q = state[COORDINATES]
     v = state[RATES]
     wrench = state[WRENCH]
     wrench[:] = 0.0
     if machine.own_teeth:
-        base_circles = base_circle_motion(machine, t, state)
-        q = base_circles[COORDINATES]
-        v = base_circles[RATES]
+        set_base_circle_motion(machine, t, state, work.base_circles)
+        q = work.base_circles[COORDINATES]
+        v = work.base_circles[RATES]
     rates = gear_rates(machine, v)
     written = int(np.int64(0))
-    for flank in (DRIVE, COAST):
-        if flank == COAST and not flags & kn.BACK_SIDE:
-            break
+    for number in range(2 if flags & kn.BACK_SIDE else 1):
+        flank = DRIVE if number == 0 else COAST
         side = side_motion(t, q, rates, machine, flags, flank)
         if not math.isfinite(side.position.overlap):
             return -1
-        count = pairs_near_contact(side, machine, flags, tables, motion, pairs)
-        written += add_side(side, machine, flags, tables, pairs, count, wrench, contacts[written:])
+        count = pairs_near_contact(side, machine, flags, tables, motion, work)
+        written += add_side(side, machine, flags, tables, work.pairs, count, wrench, contacts[written:])
     if machine.own_teeth:
-        moments_about_axes(base_circles[WAYS], wrench)
+        moments_about_axes(work.base_circles[WAYS], wrench)
     if machine.ripples_on_gears:
         ripples = ripple_torques(packed, t, state[COORDINATES])
         wrench[PHI_P] -= ripples[0]
@@ -450,12 +472,12 @@ def contact_forces(
     return written if all_finite(wrench) else -1
 
 
-@compiled
+@inlined
 def all_finite(wrench: FloatArray) -> bool:
     """Whether no force or moment is infinite or not a number."""
     total = 0.0
-    for value in wrench:
-        total += value
+    for i in range(wrench.size):
+        total += wrench[i]
     return math.isfinite(total)
 
 

@@ -12,9 +12,19 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from lumped.compiler import compiled
 from lumped.typing import FloatArray
-from multibody.contact.records import MAX_PAIRS, PHI_G, PHI_P, X_G, X_P, Y_G, Y_P, Record
+from multibody.contact.records import (
+    MAX_PAIRS,
+    PHI_G,
+    PHI_P,
+    X_G,
+    X_P,
+    Y_G,
+    Y_P,
+    Record,
+    inner,
+    uncounted,
+)
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
 ROTATION_PHASE = 1
@@ -55,7 +65,7 @@ class Line(NamedTuple):
     radius_g: float
 
 
-@compiled
+@uncounted
 def line_of_action(
     along: float, off: float, nominal: float, base_sum: float, flank: float
 ) -> tuple[float, float, float, float]:
@@ -80,7 +90,7 @@ def line_of_action(
     return ex, ey, grown, math.atan2(ey, ex)
 
 
-@compiled
+@uncounted
 def wrap(value: float, period: float) -> float:
     """``value`` modulo ``period``, in [-period/2, period/2)."""
     return value - period * math.floor(value / period + 0.5)
@@ -120,7 +130,7 @@ class Turn(NamedTuple):
     rolled: float
 
 
-@compiled
+@uncounted
 def side_of(machine: Record, flank: float) -> Side:
     """The teeth of one side of a machine at t = 0."""
     geometry = machine.geometry
@@ -130,7 +140,7 @@ def side_of(machine: Record, flank: float) -> Side:
     return Side(flank, geometry.radius_p, geometry.radius_g, geometry.pitch, chi, apart)
 
 
-@compiled
+@uncounted
 def mesh_phase(side: Side, turn: Turn) -> tuple[float, float]:
     """Where the teeth stand on the line of action; pinion flanks are paired with the nearest gear flanks.
 
@@ -160,7 +170,7 @@ class GearRates(NamedTuple):
     omega_g: float
 
 
-@compiled
+@inner
 def gear_rates(machine: Record, v: FloatArray) -> GearRates:
     """Velocities of the gears from the rates v (6,) of (x_p, y_p, phi_p, x_g, y_g, phi_g)."""
     rolling = machine.rolling
@@ -174,7 +184,7 @@ def gear_rates(machine: Record, v: FloatArray) -> GearRates:
     )
 
 
-@compiled
+@inner
 def line_rates(line: Line, rates: GearRates, flags: int) -> tuple[float, float]:
     """Rates of the angle psi [rad/s] and of the length L [m/s] of the line of action.
 
@@ -187,14 +197,14 @@ def line_rates(line: Line, rates: GearRates, flags: int) -> tuple[float, float]:
     return psi_rate, line.flank * radii * psi_rate - (line.ex * rates.vx + line.ey * rates.vy)
 
 
-@compiled
+@uncounted
 def overlap_rate(line: Line, vx: float, vy: float, omega_p: float, omega_g: float) -> float:
     """Rate of the overlap [m/s]; (vx, vy) is the velocity of the pinion's centre relative to the gear's."""
     turning = line.radius_p * omega_p + line.radius_g * omega_g
     return line.ex * vx + line.ey * vy - line.flank * turning
 
 
-@compiled
+@uncounted
 def sliding_velocity(
     line: Line, vx: float, vy: float, omega_p: float, omega_g: float, arm_p: float, arm_g: float
 ) -> float:
@@ -203,7 +213,7 @@ def sliding_velocity(
     return -(nx * vx + ny * vy) - line.flank * (omega_p * arm_p + omega_g * arm_g)
 
 
-@compiled
+@uncounted
 def add_wrench(
     wrench: FloatArray, line: Line, normal: float, friction: float, arm_p: float, arm_g: float
 ) -> None:
@@ -225,7 +235,7 @@ def add_wrench(
     wrench[PHI_G] += flank * (line.radius_g * normal + arm_g * friction)
 
 
-@compiled
+@uncounted
 def add_gradient(wrench: FloatArray, line: Line, by_p: float, by_g: float, by_length: float) -> None:
     """Add by_p grad(rho_p) + by_g grad(rho_g) + by_length grad(L) to ``wrench``: the force of any energy.
 
@@ -244,7 +254,7 @@ def add_gradient(wrench: FloatArray, line: Line, by_p: float, by_g: float, by_le
     wrench[PHI_G] -= flank * radius_g * by_g
 
 
-@compiled
+@uncounted
 def corner_gap(
     beyond: float, tip: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float]:
@@ -262,7 +272,7 @@ def corner_gap(
     return corner_off(beyond, tip, length, radius, mate)
 
 
-@compiled
+@uncounted
 def corner_off(
     beyond: float, tip: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float]:
@@ -283,7 +293,7 @@ def corner_off(
     return gap, by_distance, math.cos(angle) - 1.0
 
 
-@compiled
+@uncounted
 def corner_reach(gap: float, tip: float, length: float, radius: float, mate: float) -> float:
     """How far beyond its tip circle a corner still touches: the inverse of ``corner_gap`` [m].
 
@@ -301,7 +311,7 @@ def corner_reach(gap: float, tip: float, length: float, radius: float, mate: flo
     return beyond
 
 
-@compiled
+@uncounted
 def pairs_in_contact(
     rho: float,
     delta: float,
@@ -341,7 +351,7 @@ class Corners(NamedTuple):
     by_length: float
 
 
-@compiled
+@inner
 def end_of_flank(
     rho: float, tip: float, mate_rho: float, edge: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float, float]:
@@ -368,7 +378,7 @@ def end_of_flank(
     return gap, by_tip, 0.0, by_length
 
 
-@compiled
+@uncounted
 def corners_at(
     line: Line, rho_p: float, rho_g: float, tips: tuple[float, float], edges: tuple[float, float]
 ) -> Corners:
@@ -399,7 +409,7 @@ class MeshPosition(NamedTuple):
     xi: float
 
 
-@compiled
+@inner
 def mesh_position(t: float, q: FloatArray, machine: Record, flags: int, flank: float) -> MeshPosition:
     """Line of action of one side of the teeth, and the place of the teeth on it, at time t [s].
 
@@ -426,7 +436,7 @@ def mesh_position(t: float, q: FloatArray, machine: Record, flags: int, flank: f
     return MeshPosition(line, delta, rho, xi)
 
 
-@compiled
+@inner
 def engaged(mesh: MeshPosition, machine: Record, flags: int, arms: FloatArray) -> int:
     """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift.
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from lumped.compiler import compiled
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import relief_at, table_value, table_value_and_slope
@@ -25,8 +24,10 @@ from multibody.contact.records import (
     Y_P,
     Record,
     contacts_of,
+    inner,
     machine_of,
     table_of,
+    uncounted,
 )
 
 
@@ -65,7 +66,7 @@ class LinearForce(NamedTuple):
     apart: float
 
 
-@compiled
+@inner
 def tabulated_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPair:
     """Laws of a pair with loaded contact, linear about the static state."""
     blocks = machine.blocks
@@ -83,7 +84,7 @@ def tabulated_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPair
     )
 
 
-@compiled
+@inner
 def prescribed_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPair:
     """Laws of a pair with prescribed contact: it touches from A to D, with its relief as error."""
     error, slope = relief_at(machine, xi, 0.0, 0.0)
@@ -92,7 +93,7 @@ def prescribed_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPai
     return LinearPair(stiffness, stiffness_slope, damping, error, slope, slope, 0.0, 1.0)
 
 
-@compiled
+@inner
 def add_linear_wrench(wrench: FloatArray, machine: Record, xi: float, force: LinearForce) -> None:
     """Add the force of a pair to the wrench of pinion and gear, with nominal arms."""
     geometry = machine.geometry
@@ -104,7 +105,7 @@ def add_linear_wrench(wrench: FloatArray, machine: Record, xi: float, force: Lin
     wrench[PHI_G] += geometry.radius_g * force.normal + (geometry.L_XY - xi) * force.friction
 
 
-@compiled
+@inner
 def linear_path_force(
     pair: LinearPair, compression: float, force: LinearForce, approach_rate: float, y_rate: float, speed: float
 ) -> float:
@@ -119,7 +120,7 @@ def linear_path_force(
     return path - force.apart * y_rate / speed
 
 
-@compiled
+@inner
 def first_position(t: float, machine: Record, start: float) -> float:
     """Position of the tooth pair next behind ``start`` on the path in the nominal motion at time t [m]."""
     geometry = machine.geometry
@@ -132,7 +133,7 @@ def first_position(t: float, machine: Record, start: float) -> float:
     return first - pitch * math.floor((first - start) / pitch)
 
 
-@compiled
+@uncounted
 def linear_forces(
     t: float, state: FloatArray, packed: FloatArray, flags: int, flat_contacts: FloatArray
 ) -> int:
@@ -190,12 +191,12 @@ def linear_forces(
         count += 1
         xi += geometry.pitch
     total = 0.0
-    for value in wrench:
-        total += value
+    for i in range(wrench.size):
+        total += wrench[i]
     return count if math.isfinite(total) else -1
 
 
-@compiled
+@inner
 def nominal_sliding(machine: Record, v: FloatArray, xi: float) -> float:
     """Sliding velocity at xi with the rates v of the gears and nominal arms [m/s]."""
     rolling = machine.rolling

@@ -60,7 +60,7 @@ from multibody.contact.records import (
     Record,
     Records,
     opened,
-    table_of,
+    opened_table,
     with_blocks,
 )
 from multibody.contact.tooth_pairs import ripple_torques
@@ -133,7 +133,7 @@ class Machine:
     @property
     def stiffness_table(self) -> FloatArray:
         """Stiffness of a tooth pair as ``elements.table_value`` reads it."""
-        return np.asarray(table_of(self.packed, self.record.blocks.stiffness))
+        return np.asarray(opened_table(self.packed, self.record.blocks.stiffness))
 
     @property
     def base_radii(self) -> FloatArray:
@@ -187,7 +187,7 @@ class Machine:
     def piece_ends(self) -> FloatArray:
         """Positions xi at which polynomials of the laws of the linear mesh meet or end [m]."""
         blocks = self.record.blocks
-        laws = [table_of(self.packed, blocks[name]) for name in ("stiffness", *LINEAR_BLOCKS)]
+        laws = [opened_table(self.packed, blocks[name]) for name in ("stiffness", *LINEAR_BLOCKS)]
         return np.unique(np.concatenate([law[:, :2].ravel() for law in laws]))
 
     @cached_property

@@ -36,6 +36,15 @@ MOST_RELIEFS = 4
 #: Columns of a piece of a piecewise polynomial: left end, right end, coefficients, highest power first.
 PIECE_COLUMNS = FIT_DEGREE + 3
 
+#: Decorators of functions that allocate nothing: counting references to arrays would take a third of a call.
+#: ``inner`` is for functions that compiled code alone calls, ``inlined`` for short ones; a wrapper for Python
+#: would take as long to compile as the function. None of them may return an array to Python.
+uncounted = compiled(_nrt=False)
+inner = compiled(_nrt=False, no_cpython_wrapper=True)
+inlined = compiled(_nrt=False, no_cpython_wrapper=True, forceinline=True)
+#: For functions that return views of an array: their lines stand in the place of each call.
+expanded = compiled(inline="always")
+
 _F = np.float64
 _I = np.int64
 
@@ -188,6 +197,8 @@ PAIR = record(
     elastic_load=_F,  # [N]
     couplings=(_F, (MAX_PAIRS,)),  # how far a unit load on each pair moves this one [m/N]
     coupling_slopes=(_F, (MAX_PAIRS,)),  # over xi [1/N]
+    equation=(_F, (MAX_PAIRS,)),  # in the search for the loads: derivatives of its compression by the loads
+    residual=_F,  # what is left of its equation, then the step of its load
     beyond=_I,  # 1: beyond a tip or an edge, where only pressed teeth touch
     pulls=_I,  # 1: the pair cannot lose contact
     touches=_I,  # 1: the pair touches, in the search for the loads
@@ -231,43 +242,43 @@ CONTACT_SIZE = CONTACT.itemsize // 8
 CONTACTS_SIZE = 2 * MAX_PAIRS * CONTACT_SIZE
 
 
-@compiled
+@expanded
 def machine_of(packed: FloatArray) -> Records:
     """MACHINE (1,), a view."""
     return packed[:MACHINE_SIZE].view(MACHINE)
 
 
-@compiled
+@expanded
 def contacts_of(packed: FloatArray) -> Records:
     """CONTACT (n,), a view of a flat array."""
     return packed.view(CONTACT)
 
 
-@compiled
+@expanded
 def block_of(packed: FloatArray, block: Record) -> FloatArray:
     """The flat numbers of a block, a view."""
     return packed[block.start : block.start + block.rows * block.columns]
 
 
-@compiled
+@expanded
 def table_of(packed: FloatArray, block: Record) -> FloatArray:
     """A block as a table of rows and columns, a view."""
     return block_of(packed, block).reshape((block.rows, block.columns))
 
 
-@compiled
+@expanded
 def teeth_of(packed: FloatArray, block: Record) -> Records:
     """A block as TOOTH (z,), a view."""
     return block_of(packed, block).view(TOOTH)
 
 
-@compiled
+@expanded
 def faults_of(packed: FloatArray, block: Record) -> Records:
     """A block as FAULT (n,), a view."""
     return block_of(packed, block).view(FAULT)
 
 
-@compiled
+@expanded
 def ripples_of(packed: FloatArray, block: Record) -> Records:
     """A block as RIPPLE (n,), a view."""
     return block_of(packed, block).view(RIPPLE)
@@ -276,6 +287,11 @@ def ripples_of(packed: FloatArray, block: Record) -> Records:
 def opened(packed: FloatArray) -> Record:
     """The MACHINE record at the start of ``packed``; what is written into it is written there."""
     return packed[:MACHINE_SIZE].view(MACHINE)[0]
+
+
+def opened_table(packed: FloatArray, block: Record) -> FloatArray:
+    """A block as a table of rows and columns, a view."""
+    return packed[block.start : block.start + block.rows * block.columns].reshape(block.rows, block.columns)
 
 
 def opened_contacts(packed: FloatArray) -> Records:

@@ -9,9 +9,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from lumped.compiler import compiled
 from lumped.typing import FloatArray
 from multibody.contact.records import (
     COORDINATES,
@@ -20,14 +17,17 @@ from multibody.contact.records import (
     RATES,
     Record,
     Records,
+    expanded,
     faults_of,
+    inner,
     machine_of,
     ripples_of,
     teeth_of,
+    uncounted,
 )
 
 
-#: Row behind those of a state in ``base_circle_motion``: ways of the base circles' centres from the axes.
+#: Row behind those of a state in ``set_base_circle_motion``: ways of the base circles' centres from the axes.
 WAYS = 2
 
 
@@ -84,13 +84,13 @@ class FaultEffect(NamedTuple):
     gap: float
 
 
-@compiled
-def base_circle_motion(machine: Record, t: float, state: FloatArray) -> FloatArray:
-    """Rows of (x, y, phi) of pinion and gear: state of the base circles' centres, rates, way from the axes.
+@inner
+def set_base_circle_motion(machine: Record, t: float, state: FloatArray, motion: FloatArray) -> None:
+    """Write rows of (x, y, phi) of pinion and gear: state of the base circles' centres, rates, and ways.
 
     ``state`` has in its first rows the coordinates and the rates of the gears, whose axes stand in bearings.
+    The ways lead from the axes to the centres.
     """
-    motion = np.empty((3, 6))
     for j in range(6):
         motion[COORDINATES, j] = state[COORDINATES, j]
         motion[RATES, j] = state[RATES, j]
@@ -112,17 +112,16 @@ def base_circle_motion(machine: Record, t: float, state: FloatArray) -> FloatArr
         motion[COORDINATES, y] += off
         motion[RATES, x] += sense * off * rate
         motion[RATES, y] -= sense * along * rate
-    return motion
 
 
-@compiled
+@inner
 def moments_about_axes(ways: FloatArray, wrench: FloatArray) -> None:
     """Make the moments about the base circles' centres those about the axes, ``ways`` (6,) from the axes."""
     for x in (0, 3):
         wrench[x + 2] += ways[x] * wrench[x + 1] - ways[x + 1] * wrench[x]
 
 
-@compiled
+@uncounted
 def ripple_torques(packed: FloatArray, t: float, q: FloatArray) -> tuple[float, float]:
     """What the ripples add to the driving and to the braking torque [N m].
 
@@ -130,17 +129,20 @@ def ripple_torques(packed: FloatArray, t: float, q: FloatArray) -> tuple[float, 
     """
     machine = machine_of(packed)[0]
     ripples = ripples_of(packed, machine.blocks.ripples)
-    torques = np.zeros(2)
-    for ripple in ripples:
+    driving = 0.0
+    braking = 0.0
+    for i in range(ripples.size):
+        ripple = ripples[i]
         if ripple.gear == 1:
             rotation = machine.rolling.omega_g * t + q[PHI_G]
+            braking += ripple.amplitude * math.cos(ripple.order * rotation + ripple.phase)
         else:
             rotation = machine.rolling.omega_p * t - q[PHI_P]  # the pinion turns clockwise
-        torques[ripple.gear] += ripple.amplitude * math.cos(ripple.order * rotation + ripple.phase)
-    return torques[0], torques[1]
+            driving += ripple.amplitude * math.cos(ripple.order * rotation + ripple.phase)
+    return driving, braking
 
 
-@compiled
+@expanded
 def own_teeth_of(packed: FloatArray) -> OwnTeeth:
     """The records of all teeth."""
     blocks = machine_of(packed)[0].blocks
@@ -149,7 +151,7 @@ def own_teeth_of(packed: FloatArray) -> OwnTeeth:
     )
 
 
-@compiled
+@inner
 def turned_arcs(machine: Record, t: float, q: FloatArray) -> TurnedArcs:
     """Arcs of the base circles at time t and coordinates q (6,)."""
     geometry = machine.geometry
@@ -159,7 +161,7 @@ def turned_arcs(machine: Record, t: float, q: FloatArray) -> TurnedArcs:
     return TurnedArcs(pinion, gear)
 
 
-@compiled
+@uncounted
 def teeth_of_pair(machine: Record, teeth: OwnTeeth, arcs: TurnedArcs, rho_p: float, rho_g: float) -> TeethOfPair:
     """Numbers of the teeth with flanks at the distances rho_p and rho_g from X and Y.
 
@@ -173,7 +175,7 @@ def teeth_of_pair(machine: Record, teeth: OwnTeeth, arcs: TurnedArcs, rho_p: flo
     return TeethOfPair(pinion, gear)
 
 
-@compiled
+@inner
 def fault_effect(fault: Record, radius: float, place: float, sense: float) -> FaultEffect:
     """What a fault adds at a place of its flank [m]; ``sense`` is d(place)/d(xi), 0 beyond the flank.
 
@@ -189,7 +191,7 @@ def fault_effect(fault: Record, radius: float, place: float, sense: float) -> Fa
     return FaultEffect(compliance, slope, 0.0)
 
 
-@compiled
+@uncounted
 def tooth_pair(machine: Record, teeth: OwnTeeth, pair: TeethOfPair, xi: float) -> OwnPair:
     """What two teeth make of their pair in contact at xi [m]."""
     geometry = machine.geometry
@@ -203,7 +205,8 @@ def tooth_pair(machine: Record, teeth: OwnTeeth, pair: TeethOfPair, xi: float) -
     slope = 0.0
     tip_p = geometry.tip_p
     tip_g = geometry.tip_g
-    for fault in teeth.faults:
+    for i in range(teeth.faults.size):
+        fault = teeth.faults[i]
         if fault.tooth != (pair.gear if fault.gear == 1 else pair.pinion):
             continue
         if fault.gear == 1:

@@ -25,7 +25,7 @@ from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 from multibody.contact.events import SLIDING, time_to_event
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.records import CONTACTS_SIZE, COORDINATES, RATES, WRENCH, Records
+from multibody.contact.records import CONTACTS_SIZE, COORDINATES, RATES, WRENCH, Records, inner
 from multibody.run.model import ExudynModel, accelerations, stored
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
@@ -80,7 +80,7 @@ class Stages(NamedTuple):
     acceleration: FloatArray
 
 
-@compiled
+@inner
 def weighted(weights: FloatArray, rates: FloatArray, count: int, i: int) -> float:
     """Sum of the rates of coordinate i at the first stages, by their weights."""
     total = 0.0
@@ -89,7 +89,7 @@ def weighted(weights: FloatArray, rates: FloatArray, count: int, i: int) -> floa
     return total
 
 
-@compiled
+@inner
 def stage_state(state: FloatArray, q: FloatArray, v: FloatArray, h: float, row: FloatArray, count: int, stages: Stages) -> None:
     """Write coordinates and rates of a stage into ``state``.
 
@@ -101,7 +101,7 @@ def stage_state(state: FloatArray, q: FloatArray, v: FloatArray, h: float, row: 
         state[RATES, i] = v[i] + h * weighted(row, stages.acceleration, count, i)
 
 
-@compiled
+@inner
 def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) -> None:
     """Write velocities and accelerations of a stage, by the wrench of the teeth and the bearings."""
     for i in range(6):
@@ -113,7 +113,7 @@ def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) ->
         stages.acceleration[stage, i] = force / body.inertia
 
 
-@compiled
+@inner
 def step_error(stages: Stages, row: FloatArray, h: float, state: FloatArray, rtol: float, atol: float) -> float:
     """Largest error of a step that ends in ``state``, over the error that is allowed."""
     worst = 0.0
@@ -125,7 +125,7 @@ def step_error(stages: Stages, row: FloatArray, h: float, state: FloatArray, rto
     return worst
 
 
-@compiled
+@inner
 def step_change(error: float) -> float:
     """Factor for the next step after a step with this error over the allowed one."""
     change = _SAFETY * error**-0.2 if error > 0.0 else _GROW
