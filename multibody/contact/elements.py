@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
 from lumped.typing import FloatArray
 from multibody.contact.kinematics import CONTACT_LAW
 from multibody.contact.records import Record, Records, inlined, inner, uncounted

@@ -134,9 +134,7 @@ def edge_reach(gap: float, edge: float, length: float, radius: float) -> float:
 
 
 @inner
-def let_go(
-    gap: float, stiffness: float, line: Line, rates: GearRates, machine: Record, flags: int
-) -> float:
+def let_go(gap: float, stiffness: float, line: Line, rates: GearRates, machine: Record, flags: int) -> float:
     """How far beyond D the pinion's tip corner, the flanks pressed by ``gap``, lets go [m].
 
     There the damper pulls as the spring presses: at the load c u, u the rate at which the compression falls,
@@ -169,11 +167,11 @@ class Neighbours(NamedTuple):
     """The pairs whose loads move a tip corner.
 
     contacts : CONTACT records
-    count : how many of them count; 0 where pairs do not move each other
+    number : how many of them count; 0 where pairs do not move each other
     """
 
     contacts: Records
-    count: int
+    number: int
 
 
 @inner
@@ -181,7 +179,7 @@ def moved_by_neighbours(position: float, neighbours: Neighbours, machine: Record
     """How much of the approach of a pair at a position xi the loads of other pairs take [m]."""
     pitch = machine.geometry.pitch
     moved_by = 0.0
-    for i in range(neighbours.count):
+    for i in range(neighbours.number):
         contact = neighbours.contacts[i]
         apart = math.floor((contact.position - position) / pitch + 0.5)
         if apart != 0 and contact.flank > 0.0:
@@ -213,7 +211,7 @@ def reach_before_start(mesh: MeshPosition, neighbours: Neighbours, machine: Reco
         gap = mesh.overlap - relief_at(machine, geometry.L_XA, 0.0, 0.0)[0]
         gap -= moved_by_neighbours(geometry.L_XA - beyond, neighbours, machine)
         beyond = corner_reach(gap, geometry.tip_g, mesh.line.length, geometry.radius_g, geometry.radius_p)
-        if neighbours.count == 0:
+        if neighbours.number == 0:
             break
     return CornerReach(beyond, gap)
 
@@ -233,7 +231,7 @@ def reach_behind_end(
         else:
             tip = geometry.tip_p
             beyond = corner_reach(gap, tip, mesh.line.length, geometry.radius_p, geometry.radius_g)
-        if neighbours.count == 0:
+        if neighbours.number == 0:
             break
     return CornerReach(beyond, gap)
 
@@ -246,13 +244,13 @@ def distance_to_start(mesh: MeshPosition, reach: CornerReach, machine: Record, f
     """
     geometry = machine.geometry
     if not flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT):
-        return geometry.L_XA - mesh.rho
+        return float(geometry.L_XA - mesh.rho)
     length = mesh.line.length
     start = length + mesh.overlap - geometry.tip_g - reach.beyond
     if geometry.edge_p > 0.0:
         back = edge_reach(reach.gap, geometry.edge_p, length, geometry.radius_p)
         start = max(start, geometry.edge_p - back)
-    return start - mesh.rho
+    return float(start - mesh.rho)
 
 
 @inner
@@ -263,19 +261,17 @@ def distance_to_end(mesh: MeshPosition, reach: CornerReach, machine: Record, fla
     """
     geometry = machine.geometry
     if not flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT):
-        return geometry.L_XD - mesh.rho
+        return float(geometry.L_XD - mesh.rho)
     length = mesh.line.length
     end = geometry.tip_p + reach.beyond
     if geometry.edge_g > 0.0:
         back = edge_reach(reach.gap, geometry.edge_g, length, geometry.radius_g)
         end = min(end, length + mesh.overlap - geometry.edge_g + back)
-    return end - mesh.rho
+    return float(end - mesh.rho)
 
 
 @inner
-def distance_to_sliding(
-    place: float, mesh: MeshPosition, rates: GearRates, machine: Record
-) -> float:
+def distance_to_sliding(place: float, mesh: MeshPosition, rates: GearRates, machine: Record) -> float:
     """Distance to where the contact slides as fast as the nominal motion does at a place xi [m].
 
     Friction jumps or bends at a sliding velocity v_s. The nominal motion has it at xi = L_XP +
@@ -285,9 +281,7 @@ def distance_to_sliding(
     rolling = machine.rolling
     line = mesh.line
     arm = mesh.xi + 0.5 * (line.length - geometry.L_XY)
-    slide = sliding_velocity(
-        line, rates.vx, rates.vy, rates.omega_p, rates.omega_g, arm, line.length - arm
-    )
+    slide = sliding_velocity(line, rates.vx, rates.vy, rates.omega_p, rates.omega_g, arm, line.length - arm)
     sought = (place - geometry.L_XP) * (rolling.omega_p + rolling.omega_g)
     return float((sought - slide) / (rates.omega_g - rates.omega_p))
 
@@ -310,7 +304,7 @@ def distance_to_event(
     if kind == FIRST_TOUCH:
         reach = reach_before_start(mesh, neighbours, machine)
         return distance_to_start(mesh, reach, machine, flags)
-    if kind == LAST_TOUCH or kind == LET_GO:
+    if kind in (LAST_TOUCH, LET_GO):
         reach = reach_behind_end(event, mesh, rates, neighbours, machine, flags)
         return distance_to_end(mesh, reach, machine, flags)
     if kind == SLIDING and flags & kn.SLIDING:

@@ -128,7 +128,7 @@ def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float
     if law == _II:
         mu = benedict_kelley(f, sliding, rolling, w)
         return AT_ZERO if mu <= 0.0 else AT_MAXIMUM if mu >= f.maximum or sliding < f.slowest else law
-    return law
+    return int(law)
 
 
 @uncounted
@@ -185,9 +185,7 @@ def friction_size(
     if machine.friction.law == TABLE:
         return abs(table_value(table, machine.geometry.L_XP + distance))
     sliding = abs(surface.sliding)
-    mu = magnitude(
-        machine.friction, sliding, surface.rolling, surface.rho_p, surface.rho_g, distance, load
-    )
+    mu = magnitude(machine.friction, sliding, surface.rolling, surface.rho_p, surface.rho_g, distance, load)
     return float(mu)
 
 

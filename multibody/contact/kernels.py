@@ -507,7 +507,10 @@ class ContactStates(NamedTuple):
 def tooth_forces_over(
     times: FloatArray, q: FloatArray, v: FloatArray, packed: FloatArray, flags: int
 ) -> ContactStates:
-    """``tooth_forces`` at n times [s] with states q, v (n, 6 or more); a kernel would compile for a second."""
+    """``tooth_forces`` at n times [s] with states q, v (n, 6 or more).
+
+    A loop in Python: a kernel would compile for a second.
+    """
     wrenches = np.empty((times.size, 6))
     counts = np.empty(times.size, np.int64)
     flat_contacts = np.zeros((times.size, CONTACTS_SIZE))

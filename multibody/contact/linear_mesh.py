@@ -107,7 +107,12 @@ def add_linear_wrench(wrench: FloatArray, machine: Record, xi: float, force: Lin
 
 @inner
 def linear_path_force(
-    pair: LinearPair, compression: float, force: LinearForce, approach_rate: float, y_rate: float, speed: float
+    pair: LinearPair,
+    compression: float,
+    force: LinearForce,
+    approach_rate: float,
+    y_rate: float,
+    speed: float,
 ) -> float:
     """Force along the path of contact [N]; ``y_rate`` is the rate of y_g - y_p, ``speed`` that of xi [m/s].
 
@@ -130,7 +135,7 @@ def first_position(t: float, machine: Record, start: float) -> float:
     advance = rolling.omega_p * geometry.radius_p * smooth_time
     advance -= pitch * math.floor(advance / pitch)
     first = geometry.L_XA + advance
-    return first - pitch * math.floor((first - start) / pitch)
+    return float(first - pitch * math.floor((first - start) / pitch))
 
 
 @uncounted
@@ -202,4 +207,4 @@ def nominal_sliding(machine: Record, v: FloatArray, xi: float) -> float:
     rolling = machine.rolling
     gear_arm = machine.geometry.L_XY - xi
     by_rotation = (rolling.omega_p - v[PHI_P]) * xi - (rolling.omega_g + v[PHI_G]) * gear_arm
-    return by_rotation - (v[Y_P] - v[Y_G])
+    return float(by_rotation - (v[Y_P] - v[Y_G]))

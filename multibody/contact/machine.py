@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
+
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
@@ -286,9 +287,7 @@ def _on_shafts(pair: GearPair, on_springs: Machine) -> Machine:
     shafts = train(pair, on_springs.mass, on_springs.inertia, speeds, _highest(on_springs))
     packed = on_springs.packed.copy()
     opened(packed).ripples_on_gears = 0
-    return replace(
-        on_springs, packed=packed, bearing_stiffness=none, bearing_damping=none, train=shafts
-    )
+    return replace(on_springs, packed=packed, bearing_stiffness=none, bearing_damping=none, train=shafts)
 
 
 def _set_geometry(geometry: Record, drawn: Circles) -> None:
@@ -340,7 +339,9 @@ def _set_couplings(pair: GearPair, record: Record) -> None:
     record.coupling_count = len(compliances)
 
 
-def _own_blocks(pair: GearPair, gears: Sequence[DrawnGear], record: Record) -> dict[str, FloatArray | Records]:
+def _own_blocks(
+    pair: GearPair, gears: Sequence[DrawnGear], record: Record
+) -> dict[str, FloatArray | Records]:
     """Blocks of teeth that differ, and their mountings in the MACHINE record; none for like teeth."""
     if pair.healthy is pair:
         return {}
@@ -385,7 +386,9 @@ def _loaded_laws(cycle: MeshCycle) -> dict[str, FloatArray | Records]:
     assert e.tilt is not None
     assert e.closing is not None
     laws = (e.damping, e.error, e.gap, e.tilt, e.closing)
-    tables: dict[str, FloatArray | Records] = {name: pack(law) for name, law in zip(LINEAR_BLOCKS, laws, strict=True)}
+    tables: dict[str, FloatArray | Records] = {
+        name: pack(law) for name, law in zip(LINEAR_BLOCKS, laws, strict=True)
+    }
     return tables | {"stiffness": pack(e.stiffness)}
 
 

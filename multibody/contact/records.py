@@ -294,6 +294,12 @@ def opened_table(packed: FloatArray, block: Record) -> FloatArray:
     return packed[block.start : block.start + block.rows * block.columns].reshape(block.rows, block.columns)
 
 
+def opened_records(packed: FloatArray, name: str) -> Records:
+    """The block ``teeth_p``, ``teeth_g``, ``faults`` or ``ripples`` as records (n,), a view."""
+    kinds = {"teeth_p": TOOTH, "teeth_g": TOOTH, "faults": FAULT, "ripples": RIPPLE}
+    return opened_table(packed, opened(packed).blocks[name]).ravel().view(kinds[name])
+
+
 def opened_contacts(packed: FloatArray) -> Records:
     """Flat contacts (..., n CONTACT_SIZE) as CONTACT (..., n), a view."""
     return packed.view(CONTACT)
@@ -306,7 +312,7 @@ LINEAR_BLOCKS = ("linear_damping", "linear_error", "linear_gap", "linear_tilt", 
 def with_blocks(packed: FloatArray, blocks: dict[str, FloatArray | Records]) -> FloatArray:
     """The MACHINE part of ``packed``, with blocks behind it: tables (rows, columns), or records (n,)."""
     parts = [packed[:MACHINE_SIZE].copy()]
-    places = opened(parts[0]).blocks
+    places = opened(parts[0])["blocks"]
     start = MACHINE_SIZE
     for name in BLOCKS.names or ():
         values = np.ascontiguousarray(blocks.get(name, np.zeros((0, 0))))
@@ -315,3 +321,12 @@ def with_blocks(packed: FloatArray, blocks: dict[str, FloatArray | Records]) -> 
         parts.append(values.view(np.float64).ravel())
         start += rows * columns
     return np.concatenate(parts)
+
+
+def with_block(packed: FloatArray, name: str, table: FloatArray) -> FloatArray:
+    """A packed machine with another table (rows, columns) in the place of the block of a name."""
+    places = opened(packed).blocks
+    blocks: dict[str, FloatArray | Records] = {
+        block: opened_table(packed, places[block]) for block in BLOCKS.names or ()
+    }
+    return with_blocks(packed, blocks | {name: table})

@@ -26,7 +26,6 @@ from multibody.contact.records import (
     uncounted,
 )
 
-
 #: Row behind those of a state in ``set_base_circle_motion``: ways of the base circles' centres from the axes.
 WAYS = 2
 
@@ -162,7 +161,9 @@ def turned_arcs(machine: Record, t: float, q: FloatArray) -> TurnedArcs:
 
 
 @uncounted
-def teeth_of_pair(machine: Record, teeth: OwnTeeth, arcs: TurnedArcs, rho_p: float, rho_g: float) -> TeethOfPair:
+def teeth_of_pair(
+    machine: Record, teeth: OwnTeeth, arcs: TurnedArcs, rho_p: float, rho_g: float
+) -> TeethOfPair:
     """Numbers of the teeth with flanks at the distances rho_p and rho_g from X and Y.
 
     Pair 0 was at A at t = 0, and each pair behind it is one base pitch behind.

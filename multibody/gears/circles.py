@@ -15,8 +15,8 @@ from scipy.optimize import brentq
 
 from lumped.schema.pair import GearPair
 from lumped.schema.relief import ProfileRelief
-from multibody.gears.undercut import undercut_edge
 from multibody.gears.cut_teeth import profile_shifts, root_radius
+from multibody.gears.undercut import undercut_edge
 
 #: Largest operating pressure angle in the search for the centre distance [rad].
 _STEEPEST = 1.4

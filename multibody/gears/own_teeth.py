@@ -249,9 +249,10 @@ def harmonic_at_teeth(cosine: float, sine: float, teeth: int) -> FloatArray:
 def turning_eccentricity(gear: DrawnGear, cosine: float, sine: float) -> tuple[float, float]:
     """Eccentricity [m] and its angle when tooth 1 is at A [rad] that the first harmonic of a list stands for.
 
-    Tooth n is measured where it touches at the pitch point. There the gear has turned by tau = 2 pi n/z from
-    the place where tooth 1 is at the pitch point, and before that by sigma = to_pitch_point/r_b from the place
-    where tooth 1 is at A. So eccentricity * cos(tau + sigma + angle) = a cos(tau) + b sin(tau) for every tau:
+    Tooth n is measured where it touches at the pitch point. The gear turns by sigma = to_pitch_point/r_b
+    from the place where tooth 1 is at A to the place where tooth 1 is at the pitch point, and from there by
+    tau = 2 pi n/z until tooth n is at the pitch point. So for every tau
+    eccentricity * cos(tau + sigma + angle) = a cos(tau) + b sin(tau), which is
     eccentricity * cos(sigma + angle) = a and eccentricity * sin(sigma + angle) = -b.
     """
     sigma = gear.to_pitch_point / gear.base_radius
@@ -281,7 +282,8 @@ def own_faults(pair: GearPair, gears: Sequence[DrawnGear]) -> list[OwnFault]:
 
 def own_fault(pair: GearPair, gear: DrawnGear, fault: ToothFault) -> OwnFault:
     """One fault. The root section of a crack is that of ``lumped.faults``; the arm of the load is not."""
-    sound = OwnFault(gear.number, fault.tooth - 1, *[0.0] * 7, flank_end=gear.tip)
+    nothing = [0.0] * 7  # from the crack to the pit
+    sound = OwnFault(gear.number, fault.tooth - 1, *nothing, gear.tip)
     if isinstance(fault, Crack):
         centre, half = root_section(pair.wheels[gear.number].tooth)
         return sound._replace(

@@ -74,7 +74,7 @@ _LEAST = 1e-9
 
 
 class Stages(NamedTuple):
-    """Velocities and accelerations at the stages of one step, (7, 6) each; the first are those at its start."""
+    """Velocities and accelerations at the stages of one step, (7, 6) each, its start first."""
 
     velocity: FloatArray
     acceleration: FloatArray
@@ -90,7 +90,9 @@ def weighted(weights: FloatArray, rates: FloatArray, count: int, i: int) -> floa
 
 
 @inner
-def stage_state(state: FloatArray, q: FloatArray, v: FloatArray, h: float, row: FloatArray, count: int, stages: Stages) -> None:
+def stage_state(
+    state: FloatArray, q: FloatArray, v: FloatArray, h: float, row: FloatArray, count: int, stages: Stages
+) -> None:
     """Write coordinates and rates of a stage into ``state``.
 
     q, v : (6,) at the start of the step of length h [s]
@@ -114,7 +116,9 @@ def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) ->
 
 
 @inner
-def step_error(stages: Stages, row: FloatArray, h: float, state: FloatArray, rtol: float, atol: float) -> float:
+def step_error(
+    stages: Stages, row: FloatArray, h: float, state: FloatArray, rtol: float, atol: float
+) -> float:
     """Largest error of a step that ends in ``state``, over the error that is allowed."""
     worst = 0.0
     for i in range(6):

@@ -195,9 +195,7 @@ def mesh_wrench(
     moved = np.zeros((times.size, 6))
     moved[:, 0] = 1.0
     states = ((moved, at_rest), (at_rest, moved), (at_rest, at_rest))
-    by_overlap, by_rate, constant = (
-        _contacts(machine, times, q, v, low, high).wrenches for q, v in states
-    )
+    by_overlap, by_rate, constant = (_contacts(machine, times, q, v, low, high).wrenches for q, v in states)
     return by_overlap - constant, by_rate - constant, constant
 
 

@@ -23,7 +23,28 @@ PAIR_OF = {key: row.pop("pair") for key, row in _ROWS.items()}
 FAULTS = {key: Fault(key, **row) for key, row in _ROWS.items()}
 
 #: Index deviations of 20 teeth with a first harmonic of some 6 um and steps of some 3 um [um].
-INDEX = [5.1, 7.9, 2.2, 6.4, 0.8, 3.3, -4.0, -1.2, -7.5, -3.1, -8.8, -4.2, -6.0, 0.4, -3.9, 2.7, 4.4, 0.1, 6.6, 1.7]
+INDEX = [
+    5.1,
+    7.9,
+    2.2,
+    6.4,
+    0.8,
+    3.3,
+    -4.0,
+    -1.2,
+    -7.5,
+    -3.1,
+    -8.8,
+    -4.2,
+    -6.0,
+    0.4,
+    -3.9,
+    2.7,
+    4.4,
+    0.1,
+    6.6,
+    1.7,
+]
 #: Profile slope deviations of 30 teeth [um].
 SLOPES = [9.0, -6.0, 4.0, -8.0, 7.0] * 6
 
@@ -33,6 +54,8 @@ FRICTIONLESS = {"friction.law": "coulomb", "friction.coefficient": 0.0}
 PAIRS = {
     "deviations": {
         "mesh.first_teeth": [4, 9],
+        "pinion.inertia": 0.05,
+        "gear.inertia": 0.09,
         "pinion.deviations": {"index": INDEX, "counted": "against"},
         "gear.deviations": {"tolerance_class": 7, "seed": 5},
     },
@@ -45,14 +68,16 @@ PAIRS = {
         "pinion.mounting": {"eccentricity": 14, "phase": 70},
         "gear.mounting": {"eccentricity": 11, "phase": 200},
         "pinion.faults": [{"kind": "crack", "tooth": 7, "depth": 2.5}],
-        "gear.faults": [{"kind": "spall", "tooth": 15, "start_roll_angle": 22, "end_roll_angle": 25, "width": 14}],
+        "gear.faults": [
+            {"kind": "spall", "tooth": 15, "start_roll_angle": 22, "end_roll_angle": 25, "width": 14}
+        ],
         "operating.torque_ripple": [{"shaft": "gear", "order": 5, "amplitude": 150, "phase": 50}],
     },
 }
 
 
 def checked(name):
-    """Cross-check of a pair of ``PAIRS``. Its twin with like teeth, which no fault reaches, is checked once."""
+    """Cross-check of a pair of ``PAIRS``. No fault reaches its twin with like teeth, which is checked once."""
     pair = unlike_pair("unlike_teeth_finite_elements").with_(FRICTIONLESS | PAIRS[name])
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore")
