@@ -282,8 +282,18 @@ def own_faults(pair: GearPair, gears: Sequence[DrawnGear]) -> list[OwnFault]:
 
 def own_fault(pair: GearPair, gear: DrawnGear, fault: ToothFault) -> OwnFault:
     """One fault. The root section of a crack is that of ``lumped.faults``; the arm of the load is not."""
-    nothing = [0.0] * 7  # from the crack to the pit
-    sound = OwnFault(gear.number, fault.tooth - 1, *nothing, gear.tip)
+    sound = OwnFault(
+        gear=gear.number,
+        tooth=fault.tooth - 1,
+        crack=0.0,
+        root=0.0,
+        half_tooth=0.0,
+        spall_start=0.0,
+        spall_end=0.0,
+        spall=0.0,
+        pit=0.0,
+        flank_end=gear.tip,
+    )
     if isinstance(fault, Crack):
         centre, half = root_section(pair.wheels[gear.number].tooth)
         return sound._replace(

@@ -77,7 +77,7 @@ PAIRS = {
 
 
 def checked(name):
-    """Cross-check of a pair of ``PAIRS``. No fault reaches its twin with like teeth, which is checked once."""
+    """Cross-check of a pair of ``PAIRS``; its twin with like teeth, which no fault reaches, once."""
     pair = unlike_pair("unlike_teeth_finite_elements").with_(FRICTIONLESS | PAIRS[name])
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("ignore")
