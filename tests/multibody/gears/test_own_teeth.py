@@ -35,7 +35,7 @@ def with_own_teeth(first_order, counted, drawn):
 
 @pytest.mark.parametrize(
     ("first_order", "counted", "drawn"),
-    itertools.product(("steps", "eccentricity"), ("with", "against"), (True, False)),
+    list(itertools.product(("steps", "eccentricity"), ("with", "against"), (True, False))),
 )
 def test_both_models_read_the_same_teeth(first_order, counted, drawn):
     pair = with_own_teeth(first_order, counted, drawn)

@@ -22,28 +22,28 @@ _ROWS = tomllib.loads(Path(__file__).with_name("faults_of_own_teeth.toml").read_
 PAIR_OF = {key: row.pop("pair") for key, row in _ROWS.items()}
 FAULTS = {key: Fault(key, **row) for key, row in _ROWS.items()}
 
-#: Index deviations of 20 teeth with a first harmonic of some 6 um and steps of some 3 um [um].
+#: Index deviations of 20 teeth with a first harmonic of some 12 um and steps of some 6 um [um].
 INDEX = [
-    5.1,
-    7.9,
-    2.2,
-    6.4,
-    0.8,
-    3.3,
-    -4.0,
-    -1.2,
-    -7.5,
-    -3.1,
-    -8.8,
-    -4.2,
-    -6.0,
-    0.4,
-    -3.9,
-    2.7,
+    10.2,
+    15.8,
     4.4,
-    0.1,
+    12.8,
+    1.6,
     6.6,
-    1.7,
+    -8.0,
+    -2.4,
+    -15.0,
+    -6.2,
+    -17.6,
+    -8.4,
+    -12.0,
+    0.8,
+    -7.8,
+    5.4,
+    8.8,
+    0.2,
+    13.2,
+    3.4,
 ]
 #: Profile slope deviations of 30 teeth [um].
 SLOPES = [9.0, -6.0, 4.0, -8.0, 7.0] * 6
