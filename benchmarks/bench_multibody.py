@@ -23,9 +23,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import lumped
-from multibody.contact import kinematics as kn
-from multibody.contact.kernels import linear_forces
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.linear_mesh import linear_forces
+from multibody.contact.records import CONTACTS_SIZE, opened
 from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record
@@ -44,15 +43,18 @@ PAIRS = {
 
 def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     """Integrate the lumped equations between switches; force evaluations, and q at the ends of the cycles."""
-    m, p = setup.machine, setup.machine.parameters.copy()
+    m = setup.machine
+    packed = m.packed.copy()
+    rolling = opened(packed).rolling
     gears = np.empty((3, 6))
-    contacts = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-    inertia, stiffness, damping, load = m.bodies
+    contacts = np.zeros(CONTACTS_SIZE)
+    bodies = m.bodies
+    inertia, stiffness, damping, load = (bodies[name] for name in bodies.dtype.names)
 
     def rates(t: float, state: np.ndarray) -> np.ndarray:
         q, v = state[:6], state[6:]
         gears[:2] = q, v
-        linear_forces(t, gears, p, setup.model.flags, m.table, contacts)
+        linear_forces(t, gears, packed, setup.model.flags, contacts)
         return np.concatenate([v, (gears[2] + load - stiffness * q - damping * v) / inertia])
 
     edges = (np.arange(cycles)[:, None] + m.switches).ravel()
@@ -62,8 +64,8 @@ def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     margin = 1e-12 * m.period
     ends = []
     for number, (start, stop) in enumerate(itertools.pairwise(edges)):
-        p[kn.T_LOW] = start + margin
-        p[kn.T_HIGH] = stop - margin
+        rolling.earliest = start + margin
+        rolling.latest = stop - margin
         found = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=setup.rtol, atol=setup.atol)
         state = found.y[:, -1]
         calls = calls + found.nfev
@@ -116,8 +118,8 @@ class Row:
 
 
 def transmission_error(setup: Setup, q: np.ndarray) -> np.ndarray:
-    p = setup.machine.parameters
-    return q[:, 0] - q[:, 3] - p[kn.RADIUS_P] * q[:, 2] - p[kn.RADIUS_G] * q[:, 5]
+    p = setup.machine.record
+    return q[:, 0] - q[:, 3] - p.geometry.radius_p * q[:, 2] - p.geometry.radius_g * q[:, 5]
 
 
 def measure(pair: lumped.GearPair, cycles: int, repeats: int) -> dict[str, Row]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,29 +17,45 @@ from lumped.compiler import compiled
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
-from multibody.contact.elements import GRADUAL, compliances, coupling_at, relief_at
+from multibody.contact.elements import GRADUAL, compliances, contact_law, coupling_at, relief_at
+from multibody.contact.friction import FrictionSwitch
 from multibody.contact.kernels import contact_forces
 from multibody.contact.kinematics import (
     DRIVE,
+    GearRates,
     Line,
+    MeshPosition,
     corner_gap,
     corner_reach,
+    gear_rates,
+    line_rates,
     mesh_position,
     overlap_rate,
     sliding_velocity,
     wrap,
 )
+from multibody.contact.records import (
+    CONTACTS_SIZE,
+    COORDINATES,
+    EVENT,
+    RATES,
+    Record,
+    Records,
+    contacts_of,
+    inner,
+    machine_of,
+)
 
-#: Kinds of events, the first column of an event table; the second is the place xi [m] of the last two.
-ENTRY = 0.0
-EXIT = 1.0
-SWITCH = 2.0
-SLIDING = 3.0
-#: First touch of a tip corner before the path of contact, where its damper lets one behind it go, and last
-#: touch; of letting go the second column is the stiffness there [N/m].
-FIRST_TOUCH = 4.0
-LET_GO = 5.0
-LAST_TOUCH = 6.0
+#: Kinds of events: a flank enters or leaves contact, a contact passes a switch of a law, sliding turns.
+ENTRY = 0
+EXIT = 1
+SWITCH = 2
+SLIDING = 3
+#: First touch of a tip corner before the path of contact, where the damper of one behind the path lets it
+#: go, and its last touch.
+FIRST_TOUCH = 4
+LET_GO = 5
+LAST_TOUCH = 6
 #: Length of an ordinary step over the base pitch. Where the jumps of a law and its first two derivatives come
 #: to less than this share of its largest value within a step, nothing happens.
 _STEP = 0.005
@@ -58,15 +75,15 @@ _PLACES = 2
 def event_table(
     stiffness: PathFunction,
     bends: Sequence[float],
-    friction: Sequence[tuple[bool, float]],
+    friction: Sequence[FrictionSwitch],
     pitch: float,
     *,
     corners: bool = False,
-) -> FloatArray:
-    """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
+) -> Records:
+    """EVENT (n,) of what makes the force jump or bend once per mesh cycle.
 
     bends : where a relief starts [m]
-    friction : jumps and kinks of the friction law, as ``friction_switches`` gives them
+    friction : jumps and kinks of the friction law
     corners : whether tip corners touch beyond the path of contact
     """
     step = _STEP * pitch
@@ -74,7 +91,8 @@ def event_table(
         place: _change(stiffness, int(np.searchsorted(stiffness.breaks, place)), step)
         for place in stiffness.switches.tolist()
     }
-    largest = [place for place in sorted(sizes, key=lambda at: -sizes[at]) if sizes[place] > _NEGLIGIBLE]
+    by_size = sorted(sizes, key=lambda place: -sizes[place])
+    largest = [place for place in by_size if sizes[place] > _NEGLIGIBLE]
     rows = [(SLIDING if moves else SWITCH, place) for moves, place in friction]
     rows += [(SWITCH, place) for place in {*bends, *largest[:_MOST_SWITCHES]}]
     low, high = stiffness.interval
@@ -86,8 +104,8 @@ def event_table(
         rows += [(FIRST_TOUCH, 0.0), (LET_GO, float(ends[1])), (LAST_TOUCH, 0.0)]
         least = _NEGLIGIBLE * float(np.abs(stiffness(stiffness.breaks[:-1])).max())
         bent = np.abs(stiffness(inside) - ends) > least  # beyond, k keeps its value, and so does a relief
-        rows += [(SWITCH, at) for at, one in zip((low, high), bent, strict=True) if one or bends]
-    return np.array(rows, dtype=float).reshape(-1, 2)
+        rows += [(SWITCH, end) for end, one in zip((low, high), bent, strict=True) if one or bends]
+    return np.array(rows, dtype=EVENT)
 
 
 def _change(law: PathFunction, j: int, step: float) -> float:
@@ -108,15 +126,15 @@ def _change(law: PathFunction, j: int, step: float) -> float:
     return total / largest if largest > 0.0 else 0.0
 
 
-@compiled
+@inner
 def edge_reach(gap: float, edge: float, length: float, radius: float) -> float:
     """About how far back from an edge a gap is closed [m], to the leading order of ``corner_off``."""
     bend = (edge / radius) ** 2 * (1.0 / edge + 1.0 / (length - edge))
     return math.sqrt(2.0 * max(gap, 0.0) / bend)
 
 
-@compiled
-def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArray, flags: int) -> float:
+@inner
+def let_go(gap: float, stiffness: float, line: Line, rates: GearRates, machine: Record, flags: int) -> float:
     """How far beyond D the pinion's tip corner, the flanks pressed by ``gap``, lets go [m].
 
     There the damper pulls as the spring presses: at the load c u, u the rate at which the compression falls,
@@ -124,103 +142,198 @@ def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArra
     """
     rp = line.radius_p
     rg = line.radius_g
-    tip = p[kn.TIP_P]
-    length = line.length
-    vx, vy = v[0] - v[3], v[1] - v[4]
-    omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
-    turning = lengthening = 0.0
-    if flags & kn.MOVING_LINE:
-        turning = (line.ey * vx - line.ex * vy) / length
-        lengthening = (rp + rg) * turning - (line.ex * vx + line.ey * vy)
-    full = GRADUAL * p[kn.NOMINAL_FORCE]
-    damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
-    softening = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0
-    closing = overlap_rate(line, vx, vy, omega_p, omega_g)
-    beyond = corner_reach(gap, tip, length, rp, rg)
+    tip = machine.geometry.tip_p
+    law = contact_law(machine, flags)
+    psi_rate, length_rate = line_rates(line, rates, flags)
+    full = GRADUAL * law.nominal_force
+    damping = machine.pair_law.damping * math.sqrt(max(stiffness, 0.0))
+    approach_rate = overlap_rate(line, rates.vx, rates.vy, rates.omega_p, rates.omega_g)
+    beyond = corner_reach(gap, tip, line.length, rp, rg)
     for _ in range(_MOST_ITERATIONS):
-        _, by_p, by_length = corner_gap(beyond, tip, length, rp, rg)
-        pull = damping * (by_p * rp * (turning - omega_p) + by_length * lengthening - closing)
+        _, by_p, by_length = corner_gap(beyond, tip, line.length, rp, rg)
+        pull = damping * (by_p * rp * (psi_rate - rates.omega_p) + by_length * length_rate - approach_rate)
         if not 9.0 * pull > 8.0 * full:
             break
         load = pull if pull > full else 0.25 * (3.0 + math.sqrt(9.0 - 8.0 * full / pull)) * full
-        left = gap - load * compliances(load, stiffness, softening, p[kn.NOMINAL_FORCE])[0]
+        gap_left = gap - load * compliances(load, stiffness, law)[0]
         before = beyond
-        beyond = corner_reach(left, tip, length, rp, rg)
-        if abs(beyond - before) < _BENDS * p[kn.PITCH]:
+        beyond = corner_reach(gap_left, tip, line.length, rp, rg)
+        if abs(beyond - before) < _BENDS * machine.geometry.pitch:
             break
     return float(beyond)
 
 
-@compiled
-def moved_by_others(at: float, contacts: FloatArray, count: int, p: FloatArray) -> float:
-    """How much of the approach of a pair at xi = ``at`` the loads of the others, pitches off, take [m]."""
-    moved = 0.0
-    for i in range(count):
-        apart = math.floor((contacts[i, kn.XI] - at) / p[kn.PITCH] + 0.5)
-        if apart != 0 and contacts[i, kn.FLANK] > 0.0:
-            behind = min(at, at + apart * p[kn.PITCH])
-            moved += coupling_at(p, abs(apart), behind)[0] * contacts[i, kn.ELASTIC]
-    return moved
+class Neighbours(NamedTuple):
+    """The pairs whose loads move a tip corner.
+
+    contacts : CONTACT records
+    number : how many of them count; 0 where pairs do not move each other
+    """
+
+    contacts: Records
+    number: int
 
 
-@compiled
-def distance(
-    kind: float,
-    place: float,
-    t: float,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    contacts: FloatArray,
-    count: int,
+@inner
+def moved_by_neighbours(position: float, neighbours: Neighbours, machine: Record) -> float:
+    """How much of the approach of a pair at a position xi the loads of other pairs take [m]."""
+    pitch = machine.geometry.pitch
+    moved_by = 0.0
+    for i in range(neighbours.number):
+        contact = neighbours.contacts[i]
+        apart = math.floor((contact.position - position) / pitch + 0.5)
+        if apart != 0 and contact.flank > 0.0:
+            behind = min(position, position + apart * pitch)
+            moved_by += coupling_at(machine, abs(apart), behind)[0] * contact.elastic_load
+    return moved_by
+
+
+class CornerReach(NamedTuple):
+    """Where a tip corner touches.
+
+    beyond : how far beyond its tip circle [m]
+    gap : approach of the flanks there, less relief and what neighbours take [m]
+    """
+
+    beyond: float
+    gap: float
+
+
+@inner
+def reach_before_start(mesh: MeshPosition, neighbours: Neighbours, machine: Record) -> CornerReach:
+    """Where the gear's tip corner first touches, before A.
+
+    The loads of the neighbours depend little on where exactly the pair will be.
+    """
+    geometry = machine.geometry
+    beyond = gap = 0.0
+    for _ in range(_PLACES):
+        gap = mesh.overlap - relief_at(machine, geometry.L_XA, 0.0, 0.0)[0]
+        gap -= moved_by_neighbours(geometry.L_XA - beyond, neighbours, machine)
+        beyond = corner_reach(gap, geometry.tip_g, mesh.line.length, geometry.radius_g, geometry.radius_p)
+        if neighbours.number == 0:
+            break
+    return CornerReach(beyond, gap)
+
+
+@inner
+def reach_behind_end(
+    event: Record, mesh: MeshPosition, rates: GearRates, neighbours: Neighbours, machine: Record, flags: int
+) -> CornerReach:
+    """Where the pinion's tip corner lets go, or last touches, behind D."""
+    geometry = machine.geometry
+    beyond = gap = 0.0
+    for _ in range(_PLACES):
+        gap = mesh.overlap - relief_at(machine, geometry.L_XD, 0.0, 0.0)[0]
+        gap -= moved_by_neighbours(geometry.L_XD + beyond, neighbours, machine)
+        if event.kind == LET_GO:
+            beyond = let_go(gap, event.place, mesh.line, rates, machine, flags)
+        else:
+            tip = geometry.tip_p
+            beyond = corner_reach(gap, tip, mesh.line.length, geometry.radius_p, geometry.radius_g)
+        if neighbours.number == 0:
+            break
+    return CornerReach(beyond, gap)
+
+
+@inner
+def distance_to_start(mesh: MeshPosition, reach: CornerReach, machine: Record, flags: int) -> float:
+    """Distance to where a pair enters contact [m]. Undercut of the pinion may end its flank before.
+
+    The edge of an undercut touches as late as the tip of the mate, at most.
+    """
+    geometry = machine.geometry
+    if not flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT):
+        return float(geometry.L_XA - mesh.rho)
+    length = mesh.line.length
+    start = length + mesh.overlap - geometry.tip_g - reach.beyond
+    if geometry.edge_p > 0.0:
+        back = edge_reach(reach.gap, geometry.edge_p, length, geometry.radius_p)
+        start = max(start, geometry.edge_p - back)
+    return float(start - mesh.rho)
+
+
+@inner
+def distance_to_end(mesh: MeshPosition, reach: CornerReach, machine: Record, flags: int) -> float:
+    """Distance to where a pair leaves contact [m]. Undercut of the gear may end its flank before.
+
+    The edge of an undercut lets go as soon as the tip of the mate, at most.
+    """
+    geometry = machine.geometry
+    if not flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT):
+        return float(geometry.L_XD - mesh.rho)
+    length = mesh.line.length
+    end = geometry.tip_p + reach.beyond
+    if geometry.edge_g > 0.0:
+        back = edge_reach(reach.gap, geometry.edge_g, length, geometry.radius_g)
+        end = min(end, length + mesh.overlap - geometry.edge_g + back)
+    return float(end - mesh.rho)
+
+
+@inner
+def distance_to_sliding(place: float, mesh: MeshPosition, rates: GearRates, machine: Record) -> float:
+    """Distance to where the contact slides as fast as the nominal motion does at a place xi [m].
+
+    Friction jumps or bends at a sliding velocity v_s. The nominal motion has it at xi = L_XP +
+    v_s/(Omega_p + Omega_g); the actual sliding velocity is linear along the line of action.
+    """
+    geometry = machine.geometry
+    rolling = machine.rolling
+    line = mesh.line
+    arm = mesh.xi + 0.5 * (line.length - geometry.L_XY)
+    slide = sliding_velocity(line, rates.vx, rates.vy, rates.omega_p, rates.omega_g, arm, line.length - arm)
+    sought = (place - geometry.L_XP) * (rolling.omega_p + rolling.omega_g)
+    return float((sought - slide) / (rates.omega_g - rates.omega_p))
+
+
+@inner
+def distance_to_event(
+    event: Record, t: float, state: FloatArray, machine: Record, flags: int, neighbours: Neighbours
 ) -> float:
     """How far one tooth pair has to travel along the path of contact to an event, modulo the base pitch [m].
 
-    Friction jumps or bends at a sliding velocity v_s, given by the place where the nominal motion slides so
-    fast, xi = L_XP + v_s/(Omega_p + Omega_g); the actual one is linear along the line of action. ``contacts``
-    are the ``count`` pairs whose loads move a tip corner, none where pairs do not move each other.
+    state : rows of coordinates and rates (6,) of the gears at time t [s]
     """
-    line, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
-    length = line.length
-    shifted = flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT)
-    first, last = kind == FIRST_TOUCH, kind in (LET_GO, LAST_TOUCH)
-    beyond = gap = 0.0
-    # The loads of other pairs depend little on where exactly the pair will be.
-    for _ in range(_PLACES if first or last else 0):
-        if first:
-            gap = delta - relief_at(p, p[kn.L_XA], 0.0, 0.0)[0]
-            gap -= moved_by_others(p[kn.L_XA] - beyond, contacts, count, p)
-            beyond = corner_reach(gap, p[kn.TIP_G], length, p[kn.RADIUS_G], p[kn.RADIUS_P])
-        else:
-            gap = delta - relief_at(p, p[kn.L_XD], 0.0, 0.0)[0]
-            gap -= moved_by_others(p[kn.L_XD] + beyond, contacts, count, p)
-            if kind == LET_GO:
-                beyond = let_go(gap, place, line, v, p, flags)
-            else:
-                beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
-        if count == 0:
-            break
-    # Where undercut ends the flank of the mate: its edge lets go as soon as the tip does, at most.
-    if kind == EXIT or last:
-        end = p[kn.TIP_P] + beyond
-        if p[kn.EDGE_G] > 0.0:
-            way = edge_reach(gap, p[kn.EDGE_G], length, p[kn.RADIUS_G]) if last else 0.0
-            end = min(end, length + delta - p[kn.EDGE_G] + way)
-        return float(end if shifted else p[kn.L_XD]) - rho
-    if kind == ENTRY or first:
-        start = length + delta - p[kn.TIP_G] - beyond
-        if p[kn.EDGE_P] > 0.0:
-            way = edge_reach(gap, p[kn.EDGE_P], length, p[kn.RADIUS_P]) if first else 0.0
-            start = max(start, p[kn.EDGE_P] - way)
-        return float(start if shifted else p[kn.L_XA]) - rho
+    mesh = mesh_position(t, state[COORDINATES], machine, flags, DRIVE)
+    rates = gear_rates(machine, state[RATES])
+    kind = event.kind
+    if kind == ENTRY:
+        return distance_to_start(mesh, CornerReach(0.0, 0.0), machine, flags)
+    if kind == EXIT:
+        return distance_to_end(mesh, CornerReach(0.0, 0.0), machine, flags)
+    if kind == FIRST_TOUCH:
+        reach = reach_before_start(mesh, neighbours, machine)
+        return distance_to_start(mesh, reach, machine, flags)
+    if kind in (LAST_TOUCH, LET_GO):
+        reach = reach_behind_end(event, mesh, rates, neighbours, machine, flags)
+        return distance_to_end(mesh, reach, machine, flags)
     if kind == SLIDING and flags & kn.SLIDING:
-        omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
-        arm = xi + 0.5 * (length - p[kn.L_XY])
-        slide = sliding_velocity(line, v[0] - v[3], v[1] - v[4], omega_p, omega_g, arm, length - arm)
-        wanted = (place - p[kn.L_XP]) * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
-        return float((wanted - slide) / (omega_g - omega_p))
-    return place - xi
+        return distance_to_sliding(event.place, mesh, rates, machine)
+    return float(event.place - mesh.xi)
+
+
+@inner
+def nearest_event(
+    t: float, state: FloatArray, machine: Record, flags: int, events: Records, neighbours: Neighbours
+) -> tuple[float, int]:
+    """Distance to the nearest event along the path [m], infinite without events, and its number."""
+    shortest = math.inf
+    number = 0
+    for i in range(events.size):
+        distance = distance_to_event(events[i], t, state, machine, flags, neighbours)
+        distance %= machine.geometry.pitch
+        if distance < shortest:
+            shortest = distance
+            number = i
+    return shortest, number
+
+
+@inner
+def continued(state: FloatArray, q: FloatArray, v: FloatArray, a: FloatArray, wait: float) -> None:
+    """Write coordinates and rates into ``state`` as a Taylor polynomial continues them over a time [s]."""
+    for j in range(6):
+        state[COORDINATES, j] = q[j] + wait * (v[j] + 0.5 * wait * a[j])
+        state[RATES, j] = v[j] + wait * a[j]
 
 
 @compiled
@@ -229,56 +342,49 @@ def time_to_event(
     q: FloatArray,
     v: FloatArray,
     a: FloatArray,
-    p: FloatArray,
+    packed: FloatArray,
     flags: int,
-    table: FloatArray,
-    events: FloatArray,
+    events: Records,
     near: float,
-) -> tuple[float, float]:
+) -> tuple[float, int]:
     """Time to the next event [s] and its kind; infinite when there is none.
 
     Over the time ``near`` [s] a Taylor polynomial of q, v, a (6,) foretells the vibration; further ahead only
-    the nominal speed is asked.
+    the nominal speed is asked. The secant through the last two predictions finds the next one.
     """
-    pitch = float(p[kn.PITCH])
-    speed = float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
-    coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and p[kn.COUPLED] > 0.0
-    contacts = np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD))
+    machine = machine_of(packed)[0]
+    pitch = machine.geometry.pitch
+    speed = machine.rolling.omega_p * machine.geometry.radius_p
+    coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and machine.coupling_count > 0
+    flat_contacts = np.empty(CONTACTS_SIZE)
+    contacts = contacts_of(flat_contacts)
     count = 0
-    ahead = np.empty((3, 6))
-    later = ahead[0]
-    moving = ahead[1]
+    state = np.empty((3, 6))
+    state[COORDINATES] = q
+    state[RATES] = v
     if coupled:
-        for j in range(6):
-            later[j] = q[j]
-            moving[j] = v[j]
-        count = contact_forces(t, ahead, p, flags, table, contacts)
-    way = math.inf
-    which = 0
-    for i in range(events.shape[0]):
-        d = distance(events[i, 0], events[i, 1], t, q, v, p, flags, contacts, count) % pitch
-        if d < way:
-            way = d
-            which = i
-    wait = way / speed
-    kind = float(events[which, 0]) if events.shape[0] else ENTRY
+        count = contact_forces(t, state, packed, flags, flat_contacts)
+    shortest, number = nearest_event(t, state, machine, flags, events, Neighbours(contacts, count))
+    wait = shortest / speed
+    if events.size == 0:
+        return wait, ENTRY
+    event = events[number]
     if not wait < near:
-        return wait, kind
+        return wait, event.kind
     before = shift = 0.0
-    for turn in range(_MOST_ITERATIONS):
-        for j in range(6):
-            later[j] = q[j] + wait * (v[j] + 0.5 * wait * a[j])
-            moving[j] = v[j] + wait * a[j]
-        if coupled and kind >= FIRST_TOUCH:
-            count = contact_forces(t + wait, ahead, p, flags, table, contacts)
-        d = distance(kind, events[which, 1], t + wait, later, moving, p, flags, contacts, count)
-        change = wrap(d, pitch) / speed
-        share = 1.0  # of the way that the secant through the last two predictions goes
-        if turn > 0 and abs(change) < 0.5 * abs(shift):
+    sharp = (_SHARP if event.kind < FIRST_TOUCH else _BENDS) * pitch
+    for prediction in range(_MOST_ITERATIONS):
+        continued(state, q, v, a, wait)
+        if coupled and event.kind >= FIRST_TOUCH:
+            count = contact_forces(t + wait, state, packed, flags, flat_contacts)
+        distance = distance_to_event(event, t + wait, state, machine, flags, Neighbours(contacts, count))
+        change = wrap(distance, pitch) / speed
+        share = 1.0  # of the change that the secant takes
+        if prediction > 0 and abs(change) < 0.5 * abs(shift):
             share = (wait - before) / (shift - change)
         before = wait
         shift = change
         wait += share * change
-        if abs(change) * speed < (_SHARP if kind < FIRST_TOUCH else _BENDS) * pitch:
+        if abs(change) * speed < sharp:
             break
-    return max(wait, 0.0), kind
+    return max(wait, 0.0), event.kind

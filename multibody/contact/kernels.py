@@ -2,11 +2,14 @@
 
 State: q = (x_p, y_p, phi_p, x_g, y_g, phi_g), deviations from the nominal position and rotation, world axes
 x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise and the gear counter-clockwise.
+
+Sources: docs/theory/multibody.md, "Overlap, wrench and contact point"; docs/theory/contact_energy.md.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,343 +18,506 @@ from lumped.typing import FloatArray, IntArray
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import (
     GRADUAL,
+    ContactLaw,
+    contact_law,
     coupling_at,
     elastic_load,
     gradual,
-    law_at,
     relief_at,
     shared_loads,
-    stiffness_and_slope,
     stored_energy,
+    table_value_and_slope,
 )
-from multibody.contact.friction import nominal_friction, signed_friction
+from multibody.contact.friction import SurfaceMotion, signed_friction
 from multibody.contact.kinematics import (
     COAST,
     DRIVE,
     Corners,
-    OwnPair,
+    GearRates,
+    MeshPosition,
     add_gradient,
     add_wrench,
     corners_at,
     engaged,
+    gear_rates,
+    line_rates,
     mesh_position,
-    move_moments,
-    off_axis,
     overlap_rate,
-    ripple_torques,
     sliding_velocity,
-    tooth_pair,
 )
+from multibody.contact.linear_mesh import linear_forces
+from multibody.contact.records import (
+    CONTACTS_SIZE,
+    COORDINATES,
+    MAX_PAIRS,
+    PAIR,
+    PHI_G,
+    PHI_P,
+    RATES,
+    WRENCH,
+    Record,
+    Records,
+    contacts_of,
+    inlined,
+    inner,
+    machine_of,
+    opened_contacts,
+    table_of,
+)
+from multibody.contact.tooth_pairs import (
+    WAYS,
+    OwnPair,
+    OwnTeeth,
+    TurnedArcs,
+    moments_about_axes,
+    own_teeth_of,
+    ripple_torques,
+    set_base_circle_motion,
+    teeth_of_pair,
+    tooth_pair,
+    turned_arcs,
+)
+
+
+class Tables(NamedTuple):
+    """Tables of a machine: stiffness of a tooth pair over xi, and the lumped model's friction coefficient."""
+
+    stiffness: FloatArray
+    friction: FloatArray
+
+
+class SideMotion(NamedTuple):
+    """One side of the teeth at one instant.
+
+    position : where its teeth stand
+    gears : velocities of the gears
+    approach_rate : rate of the overlap [m/s]
+    psi_rate, length_rate : rates of angle and length of the line of action [rad/s, m/s]
+    contact_rate : velocity of the contact along the path, d(xi)/dt [m/s]
+    """
+
+    position: MeshPosition
+    gears: GearRates
+    approach_rate: float
+    psi_rate: float
+    length_rate: float
+    contact_rate: float
+
+
+class Workspace(NamedTuple):
+    """Memory of one evaluation.
+
+    pairs : PAIR (MAX_PAIRS,)
+    arms : (MAX_PAIRS, 2) flank distances of the pairs found
+    base_circles : (3, 6) coordinates, rates and ways of the base circles' centres of eccentric gears
+    """
+
+    pairs: Records
+    arms: FloatArray
+    base_circles: FloatArray
+
+
+class TeethMotion(NamedTuple):
+    """Records of all teeth, and how far the base circles have turned."""
+
+    teeth: OwnTeeth
+    arcs: TurnedArcs
+
+
+@inner
+def side_motion(
+    t: float, q: FloatArray, rates: GearRates, machine: Record, flags: int, flank: float
+) -> SideMotion:
+    """One side of the teeth at time t [s], with the coordinates q (6,) of the base circles' centres."""
+    position = mesh_position(t, q, machine, flags, flank)
+    line = position.line
+    # The nominal speeds roll, and would only blur it.
+    approach_rate = overlap_rate(line, rates.vx, rates.vy, rates.phi_p, rates.phi_g)
+    psi_rate, length_rate = line_rates(line, rates, flags)
+    rolling = machine.rolling
+    omega_p = rates.omega_p if flags & kn.ROTATION_PHASE else -rolling.omega_p
+    omega_g = rates.omega_g if flags & kn.ROTATION_PHASE else rolling.omega_g
+    turning = line.radius_p * (psi_rate - omega_p) - line.radius_g * (psi_rate - omega_g)
+    return SideMotion(position, rates, approach_rate, psi_rate, length_rate, 0.5 * flank * turning)
+
+
+@inlined
+def like_teeth(machine: Record) -> OwnPair:
+    """A pair of teeth without errors and faults."""
+    return OwnPair(0.0, 0.0, 0.0, 0.0, machine.geometry.tip_p, machine.geometry.tip_g, 0.0, 0.0)
+
+
+@inner
+def set_corner_gap(
+    pair: Record, side: SideMotion, machine: Record, own: OwnPair, error: float, error_slope: float
+) -> bool:
+    """Add the gap of tip corners to a pair; False where no load of a neighbour could make it touch.
+
+    ``error`` and ``error_slope`` are the material missing on both flanks and its slope over xi.
+    """
+    geometry = machine.geometry
+    line = side.position.line
+    edge_p = geometry.edge_p
+    edge_g = geometry.edge_g
+    corners = corners_at(line, pair.arm_p, pair.arm_g, (own.tip_p, own.tip_g), (edge_p, edge_g))
+    beyond_tip = pair.arm_p > own.tip_p or pair.arm_g > own.tip_g
+    beyond = beyond_tip or pair.arm_p < edge_p or pair.arm_g < edge_g
+    pair.compression = side.position.overlap - error - own.error - corners.gap
+    if beyond and pair.compression < -abs(side.position.overlap):
+        return False
+    pair.compression_rate = (
+        side.approach_rate
+        - error_slope * side.contact_rate
+        - corners.by_p * line.flank * line.radius_p * (side.psi_rate - side.gears.omega_p)
+        - corners.by_g * line.flank * line.radius_g * (side.psi_rate - side.gears.omega_g)
+        - corners.by_length * side.length_rate
+    )
+    set_corner_slopes(pair, corners)
+    pair.beyond = 1 if beyond else 0
+    return True
+
+
+@inlined
+def set_corner_slopes(pair: Record, corners: Corners) -> None:
+    """Write the slopes of the gap of tip corners into a pair."""
+    pair.corner_by_p = corners.by_p
+    pair.corner_by_g = corners.by_g
+    pair.corner_by_length = corners.by_length
+
+
+@inner
+def set_gap(pair: Record, side: SideMotion, machine: Record, flags: int, own: OwnPair) -> bool:
+    """Write compression, its rate and the slopes of the gap into a pair at ``pair.position``.
+
+    False where the teeth are further apart than any neighbour could move them.
+    """
+    geometry = machine.geometry
+    error, error_slope = relief_at(machine, pair.position, own.relief_p, own.relief_g)
+    error_slope += own.rise
+    pair.beyond = 0
+    if not flags & kn.TIP_CONTACT:
+        pair.compression = side.position.overlap - error - own.error
+        pair.compression_rate = side.approach_rate - error_slope * side.contact_rate
+        set_corner_slopes(pair, Corners(0.0, 0.0, 0.0, 0.0))
+    else:
+        if pair.position < geometry.L_XA or pair.position > geometry.L_XD:
+            error_slope = 0.0
+            inside = min(max(pair.position, geometry.L_XA), geometry.L_XD)
+            error = relief_at(machine, inside, own.relief_p, own.relief_g)[0]
+        if not set_corner_gap(pair, side, machine, own, error, error_slope):
+            return False
+    pair.error_slope = error_slope
+    return True
+
+
+@inner
+def set_stiffness(pair: Record, stiffness: FloatArray, own: OwnPair) -> None:
+    """Write the stiffness of a pair, softened by the faults of its teeth, and its slope over xi."""
+    k, slope = table_value_and_slope(stiffness, pair.position)
+    share = 1.0 / (1.0 + own.compliance * k)
+    pair.stiffness = share * k
+    pair.stiffness_slope = share * share * (slope - k * k * own.compliance_slope)
+
+
+@inner
+def pairs_near_contact(
+    side: SideMotion, machine: Record, flags: int, tables: Tables, motion: TeethMotion, work: Workspace
+) -> int:
+    """Write the pairs of one side that touch or may touch, without their loads; returns their number."""
+    arms = work.arms
+    pairs = work.pairs
+    position = side.position
+    own = like_teeth(machine)
+    count = int(np.int64(0))
+    for candidate in range(engaged(position, machine, flags, arms)):
+        pair = pairs[count]
+        rho_p = arms[candidate, 0]
+        rho_g = arms[candidate, 1]
+        pair.arm_p = rho_p
+        pair.arm_g = rho_g
+        pair.position = 0.5 * (rho_p - rho_g + machine.geometry.L_XY)
+        if machine.own_teeth and position.line.flank > 0.0:
+            numbers = teeth_of_pair(machine, motion.teeth, motion.arcs, rho_p, rho_g)
+            own = tooth_pair(machine, motion.teeth, numbers, pair.position)
+        if not set_gap(pair, side, machine, flags, own):
+            continue
+        pair.pulls = 0 if flags & kn.CONTACT_LOSS or pair.beyond else 1
+        if rho_p > own.tip_p or rho_g > own.tip_g:
+            pair.beyond = 1
+        set_stiffness(pair, tables.stiffness, own)
+        count += 1
+    return count
+
+
+@inner
+def set_couplings(count: int, pairs: Records, machine: Record) -> None:
+    """Write how far the load of each pair moves each other one. The newest, furthest behind, comes first."""
+    for i in range(count):
+        pairs[i].couplings[i] = 0.0
+        for j in range(i):
+            coupling, slope = coupling_at(machine, i - j, pairs[j].position)
+            pairs[i].couplings[j] = coupling
+            pairs[j].couplings[i] = coupling
+            pairs[i].coupling_slopes[j] = slope
+            pairs[j].coupling_slopes[i] = slope
+
+
+@inner
+def set_elastic_loads(count: int, pairs: Records, machine: Record, coupled: bool, law: ContactLaw) -> None:
+    """Write the load of each pair without its damper."""
+    if coupled:
+        set_couplings(count, pairs, machine)
+        shared_loads(count, pairs, law)
+        return
+    for i in range(count):
+        pair = pairs[i]
+        load = elastic_load(pair.compression, pair.stiffness, law)
+        pair.elastic_load = load if pair.pulls else max(load, 0.0)
+
+
+class MovedByNeighbours(NamedTuple):
+    """How far the loads of the other pairs move a pair [m], and the slope of that way over xi [-]."""
+
+    way: float
+    slope: float
+
+
+@inlined
+def moved_by_neighbours(number: int, count: int, pairs: Records, coupled: bool) -> MovedByNeighbours:
+    """How far the loads of the other pairs move the pair of a number."""
+    way = 0.0
+    slope = 0.0
+    if coupled:
+        pair = pairs[number]
+        for j in range(count):
+            if j != number:
+                way += pair.couplings[j] * pairs[j].elastic_load
+                slope += pair.coupling_slopes[j] * pairs[j].elastic_load
+    return MovedByNeighbours(way, slope)
+
+
+@inlined
+def damping_of(pair: Record, machine: Record, flags: int, own_compression: float) -> float:
+    """Coefficient c of a pair's damper, which takes hold gradually with the load [N s/m].
+
+    ``own_compression``: approach less all gaps and less what the neighbours move [m].
+    """
+    damping = machine.pair_law.damping * math.sqrt(max(pair.stiffness, 0.0))
+    if flags & kn.TIP_CONTACT:
+        damping *= gradual(pair.elastic_load / (GRADUAL * machine.pair_law.nominal_force))
+    if flags & kn.CONTACT_LOSS and own_compression <= 0.0:
+        return 0.0
+    return float(damping)
+
+
+@inlined
+def surface_motion(pair: Record, side: SideMotion) -> SurfaceMotion:
+    """How both surfaces move at the contact point of a pair, which turns with the line of action."""
+    line = side.position.line
+    gears = side.gears
+    arm_p = 0.5 * (pair.arm_p - pair.arm_g + line.length)
+    arm_g = line.length - arm_p
+    sliding = sliding_velocity(line, gears.vx, gears.vy, gears.omega_p, gears.omega_g, arm_p, arm_g)
+    rolling = arm_p * (side.psi_rate - gears.omega_p) + arm_g * (gears.omega_g - side.psi_rate)
+    return SurfaceMotion(sliding, line.flank * rolling, arm_p, arm_g)
+
+
+@inner
+def add_contact_wrench(
+    wrench: FloatArray, pair: Record, side: SideMotion, flags: int, surface: SurfaceMotion, contact: Record
+) -> None:
+    """Add the force of a contact to the wrench: normal load, friction, tip corners, work along the path."""
+    line = side.position.line
+    normal = contact.load
+    add_wrench(wrench, line, normal, contact.friction_force, surface.rho_p, surface.rho_g)
+    if flags & (kn.PATH_WORK | kn.TIP_CONTACT):
+        along = 0.5 * contact.path_force if flags & kn.PATH_WORK else 0.0
+        by_p = normal * pair.corner_by_p + along
+        by_g = normal * pair.corner_by_g - along
+        add_gradient(wrench, line, by_p, by_g, normal * pair.corner_by_length)
+
+
+@inner
+def set_contact(
+    contact: Record,
+    pair: Record,
+    side: SideMotion,
+    neighbours: MovedByNeighbours,
+    machine: Record,
+    flags: int,
+    law: ContactLaw,
+) -> None:
+    """Write normal load, damper and stored energy of a pair that touches into its CONTACT record."""
+    elastic = pair.elastic_load
+    damping = damping_of(pair, machine, flags, pair.compression - neighbours.way)
+    energy, energy_slope = stored_energy(elastic, pair.stiffness, pair.stiffness_slope, law)
+    # Half of w_ij N_i N_j is counted at either pair, and half of its slope at constant compression.
+    energy += 0.5 * elastic * neighbours.way
+    energy_slope -= 0.5 * elastic * neighbours.slope
+    normal = elastic + damping * pair.compression_rate
+    if flags & kn.CONTACT_LOSS and normal < 0.0:
+        normal = 0.0
+    contact.position = pair.position
+    contact.load = normal
+    contact.stiffness = pair.stiffness
+    contact.damping = damping
+    contact.compression = pair.compression
+    contact.compression_rate = pair.compression_rate
+    contact.flank = side.position.line.flank
+    contact.approach_rate = side.approach_rate
+    contact.elastic_load = elastic
+    contact.energy = energy
+    contact.path_force = normal * pair.error_slope - energy_slope
+    contact.path_rate = side.contact_rate
+
+
+@inlined
+def set_friction(
+    contact: Record, surface: SurfaceMotion, machine: Record, flags: int, table: FloatArray
+) -> None:
+    """Write the friction of a contact, by the motion of its surfaces and its normal load."""
+    mu = signed_friction(machine, table, flags, contact.flank, contact.position, surface, contact.load)
+    contact.friction_coefficient = mu
+    contact.friction_force = mu * contact.load
+    contact.sliding_velocity = surface.sliding
+
+
+@inner
+def add_side(
+    side: SideMotion,
+    machine: Record,
+    flags: int,
+    tables: Tables,
+    pairs: Records,
+    count: int,
+    wrench: FloatArray,
+    contacts: Records,
+) -> int:
+    """Add the forces of ``count`` pairs of one side to the wrench; returns the number of contacts written.
+
+    A pair beyond the ends of its flanks, and a pair of the back side, touches only where it is compressed.
+    """
+    law = contact_law(machine, flags)
+    coupled = machine.coupling_count > 0 and (flags & kn.NEIGHBOURS) != 0
+    set_elastic_loads(count, pairs, machine, coupled, law)
+    back_side = side.position.line.flank < 0.0 and (flags & kn.CONTACT_LOSS) != 0
+    written = int(np.int64(0))
+    for i in range(count):
+        pair = pairs[i]
+        neighbours = moved_by_neighbours(i, count, pairs, coupled)
+        if pair.compression - neighbours.way <= 0.0 and (pair.beyond or back_side):
+            continue
+        contact = contacts[written]
+        surface = surface_motion(pair, side)
+        set_contact(contact, pair, side, neighbours, machine, flags, law)
+        set_friction(contact, surface, machine, flags, tables.friction)
+        add_contact_wrench(wrench, pair, side, flags, surface, contact)
+        written += 1
+    return written
 
 
 @compiled
 def contact_forces(
-    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
+    t: float, state: FloatArray, packed: FloatArray, flags: int, flat_contacts: FloatArray
 ) -> int:
     """Wrench of all tooth contacts and one record per contact at time t [s].
 
-    state : (3, 6) deviations from nominal position and rotation [m, rad], their rates, and the wrench,
-        which is written: (Fx, Fy, M) of pinion and gear [N, N m]; one array, for each costs Python time
-    p, flags, table : parameters and effect switches of ``kinematics``, stiffness
-    contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
-    Returns number of contacts, or -1 when a force is not finite
+    Parameters
+    ----------
+    state : (3, 6) deviations from nominal position and rotation [m, rad], their rates, and the wrench, which
+        is written: (Fx, Fy, M) of pinion and gear [N, N m]; one array, for each costs Python time
+    packed, flags : numbers of the machine, see ``records``, and effect switches of ``kinematics``
+    flat_contacts : receives the CONTACT records, drive flank first; back sides only when pressed
+
+    Returns
+    -------
+    Number of contacts, or -1 when a force is not finite
     """
-    q = state[0]
-    v = state[1]
-    wrench = state[2]
-    wrench[:] = 0.0
-    rp, rg = p[kn.RADIUS_P], p[kn.RADIUS_G]
-    teeth = p[int(p[kn.OWN]) :]
-    if p[kn.OWN] > 0.0:
-        centres = off_axis(teeth, t, state, p[kn.OMEGA_P], p[kn.OMEGA_G])
-        ripples = ripple_torques(teeth, t, state[0], p[kn.OMEGA_P], p[kn.OMEGA_G])
-        q, v = centres[0], centres[1]
-    turned_p = p[kn.L_XA] + rp * (p[kn.OMEGA_P] * t - q[2])
-    turned_g = p[kn.L_XY] - p[kn.L_XA] - rg * (p[kn.OMEGA_G] * t + q[5])
-    omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
-    vx, vy = v[0] - v[3], v[1] - v[4]
-    unilateral = (flags & kn.CONTACT_LOSS) != 0
-    coupled = p[kn.COUPLED] > 0.0 and (flags & kn.NEIGHBOURS) != 0
-    softening = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0
-    nominal = p[kn.NOMINAL_FORCE]
-    # One array, for each costs as much as a contact's geometry.
-    known = np.empty((kn.N_STATE, kn.MAX_PAIRS))
-    arms = known[kn.ARMS : kn.COUPLINGS].reshape((kn.MAX_PAIRS, 2))
-    coupling = known[kn.COUPLINGS : kn.SLOPES]
-    count = int(np.int64(0))
-    for side in range(2 if flags & kn.BACK_SIDE else 1):
-        flank = DRIVE if side == 0 else COAST
-        own_teeth = OwnPair(0.0, 0.0, 0.0, 0.0, p[kn.TIP_P], p[kn.TIP_G], 0.0, 0.0)
-        line, delta, rho, _ = mesh_position(t, q, p, flags, flank)
-        ex = line.ex
-        ey = line.ey
-        length = line.length
-        if not math.isfinite(delta):
-            return -1
-        # The nominal speeds roll, and would only blur it.
-        rate = overlap_rate(line, vx, vy, v[2], v[5])
-        # d(psi)/dt = s n . (v_g - v_p)/L, from differentiating e.
-        psi_rate = length_rate = 0.0
-        if flags & kn.MOVING_LINE:
-            psi_rate = (ey * vx - ex * vy) / length
-            length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
-        wp, wg = (omega_p, omega_g) if flags & kn.ROTATION_PHASE else (-p[kn.OMEGA_P], p[kn.OMEGA_G])
-        xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
-        candidates = engaged(rho, delta, length, p, flags, arms)
-        bound = pairs = int(np.int64(0))  # bound: bits of pairs that cannot lose contact
-        for candidate in range(candidates):
-            rho_p = arms[candidate, 0]
-            rho_g = arms[candidate, 1]
-            i = pairs
-            xi = 0.5 * (rho_p - rho_g + p[kn.L_XY])
-            if p[kn.OWN] > 0.0 and side == 0:
-                own_teeth = tooth_pair(teeth, p, turned_p, turned_g, arms[candidate], xi)
-            late = own_teeth.error
-            tip_p = own_teeth.tip_p
-            tip_g = own_teeth.tip_g
-            more_p, more_g = own_teeth.relief_p, own_teeth.relief_g
-            error, error_slope = relief_at(p, xi, more_p, more_g)
-            error_slope += own_teeth.rise
-            pressed = delta - error - late
-            pressing = rate - error_slope * xi_rate
-            corners = Corners(0.0, 0.0, 0.0, 0.0)
-            beyond = False
-            if flags & kn.TIP_CONTACT:
-                if xi < p[kn.L_XA] or xi > p[kn.L_XD]:
-                    error_slope = 0.0
-                    held = min(max(xi, p[kn.L_XA]), p[kn.L_XD])
-                    error = relief_at(p, held, more_p, more_g)[0]
-                edges = p[kn.EDGE_P], p[kn.EDGE_G]
-                corners = corners_at(line, rho_p, rho_g, (tip_p, tip_g), edges)
-                beyond = rho_p > tip_p or rho_g > tip_g or rho_p < edges[0] or rho_g < edges[1]
-                pressed = delta - error - late - corners.gap
-                if beyond and pressed < -abs(delta):
-                    continue  # further apart than any neighbour could move it
-                pressing = (
-                    rate
-                    - error_slope * xi_rate
-                    - corners.by_p * flank * rp * (psi_rate - omega_p)
-                    - corners.by_g * flank * rg * (psi_rate - omega_g)
-                    - corners.by_length * length_rate
-                )
-            pairs += 1
-            arms[i, 0] = rho_p
-            arms[i, 1] = rho_g
-            if not (unilateral or beyond):
-                bound |= 1 << i
-            known[kn.POSITION, i] = xi
-            known[kn.PRESSED, i] = pressed
-            known[kn.PRESSING, i] = pressing
-            known[kn.RELIEF_SLOPE, i] = error_slope
-            known[kn.BY_P, i] = corners.by_p
-            known[kn.BY_G, i] = corners.by_g
-            known[kn.BY_L, i] = corners.by_length
-            k, slope = stiffness_and_slope(table, xi)
-            share = 1.0 / (1.0 + own_teeth.softer * k)
-            known[kn.STIFFNESS, i] = share * k
-            known[kn.SLOPE, i] = share * share * (slope - k * k * own_teeth.slope)
-            known[kn.BEYOND, i] = 1.0 if beyond or rho_p > tip_p or rho_g > tip_g else 0.0
-            if not coupled:
-                load = elastic_load(pressed, known[kn.STIFFNESS, i], softening, nominal)
-                known[kn.NORMAL, i] = load if bound >> i & 1 else max(load, 0.0)
-        if coupled:
-            for i in range(pairs):
-                coupling[i, i] = 0.0
-                for j in range(i):
-                    # The newest pair, furthest behind, comes first.
-                    moved, moved_slope = coupling_at(p, i - j, known[kn.POSITION, j])
-                    coupling[i, j] = coupling[j, i] = moved
-                    known[kn.SLOPES + i, j] = known[kn.SLOPES + j, i] = moved_slope
-            pressed_by = known[kn.PRESSED]
-            stiff = known[kn.STIFFNESS]
-            loads = known[kn.NORMAL]
-            shared_loads(pairs, pressed_by, stiff, bound, coupling, softening, nominal, loads)
-        for i in range(pairs):
-            xi = known[kn.POSITION, i]
-            pressed = known[kn.PRESSED, i]
-            pressing = known[kn.PRESSING, i]
-            elastic = known[kn.NORMAL, i]
-            stiffness = known[kn.STIFFNESS, i]
-            error_slope = known[kn.RELIEF_SLOPE, i]
-            own = pressed
-            moved = 0.0
-            moved_slope = 0.0
-            if coupled:
-                for j in range(pairs):
-                    if j != i:
-                        moved += coupling[i, j] * known[kn.NORMAL, j]
-                        moved_slope += known[kn.SLOPES + i, j] * known[kn.NORMAL, j]
-                own -= moved
-            beyond = known[kn.BEYOND, i] == 1.0
-            if own <= 0.0 and (beyond or (side == 1 and unilateral)):
-                continue
-            arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
-            arm_g = length - arm_p
-            damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
-            if flags & kn.TIP_CONTACT:
-                damping *= gradual(elastic / (GRADUAL * nominal))
-            stored, stored_slope = stored_energy(elastic, stiffness, known[kn.SLOPE, i], softening, nominal)
-            # Half of w_ij N_i N_j is counted at either pair, and half of its slope at constant compression.
-            stored += 0.5 * elastic * moved
-            stored_slope -= 0.5 * elastic * moved_slope
-            if unilateral and own <= 0.0:
-                damping = 0.0
-            normal = elastic + damping * pressing
-            if unilateral and normal < 0.0:
-                normal = 0.0
-            path = normal * error_slope - stored_slope
-            slide = sliding_velocity(line, vx, vy, omega_p, omega_g, arm_p, arm_g)
-            # Each surface against the contact point, which turns with the line of action.
-            rolling = flank * (arm_p * (psi_rate - omega_p) + arm_g * (omega_g - psi_rate))
-            mu = signed_friction(p, flags, flank, xi, slide, rolling, arm_p, arm_g, normal)
-            add_wrench(wrench, line, normal, mu * normal, arm_p, arm_g)
-            if flags & (kn.PATH_WORK | kn.TIP_CONTACT):
-                along = 0.5 * path if flags & kn.PATH_WORK else 0.0
-                by_p, by_g = normal * known[kn.BY_P, i] + along, normal * known[kn.BY_G, i] - along
-                add_gradient(wrench, line, by_p, by_g, normal * known[kn.BY_L, i])
-            record = contacts[count]
-            record[kn.XI] = xi
-            record[kn.LOAD] = normal
-            record[kn.MU] = mu
-            record[kn.FRICTION_FORCE] = mu * normal
-            record[kn.K] = stiffness
-            record[kn.C] = damping
-            record[kn.SLIDE] = slide
-            record[kn.OVERLAP] = pressed
-            record[kn.OVERLAP_RATE] = pressing
-            record[kn.FLANK] = flank
-            record[kn.CLOSING] = rate
-            record[kn.ELASTIC] = elastic
-            record[kn.ENERGY] = stored
-            record[kn.PATH] = path
-            record[kn.PATH_RATE] = xi_rate
-            count += 1
-    if p[kn.OWN] > 0.0:
-        move_moments(centres[2], wrench)
-        wrench[2] -= ripples[0]
-        wrench[5] -= ripples[1]
-    total = 0.0
-    for i in range(6):
-        total += wrench[i]
-    return count if math.isfinite(total) else -1
+    work = Workspace(np.empty(MAX_PAIRS, PAIR), np.empty((MAX_PAIRS, 2)), np.empty((3, 6)))
+    return forces_with(t, state, packed, flags, contacts_of(flat_contacts), work)
 
 
-@compiled
-def linear_forces(
-    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
+@inner
+def forces_with(
+    t: float, state: FloatArray, packed: FloatArray, flags: int, contacts: Records, work: Workspace
 ) -> int:
-    """Forces on (x_p, y_p, phi_p, x_g, y_g, phi_g) in the lumped model; arguments as ``contact_forces``.
-
-    Of the flags ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. No back sides.
-    """
-    q = state[0]
-    v = state[1]
-    wrench = state[2]
+    """``contact_forces`` in given memory."""
+    machine = machine_of(packed)[0]
+    blocks = machine.blocks
+    tables = Tables(table_of(packed, blocks.stiffness), table_of(packed, blocks.friction))
+    motion = TeethMotion(own_teeth_of(packed), turned_arcs(machine, t, state[COORDINATES]))
+    q = state[COORDINATES]
+    v = state[RATES]
+    wrench = state[WRENCH]
     wrench[:] = 0.0
-    rp = p[kn.RADIUS_P]
-    rg = p[kn.RADIUS_G]
-    pitch = p[kn.PITCH]
-    tau = min(max(t, p[kn.T_LOW]), p[kn.T_HIGH])
-    speed = p[kn.OMEGA_P] * rp
-    advance = speed * tau
-    advance -= pitch * math.floor(advance / pitch)
-    delta = q[0] - q[3] - rp * q[2] - rg * q[5]
-    rate = v[0] - v[3] - rp * v[2] - rg * v[5]
-    count = 0
-    k = int(p[kn.K_ROWS])
-    c = int(p[kn.C_ROWS])
-    e = int(p[kn.E_ROWS])
-    gap = int(p[kn.GAP_ROWS])
-    tilted = k + c + e + gap
-    closed = tilted + int(p[kn.TILT_ROWS])
-    loaded = k > 0
-    first, last = (table[0, 0], table[k - 1, 1]) if loaded else (p[kn.L_XA], p[kn.L_XD])
-    xi = p[kn.L_XA] + advance - pitch * math.floor((p[kn.L_XA] + advance - first) / pitch)
-    while xi <= last:
-        mu = nominal_friction(p, xi)
-        if loaded:
-            stiffness, stiffness_slope = law_at(table, int(np.int64(0)), k - 1, xi)
-            damping = law_at(table, k, k + c - 1, xi)[0]
-            error = law_at(table, k + c, k + c + e - 1, xi)[0]
-            slope = law_at(table, k + c + e, k + c + e + gap - 1, xi)[1]
-            tilt = law_at(table, tilted, closed - 1, xi)[0]
-            closing = law_at(table, closed, table.shape[0] - 1, xi)[0]
-        else:
-            tilt = 0.0
-            closing = 1.0
-            error, slope = relief_at(p, xi, 0.0, 0.0)
-            stiffness, stiffness_slope = stiffness_and_slope(table, xi)
-            damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
-        pressed = delta - error
-        pressing = rate - slope * speed
-        normal = stiffness * pressed + damping * pressing
-        if flags & kn.CONTACT_LOSS and (pressed <= 0.0 or normal < 0.0):
-            stiffness = damping = normal = 0.0
-        friction = mu * normal
-        apart = tilt * normal
-        wrench[0] -= normal
-        wrench[1] += friction - apart
-        wrench[2] += rp * normal + xi * friction
-        wrench[3] += normal
-        wrench[4] -= friction - apart
-        wrench[5] += rg * normal + (p[kn.L_XY] - xi) * friction
-        record = contacts[count]
-        record[kn.XI] = xi
-        record[kn.LOAD] = normal
-        record[kn.FRICTION_FORCE] = friction
-        record[kn.MU] = mu
-        record[kn.K] = stiffness
-        record[kn.C] = damping
-        record[kn.FLANK] = 1.0
-        # The approach moves a tip corner's contact outside, and closes it by less than itself.
-        record[kn.OVERLAP] = pressed
-        record[kn.OVERLAP_RATE] = closing * pressing
-        record[kn.CLOSING] = rate
-        gear_arm = p[kn.L_XY] - xi
-        slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
-        record[kn.SLIDE] = slide
-        record[kn.ELASTIC] = stiffness * pressed
-        record[kn.ENERGY] = 0.5 * stiffness * pressed**2
-        # The damper works on the gap itself, the spring on the error that stands for it with loaded contact.
-        error_slope = law_at(table, k + c, k + c + e - 1, xi)[1] if loaded else slope
-        elastic = stiffness * pressed
-        damper = normal - elastic
-        path = elastic * error_slope + damper * (closing * slope + (1.0 - closing) * rate / speed)
-        path -= 0.5 * stiffness_slope * pressed * pressed
-        record[kn.PATH] = path - apart * (v[4] - v[1]) / speed
-        record[kn.PATH_RATE] = speed
-        count += 1
-        xi += pitch
+    if machine.own_teeth:
+        set_base_circle_motion(machine, t, state, work.base_circles)
+        q = work.base_circles[COORDINATES]
+        v = work.base_circles[RATES]
+    rates = gear_rates(machine, v)
+    written = int(np.int64(0))
+    for number in range(2 if flags & kn.BACK_SIDE else 1):
+        flank = DRIVE if number == 0 else COAST
+        side = side_motion(t, q, rates, machine, flags, flank)
+        if not math.isfinite(side.position.overlap):
+            return -1
+        count = pairs_near_contact(side, machine, flags, tables, motion, work)
+        written += add_side(side, machine, flags, tables, work.pairs, count, wrench, contacts[written:])
+    if machine.own_teeth:
+        moments_about_axes(work.base_circles[WAYS], wrench)
+    if machine.ripples_on_gears:
+        ripples = ripple_torques(packed, t, state[COORDINATES])
+        wrench[PHI_P] -= ripples[0]
+        wrench[PHI_G] -= ripples[1]
+    return written if all_finite(wrench) else -1
+
+
+@inlined
+def all_finite(wrench: FloatArray) -> bool:
+    """Whether no force or moment is infinite or not a number."""
     total = 0.0
-    for i in range(6):
+    for i in range(wrench.size):
         total += wrench[i]
-    return count if math.isfinite(total) else -1
+    return math.isfinite(total)
 
 
 @compiled
 def tooth_forces(
-    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
+    t: float, state: FloatArray, packed: FloatArray, flags: int, flat_contacts: FloatArray
 ) -> int:
     """Wrench and contact records of one state; arguments and result as ``contact_forces``."""
     if flags & kn.LINEAR:
-        return linear_forces(t, state, p, flags, table, contacts)
-    return contact_forces(t, state, p, flags, table, contacts)
+        return linear_forces(t, state, packed, flags, flat_contacts)
+    return contact_forces(t, state, packed, flags, flat_contacts)
+
+
+class ContactStates(NamedTuple):
+    """Contacts at n states.
+
+    wrenches : (n, 6) of pinion and gear [N, N m]
+    contacts : CONTACT (n, 2 MAX_PAIRS)
+    counts : (n,) how many of the contacts count
+    """
+
+    wrenches: FloatArray
+    contacts: Records
+    counts: IntArray
 
 
 def tooth_forces_over(
-    times: FloatArray, q: FloatArray, v: FloatArray, p: FloatArray, flags: int, table: FloatArray
-) -> tuple[FloatArray, FloatArray, IntArray]:
-    """``tooth_forces`` at n times [s] with states q, v (n, 6 or more); a kernel would compile for a second.
+    times: FloatArray, q: FloatArray, v: FloatArray, packed: FloatArray, flags: int
+) -> ContactStates:
+    """``tooth_forces`` at n times [s] with states q, v (n, 6 or more).
 
-    Returns wrenches (n, 6), contact records (n, 2 MAX_PAIRS, N_RECORD), and how many of each count (n,)
+    A loop in Python: a kernel would compile for a second.
     """
     wrenches = np.empty((times.size, 6))
     counts = np.empty(times.size, np.int64)
-    contacts = np.zeros((times.size, 2 * kn.MAX_PAIRS, kn.N_RECORD))
+    flat_contacts = np.zeros((times.size, CONTACTS_SIZE))
     state = np.empty((3, 6))
     for i, t in enumerate(times.tolist()):
-        state[0] = q[i, :6]
-        state[1] = v[i, :6]
-        counts[i] = tooth_forces(t, state, p, flags, table, contacts[i])
-        wrenches[i] = state[2]
-    return wrenches, contacts, counts
+        state[COORDINATES] = q[i, :6]
+        state[RATES] = v[i, :6]
+        counts[i] = tooth_forces(t, state, packed, flags, flat_contacts[i])
+        wrenches[i] = state[WRENCH]
+    return ContactStates(wrenches, opened_contacts(flat_contacts), counts)

@@ -13,34 +13,67 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
-from lumped.errors import refuse
-from lumped.faults.base import ToothFault
-from lumped.faults.chip import Chip
-from lumped.faults.crack import Crack, root_section
-from lumped.faults.spall import Spall
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.gear import Gear
-from lumped.schema.meeting_teeth import first_teeth
 from lumped.schema.pair import GearPair
-from lumped.schema.relief import ProfileRelief
-from lumped.schema.tooth_errors import tooth_errors
 from lumped.typing import FloatArray
-from multibody.contact import friction as fr
-from multibody.contact import kinematics as kn
-from multibody.contact.elements import stiffness_at
+from multibody.contact.elements import table_value
 from multibody.contact.events import event_table
-from multibody.contact.kinematics import DRIVE, Line, add_wrench, line_of_action, mesh_phase, wrap
-from multibody.contact.undercut import undercut_edge
-from multibody.gears.cut_teeth import profile_shifts, root_radius
+from multibody.contact.friction import TABLE, FrictionSwitch, fill_friction, friction_switches
+from multibody.contact.kinematics import (
+    CLEARANCE,
+    CONTACT_LOSS,
+    DRIVE,
+    LINEAR,
+    MOVING_LINE,
+    ROTATION_PHASE,
+    TIP_CONTACT,
+    Line,
+    Turn,
+    add_wrench,
+    line_of_action,
+    mesh_phase,
+    side_of,
+    wrap,
+)
+from multibody.contact.records import (
+    BODY,
+    FAULT,
+    LINEAR_BLOCKS,
+    MACHINE_SIZE,
+    MAX_PAIRS,
+    PHI_G,
+    PHI_P,
+    RIPPLE,
+    TOOTH,
+    X_G,
+    X_P,
+    Y_G,
+    Y_P,
+    Record,
+    Records,
+    opened,
+    opened_table,
+    with_blocks,
+)
+from multibody.contact.tooth_pairs import ripple_torques
+from multibody.gears.circles import Circles, Relieved, base_tooth_angle, circles, reliefs
+from multibody.gears.own_teeth import (
+    DrawnGear,
+    drawn_gears,
+    fault_places,
+    gear_teeth,
+    own_faults,
+    own_ripples,
+)
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
@@ -50,17 +83,24 @@ Supports = Literal["springs", "shafts"]
 #: transmission error by some thousandths of its peak to peak (docs/theory/shafts.md).
 _MESH_FREQUENCIES = 4.0
 _MESH_ORDERS = 5.0
-#: Largest operating pressure angle that is looked for [rad].
-_STEEPEST = 1.4
+
+
+class FastestRates(NamedTuple):
+    """The fastest that the machine moves [rad/s].
+
+    natural : frequency of the fastest mode, pairs at their largest stiffness
+    damped : largest rate of a root with dampers
+    """
+
+    natural: float
+    damped: float
 
 
 @dataclass(frozen=True, eq=False)
 class Machine:
     """Two gears in bearings, SI.
 
-    parameters : geometry, nominal motion and friction, in the order of ``kinematics``; behind these
-        the lumped model's friction coefficient as rows like ``table``, where this model has no law of its own
-    table : stiffness of a tooth pair as ``elements.stiffness_at`` reads it
+    packed : the numbers of ``multibody.contact.records`` in one flat array, for compiled code
     mass, inertia : (2,) pinion, gear
     bearing_stiffness, bearing_damping : (2, 2) rows pinion, gear; columns x, y
     torque_pinion, torque_gear : driving and braking torque, both positive
@@ -68,13 +108,11 @@ class Machine:
     ahead : whole pitches by which the pair of the first slot is ahead of the one that was at A
     period : mesh cycle
     switches : phases of the mesh cycle in [0, 1) at which the nominal element laws jump or have a kink
-    events : (n, 2) what makes the contact force jump or bend in finite motion, see ``events.event_table``
-    own : block of teeth that differ, as of ``own_block``; that in the parameters has no ripples on shafts
+    events : EVENT (n,) of what makes the contact force jump or bend in finite motion
     train : both shafts where these support the gears, whose bearing springs are then zero; else None
     """
 
-    parameters: FloatArray
-    table: FloatArray
+    packed: FloatArray
     mass: FloatArray
     inertia: FloatArray
     bearing_stiffness: FloatArray
@@ -85,9 +123,29 @@ class Machine:
     ahead: int
     period: float
     switches: FloatArray
-    events: FloatArray
-    own: FloatArray
+    events: Records
     train: Train | None = None
+
+    @property
+    def record(self) -> Record:
+        """The MACHINE record of ``packed``; what is written into it is written there."""
+        return opened(self.packed)
+
+    @property
+    def stiffness_table(self) -> FloatArray:
+        """Stiffness of a tooth pair as ``elements.table_value`` reads it."""
+        return np.asarray(opened_table(self.packed, self.record.blocks.stiffness))
+
+    @property
+    def base_radii(self) -> FloatArray:
+        """Base radii of pinion and gear (2,) [m]."""
+        geometry = self.record.geometry
+        return np.array([geometry.radius_p, geometry.radius_g])
+
+    @property
+    def has_ripples(self) -> bool:
+        """Whether the torques have ripples."""
+        return bool(self.record.blocks.ripples.rows)
 
     @property
     def size(self) -> int:
@@ -97,51 +155,62 @@ class Machine:
     @cached_property
     def overlap(self) -> FloatArray:
         """Row (6,) that reads the overlap of the driving flanks off small (x_p, y_p, phi_p, x_g, ...) [m]."""
-        p = self.parameters
-        return np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
+        radius_p, radius_g = self.base_radii
+        return np.array([1.0, 0.0, -radius_p, -1.0, 0.0, -radius_g])
 
     def torques(self, t: FloatArray, q: FloatArray) -> FloatArray:
         """Driving and braking torque (n, 2), ripples at the actual angles of their rotors, at n states."""
-        p = self.parameters
         angles = np.zeros((t.size, 6))
-        angles[:, [2, 5]] = q[:, [2, 5]] if self.train is None else q @ self.train.torques.T
-        found = np.tile([self.torque_pinion, self.torque_gear], (t.size, 1))
-        if self.own.size:
-            speeds = p[kn.OMEGA_P], p[kn.OMEGA_G]
-            found += [kn.ripple_torques(self.own, t[i], angles[i], *speeds) for i in range(t.size)]
-        return found
+        rotors = [PHI_P, PHI_G]
+        angles[:, rotors] = q[:, rotors] if self.train is None else q @ self.train.torques.T
+        torques = np.tile([self.torque_pinion, self.torque_gear], (t.size, 1))
+        if self.has_ripples:
+            torques += [ripple_torques(self.packed, t[i], angles[i]) for i in range(t.size)]
+        return torques
 
     @cached_property
-    def bodies(self) -> FloatArray:
-        """Inertia, bearing stiffness and damping, load of (x_p, y_p, phi_p, x_g, y_g, phi_g), rows (4, 6).
+    def bodies(self) -> Records:
+        """BODY (6,) of (x_p, y_p, phi_p, x_g, y_g, phi_g).
 
         The pinion turns clockwise, so its driving torque is negative; the brake's acts against the gear.
         """
-        rows = np.zeros((4, 2, 3))
-        rows[0, :, :2] = self.mass[:, None]
-        rows[0, :, 2] = self.inertia
-        rows[1, :, :2] = self.bearing_stiffness
-        rows[2, :, :2] = self.bearing_damping
-        rows[3, :, 2] = -self.torque_pinion, -self.torque_gear
-        return rows.reshape(4, 6)
+        bodies = np.zeros(6, BODY)
+        centres = [X_P, Y_P, X_G, Y_G]
+        rotations = [PHI_P, PHI_G]
+        bodies["inertia"][centres] = np.repeat(self.mass, 2)
+        bodies["inertia"][rotations] = self.inertia
+        bodies["stiffness"][centres] = self.bearing_stiffness.ravel()
+        bodies["damping"][centres] = self.bearing_damping.ravel()
+        bodies["load"][rotations] = -self.torque_pinion, -self.torque_gear
+        return bodies
+
+    @property
+    def piece_ends(self) -> FloatArray:
+        """Positions xi at which polynomials of the laws of the linear mesh meet or end [m]."""
+        blocks = self.record.blocks
+        laws = [opened_table(self.packed, blocks[name]) for name in ("stiffness", *LINEAR_BLOCKS)]
+        return np.unique(np.concatenate([law[:, :2].ravel() for law in laws]))
 
     @cached_property
     def vibrations_per_cycle(self) -> float:
         """Swings of the fastest mode in one mesh cycle; on shafts of dampers where they are faster."""
-        return self.rates[1] * self.period / (2.0 * np.pi)
+        return self.rates.damped * self.period / (2.0 * np.pi)
 
     @cached_property
-    def rates(self) -> tuple[float, float]:
-        """Frequency of the fastest mode, pairs at largest stiffness; largest rate of dampers [rad/s]."""
-        left, right = self.table[:, 0], self.table[:, 1]
-        places = np.concatenate([left, 0.5 * (left + right), right])
-        largest = max(abs(stiffness_at(self.table, xi)) for xi in places)
+    def rates(self) -> FastestRates:
+        """The fastest that the machine moves."""
+        table = self.stiffness_table
+        starts = table[:, 0]
+        ends = table[:, 1]
+        places = np.concatenate([starts, 0.5 * (starts + ends), ends])
+        largest = max(abs(table_value(table, xi)) for xi in places)
         mesh = self.pairs * largest * np.outer(self.overlap, self.overlap)
         if self.train is None:
-            inertia, bearings, _, _ = self.bodies
-            squares = np.linalg.eigvalsh((mesh + np.diag(bearings)) / np.sqrt(np.outer(inertia, inertia)))
-            return float(np.sqrt(squares[-1])), float(np.sqrt(squares[-1]))
-        return self.train.fastest(mesh)
+            inertia = self.bodies["inertia"]
+            matrix = (mesh + np.diag(self.bodies["stiffness"])) / np.sqrt(np.outer(inertia, inertia))
+            natural = float(np.sqrt(np.linalg.eigvalsh(matrix)[-1]))
+            return FastestRates(natural, natural)
+        return FastestRates(*self.train.fastest(mesh))
 
 
 def machine(
@@ -153,161 +222,155 @@ def machine(
     lose contact, the stiffness holds wherever teeth touch; else relief takes it off where the lumped model
     sees no contact. ``cycle`` is the lumped mesh cycle, where it is known.
     """
-    drawn, (mass, inertia) = circles(pair), masses(pair)
+    drawn = circles(pair)
+    gears = drawn_gears(pair, drawn)
+    mass, inertia = masses(pair)
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
-    tooth_p = base_tooth_angle(pair, 0, drawn.base_pinion)
-    tooth_g = base_tooth_angle(pair, 1, drawn.base_gear)
-    relieved = reliefs(pair, drawn)
     loaded = pair.mesh.contact == "loaded"
-    parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
-    whole = loaded or parts or flags & (kn.TIP_CONTACT | kn.CLEARANCE)
-    if cycle is None and (not whole or (loaded and flags & kn.LINEAR)):
+    linear_loss = flags & LINEAR and flags & CONTACT_LOSS
+    where_teeth_touch = loaded or linear_loss or flags & (TIP_CONTACT | CLEARANCE)
+    if cycle is None and (not where_teeth_touch or (loaded and flags & LINEAR)):
         cycle = MeshCycle(pair.geometry, contact_of(pair).elements(pair))
-    stiffness = pair_stiffness(pair) if whole or cycle is None else cycle.elements.stiffness
-    softening = contact_softening(pair)
-    coupling = cross_compliances(pair)[: kn.MAX_PAIRS - 1]
-    r_p = drawn.base_pinion
-    r_g = drawn.base_gear
-    pitch = drawn.pitch
-    l_xy = drawn.tangent
-    tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear
-    l_xa = drawn.start
-    l_xd = drawn.end
-    l_xp = l_xy * r_p / (r_p + r_g)
-    omega_p = pair.operating.pinion_speed
-    p = np.zeros(kn.N_PARAMETERS)
-    p[kn.RADIUS_P] = r_p
-    p[kn.RADIUS_G] = r_g
-    p[kn.PITCH] = pitch
-    p[kn.TIP_P] = tip_p
-    p[kn.TIP_G] = tip_g
-    p[kn.EDGE_P] = drawn.edge_pinion
-    p[kn.EDGE_G] = drawn.edge_gear
-    # At t = 0 the line of action is the x axis and one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA,
-    # so chi_g = pi - rho_g/r_bg, and the flanks are neither apart nor pressed.
-    p[kn.CHI_P] = -l_xa / r_p
-    # The other flank of the same tooth starts one base tooth thickness further on (see kinematics).
-    p[kn.CHI_P_BACK] = p[kn.CHI_P] + math.pi + tooth_p
-    chi_g = math.pi + tooth_g - (l_xy - l_xa) / r_g
-    p[kn.APART_BACK] = r_p * p[kn.CHI_P_BACK] + r_g * chi_g - l_xy
-    p[kn.CENTRE_PY] = -r_p
-    p[kn.CENTRE_GX] = l_xy
-    p[kn.CENTRE_GY] = r_g
-    p[kn.L_XA] = l_xa
-    p[kn.L_XP] = l_xp
-    p[kn.L_XD] = l_xd
-    p[kn.L_XY] = l_xy
-    p[kn.OMEGA_P] = omega_p
-    p[kn.OMEGA_G] = omega_p * r_p / r_g
-    p[kn.T_LOW] = -math.inf
-    p[kn.T_HIGH] = math.inf
-    p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(_mesh_mass(p, inertia))
-    p[kn.SOFTENING] = softening
-    p[kn.NOMINAL_FORCE] = pair.operating.pinion_torque / r_p
-    p[kn.RELIEFS] = len(relieved)
-    p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(relieved)] = np.ravel(relieved)
-    for apart, moved in enumerate(coupling):
-        first = kn.FIRST_COUPLED + kn.COUPLED_COLUMNS * apart
-        p[first : first + kn.COUPLED_COLUMNS] = pack(moved)[0]
-        p[kn.COUPLED] = apart + 1
-    fr.fill_friction(pair, p)
-    friction = fr.friction_switches(p)
-    if p[kn.FRICTION + fr.LAW] == fr.TABLE:
+    stiffness = pair_stiffness(pair) if where_teeth_touch or cycle is None else cycle.elements.stiffness
+
+    packed = np.zeros(MACHINE_SIZE)
+    record = opened(packed)
+    _set_geometry(record.geometry, drawn)
+    _set_rolling(pair, record, drawn)
+    record.pair_law.damping = 2.0 * pair.mesh.damping_ratio * math.sqrt(_mesh_mass(drawn, inertia))
+    record.pair_law.softening = contact_softening(pair)
+    record.pair_law.nominal_force = pair.operating.pinion_torque / drawn.base_pinion
+    _set_couplings(pair, record)
+    relieved = reliefs(pair, drawn)
+    for number, relief in enumerate(relieved):
+        record["reliefs"][number] = relief
+    record.relief_count = len(relieved)
+    fill_friction(pair, packed)
+    friction = friction_switches(packed)
+    blocks: dict[str, FloatArray | Records] = {"stiffness": pack(stiffness)}
+    if record.friction.law == TABLE:
         law = friction_path_function(pair, interval=contact_of(pair).elements(pair).stiffness.interval)
-        p[kn.FRICTION + fr.COLUMNS] = law.coefficients.shape[0] + 2
-        p = np.append(p, pack(law))
-        friction = [(True, place) for place in law.switches.tolist()]
-    own = own_block(pair)
-    p[kn.OWN] = p.size if own.size else 0.0
-    p = np.append(p, own)
-    starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
-    for which, gear in enumerate((pair.pinion, pair.gear)):
-        kinks = [place for fault in gear.faults for place in fault.kinks(pair.flank(which))]
-        starts += [l_xy - place if which else place for place in kinks]
-    places = [place for _, place in friction]
-    table = pack(stiffness)
-    switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, l_xd, pitch)
-    if loaded and flags & kn.LINEAR and cycle is not None:
-        table, switches = _loaded_laws(cycle, p)
-    found = Machine(
-        parameters=p,
-        table=table,
+        blocks["friction"] = pack(law)
+        friction = [FrictionSwitch(True, place) for place in law.switches.tolist()]
+    blocks |= _own_blocks(pair, gears, record)
+
+    starts = _bends(drawn, relieved, gears)
+    places = [switch.place for switch in friction]
+    switches = switch_phases([*stiffness.switches, *starts, *places], drawn.start, drawn.end, drawn.pitch)
+    if loaded and flags & LINEAR and cycle is not None:
+        blocks |= _loaded_laws(cycle)
+        switches = cycle.edges[:-1] / cycle.period
+    packed = with_blocks(packed, blocks)
+    pitches = math.floor((drawn.end - drawn.start) / drawn.pitch)
+    on_springs = Machine(
+        packed=packed,
         mass=mass,
         inertia=inertia,
         bearing_stiffness=bearing_stiffness,
         bearing_damping=bearing_damping,
         torque_pinion=pair.operating.pinion_torque,
         torque_gear=pair.operating.pinion_torque,
-        pairs=math.floor((l_xd - l_xa) / pitch) + 1,
-        ahead=math.floor((l_xd - l_xa) / pitch),
-        period=pitch / (omega_p * r_p),
+        pairs=pitches + 1,
+        ahead=pitches,
+        period=drawn.pitch / (pair.operating.pinion_speed * drawn.base_pinion),
         switches=switches,
-        events=event_table(stiffness, starts, friction, pitch, corners=bool(flags & kn.TIP_CONTACT)),
-        own=own,
+        events=event_table(stiffness, starts, friction, drawn.pitch, corners=bool(flags & TIP_CONTACT)),
     )
-    if supports == "springs":
-        return found
-    if own.size:  # ripples act on motor and load
-        p[int(p[kn.OWN]) + kn.OWN_RIPPLES] = 0.0
+    return on_springs if supports == "springs" else _on_shafts(pair, on_springs)
+
+
+def _on_shafts(pair: GearPair, on_springs: Machine) -> Machine:
+    """The machine with its gears on shafts. Ripples act on motor and load, and not on the gears."""
     none = np.zeros((2, 2))
-    shafts = train(pair, mass, inertia, (omega_p, float(p[kn.OMEGA_G])), _highest(found))
-    return replace(found, bearing_stiffness=none, bearing_damping=none, train=shafts)
+    rolling = on_springs.record.rolling
+    speeds = (float(rolling.omega_p), float(rolling.omega_g))
+    shafts = train(pair, on_springs.mass, on_springs.inertia, speeds, _highest(on_springs))
+    packed = on_springs.packed.copy()
+    opened(packed).ripples_on_gears = 0
+    return replace(on_springs, packed=packed, bearing_stiffness=none, bearing_damping=none, train=shafts)
 
 
-def own_block(pair: GearPair) -> FloatArray:
-    """Teeth that differ, as numbers behind the parameters (see ``kinematics``); empty for like teeth."""
+def _set_geometry(geometry: Record, drawn: Circles) -> None:
+    """Write the GEOMETRY record. At t = 0 the line of action is the x axis, X at the origin."""
+    r_p = drawn.base_pinion
+    r_g = drawn.base_gear
+    geometry.radius_p = r_p
+    geometry.radius_g = r_g
+    geometry.pitch = drawn.pitch
+    geometry.tip_p = drawn.reach_pinion
+    geometry.tip_g = drawn.reach_gear
+    geometry.edge_p = drawn.edge_pinion
+    geometry.edge_g = drawn.edge_gear
+    geometry.L_XA = drawn.start
+    geometry.L_XP = drawn.tangent * r_p / (r_p + r_g)
+    geometry.L_XD = drawn.end
+    geometry.L_XY = drawn.tangent
+    geometry.centre_p_y = -r_p
+    geometry.centre_g_x = drawn.tangent
+    geometry.centre_g_y = r_g
+
+
+def _set_rolling(pair: GearPair, record: Record, drawn: Circles) -> None:
+    """Write the ROLLING record: speeds, and where the flanks stand at t = 0.
+
+    Then one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA, so chi_g = pi - rho_g/r_bg, and the flanks
+    are neither apart nor pressed. The other flank of the same tooth starts one base tooth thickness further
+    on.
+    """
+    rolling = record.rolling
+    r_p = drawn.base_pinion
+    r_g = drawn.base_gear
+    omega_p = pair.operating.pinion_speed
+    rolling.omega_p = omega_p
+    rolling.omega_g = omega_p * r_p / r_g
+    rolling.earliest = -math.inf
+    rolling.latest = math.inf
+    rolling.chi_drive = -drawn.start / r_p
+    rolling.chi_coast = rolling.chi_drive + math.pi + base_tooth_angle(pair, 0, r_p)
+    chi_g = math.pi + base_tooth_angle(pair, 1, r_g) - (drawn.tangent - drawn.start) / r_g
+    rolling.apart_coast = r_p * rolling.chi_coast + r_g * chi_g - drawn.tangent
+
+
+def _set_couplings(pair: GearPair, record: Record) -> None:
+    """Write how far the load of a pair moves pairs 1, 2, ... pitches apart."""
+    compliances = cross_compliances(pair)[: MAX_PAIRS - 1]
+    for apart, compliance in enumerate(compliances):
+        record["couplings"][apart] = pack(compliance)[0]
+    record.coupling_count = len(compliances)
+
+
+def _own_blocks(
+    pair: GearPair, gears: Sequence[DrawnGear], record: Record
+) -> dict[str, FloatArray | Records]:
+    """Blocks of teeth that differ, and their mountings in the MACHINE record; none for like teeth."""
     if pair.healthy is pair:
-        return np.zeros(0)
-    teeth = tooth_errors(pair)
-    firsts = first_teeth(pair)
-    turned = [2.0 * math.pi * first / one.error.size for one, first in zip(teeth, firsts, strict=True)]
-    rows = [
-        (one.eccentricity, one.phase + angle, one.error.size, first)
-        for one, angle, first in zip(teeth, turned, firsts, strict=True)
-    ]
-    ripples = []
-    for one in pair.operating.torque_ripple:
-        which = int(one.shaft == "gear")
-        ripples += [which, one.order, one.amplitude, one.phase + one.order * turned[which]]
-    faults = [
-        _fault(pair, which, fault)
-        for which, gear in enumerate((pair.pinion, pair.gear))
-        for fault in gear.faults
-    ]
-    flanks = (pair.flank(0), pair.flank(1))
-    rises = [-one.slope / (flank.tip - flank.start) for one, flank in zip(teeth, flanks, strict=True)]
-    counts = [len(faults), len(pair.operating.torque_ripple)]
-    lists = [one.error for one in teeth] + rises + [one.relief for one in teeth]
-    return np.concatenate([np.ravel(rows), counts, *lists, *faults, ripples])
+        return {}
+    record.own_teeth = 1
+    record.ripples_on_gears = 1
+    blocks: dict[str, FloatArray | Records] = {}
+    for gear, name in zip(gears, ("teeth_p", "teeth_g"), strict=True):
+        teeth = gear_teeth(pair, gear)
+        record["mountings"][gear.number] = (teeth.eccentricity, teeth.angle, teeth.first)
+        rows = np.zeros(teeth.gap.size, TOOTH)
+        rows["error"] = teeth.gap
+        rows["rise"] = teeth.rise
+        rows["relief"] = teeth.relief
+        blocks[name] = rows
+    blocks["faults"] = np.array(own_faults(pair, gears), dtype=FAULT)
+    blocks["ripples"] = np.array(own_ripples(pair, gears), dtype=RIPPLE)
+    return blocks
 
 
-def _fault(pair: GearPair, which: int, fault: ToothFault) -> FloatArray:
-    """A fault as a row of ``kinematics``; the crack's strip is that of ``lumped.faults``, its arm is not."""
-    flank = pair.flank(which)
-    gear = (pair.pinion, pair.gear)[which]
-    row = np.zeros(kn.FAULT_COLUMNS)
-    row[[kn.FAULT_GEAR, kn.FAULT_TOOTH, kn.FLANK_END]] = which, fault.tooth - 1, flank.tip
-    radius = flank.wheel.tooth.base_radius
-    if isinstance(fault, Crack):
-        centre, half = root_section(flank.wheel.tooth)
-        x = fault.depth * math.sin(fault.angle) / (2.0 * half)
-        strip = x**2 / (1.0 - x) ** 2 * (5.93 - 19.69 * x + 37.14 * x**2 - 35.84 * x**3 + 13.12 * x**4)
-        row[kn.CRACK] = 6.0 * strip / (gear.youngs_modulus * flank.face_width * half**2)
-        row[kn.ROOT] = centre
-        row[kn.HALF_TOOTH] = 0.5 * base_tooth_angle(pair, which, radius)
-    elif isinstance(fault, Spall):
-        row[kn.SPALL_START] = fault.start_roll_angle * radius
-        row[kn.SPALL_END] = fault.end_roll_angle * radius
-        width = flank.face_width if fault.width is None else fault.width
-        if width < flank.face_width:
-            row[kn.SPALL] = flank.hertz * (flank.face_width / (flank.face_width - width) - 1.0)
-        else:
-            row[kn.PIT] = fault.pit_depth
-    elif isinstance(fault, Chip):
-        row[kn.FLANK_END] = min(flank.tip, fault.roll_angle * radius)
-    else:
-        raise refuse("faults", fault.kind, "crack, spall, chip in the multibody model", "Leave it out.")
-    return row
+def _bends(drawn: Circles, relieved: Sequence[Relieved], gears: Sequence[DrawnGear]) -> list[float]:
+    """Positions xi at which a relief starts, or a fault of a tooth makes a law jump [m]."""
+    lengths = [(relief.gear, relief.start * gears[relief.gear].base_radius) for relief in relieved]
+    lengths += [
+        (gear.number, place)
+        for gear in gears
+        for fault in gear.section.faults
+        for place in fault_places(gear, fault)
+    ]
+    return [drawn.tangent - length if gear else length for gear, length in lengths]
 
 
 def _highest(machine: Machine) -> float:
@@ -316,26 +379,25 @@ def _highest(machine: Machine) -> float:
     return max(fast, _MESH_ORDERS) / machine.period
 
 
-def _loaded_laws(cycle: MeshCycle, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Table of the lumped loaded contact's laws, one below the other, and its switches as phases."""
+def _loaded_laws(cycle: MeshCycle) -> dict[str, FloatArray | Records]:
+    """Tables of the laws of the lumped loaded contact, by their blocks."""
     e = cycle.elements
     assert e.gap is not None
     assert e.tilt is not None
     assert e.closing is not None
-    laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.gap, e.tilt, e.closing)]
-    p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS, kn.GAP_ROWS, kn.TILT_ROWS]] = [len(law) for law in laws[:5]]
-    width = max(law.shape[1] for law in laws)
-    # Coefficients stand behind both ends, highest power first: pad between them.
-    rows = [np.insert(law, [2] * (width - law.shape[1]), 0.0, axis=1) for law in laws]
-    return np.ascontiguousarray(np.concatenate(rows)), cycle.edges[:-1] / cycle.period
+    laws = (e.damping, e.error, e.gap, e.tilt, e.closing)
+    tables: dict[str, FloatArray | Records] = {
+        name: pack(law) for name, law in zip(LINEAR_BLOCKS, laws, strict=True)
+    }
+    return tables | {"stiffness": pack(e.stiffness)}
 
 
-def _mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
+def _mesh_mass(drawn: Circles, inertia: FloatArray) -> float:
     """Mass that the rotations oppose to the mesh [kg], from the moments of a unit contact force."""
     wrench = np.zeros(6)
-    line = Line(1.0, 0.0, float(p[kn.L_XY]), DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
+    line = Line(1.0, 0.0, drawn.tangent, DRIVE, drawn.base_pinion, drawn.base_gear)
     add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
-    return float(1.0 / np.sum(wrench[[2, 5]] ** 2 / inertia))
+    return float(1.0 / np.sum(wrench[[PHI_P, PHI_G]] ** 2 / inertia))
 
 
 def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
@@ -343,22 +405,23 @@ def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
 
     Wind-up and bearing deflection move the contact by a constant, which is a choice of the time origin.
     """
-    p = machine.parameters.copy()
-    along, off = (q[3] - q[0], q[4] - q[1]) if flags & kn.MOVING_LINE else (0.0, 0.0)
-    phi_p, phi_g = (q[2], q[5]) if flags & kn.ROTATION_PHASE else (0.0, 0.0)
-    _, _, grown, psi = line_of_action(along, off, p[kn.L_XY], p[kn.RADIUS_P] + p[kn.RADIUS_G], DRIVE)
-    radii = (p[kn.RADIUS_P], p[kn.RADIUS_G])
-    first, beyond = mesh_phase(
-        psi, grown, phi_p, phi_g, 0.0, *radii, p[kn.PITCH], p[kn.CHI_P], p[kn.APART], DRIVE
-    )
-    moved = wrap(first - 0.5 * (grown + beyond) - p[kn.L_XA], p[kn.PITCH])
-    # rho_p falls and rho_g grows by what the contact has moved; the overlap stays.
-    p[[kn.CHI_P, kn.CHI_P_BACK]] += moved / radii[0]
-    return replace(machine, parameters=p)
+    packed = machine.packed.copy()
+    record = opened(packed)
+    side = side_of(record, DRIVE)
+    along, off = (q[X_G] - q[X_P], q[Y_G] - q[Y_P]) if flags & MOVING_LINE else (0.0, 0.0)
+    phi_p, phi_g = (q[PHI_P], q[PHI_G]) if flags & ROTATION_PHASE else (0.0, 0.0)
+    base_sum = side.radius_p + side.radius_g
+    _, _, grown, psi = line_of_action(along, off, float(record.geometry.L_XY), base_sum, DRIVE)
+    first, excess = mesh_phase(side, Turn(psi, grown, phi_p, phi_g, 0.0))
+    shift = wrap(first - 0.5 * (grown + excess) - record.geometry.L_XA, side.pitch)
+    # rho_p falls and rho_g grows by the shift of the contact; the overlap stays.
+    record.rolling.chi_drive += shift / side.radius_p
+    record.rolling.chi_coast += shift / side.radius_p
+    return replace(machine, packed=packed)
 
 
 def pack(law: PathFunction) -> FloatArray:
-    """A piecewise polynomial as rows (left, right, coefficients), for ``elements.stiffness_at``."""
+    """A piecewise polynomial as rows (left, right, coefficients), for ``elements.table_value``."""
     return np.ascontiguousarray(np.column_stack([law.breaks[:-1], law.breaks[1:], law.coefficients.T]))
 
 
@@ -370,68 +433,6 @@ def switch_phases(places: Sequence[float], l_xa: float, l_xd: float, pitch: floa
     keep = np.diff(phases, prepend=-1.0) > 1e-11
     phases = phases[keep]
     return phases[phases < 1.0 - 1e-11]
-
-
-@dataclass(frozen=True)
-class Circles:
-    """Circles and path of contact of a pair: base radii, base pitch, tip radii, centre distance [m].
-
-    An undercut ends a flank at the length ``edge_pinion`` or ``edge_gear`` on its base tangent; 0 without
-    one.
-    """
-
-    base_pinion: float
-    base_gear: float
-    pitch: float
-    tip_pinion: float
-    tip_gear: float
-    centre_distance: float
-    edge_pinion: float
-    edge_gear: float
-
-    @property
-    def reach_pinion(self) -> float:
-        """Length on the pinion's base tangent from X to its tip circle."""
-        return math.sqrt(self.tip_pinion**2 - self.base_pinion**2)
-
-    @property
-    def reach_gear(self) -> float:
-        """Length on the gear's base tangent from Y to its tip circle."""
-        return math.sqrt(self.tip_gear**2 - self.base_gear**2)
-
-    @property
-    def start(self) -> float:
-        """L_XA: where the gear's tip or the pinion's edge begins contact."""
-        return max(self.tangent - self.reach_gear, self.edge_pinion)
-
-    @property
-    def end(self) -> float:
-        """L_XD: where the pinion's tip or the gear's edge ends contact."""
-        return min(self.reach_pinion, self.tangent - self.edge_gear)
-
-    @property
-    def tangent(self) -> float:
-        """Length L_XY of the line of action between the base circles."""
-        return math.sqrt(self.centre_distance**2 - (self.base_pinion + self.base_gear) ** 2)
-
-
-def circles(pair: GearPair) -> Circles:
-    """Circles of a pair."""
-    rack = pair.basic_rack
-    cosine = math.cos(rack.pressure_angle)
-    r_p, r_g = (0.5 * rack.module * gear.teeth * cosine for gear in (pair.pinion, pair.gear))
-    centre = _close_mesh(pair, r_p + r_g) if pair.centre_distance is None else pair.centre_distance
-    shifts = profile_shifts(pair)
-    return Circles(
-        base_pinion=r_p,
-        base_gear=r_g,
-        pitch=math.pi * rack.module * cosine,
-        tip_pinion=_tip_radius(pair, 0, centre),
-        tip_gear=_tip_radius(pair, 1, centre),
-        centre_distance=centre,
-        edge_pinion=undercut_edge(pair.basic_rack, pair.pinion.teeth, shifts[0]),
-        edge_gear=undercut_edge(pair.basic_rack, pair.gear.teeth, shifts[1]),
-    )
 
 
 def masses(pair: GearPair) -> tuple[FloatArray, FloatArray]:
@@ -456,88 +457,6 @@ def bearing_constants(pair: GearPair, mass: FloatArray) -> tuple[FloatArray, Flo
         ratio = np.array([bearing.loa_damping_ratio, bearing.oloa_damping_ratio])
         damping[row] = 2.0 * ratio * np.sqrt(stiffness[row] * mass[row])
     return stiffness, damping
-
-
-def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, float, float]]:
-    """Reliefs that act: gear (0 pinion, 1 gear), roll angles of start and end [rad], amount [m], power.
-
-    A tip relief ends at the tip, a root relief where contact starts or ends on its flank. Without
-    ``mesh.relief = "static"`` none acts but what single teeth have beyond it, with the amount 0 here.
-    """
-    rows = []
-    for which, gear, base, tip, root in (
-        (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.start),
-        (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.tangent - drawn.end),
-    ):
-        for relief, end, sense in ((gear.tip_relief, tip, -1.0), (gear.root_relief, root, 1.0)):
-            own = gear.deviations is not None and gear.deviations.tip_relief is not None
-            acts = pair.mesh.relief == "static"
-            if relief is None or not (own or (acts and relief.amount != 0.0)):
-                continue
-            power = 1.0 if relief.shape == "linear" else 2.0
-            amount = relief.amount if acts else 0.0
-            start = _relief_start(relief, base, end, sense)
-            rows.append((which, start, end / base, amount, power))
-    return rows
-
-
-def _relief_start(relief: ProfileRelief, base: float, end: float, sense: float) -> float:
-    """Roll angle at which a relief starts [rad], of what the file states; `end` is the reach of its end [m].
-
-    The profile angle at radius r is arccos(r_b/r), and its tangent the roll angle.
-    """
-    if relief.length is not None:
-        return (end + sense * relief.length) / base
-    if relief.start_diameter is not None:
-        return math.tan(math.acos(2.0 * base / relief.start_diameter))
-    return relief.start_roll_angle
-
-
-def base_tooth_angle(pair: GearPair, which: int, base: float) -> float:
-    """Angle between both flanks of a tooth on the base circle, thinned by its share of the backlash [rad].
-
-    ``which``: pinion (0) or gear (1), with the base radius ``base`` [m].
-    """
-    rack = pair.basic_rack
-    gear = (pair.pinion, pair.gear)[which]
-    shift = profile_shifts(pair)[which]
-    alpha = rack.pressure_angle
-    at_reference = (0.5 * math.pi + 2.0 * shift * math.tan(alpha)) / (0.5 * gear.teeth)
-    return at_reference + 2.0 * (math.tan(alpha) - alpha) - 0.5 * pair.mesh.backlash / base
-
-
-def _tip_radius(pair: GearPair, which: int, centre_distance: float) -> float:
-    """Tip radius of the pinion (0) or the gear (1) [m]: of the file, else as the rack leaves room for it.
-
-    The tip stays off the mate's root by the clearance of the rack, and does not reach beyond the addendum
-    that the rack gives.
-    """
-    gear = (pair.pinion, pair.gear)[which]
-    rack = pair.basic_rack
-    if gear.tip_diameter is not None:
-        return gear.tip_diameter / 2.0
-    if gear.addendum is not None:
-        return rack.module * gear.teeth / 2.0 + gear.addendum
-    full = rack.module * (0.5 * gear.teeth + rack.addendum_coefficient + profile_shifts(pair)[which])
-    if gear.tip_alteration is not None:
-        return full + gear.tip_alteration
-    clearance = rack.module * (rack.dedendum_coefficient - rack.addendum_coefficient)
-    return min(full, centre_distance - root_radius(pair, 1 - which) - clearance)
-
-
-def _close_mesh(pair: GearPair, base: float) -> float:
-    """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
-    alpha = pair.basic_rack.pressure_angle
-    teeth = pair.pinion.teeth + pair.gear.teeth
-    shift = sum(profile_shifts(pair))
-
-    def gap(angle: float) -> float:
-        grown = (math.tan(angle) - angle) - (math.tan(alpha) - alpha)
-        return grown - 2.0 * shift / teeth * math.tan(alpha)
-
-    if shift == 0.0:
-        return base / math.cos(alpha)
-    return base / math.cos(float(brentq(gap, 0.0, _STEEPEST, xtol=1e-15, rtol=1e-14)))
 
 
 def _disc(pair: GearPair, gear: Gear) -> tuple[float, float]:

@@ -24,7 +24,6 @@ from lumped.model.periodic_system import Supports, on_springs, supports_of
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
-from multibody.contact import kinematics as kn
 from multibody.contact.machine import Machine
 from multibody.run.integration import Segment, keep_inside
 from multibody.run.linear_motion import bordered, state_scale
@@ -209,7 +208,7 @@ def _first_matrix(
         more = replace(machine, torque_gear=machine.torque_gear * (1.0 + _STEP["exact"]))
         by_torque = (Flow(setup, more, cycles)(state) - end) / (more.torque_gear - machine.torque_gear)
     if machine.train is None:
-        turn = machine.inertia / machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+        turn = machine.inertia / machine.base_radii
     else:
         turn = machine.train.mass @ machine.train.free_turn
     return bordered(transition, by_torque, turn, scale, machine.torque_gear)
@@ -344,8 +343,7 @@ def _differences(
 
 def _relative(machine: Machine) -> tuple[FloatArray, FloatArray]:
     """Matrices (10, 12) that reads the relative states off, and (12, 10) that perturbs them."""
-    p = machine.parameters
-    radii = np.array([p[kn.RADIUS_P], -p[kn.RADIUS_G]])
+    radii = machine.base_radii * (1.0, -1.0)
     by_inertia = radii / machine.inertia
     down = np.zeros((5, 6))
     up = np.zeros((6, 5))

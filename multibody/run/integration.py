@@ -15,6 +15,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import exudyn as exu
 import numpy as np
@@ -22,9 +23,9 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
-from multibody.contact import kinematics as kn
 from multibody.contact.events import SLIDING, time_to_event
 from multibody.contact.kernels import tooth_forces
+from multibody.contact.records import CONTACTS_SIZE, COORDINATES, RATES, WRENCH, Records, inner
 from multibody.run.model import ExudynModel, accelerations, stored
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
@@ -59,6 +60,9 @@ _TABLEAU = np.array(
         [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40],
     ]
 )
+#: Column of the tableau with the times of the stages, and its row with the weights of the error.
+_TIME = 6
+_ERROR = 6
 #: Part of the next step that the error of this one allows, and by what a step may change.
 _SAFETY = 0.9
 _SHRINK = 0.2
@@ -69,16 +73,78 @@ _FEW = 3.0
 _LEAST = 1e-9
 
 
+class Stages(NamedTuple):
+    """Velocities and accelerations at the stages of one step, (7, 6) each, its start first."""
+
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
+@inner
+def weighted(weights: FloatArray, rates: FloatArray, count: int, i: int) -> float:
+    """Sum of the rates of coordinate i at the first stages, by their weights."""
+    total = 0.0
+    for k in range(count):
+        total += weights[k] * rates[k, i]
+    return total
+
+
+@inner
+def stage_state(
+    state: FloatArray, q: FloatArray, v: FloatArray, h: float, row: FloatArray, count: int, stages: Stages
+) -> None:
+    """Write coordinates and rates of a stage into ``state``.
+
+    q, v : (6,) at the start of the step of length h [s]
+    row, count : row of the tableau, and how many stages are known
+    """
+    for i in range(6):
+        state[COORDINATES, i] = q[i] + h * weighted(row, stages.velocity, count, i)
+        state[RATES, i] = v[i] + h * weighted(row, stages.acceleration, count, i)
+
+
+@inner
+def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) -> None:
+    """Write velocities and accelerations of a stage, by the wrench of the teeth and the bearings."""
+    for i in range(6):
+        body = bodies[i]
+        place = state[COORDINATES, i]
+        speed = state[RATES, i]
+        force = state[WRENCH, i] + body.load - body.stiffness * place - body.damping * speed
+        stages.velocity[stage, i] = speed
+        stages.acceleration[stage, i] = force / body.inertia
+
+
+@inner
+def step_error(
+    stages: Stages, row: FloatArray, h: float, state: FloatArray, rtol: float, atol: float
+) -> float:
+    """Largest error of a step that ends in ``state``, over the error that is allowed."""
+    worst = 0.0
+    for i in range(6):
+        by_place = h * abs(weighted(row, stages.velocity, 7, i))
+        by_speed = h * abs(weighted(row, stages.acceleration, 7, i))
+        worst = max(worst, by_place / (atol + rtol * abs(state[COORDINATES, i])))
+        worst = max(worst, by_speed / (atol + rtol * abs(state[RATES, i])))
+    return worst
+
+
+@inner
+def step_change(error: float) -> float:
+    """Factor for the next step after a step with this error over the allowed one."""
+    change = _SAFETY * error**-0.2 if error > 0.0 else _GROW
+    return min(max(change, _SHRINK), _GROW)
+
+
 @compiled
 def bridge(
     stop: float,
     ordinary: float,
     times: FloatArray,
     states: FloatArray,
-    p: FloatArray,
+    packed: FloatArray,
     flags: int,
-    table: FloatArray,
-    bodies: FloatArray,
+    bodies: Records,
     rtol: float,
     atol: float,
     tableau: FloatArray,
@@ -87,65 +153,48 @@ def bridge(
 
     To start exudyn's solver costs as much as three of its steps; behind an event the step size is found here.
 
+    Parameters
+    ----------
     ordinary : step of exudyn away from events, and the first to try [s]
     times, states : (n,) ends of the steps [s], (3, n, 6) coordinates, rates, accelerations; the first given
+    packed, flags, bodies : of the machine
     tableau : ``_TABLEAU``; as a constant it would be compiled into unrolled loops
-    Returns number of rows filled, step to go on with [s], number of force evaluations
+
+    Returns
+    -------
+    Number of rows filled, step to go on with [s], number of force evaluations
     """
     state = np.empty((3, 6))
-    contacts = np.empty((2 * kn.MAX_PAIRS, kn.N_RECORD))
-    place = state[0]
-    speed = state[1]
-    wrench = state[2]
-    speeds = np.empty((7, 6))
-    rates = np.empty((7, 6))
-    q = states[0]
-    v = states[1]
-    a = states[2]
+    contacts = np.empty(CONTACTS_SIZE)
+    stages = Stages(np.empty((7, 6)), np.empty((7, 6)))
     step = ordinary
     rows = 1
     calls = 0
     while rows < times.size and times[rows - 1] < stop:
-        left = stop - times[rows - 1]
-        j = rows - 1
-        if rows > 1 and step >= ordinary and left > _FEW * ordinary:
+        start = rows - 1
+        remaining = stop - times[start]
+        if rows > 1 and step >= ordinary and remaining > _FEW * ordinary:
             break
-        equal = math.ceil(left / step)
-        h = left / equal
-        for i in range(6):
-            speeds[0, i] = v[j, i]
-            rates[0, i] = a[j, i]
+        equal_steps = math.ceil(remaining / step)
+        h = remaining / equal_steps
+        q = states[0, start]
+        v = states[1, start]
+        stages.velocity[0] = v
+        stages.acceleration[0] = states[2, start]
         for stage in range(6):
-            for i in range(6):
-                further = faster = 0.0
-                for k in range(stage + 1):
-                    further += tableau[stage, k] * speeds[k, i]
-                    faster += tableau[stage, k] * rates[k, i]
-                place[i] = q[j, i] + h * further
-                speed[i] = v[j, i] + h * faster
+            stage_state(state, q, v, h, tableau[stage], stage + 1, stages)
             calls += 1
-            t = times[j] + h * tableau[stage, 6]
-            if tooth_forces(t, state, p, flags, table, contacts) < 0:
+            t = times[start] + h * tableau[stage, _TIME]
+            if tooth_forces(t, state, packed, flags, contacts) < 0:
                 return rows, step, calls
-            for i in range(6):
-                force = wrench[i] + bodies[3, i] - bodies[1, i] * place[i] - bodies[2, i] * speed[i]
-                speeds[stage + 1, i] = speed[i]
-                rates[stage + 1, i] = force / bodies[0, i]
-        worst = 0.0
-        for i in range(6):
-            q[rows, i] = place[i]
-            v[rows, i] = speed[i]
-            a[rows, i] = rates[6, i]
-            further = faster = 0.0
-            for k in range(7):
-                further += tableau[6, k] * speeds[k, i]
-                faster += tableau[6, k] * rates[k, i]
-            worst = max(worst, h * abs(further) / (atol + rtol * abs(place[i])))
-            worst = max(worst, h * abs(faster) / (atol + rtol * abs(speed[i])))
-        change = _SAFETY * worst**-0.2 if worst > 0.0 else _GROW
-        change = min(max(change, _SHRINK), _GROW)
-        if worst <= 1.0:
-            times[rows] = stop if equal == 1 else times[j] + h
+            set_rates(stages, stage + 1, state, bodies)
+        states[0, rows] = state[COORDINATES]
+        states[1, rows] = state[RATES]
+        states[2, rows] = stages.acceleration[6]
+        error = step_error(stages, tableau[_ERROR], h, state, rtol, atol)
+        change = step_change(error)
+        if error <= 1.0:
+            times[rows] = stop if equal_steps == 1 else times[start] + h
             rows += 1
             # A step that was cut short tells little about a longer one.
             step = max(change * h, step) if change >= 1.0 else change * h
@@ -249,8 +298,9 @@ def integrate(
 def keep_inside(model: ExudynModel, start: float, stop: float) -> None:
     """Let the model evaluate the nominal phase strictly inside an interval, whose ends are switches."""
     margin = 1e-12 * model.machine.period
-    model.parameters[kn.T_LOW] = start + margin
-    model.parameters[kn.T_HIGH] = stop - margin
+    rolling = model.record.rolling
+    rolling.earliest = start + margin
+    rolling.latest = stop - margin
 
 
 def _interval(
@@ -279,7 +329,7 @@ def _interval(
     bent = False
     for _ in range(_MOST_EVENTS if locate else 0):
         wait, kind = time_to_event(
-            t, q[gears], v[gears], a[gears], model.parameters, model.flags, m.table, m.events, _NEAR * swing
+            t, q[gears], v[gears], a[gears], model.packed, model.flags, m.events, _NEAR * swing
         )
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
@@ -333,7 +383,7 @@ def _steps_until(
         states[:, 0] = q, v, a
         rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
         rows, first, calls = bridge(
-            stop, step, times, states, model.parameters, model.flags, m.table, m.bodies, rtol, atol, _TABLEAU
+            stop, step, times, states, model.packed, model.flags, m.bodies, rtol, atol, _TABLEAU
         )
         model.budget.calls += calls
         parts = [Segment(times[:rows], *states[:, :rows])]

@@ -19,9 +19,10 @@ from scipy.integrate import DOP853, simpson
 
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
-from multibody.contact import kinematics as kn
-from multibody.contact.kernels import tooth_forces_over
+from multibody.contact.kernels import ContactStates, tooth_forces_over
+from multibody.contact.kinematics import LINEAR
 from multibody.contact.machine import Machine
+from multibody.contact.records import opened
 
 #: Angle by which the fastest mode turns in a step [rad]: the method of eighth order then errs by some 1e-9.
 _STEP_ANGLE = 1.0
@@ -71,7 +72,7 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     size = np.linalg.norm(matrix, axis=0)
     condition = float(np.linalg.cond(matrix / size))
     if not condition < _WORST_CONDITION:
-        rpm = float(machine.parameters[kn.OMEGA_P]) * 30.0 / np.pi
+        rpm = float(machine.record.rolling.omega_p) * 30.0 / np.pi
         raise NumericalError(
             f"No periodic motion at {rpm:.6g} rpm (condition {condition:.1e}): a multiplier is at +1. "
             "Change the speed slightly or add damping."
@@ -88,7 +89,7 @@ def state_scale(machine: Machine, deflection: float) -> FloatArray:
 
     On shafts of the 2n states, else of the lumped ones, whose first two are angles.
     """
-    radii = machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+    radii = machine.base_radii
     lengths = np.full(machine.size, deflection)
     places = machine.train.angles if machine.train else (np.array([0]), np.array([1]))
     for angles, radius in zip(places, radii, strict=True):
@@ -112,7 +113,7 @@ def bordered(
 def energy_residual(machine: Machine, motion: LinearMotion) -> float:
     """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W]."""
     train = machine.train
-    p = machine.parameters
+    rolling = machine.record.rolling
     assert train is not None
     n = train.size
     lost = 0.0
@@ -123,14 +124,12 @@ def energy_residual(machine: Machine, motion: LinearMotion) -> float:
         times = np.array([time for _, time, _ in rows])
         states = np.array([found[:, 0] for _, _, found in rows])
         q, v = states[:, :n], states[:, n:]
-        contacts = _contacts(machine, times, q, v, low, high)[1]
-        load = contacts[..., kn.LOAD]
-        rate = contacts[..., kn.OVERLAP_RATE]
-        powers = contacts[..., kn.FRICTION_FORCE] * contacts[..., kn.SLIDE]
-        powers += (load - contacts[..., kn.ELASTIC]) * rate
+        contacts = _contacts(machine, times, q, v, low, high).contacts
+        powers = contacts["friction_force"] * contacts["sliding_velocity"]
+        powers += (contacts["load"] - contacts["elastic_load"]) * contacts["compression_rate"]
         shafts = np.einsum("ti,ij,tj->t", v, train.damping, v)  # gyroscopic terms take no power
         lost += float(simpson(powers.sum(axis=1) + shafts, times)) / machine.period
-    return lost - float(motion.torque_pinion * p[kn.OMEGA_P] - motion.torque_gear * p[kn.OMEGA_G])
+    return lost - float(motion.torque_pinion * rolling.omega_p - motion.torque_gear * rolling.omega_g)
 
 
 def _propagated(
@@ -179,9 +178,8 @@ def _propagated(
 
 def _smooth(machine: Machine) -> FloatArray:
     """Ends of the smooth parts of the mesh cycle as phases: switches, and where polynomials of a law meet."""
-    p = machine.parameters
-    places = np.unique(machine.table[:, :2])
-    joints = np.mod((places - p[kn.L_XA]) / p[kn.PITCH], 1.0)
+    geometry = machine.record.geometry
+    joints = np.mod((machine.piece_ends - geometry.L_XA) / geometry.pitch, 1.0)
     phases = np.sort(np.concatenate([machine.switches, joints, [1.0]]))
     return np.asarray(phases[np.diff(phases, prepend=-1.0) > _SAME_PHASE])
 
@@ -197,16 +195,17 @@ def mesh_wrench(
     moved = np.zeros((times.size, 6))
     moved[:, 0] = 1.0
     states = ((moved, at_rest), (at_rest, moved), (at_rest, at_rest))
-    found = [_contacts(machine, times, q, v, low, high)[0] for q, v in states]
-    return found[0] - found[2], found[1] - found[2], found[2]
+    by_overlap, by_rate, constant = (_contacts(machine, times, q, v, low, high).wrenches for q, v in states)
+    return by_overlap - constant, by_rate - constant, constant
 
 
 def _contacts(
     machine: Machine, times: FloatArray, q: FloatArray, v: FloatArray, low: float, high: float
-) -> tuple[FloatArray, FloatArray]:
-    """Wrench (k, 6) and contact records of the linear mesh inside a smooth interval."""
-    p = machine.parameters.copy()
+) -> ContactStates:
+    """Contacts of the linear mesh inside a smooth interval from ``low`` to ``high`` [s]."""
+    packed = machine.packed.copy()
+    rolling = opened(packed).rolling
     margin = 1e-12 * machine.period
-    p[kn.T_LOW] = low + margin
-    p[kn.T_HIGH] = high - margin
-    return tooth_forces_over(times, q, v, p, kn.LINEAR, machine.table)[:2]
+    rolling.earliest = low + margin
+    rolling.latest = high - margin
+    return tooth_forces_over(times, q, v, packed, LINEAR)

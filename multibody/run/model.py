@@ -16,11 +16,10 @@ import exudyn as exu
 import exudyn.itemInterface as items
 import numpy as np
 
-from lumped.typing import FloatArray, IntArray
-from multibody.contact import kinematics as kn
-from multibody.contact.kernels import tooth_forces, tooth_forces_over
-from multibody.contact.kinematics import MAX_PAIRS
+from lumped.typing import FloatArray
+from multibody.contact.kernels import ContactStates, tooth_forces, tooth_forces_over
 from multibody.contact.machine import Machine
+from multibody.contact.records import CONTACTS_SIZE, WRENCH, Record, opened
 from multibody.shafts.train import Train
 
 # q = (x_p, y_p, phi_p, x_g, y_g, phi_g) out of (theta_p, theta_g, x_p, x_g, y_p, y_g): theta_p = -phi_p.
@@ -101,7 +100,7 @@ class ExudynModel:
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
     sensors : numbers of the sensors that store coordinates and velocities at every step: of both gears, or of
         each shaft with its gear
-    parameters : the core's parameter vector, may be changed between runs
+    packed : numbers of the machine for compiled code, a copy that may be changed between runs
     """
 
     machine: Machine
@@ -110,17 +109,25 @@ class ExudynModel:
     system: exu.MainSystem
     sensors: tuple[tuple[int, ...], tuple[int, ...]]
     nodes: tuple[int, int]
-    parameters: FloatArray
+    packed: FloatArray
     budget: CallBudget
+
+    @property
+    def record(self) -> Record:
+        """The MACHINE record of ``packed``."""
+        return opened(self.packed)
 
 
 def build(machine: Machine, flags: int, call_limit: int) -> ExudynModel:
     """Assemble the exudyn system; ``call_limit`` is the most force evaluations of one interval."""
     container = exu.SystemContainer()
     system = container.AddSystem()
-    p = machine.parameters
+    geometry = machine.record.geometry
     ground = system.AddObject(items.ObjectGround())
-    centres = ((p[kn.CENTRE_PX], p[kn.CENTRE_PY]), (p[kn.CENTRE_GX], p[kn.CENTRE_GY]))
+    centres = (
+        (float(geometry.centre_p_x), float(geometry.centre_p_y)),
+        (float(geometry.centre_g_x), float(geometry.centre_g_y)),
+    )
     # The pinion turns clockwise: its driving torque is -T_p. The brake acts against the gear: also negative.
     torques = (-machine.torque_pinion, -machine.torque_gear)
     bodies: tuple[int, ...] = ()
@@ -128,13 +135,13 @@ def build(machine: Machine, flags: int, call_limit: int) -> ExudynModel:
         nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
     else:
         nodes, bodies = _add_shafts(system, machine, machine.train, centres)
-    parameters = p.copy()
+    packed = machine.packed.copy()
     budget = CallBudget(call_limit)
     mesh = system.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
-            forceUserFunction=_force_function(machine, flags, parameters, budget),
+            forceUserFunction=_force_function(flags, packed, budget),
         )
     )
     position, velocity = (
@@ -149,7 +156,7 @@ def build(machine: Machine, flags: int, call_limit: int) -> ExudynModel:
         system=system,
         sensors=(position, velocity),
         nodes=(nodes[0], nodes[1]),
-        parameters=parameters,
+        packed=packed,
         budget=budget,
     )
 
@@ -216,7 +223,7 @@ def _load_of(machine: Machine, train: Train, which: int) -> dict[str, object]:
         state[0, own] = q
         return np.asarray(-machine.torques(np.array([t]), state)[0, which] * row)
 
-    if machine.own.size and machine.own[kn.OWN_RIPPLES]:
+    if machine.has_ripples:
         return {"forceUserFunction": force}
     return {"forceVector": force(None, 0.0, 0, [0.0] * own.size, [])}
 
@@ -251,9 +258,7 @@ def _add_gear(
     return int(node)
 
 
-def _force_function(
-    machine: Machine, flags: int, p: FloatArray, budget: CallBudget
-) -> Callable[..., list[float]]:
+def _force_function(flags: int, packed: FloatArray, budget: CallBudget) -> Callable[..., list[float]]:
     """Return the user function of the contact object; it writes into its own buffers.
 
     It is called some thousand times per mesh cycle, so the two lists it gets are packed into one buffer,
@@ -261,9 +266,8 @@ def _force_function(
     """
     buffer = bytearray(struct.calcsize("18d"))
     state = np.frombuffer(buffer).reshape(3, 6)
-    wrench = state[2]
-    contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
-    table = machine.table
+    wrench = state[WRENCH]
+    contacts = np.empty(CONTACTS_SIZE)
     pack = struct.Struct("12d").pack_into
     as_list: Callable[[], list[float]] = wrench.tolist
     last_coordinates: list[float] = []
@@ -284,7 +288,7 @@ def _force_function(
         last_coordinates = coordinates
         last_rates = rates
         pack(buffer, 0, *coordinates, *rates)
-        if tooth_forces(t, state, p, flags, table, contacts) < 0:
+        if tooth_forces(t, state, packed, flags, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
         found = as_list()
@@ -293,25 +297,21 @@ def _force_function(
     return forces
 
 
-def contact_state(
-    model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray
-) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Evaluate the force core at n states (n, size), without exudyn.
-
-    Returns (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
-        (n, 2 MAX_PAIRS, kernels.N_RECORD), of which the first counts (n,) are valid
-    """
-    return tooth_forces_over(times, q, v, model.parameters, model.flags, model.machine.table)
+def contact_state(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> ContactStates:
+    """Evaluate the force core at n states (n, size), without exudyn."""
+    return tooth_forces_over(times, q, v, model.packed, model.flags)
 
 
 def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Accelerations (n, size) from Newton's and Euler's laws at n states (n, size), without exudyn."""
-    force = contact_state(model, times, q, v)[0]
+    force = contact_state(model, times, q, v).wrenches
     train = model.machine.train
     if train is not None:
-        whole = -(q @ train.stiffness.T + v @ train.damping.T)
-        whole -= model.machine.torques(times, q) @ train.torques
-        whole[:, :6] += force
-        return np.asarray(whole @ train.inverse, dtype=np.float64)
-    inertia, stiffness, damping, load = model.machine.bodies
-    return np.asarray((force + load - stiffness * q - damping * v) / inertia, dtype=np.float64)
+        on_train = -(q @ train.stiffness.T + v @ train.damping.T)
+        on_train -= model.machine.torques(times, q) @ train.torques
+        on_train[:, :6] += force
+        return np.asarray(on_train @ train.inverse, dtype=np.float64)
+    bodies = model.machine.bodies
+    by_bearings = bodies["stiffness"] * q
+    total = force + bodies["load"] - by_bearings - bodies["damping"] * v
+    return np.asarray(total / bodies["inertia"], dtype=np.float64)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.typing import FloatArray
-from multibody.contact import kinematics as kn
+from multibody.contact.kinematics import PATH_WORK
 from multibody.contact.machine import Machine
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
@@ -51,9 +51,9 @@ class Powers(NamedTuple):
 
 def rotor_speeds(machine: Machine, v: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Actual speeds [rad/s] of the driving and the braked rotor in their running senses, rates (n, size)."""
-    p = machine.parameters
+    rolling = machine.record.rolling
     turning = v[..., [2, 5]] if machine.train is None else v @ machine.train.torques.T
-    return p[kn.OMEGA_P] - turning[..., 0], p[kn.OMEGA_G] + turning[..., 1]
+    return rolling.omega_p - turning[..., 0], rolling.omega_g + turning[..., 1]
 
 
 def powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> Powers:
@@ -63,17 +63,19 @@ def powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> P
     torques = machine.torques(t, q)
     driven, braked = rotor_speeds(machine, v)
     bearings, shafts = _support_powers(machine, v)
-    _, contacts, counts = contact_state(model, t, q, v)
-    contacts[np.arange(contacts.shape[1]) >= counts[:, None]] = 0.0
-    c = np.moveaxis(contacts, -1, 0)
+    states = contact_state(model, t, q, v)
+    contacts = states.contacts
+    contacts[np.arange(contacts.shape[1]) >= states.counts[:, None]] = 0.0
+    by_dampers = (contacts["load"] - contacts["elastic_load"]) * contacts["compression_rate"]
+    along_path = (contacts["path_force"] * contacts["path_rate"]).sum(axis=1)
     return Powers(
         driving=torques[:, 0] * driven,
         braking=torques[:, 1] * braked,
-        sliding=(c[kn.FRICTION_FORCE] * c[kn.SLIDE]).sum(axis=1),
-        tooth_dampers=((c[kn.LOAD] - c[kn.ELASTIC]) * c[kn.OVERLAP_RATE]).sum(axis=1),
+        sliding=(contacts["friction_force"] * contacts["sliding_velocity"]).sum(axis=1),
+        tooth_dampers=by_dampers.sum(axis=1),
         bearings=bearings,
         shafts=shafts,
-        energy_residual=none if model.flags & kn.PATH_WORK else (c[kn.PATH] * c[kn.PATH_RATE]).sum(axis=1),
+        energy_residual=none if model.flags & PATH_WORK else along_path,
     )
 
 

@@ -18,12 +18,13 @@ from lumped.model.powers import balance as balance_of
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
-from lumped.schema.torque_ripples import ripples
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
-from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, Supports, loaded_phase, machine
+from multibody.contact.records import MAX_PAIRS
+from multibody.gears.circles import circles
+from multibody.gears.own_teeth import drawn_gears, own_ripples
 from multibody.run.effects import EFFECTS, active_effects, effect_flags, form_of
 from multibody.run.integration import Segment, integrate
 from multibody.run.linear_motion import LinearMotion, energy_residual, linear_motion
@@ -154,10 +155,11 @@ def prepare(
     if flags & kn.SLIDING:
         asked = friction_velocity
         velocity, reason = choose_friction_velocity(numbers) if asked is None else (asked, "as given")
-    numbers.parameters[kn.V_REG] = velocity
+    record = numbers.record
+    record.friction.reversal_velocity = velocity
     # With a brake near zero the mean torque that holds a relieved mesh may be below zero.
-    deflection = abs(numbers.torque_pinion) / numbers.parameters[kn.RADIUS_P] / system.cycle.mean_stiffness
-    if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
+    deflection = abs(numbers.torque_pinion) / float(record.geometry.radius_p) / system.cycle.mean_stiffness
+    if fidelity == "exact" and deflection > _MOST_DEFLECTION * record.geometry.pitch:
         raise refuse(
             "operating.pinion_torque",
             f"{numbers.torque_pinion:.4g} N m",
@@ -224,7 +226,9 @@ def _on_shafts(
     straight = replace(machine(pair, kn.LINEAR, cycle=system.cycle), train=train)
     brake = pair.operating.brake_torque
     motion = linear_motion(straight, None if brake == "balanced" else brake)
-    omega_p, omega_g = numbers.parameters[[kn.OMEGA_P, kn.OMEGA_G]]
+    rolling = numbers.record.rolling
+    omega_p = rolling.omega_p
+    omega_g = rolling.omega_g
     torque = motion.torque_gear
     driving = motion.torque_pinion * omega_p
     if flags & kn.PATH_WORK and brake == "balanced":
@@ -243,10 +247,12 @@ def _on_shafts(
     q, v = motion.state.copy().reshape(2, -1)
     mesh = np.pad(np.outer(numbers.overlap, numbers.overlap), (0, train.size - 6))
     stiffness = train.stiffness + system.cycle.mean_stiffness * mesh
-    for which, angle, phase, amplitude, _ in ripples(pair):  # else they would push the free train off
-        turning = 1j * angle / numbers.period
+    # Without this start ripples would push the free train away.
+    for ripple in own_ripples(pair, drawn_gears(pair, circles(pair))):
+        turning = 1j * ripple.order * (omega_p, omega_g)[ripple.gear]
         dynamic = stiffness + turning * train.damping + turning**2 * train.mass
-        moved = np.linalg.solve(dynamic, -amplitude * np.exp(1j * phase) * train.torques[int(which)])
+        torque = ripple.amplitude * np.exp(1j * ripple.phase)
+        moved = np.linalg.solve(dynamic, -torque * train.torques[ripple.gear])
         q, v = q + moved.real, v + (turning * moved).real
     return numbers, q, v, mean_balance, motion
 
@@ -254,7 +260,8 @@ def _on_shafts(
 def _call_limit(numbers: Machine) -> int:
     """Most force evaluations of one interval; refuses a speed at which a mesh cycle would take minutes."""
     vibrations = numbers.vibrations_per_cycle
-    natural, damped = numbers.rates
+    natural = numbers.rates.natural
+    damped = numbers.rates.damped
     if vibrations > _MOST_VIBRATIONS and damped > 2.0 * natural:
         raise refuse(
             "shafts",
@@ -263,7 +270,7 @@ def _call_limit(numbers: Machine) -> int:
             "Lower loa_damping and oloa_damping of the bearings, or coupling_damping.",
         )
     if vibrations > _MOST_VIBRATIONS:
-        rpm = float(numbers.parameters[kn.OMEGA_P]) * 30.0 / np.pi
+        rpm = float(numbers.record.rolling.omega_p) * 30.0 / np.pi
         raise refuse(
             "operating.pinion_speed",
             f"{rpm:.4g} rpm",
@@ -290,16 +297,18 @@ def choose_friction_velocity(machine: Machine) -> tuple[float, str]:
     a_f = mu N/m_s, 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g, and vibration by up to a_f/(2 zeta). Where
     less than a_f may be left friction can stick, and sign() has no solution.
     """
-    p = machine.parameters
-    place = float(machine.parameters[kn.L_XP])
-    beside = max(abs(nominal_friction(p, place + side * _BESIDE)) for side in (-1.0, 1.0))
-    path = np.linspace(p[kn.L_XA], p[kn.L_XD], _PLACES)
-    if beside <= _CONTINUOUS * max(abs(nominal_friction(p, xi)) for xi in path):
+    packed = machine.packed
+    geometry = machine.record.geometry
+    rolling = machine.record.rolling
+    pitch_point = float(geometry.L_XP)
+    beside = max(abs(nominal_friction(packed, pitch_point + side * _BESIDE)) for side in (-1.0, 1.0))
+    path = np.linspace(geometry.L_XA, geometry.L_XD, _PLACES)
+    if beside <= _CONTINUOUS * max(abs(nominal_friction(packed, xi)) for xi in path):
         return 0.0, "sign(): the friction law is continuous at the pitch point"
-    arms = np.array([place, float(p[kn.L_XY]) - place])
+    arms = np.array([pitch_point, float(geometry.L_XY) - pitch_point])
     mobility = float((1.0 / machine.mass).sum() + (arms**2 / machine.inertia).sum())
-    by_friction = beside * machine.torque_pinion / p[kn.RADIUS_P] * mobility
-    nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * p[kn.OMEGA_P] * p[kn.RADIUS_P]
+    by_friction = beside * machine.torque_pinion / geometry.radius_p * mobility
+    nominal = (rolling.omega_p + rolling.omega_g) * rolling.omega_p * geometry.radius_p
     if machine.train is None:
         critical = 2.0 * np.sqrt(machine.bearing_stiffness[:, 1] * machine.mass)
         ratio = float((machine.bearing_damping[:, 1] / critical).min())  # of the less damped bearing

@@ -22,7 +22,6 @@ from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
-from multibody.contact import kinematics as kn
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state, from_lumped_state, to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
@@ -39,13 +38,13 @@ EXTRA = {
 }
 
 
-#: Per-pair variables that a contact record holds as they are.
-_COLUMNS = {
-    "mu": kn.MU,
-    "normal_load": kn.LOAD,
-    "friction_force": kn.FRICTION_FORCE,
-    "sliding_velocity": kn.SLIDE,
-    "position": kn.XI,
+#: Per-pair variable -> field of the contact record that holds it.
+_FIELDS = {
+    "mu": "friction_coefficient",
+    "normal_load": "load",
+    "friction_force": "friction_force",
+    "sliding_velocity": "sliding_velocity",
+    "position": "position",
 }
 
 
@@ -56,16 +55,17 @@ class Recorder:
         self.model = model
         self.time = time
         machine = model.machine
-        p = model.machine.parameters
+        geometry = machine.record.geometry
         n = time.size
-        self.q, self.v = np.zeros((n, machine.size)), np.zeros((n, machine.size))
+        self.q = np.zeros((n, machine.size))
+        self.v = np.zeros((n, machine.size))
         phase = time / machine.period
-        self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
-        ahead = np.arange(machine.ahead, machine.ahead - machine.pairs, -1)[:, None] * p[kn.PITCH]
+        self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * geometry.pitch
+        ahead = np.arange(machine.ahead, machine.ahead - machine.pairs, -1)[:, None] * geometry.pitch
         self.pairs = {
-            name: np.zeros((machine.pairs, n)) for name in (*_COLUMNS, "contact", "normal_load_back")
+            name: np.zeros((machine.pairs, n)) for name in (*_FIELDS, "contact", "normal_load_back")
         }
-        self.pairs["position"] += p[kn.L_XA] + ahead + self.advance  # a pair out of contact: nominal
+        self.pairs["position"] += geometry.L_XA + ahead + self.advance  # a pair out of contact: nominal
         self.stiffness = np.zeros(n)
         self.overlap = np.full(n, np.nan)
 
@@ -81,48 +81,49 @@ class Recorder:
 
     def finish(self, q: FloatArray, v: FloatArray, end: float) -> None:
         """Record the last output time, as the first instant of the cycle that would follow."""
-        p = self.model.parameters
+        rolling = self.model.record.rolling
         period = self.model.machine.period
         self.q[-1] = q
         self.v[-1] = v
-        if np.isfinite(p[kn.T_LOW]):
-            p[kn.T_LOW] = end + 1e-12 * period
-            p[kn.T_HIGH] = end + 1e-9 * period
+        if np.isfinite(rolling.earliest):
+            rolling.earliest = end + 1e-12 * period
+            rolling.latest = end + 1e-9 * period
         self._contacts(self.time.size - 1, self.time.size)
 
     def _contacts(self, low: int, high: int) -> None:
         """Evaluate the contacts at output times low ... high - 1 and sort them into the pairs' slots."""
         machine = self.model.machine
+        geometry = machine.record.geometry
         part = slice(low, high)
-        _, contacts, count = contact_state(self.model, self.time[part], self.q[part], self.v[part])
-        p = machine.parameters
-        slots = machine.pairs
-        for j in range(int(count.max(initial=0))):
-            found = np.flatnonzero(j < count)
-            record = contacts[found, j]
-            rows = low + found
+        states = contact_state(self.model, self.time[part], self.q[part], self.v[part])
+        for j in range(int(states.counts.max(initial=0))):
+            samples = np.flatnonzero(j < states.counts)
+            contact = states.contacts[samples, j]
+            rows = low + samples
             # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
             # takes the slot of the pair that is out of contact.
-            pitches = np.rint((record[:, kn.XI] - p[kn.L_XA] - self.advance[rows]) / p[kn.PITCH])
-            slot = np.mod(machine.ahead - pitches.astype(int), slots)
-            drive = record[:, kn.FLANK] > 0
-            at = (slot[drive], rows[drive])
-            for name, column in _COLUMNS.items():
-                self.pairs[name][at] = record[drive, column]
-            self.pairs["contact"][at] = 1.0
-            np.add.at(self.pairs["normal_load_back"], (slot[~drive], rows[~drive]), record[~drive, kn.LOAD])
-            self.stiffness[rows[drive]] += record[drive, kn.K]
-            self.overlap[rows[drive]] = record[drive, kn.OVERLAP]
+            pitches = np.rint((contact["position"] - geometry.L_XA - self.advance[rows]) / geometry.pitch)
+            slot = np.mod(machine.ahead - pitches.astype(int), machine.pairs)
+            drive = contact["flank"] > 0
+            driving = (slot[drive], rows[drive])
+            for name, field in _FIELDS.items():
+                self.pairs[name][driving] = contact[field][drive]
+            self.pairs["contact"][driving] = 1.0
+            coasting = (slot[~drive], rows[~drive])
+            np.add.at(self.pairs["normal_load_back"], coasting, contact["load"][~drive])
+            self.stiffness[rows[drive]] += contact["stiffness"][drive]
+            self.overlap[rows[drive]] = contact["compression"][drive]
 
     def dataset(self, attributes: Mapping[str, Any]) -> xr.Dataset:
         """Return everything recorded under the lumped model's names."""
         import xarray as xr
 
-        p = self.model.machine.parameters
+        geometry = self.model.machine.record.geometry
+        rolling = self.model.machine.record.rolling
         per_pair = dict(self.pairs)
         back = per_pair.pop("normal_load_back")
         values = self._motion() | per_pair
-        nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * (per_pair["position"] - p[kn.L_XP])
+        nominal = (rolling.omega_p + rolling.omega_g) * (per_pair["position"] - geometry.L_XP)
         values |= {
             "friction_power_nominal": -per_pair["friction_force"] * nominal,
             "mesh_stiffness": self.stiffness,
@@ -280,9 +281,8 @@ def at_mean_speed(
     names = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
     state = np.array([float(reference[name][0]) for name in names])
     setup = prepare(pair, initial=state, supports="springs")
-    p = setup.machine.parameters
     inertia = setup.machine.inertia
-    radii = p[[kn.RADIUS_P, kn.RADIUS_G]]
+    radii = setup.machine.base_radii
     mass = float((inertia / radii**2).sum())
     period = setup.machine.period
 

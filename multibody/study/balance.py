@@ -21,7 +21,7 @@ from lumped.model.solution import Initial
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
-from multibody.contact import kinematics as kn
+from multibody.contact.kinematics import TIP_CONTACT
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 from multibody.run.powers import Powers, rotor_speeds, work
@@ -128,19 +128,19 @@ def balance_of(setup: Setup, cycles: int) -> PowerBalance:
     jumps = [0.0]
 
     def energy(segment: Segment, t: FloatArray) -> FloatArray:
-        _, contacts, counts = contact_state(setup.model, t, *segment.at(t))
-        valid = np.arange(contacts.shape[1]) < counts[:, None]
-        return np.asarray(np.where(valid, contacts[:, :, kn.ENERGY], 0.0).sum(axis=1))
+        states = contact_state(setup.model, t, *segment.at(t))
+        valid = np.arange(states.contacts.shape[1]) < states.counts[:, None]
+        return np.asarray(np.where(valid, states.contacts["energy"], 0.0).sum(axis=1))
 
     def leads_across(segment: Segment) -> BoolArray:
         steps = np.diff(segment.times) / setup.machine.period
         across = steps < _HAIR
         short = np.flatnonzero(steps < _SHRUNK)
         before, after = (
-            contact_state(setup.model, segment.times[j], segment.q[j], segment.v[j])[2]
+            contact_state(setup.model, segment.times[j], segment.q[j], segment.v[j]).counts
             for j in (short, short + 1)
         )
-        if not setup.model.flags & kn.TIP_CONTACT:
+        if not setup.model.flags & TIP_CONTACT:
             across[short] |= before != after
         return np.asarray(across, dtype=np.bool_)
 

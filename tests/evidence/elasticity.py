@@ -18,7 +18,7 @@ from lumped.stiffness import iso6336
 from lumped.stiffness.energy import contact_half_width
 from lumped.stiffness.finite_elements import cross_compliance, elastic_teeth, hertz_half_width
 from lumped.stiffness.neighbours import neighbour_compliances
-from multibody.contact.machine import circles
+from multibody.gears.circles import circles
 from tests.evidence.check import Check, rows
 
 #: Root over bore radius of the ring that the energy method's foundation stands for.

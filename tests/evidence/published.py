@@ -16,10 +16,10 @@ from lumped import GearPair
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.stiffness.energy import beam_compliance, contact_half_width, local_compliance, pair_compliance
 from lumped.stiffness.foundation import foundation_compliance
-from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
-from multibody.contact.friction import signed_friction
+from multibody.contact.friction import SurfaceMotion, signed_friction
+from multibody.contact.records import FRICTION, MACHINE, Record
 from tests.evidence.check import Check
 
 #: Module -> formulas that are published, each of which shows one number.
@@ -54,37 +54,39 @@ ROSS = (
 )
 
 
-def _law(**values: float) -> FloatArray:
-    """Parameters of the multibody model's friction laws by the names of their places."""
-    f = np.zeros(fr.N_FRICTION)
+def _law(**values: float) -> Record:
+    """Parameters of the multibody model's friction laws by the names of their fields."""
+    friction = np.zeros(1, FRICTION)[0]
     for name, value in values.items():
-        f[getattr(fr, name)] = value
-    return f
+        friction[name] = value
+    return friction
 
 
 def _own_coulomb() -> float:
-    p = np.append(np.zeros(kn.FRICTION), _law(LAW=fr.LAWS["coulomb"], MEAN=0.05))
-    p[kn.OMEGA_P] = 1.0
-    return float(signed_friction(p, kn.SLIDING, 1.0, 0.0, -2.0, 10.0, 0.01, 0.01, 1.0))
+    machine = np.zeros(1, MACHINE)[0]
+    machine["friction"] = _law(law=fr.LAWS["coulomb"], mean=0.05)
+    machine["rolling"]["omega_p"] = 1.0
+    surface = SurfaceMotion(-2.0, 10.0, 0.01, 0.01)
+    return float(signed_friction(machine, np.zeros((0, 0)), kn.SLIDING, 1.0, 0.0, surface, 1.0))
 
 
-_OIL = {"VISCOSITY": 0.010, "PRESSURE_K": 0.010471, "PRESSURE_S": 0.1348}
+_OIL = {"viscosity": 0.010, "pressure_k": 0.010471, "pressure_s": 0.1348}
 _STEEL = 206e9 / (1.0 - 0.3**2)
 #: Formula -> the multibody model's own, at the numbers of the docstring but in SI.
 OWN: Mapping[str, Callable[[], float]] = {
     "coulomb": _own_coulomb,
-    "benedict_kelley": lambda: fr.benedict_kelley(_law(VISCOSITY=0.010, ROUGHNESS=0.4e-6), 2.0, 10.0, 100e3),
+    "benedict_kelley": lambda: fr.benedict_kelley(_law(viscosity=0.010, roughness=0.4e-6), 2.0, 10.0, 100e3),
     "xu_kahraman": lambda: fr.xu_kahraman(
-        _law(VISCOSITY=0.010, ROUGHNESS=0.3e-6, MODULUS=2.0 * math.pi * 0.008 * 1e18 / 100e3),
+        _law(viscosity=0.010, roughness=0.3e-6, modulus=2.0 * math.pi * 0.008 * 1e18 / 100e3),
         1.0,
         20.0,
         0.008,
         100e3,
     ),
-    "smoothed_coulomb": lambda: fr.smoothed_coulomb(_law(MEAN=0.05, SHARPNESS=1.0), 1.0),
-    "hertz_pressure": lambda: 1e-9 * fr.hertz_pressure(_law(MODULUS=_STEEL), 0.008, 100e3),
+    "smoothed_coulomb": lambda: fr.smoothed_coulomb(_law(mean=0.05, sharpness=1.0), 1.0),
+    "hertz_pressure": lambda: 1e-9 * fr.hertz_pressure(_law(modulus=_STEEL), 0.008, 100e3),
     "film_parameter": lambda: fr.film_parameter(
-        _law(MODULUS=_STEEL, COMPOSITE_ROUGHNESS=0.5e-6, FILM_LENGTH=0.8e-3, **_OIL), 10.0, 0.008, 100e3
+        _law(modulus=_STEEL, composite_roughness=0.5e-6, film_length=0.8e-3, **_OIL), 10.0, 0.008, 100e3
     ),
 }
 

@@ -27,10 +27,13 @@ from lumped.quasi_static.tooth_error import relief_error
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
-from multibody.contact.elements import coupling_at, gradual, relief_at, shared_loads, stiffness_at
+from multibody.contact.elements import contact_law, gradual, relief_at, shared_loads, table_value
 from multibody.contact.friction import nominal_friction
+from multibody.contact.kernels import set_couplings
 from multibody.contact.kinematics import DRIVE, Line, add_gradient, corners_at
-from multibody.contact.machine import Machine, circles, machine, masses
+from multibody.contact.machine import Machine, machine, masses
+from multibody.contact.records import PAIR
+from multibody.gears.circles import circles
 from multibody.run.effects import effect_flags
 from tests.evidence.check import Check, rows
 
@@ -92,8 +95,8 @@ def _damping(pair: GearPair) -> Iterator[Check]:
         return
     elements = mesh_elements(pair)
     xi = _inside(pair)
-    p = machine(pair).parameters
-    own = p[kn.DAMPING] * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
+    p = machine(pair).record
+    own = p.pair_law.damping * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
     scale = max(float(np.abs(own).max()), 1e-300)
     found = elements.damping(xi)
     yield rows("damping of a tooth pair", _OWN, 1e-6, np.stack([found, own], axis=1) / scale + 1.0)
@@ -106,10 +109,10 @@ def _laws(pair: GearPair) -> Check:
     for name in FRICTIONAL:
         try:
             law = friction_path_function(pair, name)
-            p = machine(pair.with_(friction__law=name)).parameters
+            packed = machine(pair.with_(friction__law=name)).packed
         except ParameterError:  # a law that this pair does not allow
             continue
-        own = np.array([nominal_friction(p, x) for x in xi])
+        own = np.array([nominal_friction(packed, x) for x in xi])
         away = np.abs(law(xi) - own)
         # Where a law jumps, rounding of the place decides; such a place is left out.
         away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
@@ -125,7 +128,7 @@ def _relief(pair: GearPair) -> Iterator[Check]:
     if not reliefs:
         return
     xi = _inside(pair)
-    p = machine(pair.with_({"mesh.relief": "static"})).parameters
+    p = machine(pair.with_({"mesh.relief": "static"})).record
     own = np.array([relief_at(p, x, 0.0, 0.0)[0] for x in xi])
     scale = float(sum(r.amount for r in reliefs))
     yield rows(
@@ -168,7 +171,7 @@ class _Mesh:
 
     @cached_property
     def force(self) -> float:
-        return float(self.machine.torque_pinion / self.machine.parameters[kn.RADIUS_P])
+        return float(self.machine.torque_pinion / self.machine.record.geometry.radius_p)
 
     @cached_property
     def longer(self) -> float:
@@ -176,16 +179,18 @@ class _Mesh:
 
     def pressed(self, places: FloatArray, delta: float) -> tuple[FloatArray, FloatArray]:
         """Approach less relief and corner gaps of pairs at places (pairs,) [m], and their tilt."""
-        p = self.machine.parameters
+        p = self.machine.record
         half = 0.5 * (delta + self.longer)
-        length = float(p[kn.L_XY] + self.longer)
-        line = Line(1.0, 0.0, length, DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
+        length = float(p.geometry.L_XY + self.longer)
+        line = Line(1.0, 0.0, length, DRIVE, float(p.geometry.radius_p), float(p.geometry.radius_g))
         found = np.empty(places.size)
         tilt = np.empty(places.size)
         for i, xi in enumerate(places):
-            arms = xi + half, p[kn.L_XY] - xi + half
-            corners = corners_at(line, *arms, (p[kn.TIP_P], p[kn.TIP_G]), (p[kn.EDGE_P], p[kn.EDGE_G]))
-            relief, _ = relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]), 0.0, 0.0)
+            arms = xi + half, p.geometry.L_XY - xi + half
+            corners = corners_at(
+                line, *arms, (p.geometry.tip_p, p.geometry.tip_g), (p.geometry.edge_p, p.geometry.edge_g)
+            )
+            relief, _ = relief_at(p, min(max(xi, p.geometry.L_XA), p.geometry.L_XD), 0.0, 0.0)
             found[i] = delta - relief - corners.gap
             wrench = np.zeros(6)
             add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)
@@ -194,23 +199,22 @@ class _Mesh:
 
     def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
-        p, n = self.machine.parameters, places.size
-        stiffness = np.array([stiffness_at(self.machine.table, xi) for xi in places])
-        coupling = np.zeros((n, n))
-        loads = np.zeros(n)
-        for i in range(n):
-            for j in range(i):
-                coupling[i, j] = coupling[j, i] = coupling_at(p, i - j, places[j])[0]
-        law = p[kn.SOFTENING], p[kn.NOMINAL_FORCE]
-        shared_loads(n, pressed, stiffness, 0, coupling, *law, loads)
-        return loads, pressed - coupling @ loads
+        stiffness = np.array([table_value(self.machine.stiffness_table, xi) for xi in places])
+        pairs = np.zeros(places.size, PAIR)
+        pairs["position"] = places
+        pairs["compression"] = pressed
+        pairs["stiffness"] = stiffness
+        set_couplings(places.size, pairs, self.machine.record)
+        shared_loads(places.size, pairs, contact_law(self.machine.record, kn.CONTACT_LAW))
+        loads = pairs["elastic_load"].copy()
+        return loads, pressed - pairs["couplings"][:, : places.size] @ loads
 
     def at(self, xi: float) -> _Equilibrium:
         """The pair at xi in equilibrium."""
-        p = self.machine.parameters
-        reach = 0.4 * self.machine.parameters[kn.PITCH]
-        places = xi + p[kn.PITCH] * np.arange(-4, 5)
-        near = (places > p[kn.L_XA] - reach) & (places < p[kn.L_XD] + reach)
+        p = self.machine.record
+        reach = 0.4 * self.machine.record.geometry.pitch
+        places = xi + p.geometry.pitch * np.arange(-4, 5)
+        near = (places > p.geometry.L_XA - reach) & (places < p.geometry.L_XD + reach)
         own = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0])
         places = places[near]
 
@@ -225,7 +229,9 @@ class _Mesh:
         # The contact moves outside with the approach: a corner closes by less than that.
         ahead, behind = (self.pressed(places, delta + s * _STEP * delta)[0][own] for s in (1.0, -1.0))
         closing = (ahead - behind) / (2.0 * _STEP * delta)
-        damping = p[kn.DAMPING] * np.sqrt(stiffness_at(self.machine.table, xi)) * share * closing
+        damping = (
+            p.pair_law.damping * np.sqrt(table_value(self.machine.stiffness_table, xi)) * share * closing
+        )
         tangent = (more - less)[own] / (2.0 * _STEP * delta)
         values = (loads[own], tangent, damping, left[own], tilt[own])
         return _Equilibrium(delta, *(float(value) for value in values))

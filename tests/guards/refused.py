@@ -12,7 +12,7 @@ import numpy as np
 from lumped import GearPair
 from lumped.faults.crack import root_section
 from lumped.lubrication.viscosity import viscosity_index
-from multibody.contact.undercut import undercut_edge
+from multibody.gears.undercut import undercut_edge
 from tests.guards.by_hand import ByHand, inv, root_of
 from tests.guards.guard import MATE, Changes, Choice, Guard, curve, friction, relief
 

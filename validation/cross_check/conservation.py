@@ -26,8 +26,7 @@ from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.transmission_error import static_transmission_error
 from lumped.stiffness.table import TableStiffness
 from lumped.typing import FloatArray
-from multibody.contact import kinematics as kn
-from multibody.contact.elements import stiffness_at
+from multibody.contact.elements import table_value
 from multibody.contact.machine import Machine
 from validation.cross_check.agreement import Fidelity
 from validation.cross_check.verdict import Judgement
@@ -142,11 +141,11 @@ def lumped_powers(motion: PeriodicSolution, machine: Machine, weights: FloatArra
 
     ``machine`` has the pair's numbers as the multibody model derives them.
     """
-    p = machine.parameters
+    p = machine.record
     found = losses(motion.system, machine, motion.time, motion.states, weights)
     return found | {
-        "driving": motion.pinion_torque * float(p[kn.OMEGA_P] + weights @ motion.states[:, 6]),
-        "braking": motion.brake_torque * float(p[kn.OMEGA_G] + weights @ motion.states[:, 7]),
+        "driving": motion.pinion_torque * float(p.rolling.omega_p + weights @ motion.states[:, 6]),
+        "braking": motion.brake_torque * float(p.rolling.omega_g + weights @ motion.states[:, 7]),
     }
 
 
@@ -154,14 +153,16 @@ def losses(
     system: LTVSystem, machine: Machine, times: FloatArray, states: FloatArray, weights: FloatArray
 ) -> dict[str, float]:
     """Mean powers of what a lumped motion loses [W], from (k,) times, (k, 12) states and (k,) weights."""
-    p = machine.parameters
+    p = machine.record
     values = response(system, times, states)
     pairs = system.cycle.sample(times)
     rates = states[:, 6:]
     place = values["position"]
-    sliding = (p[kn.OMEGA_P] + rates[:, 0]) * place
-    sliding -= (p[kn.OMEGA_G] + rates[:, 1]) * (p[kn.L_XY] - place) + rates[:, 4] - rates[:, 5]
-    closing = p[kn.RADIUS_P] * rates[:, 0] - p[kn.RADIUS_G] * rates[:, 1] + rates[:, 2] - rates[:, 3]
+    sliding = (p.rolling.omega_p + rates[:, 0]) * place
+    sliding -= (p.rolling.omega_g + rates[:, 1]) * (p.geometry.L_XY - place) + rates[:, 4] - rates[:, 5]
+    closing = (
+        p.geometry.radius_p * rates[:, 0] - p.geometry.radius_g * rates[:, 1] + rates[:, 2] - rates[:, 3]
+    )
     # A tip corner closes by less than the gears approach; damping holds that factor once.
     share = 1.0 if pairs.closing is None else pairs.closing
     damping = np.sum(share * pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
@@ -212,13 +213,13 @@ def _mesh_histories(
 
 def _friction_takes_power(m: Machine, name: str, motion: xr.Dataset) -> Judgement:
     """Sliding friction takes power at every instant and every contact."""
-    p = m.parameters
+    p = m.record
     if name == "exact":
         taken = (motion["friction_force"] * motion["sliding_velocity"]).to_numpy()
         text = "friction force times sliding velocity of every contact at every time, over the largest"
     else:
         place = motion["position"].to_numpy()
-        nominal = p[kn.OMEGA_P] * place - p[kn.OMEGA_G] * (p[kn.L_XY] - place)
+        nominal = p.rolling.omega_p * place - p.rolling.omega_g * (p.geometry.L_XY - place)
         taken = motion["mu"].to_numpy() * nominal
         text = "coefficient times nominal sliding velocity of every contact at every time, over the largest"
     largest = max(float(np.abs(taken).max()), np.finfo(float).tiny)
@@ -234,16 +235,16 @@ def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
     table = pair.mesh.stiffness
     if not isinstance(table, TableStiffness) or not table.whole_mesh:
         return []
-    p = m.parameters
+    p = m.record
     static = static_transmission_error(pair, phases=_PHASES)
     phase = static["phase"].to_numpy()
     given = stiffness_factor(pair) * table.total(pair.geometry, phase)
-    force = m.torque_pinion / p[kn.RADIUS_P]
+    force = m.torque_pinion / p.geometry.radius_p
     # Not at A and D themselves, on which rounding decides whether a pair is there.
     between = phase + 0.5 / _PHASES
-    place = p[kn.L_XA] + p[kn.PITCH] * (between[:, None] + np.arange(m.pairs))
-    stiffness = np.array([[stiffness_at(m.table, xi) for xi in row] for row in place])
-    second = np.where(place < p[kn.L_XD], stiffness, 0.0).sum(axis=1)
+    place = p.geometry.L_XA + p.geometry.pitch * (between[:, None] + np.arange(m.pairs))
+    stiffness = np.array([[table_value(m.stiffness_table, xi) for xi in row] for row in place])
+    second = np.where(place < p.geometry.L_XD, stiffness, 0.0).sum(axis=1)
     errors = {
         "lumped": (static["transmission_error"].to_numpy()[0], force / given),
         "exact": (
@@ -279,7 +280,7 @@ def _action_and_reaction(m: Machine, name: str, motion: xr.Dataset) -> list[Judg
             coarse += k * _integral(time, x, v, 2)
             scale = max(scale, k * float(np.abs(x).max()) * m.period)
         # Without friction nothing moves off the line of action: then the load is the scale.
-        scale = max(scale, 1e-6 * m.torque_pinion / m.parameters[kn.RADIUS_P] * m.period)
+        scale = max(scale, 1e-6 * m.torque_pinion / m.record.geometry.radius_p * m.period)
         off = float(np.abs(momentum + work)[::2].max()) / scale  # where the coarser one tells the error
         error = float(np.abs(coarse - work)[::2].max()) / scale
         found.append(
@@ -313,14 +314,15 @@ def _mean_bearing_loads(
     The mean of N even samples of a periodic history is off by no more than its variation over N.
     ``variation`` is that of both ``_mesh_histories``.
     """
-    p, (k_p, k_g) = m.parameters, m.bearing_stiffness
+    p = m.record
+    k_p, k_g = m.bearing_stiffness
     moment, total = _mesh_histories(pair, motion)
-    load = pair.operating.pinion_torque / p[kn.RADIUS_P]
-    along = load - moment.mean() / p[kn.RADIUS_P]
+    load = pair.operating.pinion_torque / p.geometry.radius_p
+    along = load - moment.mean() / p.geometry.radius_p
     across = total.mean()
     stiffness = {"x_p": -k_p[0], "x_g": k_g[0], "y_p": k_p[1], "y_g": -k_g[1]}
     sampled = {
-        "x": variation[0] / moment.size / p[kn.RADIUS_P] / load,
+        "x": variation[0] / moment.size / p.geometry.radius_p / load,
         "y": variation[1] / moment.size / load,
     }
     return [

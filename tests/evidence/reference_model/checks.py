@@ -24,9 +24,10 @@ from lumped.model.periodic_system import periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import friction as fr
-from multibody.contact import kinematics as kn
-from multibody.contact.elements import stiffness_at
-from multibody.contact.machine import Machine, base_tooth_angle, circles, machine, masses
+from multibody.contact.elements import table_value
+from multibody.contact.machine import Machine, machine, masses
+from multibody.contact.records import opened, with_block
+from multibody.gears.circles import base_tooth_angle, circles
 from multibody.run.integration import Segment, integrate
 from multibody.run.model import ExudynModel, accelerations, build, contact_state
 from multibody.run.setup import Setup, prepare
@@ -162,18 +163,20 @@ class Decay:
 def damping_check(pair: GearPair) -> tuple[Decay, ...]:
     """Measure the damping ratios of the mesh and of the four bearing directions by free decay."""
     numbers = _frozen(machine(pair))
-    p = numbers.parameters
+    p = numbers.record
     fixed = replace(numbers, mass=_HEAVY * numbers.mass)
     q = np.zeros(6)
-    q[2], q[5] = -_AMPLITUDE / p[kn.RADIUS_P], 0.0
+    q[2], q[5] = -_AMPLITUDE / p.geometry.radius_p, 0.0
     places = _in_contact(numbers)
-    k = np.array([max(stiffness_at(numbers.table, xi), 0.0) for xi in places])
+    k = np.array([max(table_value(numbers.stiffness_table, xi), 0.0) for xi in places])
     share = float(np.sum(np.sqrt(k)) / np.sqrt(np.sum(k)))  # of pairs side by side, each with its own ratio
-    mobility = p[kn.RADIUS_P] ** 2 / numbers.inertia[0] + p[kn.RADIUS_G] ** 2 / numbers.inertia[1]
+    mobility = p.geometry.radius_p**2 / numbers.inertia[0] + p.geometry.radius_g**2 / numbers.inertia[1]
     omega = np.sqrt(k.sum() * mobility)
     ratio = pair.mesh.damping_ratio * share
     found = [_decay("mesh", fixed, q, omega, ratio, numbers.overlap)]
-    free = replace(numbers, table=np.column_stack([numbers.table[:, :2], 0.0 * numbers.table[:, 2:]]))
+    table = numbers.stiffness_table.copy()
+    table[:, 2:] = 0.0
+    free = replace(numbers, packed=with_block(numbers.packed, "stiffness", table))
     for i, (name, bearing) in enumerate((("pinion", pair.bearings.pinion), ("gear", pair.bearings.gear))):
         ratios = (bearing.loa_damping_ratio, bearing.oloa_damping_ratio)
         for j, axis in enumerate("xy"):
@@ -188,19 +191,21 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
 
 def _frozen(numbers: Machine) -> Machine:
     """The machine without friction and torque, held where a pair is in the middle of its path."""
-    p = numbers.parameters.copy()
-    single = 0.5 * (p[kn.L_XA] + p[kn.L_XD])
-    time = np.mod(single - p[kn.L_XA], p[kn.PITCH]) / (p[kn.OMEGA_P] * p[kn.RADIUS_P])
-    p[kn.T_LOW] = p[kn.T_HIGH] = time
-    p[kn.FRICTION + fr.LAW] = fr.LAWS["none"]
-    p[kn.RELIEFS] = 0.0
-    return replace(numbers, parameters=p, torque_pinion=0.0, torque_gear=0.0)
+    packed = numbers.packed.copy()
+    p = opened(packed)
+    single = 0.5 * (p.geometry.L_XA + p.geometry.L_XD)
+    time = np.mod(single - p.geometry.L_XA, p.geometry.pitch) / (p.rolling.omega_p * p.geometry.radius_p)
+    p.rolling.earliest = time
+    p.rolling.latest = time
+    p.friction.law = fr.LAWS["none"]
+    p.relief_count = 0
+    return replace(numbers, packed=packed, torque_pinion=0.0, torque_gear=0.0)
 
 
 def _in_contact(numbers: Machine) -> FloatArray:
-    p = numbers.parameters
-    first = p[kn.L_XA] + p[kn.T_LOW] * p[kn.OMEGA_P] * p[kn.RADIUS_P]
-    return np.arange(first, p[kn.L_XD], p[kn.PITCH])
+    p = numbers.record
+    first = p.geometry.L_XA + p.rolling.earliest * p.rolling.omega_p * p.geometry.radius_p
+    return np.arange(first, p.geometry.L_XD, p.geometry.pitch)
 
 
 def _decay(
@@ -240,11 +245,11 @@ def frozen_modes(pair: GearPair, phase: float = 0.3) -> dict[str, FloatArray]:
     moving = held(exact, time)
     q = _at_rest(moving, time, exact.q, exact.deflection)
     _, contacts, counts = contact_state(moving, np.array([time]), q[None], np.zeros((1, 6)))
-    load = float(contacts[0, : counts[0], kn.LOAD].sum())
+    load = float(contacts[0, : counts[0]]["load"].sum())
     system = periodic_system(pair, "elastic")
     matrix = system.A(time)
     turned = matrix.copy()
-    spring = load / float(exact.machine.parameters[kn.L_XY]) * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    spring = load / float(exact.machine.record.geometry.L_XY) * np.array([[1.0, -1.0], [-1.0, 1.0]])
     turned[8:, 3:5] += spring / exact.machine.mass[:, None]
     return {
         "exudyn linear": modes_of(linearised(straight, np.zeros(6))),
@@ -256,18 +261,20 @@ def frozen_modes(pair: GearPair, phase: float = 0.3) -> dict[str, FloatArray]:
 
 def held(setup: Setup, time: float) -> ExudynModel:
     """The model of a set-up with the nominal rotation held at a time; nominal speeds go on sliding."""
-    parameters = setup.machine.parameters.copy()
-    parameters[[kn.T_LOW, kn.T_HIGH]] = time
-    return build(replace(setup.machine, parameters=parameters), setup.model.flags, setup.model.budget.limit)
+    packed = setup.machine.packed.copy()
+    rolling = opened(packed).rolling
+    rolling.earliest = time
+    rolling.latest = time
+    return build(replace(setup.machine, packed=packed), setup.model.flags, setup.model.budget.limit)
 
 
 def _at_rest(model: ExudynModel, time: float, q: FloatArray, scale: float) -> FloatArray:
     """Loaded position near q; the free rotation of the train is held, and its acceleration is left out."""
-    p = model.parameters
+    p = model.record
     inertia = model.machine.inertia
-    rigid = np.array([1.0 / p[kn.RADIUS_P], -1.0 / p[kn.RADIUS_G]])  # leaves the overlap as it is
-    size = model.machine.torque_pinion / float(p[kn.RADIUS_P]) / float(model.machine.mass.min())
-    lengths = np.array([1.0, 1.0, p[kn.RADIUS_P], 1.0, 1.0, p[kn.RADIUS_G]])
+    rigid = np.array([1.0 / p.geometry.radius_p, -1.0 / p.geometry.radius_g])  # leaves the overlap as it is
+    size = model.machine.torque_pinion / float(p.geometry.radius_p) / float(model.machine.mass.min())
+    lengths = np.array([1.0, 1.0, p.geometry.radius_p, 1.0, 1.0, p.geometry.radius_g])
 
     def residual(x: FloatArray) -> FloatArray:
         state = q + scale * x / lengths

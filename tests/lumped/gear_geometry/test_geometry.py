@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from lumped import ParameterError, geometry, load_gear_pair
-from multibody.contact.undercut import undercut_edge
+from multibody.gears.undercut import undercut_edge
 
 ROUNDING = 1e-13  # relative, of lengths from a handful of operations in double precision
 

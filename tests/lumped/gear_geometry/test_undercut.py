@@ -19,7 +19,7 @@ from lumped.quasi_static.elements import at_rest
 from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from multibody.contact import kinematics as kn
-from multibody.contact.machine import circles, reliefs
+from multibody.gears.circles import circles, reliefs
 from spurcheck import new_pair
 
 ANGLE = math.radians(20.0)

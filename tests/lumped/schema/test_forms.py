@@ -14,7 +14,7 @@ from lumped.gear_geometry.roll_angle import diameter_of, roll_angle_of
 from lumped.quasi_static.tooth_error import relief_error
 from lumped.schema.oil_grade import grade_of
 from lumped.schema.tolerances import tolerance_class_of
-from multibody.contact.machine import circles, reliefs
+from multibody.gears.circles import circles, reliefs
 from tests.unlike_pairs import unlike_pair
 from validation.exchange import gear_pair_from_rexs, write_rexs
 

@@ -7,11 +7,11 @@ import lumped
 from lumped.friction.registry import law_of
 from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
-from multibody.contact import friction as fr
 from multibody.contact import kinematics as kn
-from multibody.contact.friction import nominal_friction, signed_friction
+from multibody.contact.friction import SurfaceMotion, nominal_friction, signed_friction
 from multibody.contact.kernels import contact_forces
 from multibody.contact.machine import machine
+from multibody.contact.records import CONTACTS_SIZE, opened_contacts
 from multibody.run.effects import effect_flags
 from multibody.run.model import accelerations, from_lumped_state
 from multibody.run.setup import prepare
@@ -29,16 +29,16 @@ LIKE_TEETH = [name for name in UNLIKE if unlike_pair(name).healthy is unlike_pai
 
 def forces(numbers, t, q, v, flags=ALL):
     state = np.array([q, v, np.zeros(6)])
-    contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
-    count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
+    contacts = np.zeros(CONTACTS_SIZE)
+    count = contact_forces(t, state, numbers.packed, flags, contacts)
     assert count >= 0
-    return state[2], contacts[:count]
+    return state[2], opened_contacts(contacts)[:count]
 
 
 def pressed_state(numbers, rng, flank=1.0):
     """Bodies off their places by some 10 um, flanks pressed by some 10 um."""
     q, v = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.01
-    q[5] -= flank * 6e-5 / numbers.parameters[kn.RADIUS_G]
+    q[5] -= flank * 6e-5 / numbers.record.geometry.radius_g
     v[[2, 5]] *= 10
     return q, v
 
@@ -54,15 +54,15 @@ def pressed_state(numbers, rng, flank=1.0):
 def test_wrench_power_is_what_the_contacts_take(name, flags, rng):
     """Virtual power: forces times velocities of the bodies = -(load x closing + friction x sliding)."""
     numbers = machine(prescribed(name))
-    p = numbers.parameters
+    p = numbers.record
     for t in np.linspace(0, numbers.period, 7):
         q, v = pressed_state(numbers, rng)
         wrench, c = forces(numbers, t, q, v, flags)
         assert len(c) >= 1
         total = v.copy()
-        total[2] -= p[kn.OMEGA_P]
-        total[5] += p[kn.OMEGA_G]
-        taken = c[:, kn.LOAD] @ c[:, kn.CLOSING] + c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
+        total[2] -= p.rolling.omega_p
+        total[5] += p.rolling.omega_g
+        taken = c["load"] @ c["approach_rate"] + c["friction_force"] @ c["sliding_velocity"]
         # Powers of single forces are some 20 kW here and cancel to watts.
         assert wrench @ total == pytest.approx(-taken, abs=1e-9 * np.abs(wrench * total).sum())
 
@@ -82,16 +82,16 @@ def test_pressing_velocity_is_the_rate_of_the_pressed_overlap(flags, rng):
         _, c = forces(numbers, t, q, v, flags)
         _, after = forces(numbers, t + h, q + h * v, v, flags)
         _, before = forces(numbers, t - h, q - h * v, v, flags)
-        rate = (after[:, kn.OVERLAP] - before[:, kn.OVERLAP]) / (2 * h)
-        assert np.abs(c[:, kn.CLOSING] - c[:, kn.OVERLAP_RATE]).max() > 1e-3
+        rate = (after["compression"] - before["compression"]) / (2 * h)
+        assert np.abs(c["approach_rate"] - c["compression_rate"]).max() > 1e-3
         # Central difference of a length known to 1e-17 m.
-        np.testing.assert_allclose(c[:, kn.OVERLAP_RATE], rate, rtol=1e-6, atol=1e-8)
+        np.testing.assert_allclose(c["compression_rate"], rate, rtol=1e-6, atol=1e-8)
 
 
 def test_teeth_push_but_do_not_pull(rng):
     numbers = machine(prescribed("larger_gear_drives_contact_lost"))
     q, v = np.zeros(6), np.zeros(6)
-    q[2] = 2e-5 / numbers.parameters[kn.RADIUS_P]  # pinion 20 um behind: inside the backlash of 110 um
+    q[2] = 2e-5 / numbers.record.geometry.radius_p  # pinion 20 um behind: inside the backlash of 110 um
     wrench, _ = forces(numbers, 0.3 * numbers.period, q, v)
     np.testing.assert_array_equal(wrench, 0.0)
     wrench, _ = forces(numbers, 0.3 * numbers.period, q, v, effect_flags({"contact_loss": False}))
@@ -101,10 +101,10 @@ def test_teeth_push_but_do_not_pull(rng):
 def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
     """Pressed flanks enter half an overlap later: the gear's flank ends at its tip, xi = L_XA + delta/2."""
     numbers = machine(prescribed("rack_25_degrees_always_pushing"))
-    p = numbers.parameters
+    p = numbers.record
     delta = 2e-5
     # Half the overlap from each gear, so that the contact point itself is not moved.
-    q = np.array([0, 0, -delta / 2 / p[kn.RADIUS_P], 0, 0, -delta / 2 / p[kn.RADIUS_G]])
+    q = np.array([0, 0, -delta / 2 / p.geometry.radius_p, 0, 0, -delta / 2 / p.geometry.radius_g])
     t = np.linspace(0, 0.01, 2001) * numbers.period
     entered = []
     one_sided = ALL & ~kn.BACK_SIDE
@@ -112,8 +112,8 @@ def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
         pairs = [len(forces(numbers, ti, q, np.zeros(6), flags)[1]) for ti in t]
         assert pairs[-1] == 2
         _, c = forces(numbers, t[pairs.index(2)], q, np.zeros(6), flags)
-        entered.append(c[:, kn.XI].min() - p[kn.L_XA])
-    step = p[kn.PITCH] * 0.01 / 2000
+        entered.append(c["position"].min() - p.geometry.L_XA)
+    step = p.geometry.pitch * 0.01 / 2000
     assert entered[0] == pytest.approx(delta / 2, abs=step)
     assert entered[1] == pytest.approx(0.0, abs=step)
 
@@ -150,11 +150,11 @@ def test_with_all_effects_off_it_is_the_lumped_equations(name, contact):
     times = np.array([0.3, 0.55, 0.8]) * setup.system.period
     motion = periodic_solution(setup.system, times, estimate_error=False)
     q, v = from_lumped_state(motion.states)
-    forces = accelerations(setup.model, motion.time, q, v) * setup.machine.bodies[0]
-    radii = setup.machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+    forces = accelerations(setup.model, motion.time, q, v) * setup.machine.bodies["inertia"]
+    radii = setup.machine.base_radii
     units = np.array([1.0, 1.0, 1.0 / radii[0], 1.0, 1.0, 1.0 / radii[1]])
     off = (forces - lumped_forces(setup, motion, pair)) * units
-    static = setup.machine.torque_pinion / setup.machine.parameters[kn.RADIUS_P]
+    static = setup.machine.torque_pinion / setup.machine.record.geometry.radius_p
     assert np.abs(off).max() < 1e-12 * static
 
 
@@ -169,10 +169,11 @@ FIT = 1e-10
 def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
     changes = {"lubricant.viscosity_law": oil, "friction.law": "benedict_kelley"}
     pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact="prescribed").with_(changes)
-    p = machine(pair).parameters
+    numbers = machine(pair)
+    p = numbers.record
     table = lumped.mesh_elements(pair).friction
-    xi = 0.3 * p[kn.L_XA] + 0.7 * p[kn.L_XP]
-    assert nominal_friction(p, xi) == pytest.approx(float(table(xi)), abs=FIT)
+    xi = 0.3 * p.geometry.L_XA + 0.7 * p.geometry.L_XP
+    assert nominal_friction(numbers.packed, xi) == pytest.approx(float(table(xi)), abs=FIT)
 
 
 def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
@@ -195,13 +196,15 @@ def test_the_momentary_load_is_an_effect_of_its_own():
     """Off: w_n, whatever the load. On: load over face width, which law III feels and law I does not."""
     for name, feels in (("contact_ratio_2_3_on_shafts", True), ("contact_ratio_1_1_large_shifts", False)):
         pair = prescribed(name)
-        p = machine(pair).parameters
+        numbers = machine(pair)
+        p = numbers.record
         # The line load is that of the narrower face, which is the gear's in both.
-        xi = p[kn.L_XP] + 2e-3
-        w = p[kn.FRICTION + fr.NOMINAL_LOAD] * pair.gear.face_width
+        xi = p.geometry.L_XP + 2e-3
+        w = p.friction.nominal_load * pair.gear.face_width
 
         def mu(flags, normal, p=p, xi=xi):
-            return signed_friction(p, flags, 1.0, xi, 1.0, 1.0, xi, p[kn.L_XY] - xi, normal)
+            surface = SurfaceMotion(1.0, 1.0, xi, p.geometry.L_XY - xi)
+            return signed_friction(p, np.zeros((0, 0)), flags, 1.0, xi, surface, normal)
 
         on = effect_flags({"friction_load"})
         assert mu(0, 0.5 * w) == mu(0, w) == pytest.approx(mu(on, w))
@@ -214,14 +217,14 @@ def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     faster = pair.with_(operating__pinion_speed=1.5 * pair.operating.pinion_speed * 30.0 / np.pi)
     numbers = machine(pair)
     flags = effect_flags({"sliding_velocity"})
-    p = numbers.parameters
+    p = numbers.record
     state = np.zeros((3, 6))
-    contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
-    state[0, 5] = -6e-5 / p[kn.RADIUS_G]  # presses the flanks
-    state[1, [2, 5]] = -0.5 * p[kn.OMEGA_P], 0.5 * p[kn.OMEGA_G]
-    count = contact_forces(0.3 * numbers.period, state, p, flags, numbers.table, contacts)
-    found = contacts[:count]
-    expected = lumped.mesh_elements(faster).friction(found[:, kn.XI])
-    nominal = lumped.mesh_elements(pair).friction(found[:, kn.XI])
-    np.testing.assert_allclose(found[:, kn.MU], expected, rtol=0.0, atol=FIT)
+    contacts = np.zeros(CONTACTS_SIZE)
+    state[0, 5] = -6e-5 / p.geometry.radius_g  # presses the flanks
+    state[1, [2, 5]] = -0.5 * p.rolling.omega_p, 0.5 * p.rolling.omega_g
+    count = contact_forces(0.3 * numbers.period, state, numbers.packed, flags, contacts)
+    found = opened_contacts(contacts)[:count]
+    expected = lumped.mesh_elements(faster).friction(found["position"])
+    nominal = lumped.mesh_elements(pair).friction(found["position"])
+    np.testing.assert_allclose(found["friction_coefficient"], expected, rtol=0.0, atol=FIT)
     assert (np.abs(expected - nominal) > 5e-4).all()

@@ -15,8 +15,8 @@ from multibody.contact.events import (
     time_to_event,
 )
 from multibody.contact.kernels import contact_forces
-from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
+from multibody.contact.records import CONTACTS_SIZE, opened_contacts
 from multibody.run.effects import effect_flags
 from tests.unlike_pairs import unlike_pair
 
@@ -41,9 +41,9 @@ def test_a_law_changes_at_a_break_by_the_jumps_of_value_slope_and_curvature():
 def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
     state = np.array([q, v, np.zeros(6)])
-    records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-    count = contact_forces(t, state, numbers.parameters, flags, numbers.table, records)
-    return count, tuple(np.sign(records[:count, kn.MU]))
+    records = np.zeros(CONTACTS_SIZE)
+    count = contact_forces(t, state, numbers.packed, flags, records)
+    return count, tuple(np.sign(opened_contacts(records)["friction_coefficient"][:count]))
 
 
 @pytest.mark.parametrize(("name", "effects"), [
@@ -58,16 +58,15 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(name, effects, rng
     numbers = machine(jumps(name))
     flags = effect_flags(effects) & ~kn.BACK_SIDE
     period = numbers.period
-    p = numbers.parameters
     seen = set()
     for t in rng.uniform(0.0, 3.0, size=120) * period:
         q = rng.normal(size=6) * 1e-5
         v = rng.normal(size=6) * 0.02
         a = rng.normal(size=6) * 200.0
-        q[[2, 5]] = -2e-5 / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])  # pressed by some 40 um
+        q[[2, 5]] = -2e-5 / numbers.base_radii  # pressed by some 40 um
         v[[2, 5]] = v[[2, 5]] * 10
         a[[2, 5]] = a[[2, 5]] * 10
-        wait, _ = time_to_event(t, q, v, a, p, flags, numbers.table, numbers.events, 0.05 * period)
+        wait, _ = time_to_event(t, q, v, a, numbers.packed, flags, numbers.events, 0.05 * period)
         assert 0.0 <= wait < period
         if wait > 0.04 * period:
             continue  # foreseen roughly; the integrator asks again when it is nearer
@@ -94,22 +93,22 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(name, pairs):
     loaded = jumps(name)
     flags = effect_flags(None, "loaded")
     numbers = machine(loaded, flags)
-    p = numbers.parameters
-    table = numbers.table
+    p = numbers.record
     period = numbers.period
     # The gears roll on each other, a little slower than nominal: their approach stays. It is so large that
     # the corner goes fast enough for its damper to let go.
-    q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, p[kn.RADIUS_P] / p[kn.RADIUS_G]])
-    q[2] = -3e-5 / p[kn.RADIUS_P]
+    q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, p.geometry.radius_p / p.geometry.radius_g])
+    q[2] = -3e-5 / p.geometry.radius_p
 
     def around(kind):
-        events = numbers.events[numbers.events[:, 0] == kind]
-        wait, _ = time_to_event(0.0, q, v, np.zeros(6), p, flags, table, events, np.inf)
+        events = numbers.events[numbers.events["kind"] == kind]
+        wait, _ = time_to_event(0.0, q, v, np.zeros(6), numbers.packed, flags, events, np.inf)
         for tau in (wait - 1e-5 * period, wait + 1e-5 * period):
-            records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+            records = np.zeros(CONTACTS_SIZE)
             state = np.array([q + tau * v, v, np.zeros(6)])
-            count = contact_forces(tau, state, p, flags, table, records)
-            yield count, records[:count, kn.LOAD].min(), records[:count, kn.ELASTIC].min()
+            count = contact_forces(tau, state, numbers.packed, flags, records)
+            touching = opened_contacts(records)[:count]
+            yield count, touching["load"].min(), touching["elastic_load"].min()
 
     assert [count for count, *_ in around(FIRST_TOUCH)] == [pairs, pairs + 1]
     assert [count for count, *_ in around(LAST_TOUCH)] == [pairs + 1, pairs]
@@ -123,5 +122,5 @@ def test_of_many_switches_only_the_largest_are_events():
     heights = 1.0 + np.arange(100.0) ** 2  # jumps grow along the path
     steps = PathFunction(breaks, heights[None], breaks[1:-1])
     rows = event_table(steps, (), (), 9.4e-3)
-    switches = rows[rows[:, 0] == SWITCH, 1]
+    switches = rows["place"][rows["kind"] == SWITCH]
     np.testing.assert_allclose(np.sort(switches), breaks[-13:-1], rtol=1e-15)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from lumped.path_of_contact import friction_path_function
-from multibody.contact import kinematics as kn
 from multibody.contact.friction import nominal_friction
 from multibody.contact.machine import machine
 
@@ -19,8 +18,9 @@ def test_nominal_friction_is_the_lumped_models(unlike, law):
     """Law V reads the film thickness, and with it k and s of the oil; I and IV the mean of law II."""
     # Between A and D contact is the same in both forms; a constant stiffness is made at once.
     pair = unlike.with_(law=law, stiffness="rectangular", mesh__contact="prescribed", mesh__relief="ignored")
-    p = machine(pair).parameters
+    numbers = machine(pair)
+    p = numbers.record.geometry
     mu = friction_path_function(pair, warn=False)
-    xi = np.linspace(p[kn.L_XA], p[kn.L_XD], 23)[1:-1]
-    found = [nominal_friction(p, float(one)) for one in xi]
+    xi = np.linspace(p.L_XA, p.L_XD, 23)[1:-1]
+    found = [nominal_friction(numbers.packed, float(one)) for one in xi]
     np.testing.assert_allclose(found, mu(xi), rtol=0.0, atol=FIT)

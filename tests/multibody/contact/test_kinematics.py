@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from multibody.contact import kinematics as kin
+from multibody.contact.records import MAX_PAIRS
 
 FLANKS = [kin.DRIVE, kin.COAST]
 
@@ -38,8 +39,9 @@ def phase(teeth, pose, flank):
     line = line_of_action(teeth, pose, flank)
     radii, (chi_p, chi_g) = (teeth.radius_p, teeth.radius_g), teeth.chi[flank]
     apart = -flank * (radii[0] * chi_p + radii[1] * (chi_g - math.pi))
-    at = (line[3], line[2], pose[2], pose[5], 0.0)
-    return line, *kin.mesh_phase(*at, *radii, teeth.pitch, chi_p, apart, flank)
+    side = kin.Side(flank, *radii, teeth.pitch, chi_p, apart)
+    turn = kin.Turn(psi=line[3], grown=line[2], phi_p=pose[2], phi_g=pose[5], rolled=0.0)
+    return line, *kin.mesh_phase(side, turn)
 
 
 def overlap(teeth, pose, flank):
@@ -49,7 +51,7 @@ def overlap(teeth, pose, flank):
 def contact(teeth, pose, flank):
     """(line, arms of every pair, overlap) in one pose."""
     line, rho, delta = phase(teeth, pose, flank)
-    arms = np.zeros((kin.MAX_PAIRS, 2))
+    arms = np.zeros((MAX_PAIRS, 2))
     count = kin.pairs_in_contact(
         rho, delta, line[2], teeth.pitch, (0.0, teeth.tip_p), (0.0, teeth.tip_g), arms
     )

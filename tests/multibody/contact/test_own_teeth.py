@@ -8,10 +8,10 @@ import lumped
 import multibody
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.tooth_laws import ToothLaws
-from multibody.contact import kinematics as kn
 from multibody.contact.kernels import contact_forces
-from multibody.contact.kinematics import tooth_pair
 from multibody.contact.machine import machine
+from multibody.contact.records import CONTACTS_SIZE, opened_contacts, opened_records
+from multibody.contact.tooth_pairs import OwnTeeth, TurnedArcs, teeth_of_pair, tooth_pair
 from multibody.run.effects import effect_flags
 from tests.unlike_pairs import unlike_pair
 
@@ -70,21 +70,25 @@ def test_faults_are_those_of_the_lumped_model_by_the_actual_lengths(pair, which)
     for fault in (crack, spall, pit, chip):
         own = pair.with_({("pinion.faults", "gear.faults")[which]: [fault]})
         laws = ToothLaws(own)
-        p = machine(own).parameters
         sound, faulty = (laws.of_kind(kind, xi) for kind in (0, 1))
         softer = 1.0 / faulty["stiffness"] - 1.0 / sound["stiffness"]
+        numbers = machine(own)
+        record = numbers.record
+        teeth = OwnTeeth(*(opened_records(numbers.packed, name) for name in ("teeth_p", "teeth_g", "faults")))
 
-        def found(x, p=p, at=2 * g.base_pitch):  # two pairs later these teeth are in contact
-            return tooth_pair(p[int(p[kn.OWN]) :], p, x + at, g.L_XY - x - at, np.array([x, g.L_XY - x]), x)
+        def found(x, record=record, teeth=teeth, way=2 * g.base_pitch):
+            """The teeth in contact at x; two pairs later than pair 0."""
+            arcs = TurnedArcs(x + way, g.L_XY - x - way)
+            return tooth_pair(record, teeth, teeth_of_pair(record, teeth, arcs, x, g.L_XY - x), x)
 
         pairs = [found(x) for x in xi]
         scale = max(softer.max(), 1e-12)
-        assert [o.softer for o in pairs] == pytest.approx(softer, abs=1e-9 * scale)
+        assert [o.compliance for o in pairs] == pytest.approx(softer, abs=1e-9 * scale)
         assert [o.error for o in pairs] == pytest.approx(faulty["gap"] - sound["gap"], abs=1e-15)
         assert (g.L_XY - pairs[0].tip_g, pairs[0].tip_p) == pytest.approx(laws.ends(1)[:2], rel=1e-12)
         if fault is crack:
-            slopes = [(found(x + 1e-8).softer - found(x - 1e-8).softer) / 2e-8 for x in xi]
-            assert [o.slope for o in pairs] == pytest.approx(slopes, rel=1e-5)
+            slopes = [(found(x + 1e-8).compliance - found(x - 1e-8).compliance) / 2e-8 for x in xi]
+            assert [o.compliance_slope for o in pairs] == pytest.approx(slopes, rel=1e-5)
 
 
 def test_what_it_does_not_have_is_refused():
@@ -113,17 +117,17 @@ def test_a_displaced_tooth_that_carries_alone_makes_the_gear_lag_or_lead(gear, l
         index[2] = moved
         displaced = pair.with_({f"{gear}.deviations": {"index": index, "first_order": "steps"}})
         numbers = machine(displaced, flags)
-        contacts = np.zeros((2 * kn.MAX_PAIRS, kn.N_RECORD))
-        radius = numbers.parameters[kn.RADIUS_P]
+        contacts = np.zeros(CONTACTS_SIZE)
+        radius = numbers.record.geometry.radius_p
 
         def load(delta):
             state = np.zeros((3, 6))
             state[0, 2] = -delta / radius
             # Tooth 3 comes to A after two mesh cycles; from 0.7 to 0.95 of a cycle one pair carries alone.
             t = (cycle + 0.8) * numbers.period
-            count = contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
-            assert np.count_nonzero(contacts[:count, kn.LOAD]) <= 1
-            return contacts[:count, kn.LOAD].sum() - 5e3
+            count = contact_forces(t, state, numbers.packed, flags, contacts)
+            assert np.count_nonzero(opened_contacts(contacts)["load"][:count]) <= 1
+            return opened_contacts(contacts)["load"][:count].sum() - 5e3
 
         return brentq(load, 1e-5, 4e-5, xtol=1e-16)
 

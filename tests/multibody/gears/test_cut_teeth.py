@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from multibody.contact.machine import circles
+from multibody.gears.circles import circles
 from multibody.gears.cut_teeth import profile_shifts, root_radius
 from tests.unlike_pairs import unlike_pair
 from validation.exchange.new_pair_file import new_pair

@@ -15,8 +15,8 @@ import lumped
 import multibody
 import multibody.run.integration
 from lumped.model.averaged import modes
-from multibody.contact import kinematics as kn
 from multibody.contact.machine import machine
+from multibody.contact.records import with_block
 from multibody.run.model import CallBudget, _force_function, build
 from multibody.run.setup import prepare
 
@@ -93,11 +93,12 @@ def test_a_repeated_state_is_evaluated_again_in_a_new_run():
     """The last stage of a step is the first of the next; a new run may have other parameters."""
     setup = prepare(PAIR, fidelity="linear")
     budget = CallBudget(100)
-    p, t = setup.model.parameters, 0.3 * setup.machine.period
-    forces = _force_function(setup.machine, setup.model.flags, p, budget)
+    p = setup.model.record
+    t = 0.3 * setup.machine.period
+    forces = _force_function(setup.model.flags, setup.model.packed, budget)
     state = setup.q.tolist(), [0.1] * 6
     before = forces(None, t, 0, *state)
-    p[kn.DAMPING] *= 2.0
+    p.pair_law.damping *= 2.0
     assert forces(None, t, 0, *state) == before
     budget.watch(t, 0.0)
     assert forces(None, t, 0, *state) != before
@@ -112,12 +113,12 @@ def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
     """
     setup = prepare(PAIR.with_(friction__law="none"), fidelity=fidelity)
     machine = setup.machine
-    p = setup.machine.parameters
-    assert len(machine.table) == 1  # constant: make three pieces of it
-    pieces = np.repeat(machine.table, 3, axis=0)
-    pieces[:-1, 1] = pieces[1:, 0] = p[kn.L_XA] + np.array([0.3, 0.5]) * p[kn.PITCH]
+    p = setup.machine.record
+    assert len(machine.stiffness_table) == 1  # constant: make three pieces of it
+    pieces = np.repeat(machine.stiffness_table, 3, axis=0)
+    pieces[:-1, 1] = pieces[1:, 0] = p.geometry.L_XA + np.array([0.3, 0.5]) * p.geometry.pitch
     pieces[1, -1] = np.nan
-    broken = replace(machine, table=pieces)
+    broken = replace(machine, packed=with_block(machine.packed, "stiffness", pieces))
     model = build(broken, setup.model.flags, 100_000)
     edges = np.array([0.0, 0.1, 0.9]) * broken.period
     visited = []

@@ -12,7 +12,7 @@ from lumped.errors import ParameterError
 from lumped.stiffness.foundation import body_twist
 from multibody.contact import kinematics as kn
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.records import CONTACTS_SIZE, opened
 from multibody.run.linear_motion import state_scale
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
@@ -56,15 +56,17 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
     """scipy's DOP853 on M q'' + D q' + K q = f with the same tooth forces, from switch to switch."""
     m = setup.machine
     train = setup.machine.train
-    n, p = m.size, m.parameters.copy()
+    n = m.size
+    packed = m.packed.copy()
+    rolling = opened(packed).rolling
     gears = np.empty((3, 6))
-    contacts = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    contacts = np.zeros(CONTACTS_SIZE)
     load = -np.array([m.torque_pinion, m.torque_gear]) @ train.torques
 
     def rates(t, state):
         q, v = state[:n], state[n:]
         gears[:2] = q[:6], v[:6]
-        tooth_forces(t, gears, p, kn.LINEAR, m.table, contacts)
+        tooth_forces(t, gears, packed, kn.LINEAR, contacts)
         force = load - train.stiffness @ q - train.damping @ v
         force[:6] += gears[2]
         return np.concatenate([v, np.linalg.solve(train.mass, force)])
@@ -72,8 +74,8 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
     state = np.concatenate([setup.q, setup.v])
     edges = setup.edges(1)
     for start, stop in itertools.pairwise(edges):
-        p[kn.T_LOW] = start + 1e-12 * m.period
-        p[kn.T_HIGH] = stop - 1e-12 * m.period
+        rolling.earliest = start + 1e-12 * m.period
+        rolling.latest = stop - 1e-12 * m.period
         state = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=1e-9, atol=1e-13).y[:, -1]
     found, q, v = run
     span = float(np.ptp(found["dte"].to_numpy()))
