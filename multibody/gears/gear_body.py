@@ -201,7 +201,7 @@ def _even_motions(body: Body) -> FloatArray:
     motions = _held_rim(_energy(np.array([0]), np.array([depth]), body.poisson))[0]
     if body.support == "untwisted":
         motions[1, 1] = 0.0
-    return motions
+    return np.asarray(motions, dtype=np.float64)
 
 
 def _energy(orders: NDArray[np.int64], depth: FloatArray, poisson: float) -> FloatArray:

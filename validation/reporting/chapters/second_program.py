@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -9,6 +11,7 @@ from lumped.labelling import labelled_dataset
 from lumped.outcomes import Absent
 from validation.cross_check.conservation import worst_of_each
 from validation.cross_check.losses import LossAgreement
+from validation.cross_check.stiffness import StiffnessAgreement
 from validation.cross_check.words import MEASURES, percent
 from validation.plots.prediction import overlay_figure
 from validation.prediction.motion import PLACES
@@ -65,9 +68,35 @@ def write(results: Results) -> Content:
             },
         )
     )
+    blocks += [_elasticity(check.stiffness), Text(_ONE_SOURCE)]
     if isinstance(second, Absent):
         blocks.append(Text(str(second)))
     return Content(results.second_words, tuple(blocks))
+
+
+def _elasticity(agreements: Sequence[StiffnessAgreement]) -> Table:
+    """Stiffness, its change with the load and the coupling of neighbours beside their second values."""
+    return table_of(
+        "elasticity",
+        "Stiffness of the teeth, which both programs read from one place, against second values over the "
+        "mesh cycle.",
+        agreements,
+        {
+            "quantity": ("quantity", lambda a: a.long_name),
+            "source": ("second value", lambda a: a.source),
+            "difference": ("difference", lambda a: a.difference),
+            "limit": ("limit", lambda a: a.limit),
+            "state": ("", _badge),
+        },
+    )
+
+
+def _badge(agreement: StiffnessAgreement) -> Badge:
+    """Verdict on one elastic quantity; a check that would not see the quantity left out says so."""
+    if not agreement.within:
+        return Badge("failed")
+    telling = agreement.telling or agreement.size == 0.0
+    return Badge("ok") if telling else Badge("ok", "ok, smaller than the limit")
 
 
 def _losses(loss: LossAgreement, springs: str) -> Table:
@@ -86,6 +115,11 @@ def _losses(loss: LossAgreement, springs: str) -> Table:
         },
     )
 
+
+_ONE_SOURCE = (
+    "A formula that is coded a second time checks the code and not the formula. What speaks for the formulas "
+    "themselves is on the page about the stiffness of the teeth."
+)
 
 _FIDELITY = {"linear": "same equations", "exact": "exact contact, finite motions"}
 
