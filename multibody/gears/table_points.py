@@ -11,7 +11,8 @@ import numpy as np
 from lumped.typing import FloatArray
 from multibody.contact.machine import Circles
 
-#: Points of a table that are taken, at most.
+#: Points of a table that are taken, at most: of the file, and at places of pairs.
+_MOST_POINTS = 400
 _MOST = 60
 #: Points closer than this to A, D or the same phase of another point, in base pitches, are left out.
 _SAME = 1e-6
@@ -48,21 +49,33 @@ def table_points(table: GivenTable, drawn: Circles) -> TablePoints:
     """
     place = _places(table.points, table.axis, drawn)
     stiffness = np.array(table.stiffness)
+    if place.size > _MOST_POINTS:  # distances of all points from each other are computed
+        every = np.linspace(0, place.size - 1, _MOST_POINTS).astype(int)
+        place = place[every]
+        stiffness = stiffness[every]
     whole_mesh = table.kind == "total"
     margin = _SAME * drawn.pitch
     if whole_mesh:
+        contact_ratio = (drawn.end - drawn.start) / drawn.pitch
         phase = np.mod((place - drawn.start) / drawn.pitch, 1.0)
-        apart = np.abs(np.subtract.outer(phase, phase))
-        apart = np.minimum(apart, 1.0 - apart)
-        np.fill_diagonal(apart, 1.0)
-        single = apart.min(axis=1) > _SAME
-        pairs = np.arange(math.ceil((drawn.end - drawn.start) / drawn.pitch))
+        distance = _distances(phase, phase)
+        np.fill_diagonal(distance, 1.0)
+        # Points of one phase may have two values, and where a pair comes or goes the shares jump.
+        switches = np.array([0.0, contact_ratio % 1.0])
+        single = np.minimum(distance.min(axis=1), _distances(phase, switches).min(axis=1)) > _SAME
+        pairs = np.arange(math.ceil(contact_ratio))
         place = drawn.start + drawn.pitch * np.add.outer(pairs, phase[single]).ravel()
         stiffness = np.tile(stiffness[single], pairs.size)
     between = (place > drawn.start + margin) & (place < drawn.end - margin)
     chosen = np.flatnonzero(between)
     chosen = chosen[np.linspace(0, chosen.size - 1, min(chosen.size, _MOST)).astype(int)]
     return TablePoints(place[chosen], stiffness[chosen], whole_mesh)
+
+
+def _distances(phases: FloatArray, others: FloatArray) -> FloatArray:
+    """Distances of phases from others, round the mesh cycle; (phases, others)."""
+    apart = np.abs(np.subtract.outer(phases, others))
+    return np.asarray(np.minimum(apart, 1.0 - apart), dtype=np.float64)
 
 
 def _places(points: Sequence[float], axis: str, drawn: Circles) -> FloatArray:
