@@ -1,7 +1,7 @@
 """Stiffness of a tooth pair, its change with the load and the coupling of neighbours against second values.
 
 Both models read these quantities from ``lumped.path_of_contact``, so no comparison of motions can find them
-wrong. The second values are those of ``multibody.gears.elastic_pair``, which shares no code with
+wrong. The second values are those of ``multibody.elasticity.pair``, which shares no code with
 ``lumped.stiffness``. A row says what its second value stands on: a formula coded a second time is evidence
 against faults of coding alone, because both codes have one source.
 
@@ -20,7 +20,7 @@ from lumped import GearPair
 from lumped.path_of_contact import pair_stiffness
 from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.typing import FloatArray
-from multibody.gears.elastic_pair import (
+from multibody.elasticity.pair import (
     ElasticPair,
     changes_with_load,
     compared_places,
@@ -247,7 +247,8 @@ def _neighbours(compared: _Compared) -> StiffnessAgreement:
     size = 0.0
     mean = float(compared.compliance.mean())
     pitch = compared.elastic.circles.pitch
-    start, end = compared.elastic.circles.start, compared.elastic.circles.end
+    start = compared.elastic.circles.start
+    end = compared.elastic.circles.end
     for pitches in range(1, math.floor((end - start) / pitch) + 1):
         place = start + (end - start - pitches * pitch) * _SHARES
         second = neighbour_motion(compared.elastic, pitches, place)

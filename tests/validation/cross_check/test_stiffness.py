@@ -10,7 +10,8 @@ import pytest
 from lumped import ParameterError, load_gear_pair, preset_names
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import finite_elements
-from multibody.gears import elastic_pair, gear_body, tooth_compliance
+from multibody.elasticity import body, tooth
+from multibody.elasticity import pair as second_values
 from tests.evidence.faults.fault import FAULTS
 from tests.evidence.faults.rewriting import applied
 from tests.unlike_pairs import UNLIKE, unlike_pair
@@ -183,13 +184,13 @@ def test_a_wrong_stiffness_is_seen(key):
 @pytest.mark.parametrize("name", [*UNLIKE_GEARS, "nasa_28_28"])
 def test_finite_elements_without_the_gear_body_are_seen(name, monkeypatch):
     pair = with_model(load_gear_pair(name), "finite elements")
-    elastic = elastic_pair.elastic_pair(pair)
+    elastic = second_values.elastic_pair(pair)
     whole = finite_elements.self_compliance
 
     def without_body(pair, teeth, xi):
         gears = ((elastic.pinion, xi), (elastic.gear, elastic.circles.tangent - xi))
-        body = sum(elastic_pair._foot_motion(gear, 0, length, length) for gear, length in gears)
-        return whole(pair, teeth, xi) - body / elastic.face_width
+        bodies = sum(second_values._foot_motion(gear, 0, length, length) for gear, length in gears)
+        return whole(pair, teeth, xi) - bodies / elastic.face_width
 
     monkeypatch.setattr(finite_elements, "self_compliance", without_body)
     assert "stiffness" in beyond(pair)
@@ -223,7 +224,7 @@ def test_a_difference_that_is_not_a_number_is_beyond_its_limit():
 
 
 def test_the_second_values_import_nothing_of_the_first():
-    for module in (elastic_pair, gear_body, tooth_compliance):
+    for module in (second_values, body, tooth):
         text = Path(module.__file__).read_text(encoding="utf-8")
         for name in ("lumped.stiffness", "lumped.elasticity", "lumped.gear_geometry", "path_of_contact"):
             assert f"from {name}" not in text

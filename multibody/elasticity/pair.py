@@ -23,7 +23,7 @@ import numpy as np
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact.machine import Circles, circles
-from multibody.gears.gear_body import (
+from multibody.elasticity.body import (
     PUBLISHED_RING,
     SOLID,
     Body,
@@ -32,9 +32,10 @@ from multibody.gears.gear_body import (
     published_deflection,
     ring_twist,
 )
-from multibody.gears.standard_stiffness import mean_stiffness, single_stiffness
-from multibody.gears.table_points import TablePoints, table_points
-from multibody.gears.tooth_compliance import (
+from multibody.elasticity.outline import Outline, load_angle, outline, teeth_masses
+from multibody.elasticity.standard import mean_stiffness, single_stiffness
+from multibody.elasticity.table import TablePoints, table_points
+from multibody.elasticity.tooth import (
     Elasticity,
     beam_compliance,
     contact_depth,
@@ -42,7 +43,6 @@ from multibody.gears.tooth_compliance import (
     linear_contact,
     shortening,
 )
-from multibody.gears.tooth_outline import Outline, load_angle, outline, teeth_masses
 
 #: Points of Gauss's rule for the mean of a stiffness over the path of contact.
 _MEAN_POINTS = 24
@@ -229,7 +229,8 @@ def _energy_stiffness(elastic: ElasticPair, place: FloatArray, load: float) -> F
     if model.scale == "none":
         return stiffness
     nodes, weights = np.polynomial.legendre.leggauss(_MEAN_POINTS)
-    start, end = elastic.circles.start, elastic.circles.end
+    start = elastic.circles.start
+    end = elastic.circles.end
     along = 0.5 * (start + end) + 0.5 * (end - start) * nodes
     curve = 1.0 / _energy_compliance(elastic, along, load, linear=model.hertz == "linear")
     mean = 0.5 * float(weights @ curve) * elastic.contact_ratio
@@ -281,7 +282,8 @@ def _parabola(elastic: ElasticPair, place: FloatArray) -> FloatArray:
     """Parabola with its peak in the middle of the path, from the file or from ISO 6336-1 [N/m]."""
     model = elastic.pair.mesh.stiffness
     assert model.model == "parabolic"
-    start, end = elastic.circles.start, elastic.circles.end
+    start = elastic.circles.start
+    end = elastic.circles.end
     peak = single_stiffness(elastic.pair) if model.peak is None else model.peak
     if model.end_ratio is None:
         # The mean of a parabola is a third of the ends and two thirds of the peak.
@@ -308,9 +310,9 @@ def _table_stiffness(elastic: ElasticPair, place: FloatArray, load: float) -> Fl
     drawn = elastic.circles
     total = np.zeros(place.shape)
     for pitches in range(-math.ceil(elastic.contact_ratio), math.ceil(elastic.contact_ratio) + 1):
-        moved = place + pitches * drawn.pitch
-        touching = (moved >= drawn.start) & (moved <= drawn.end)
-        inside = np.clip(moved, drawn.start, drawn.end)
+        neighbour = place + pitches * drawn.pitch
+        touching = (neighbour >= drawn.start) & (neighbour <= drawn.end)
+        inside = np.clip(neighbour, drawn.start, drawn.end)
         share = _ramp(elastic, inside, model.ramp_length)
         share = share / _energy_compliance(elastic, inside, load, linear=False)
         total += np.where(touching, share, 0.0)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.typing import FloatArray
-from multibody.gears.tooth_outline import Outline, Section, fillet, involute, load_angle
+from multibody.elasticity.outline import Outline, Section, fillet, involute, load_angle
 
 #: Shear factor of a rectangular section.
 _SHEAR = 1.2

@@ -140,9 +140,9 @@ def foot_motions(body: Body, half_angle: float, apart: float) -> FloatArray:
     quarter = np.array([1.0, 1j])
     waves = quarter.conj()[:, None] * response * quarter
     weights = np.where(orders == 0, 1.0, 2.0) / (2.0 * math.pi)  # orders n and -n are conjugates
-    turned = waves * (weights * np.exp(1j * orders * apart))[:, None, None]
-    moved = np.einsum("nab,jbn->jan", turned, stresses)
-    work = np.einsum("ian,jan->ij", stresses.conj(), moved, optimize=True)
+    response_ahead = waves * (weights * np.exp(1j * orders * apart))[:, None, None]
+    displacements = np.einsum("nab,jbn->jan", response_ahead, stresses)
+    work = np.einsum("ian,jan->ij", stresses.conj(), displacements, optimize=True)
     motions = np.array(work.real, dtype=np.float64)
     motions.setflags(write=False)
     return motions
@@ -178,14 +178,14 @@ def _foot_stresses(half_angle: float) -> ComplexArray:
 @lru_cache(maxsize=16)
 def rim_response(body: Body) -> RimResponse:
     """Solve the ring of a body."""
-    whole = math.log(body.bore_ratio)
+    ring_depth = math.log(body.bore_ratio)
     orders = np.concatenate([np.arange(1, _SOLVED + 1), _SAMPLED])
-    depth = np.minimum(whole, _DEPTH / orders)
+    depth = np.minimum(ring_depth, _DEPTH / orders)
     # The inner end is held, or so deep that nothing is left there.
-    held = (depth < whole) | (body.support != "free")
+    clamped = (depth < ring_depth) | (body.support != "free")
     motions = np.zeros((orders.size, 2, 2))
-    motions[held] = _held_rim(_energy(orders[held], depth[held], body.poisson))
-    for place in np.flatnonzero(~held).tolist():
+    motions[clamped] = _held_rim(_energy(orders[clamped], depth[clamped], body.poisson))
+    for place in np.flatnonzero(~clamped).tolist():
         motions[place] = _free_rim(int(orders[place]), float(depth[place]), body)
     powers = _SAMPLED[:, None] ** -np.arange(1.0, 1.0 + _SAMPLED.size)
     series = np.linalg.solve(powers, motions[_SOLVED:].reshape(_SAMPLED.size, 4)).reshape(-1, 2, 2)
