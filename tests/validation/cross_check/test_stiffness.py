@@ -2,7 +2,6 @@
 
 import random
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +9,6 @@ import pytest
 from lumped import ParameterError, load_gear_pair, preset_names
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import finite_elements
-from multibody.elasticity import body, tooth
 from multibody.elasticity import pair as second_values
 from tests.evidence.faults.fault import FAULTS
 from tests.evidence.faults.rewriting import applied
@@ -221,11 +219,3 @@ def test_a_difference_that_is_not_a_number_is_beyond_its_limit():
     agreement = stiffness_agreement(load_gear_pair("nasa_28_28"))[0]
     assert agreement.within
     assert not replace(agreement, difference=np.nan).within
-
-
-def test_the_second_values_import_nothing_of_the_first():
-    for module in (second_values, body, tooth):
-        text = Path(module.__file__).read_text(encoding="utf-8")
-        for name in ("lumped.stiffness", "lumped.elasticity", "lumped.gear_geometry", "path_of_contact"):
-            assert f"from {name}" not in text
-            assert f"import {name}" not in text
