@@ -207,6 +207,9 @@ def _print(check: CrossCheck) -> None:
         "same equations": [(NAMES[a.quantity], a.judgement) for a in check.of("linear")],
         "exact contact": [(NAMES[a.quantity], a.judgement) for a in check.of("exact")] + loss,
         "conservation": [(one.check, one) for one in worst_of_each(check.conservation)],
+        "elasticity, which both models share, against second values": [
+            (one.long_name, one.judgement) for one in check.stiffness
+        ],
     }
     if (variant := check.variant) is not None:
         teeth = f"{variant.pair.pinion.teeth}/{variant.pair.gear.teeth}"

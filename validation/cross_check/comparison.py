@@ -33,6 +33,7 @@ from validation.cross_check.motions import (
     unilateral_orbit,
 )
 from validation.cross_check.own_teeth import both_motions
+from validation.cross_check.stiffness import StiffnessAgreement, stiffness_agreement
 from validation.cross_check.variant import asymmetric_variant
 from validation.cross_check.verdict import LOAD_LIMIT, Judgement, Verdict, limit_of
 
@@ -59,6 +60,8 @@ class CrossCheck:
     multibody : fidelity -> dataset of the multibody model, at the same times
     periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
     conservation : conservation laws, checked on both models
+    stiffness : stiffness of a tooth pair, its change with the load and the coupling of neighbours, which both
+        models read from one place, against second values
     powers : model -> power of ``power_balance.POWERS`` and "driving" -> mean over the mesh cycle [W]
     orbit : the lumped motion with loss of contact that is compared; None where teeth push all the time, or
         where no stable one of one mesh cycle is found
@@ -74,6 +77,7 @@ class CrossCheck:
     multibody: Mapping[Fidelity, xr.Dataset]
     periodic: bool
     conservation: tuple[Judgement, ...]
+    stiffness: tuple[StiffnessAgreement, ...]
     powers: Mapping[str, Mapping[str, float]]
     orbit: GearOrbit | None = None
     loss: LossAgreement | None = None
@@ -83,10 +87,12 @@ class CrossCheck:
     @property
     def judgements(self) -> tuple[Judgement, ...]:
         """Everything that must hold if the program is in order."""
-        found = [*(a.judgement for a in self.of("linear")), *self.conservation]
+        judgements = [a.judgement for a in self.of("linear")]
+        judgements += self.conservation
+        judgements += [a.judgement for a in self.stiffness]
         if self.variant is not None:
-            found += [replace(j, check=f"variant: {j.check}") for j in self.variant.judgements]
-        return tuple(found)
+            judgements += [replace(j, check=f"variant: {j.check}") for j in self.variant.judgements]
+        return tuple(judgements)
 
     @property
     def failures(self) -> tuple[Judgement, ...]:
@@ -140,6 +146,10 @@ def crosscheck(
     it, the end of a run from the lumped motion is shown and not judged. Where the linear motion needs teeth
     that pull, the equations of "linear" are those with unilateral contact and the tangents of the static load
     (``floquet.periodic_orbit``); "exact" is compared with that motion where no prediction is near it.
+
+    Both models read the stiffness of a tooth pair, its change with the load and the coupling of neighbouring
+    pairs from one place. These are compared with second values (``stiffness_agreement``); a difference beyond
+    its limit is a fault of the program too.
 
     Parameters
     ----------
@@ -300,6 +310,7 @@ def _compared(
         multibody={f: run.isel(time=slice(None, None, every)) for f, run in results.items()},
         periodic=exact is not None,
         conservation=checks,
+        stiffness=stiffness_agreement(pair),
         powers=powers,
         orbit=orbit,
         loss=None if exact is None else loss_agreement(pair, best, exact),

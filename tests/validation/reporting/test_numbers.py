@@ -506,6 +506,29 @@ def test_the_table_of_conservation_laws(written):
         assert one["state"]["state"] == one["state"]["text"]
 
 
+@recomputes(
+    "elasticity",
+    quantity="quantity",
+    source="second value",
+    difference="difference",
+    limit="limit",
+    state="",
+)
+def test_the_table_of_the_stiffness_beside_second_values(written):
+    """Tests of the cross-check compute the differences: tests/validation/cross_check/test_stiffness.py."""
+    agreements = known(written.document["gear_pair"]).check.stiffness
+    rows = written.table("elasticity")
+    assert [(one["quantity"], one["source"], one["difference"], one["limit"]) for one in rows] == [
+        (agreement.long_name, agreement.source, close(agreement.difference), close(agreement.limit))
+        for agreement in agreements
+    ]
+    for one, agreement in zip(rows, agreements, strict=True):
+        passes = one["difference"] <= one["limit"]
+        assert one["state"]["state"] == ("ok" if passes else "failed"), one
+        small = passes and 0.0 < agreement.size <= agreement.limit
+        assert one["state"]["text"] == ("ok, smaller than the limit" if small else one["state"]["state"]), one
+
+
 @recomputes("losses_of_both", place="place", lumped="lumped model", second="second program")
 def test_the_table_of_the_losses_of_both_programs(written):
     """The lumped losses are those of page 1, the sum of the second program is its power balance."""

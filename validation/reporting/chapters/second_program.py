@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from validation.cross_check.agreement import Agreement
 from validation.cross_check.comparison import CrossCheck
 from validation.cross_check.conservation import worst_of_each
 from validation.cross_check.losses import LossAgreement
+from validation.cross_check.stiffness import StiffnessAgreement
 from validation.cross_check.verdict import Judgement
 from validation.cross_check.words import MEASURES, percent
 from validation.plots.prediction import overlay_figure
@@ -21,6 +23,12 @@ from validation.reporting.blocks import Badge, Block, Column, Content, Picture, 
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.second_program_words import second_program_words
+
+_FIDELITY = {"linear": "same equations", "exact": "exact contact, finite motions"}
+_ONE_SOURCE = (
+    "A formula that is coded a second time checks the code and not the formula. What speaks for the formulas "
+    "themselves is on the page about the stiffness of the teeth."
+)
 
 
 def write(results: Results) -> Content:
@@ -43,6 +51,7 @@ def write(results: Results) -> Content:
     if check.loss is not None:
         blocks.append(_losses_table(check.loss, results.in_place_of_shafts))
     blocks.append(_conservation_table(check, results.in_place_of_shafts))
+    blocks += [_elasticity_table(check.stiffness), Text(_ONE_SOURCE)]
     if isinstance(second, Absent):
         blocks.append(Text(str(second)))
     return Content(second_program_words(results), tuple(blocks))
@@ -81,6 +90,31 @@ def _conservation_table(check: CrossCheck, springs: str) -> Table:
     )
 
 
+def _elasticity_table(agreements: Sequence[StiffnessAgreement]) -> Table:
+    """Stiffness, its change with the load and the coupling of neighbours beside their second values."""
+    return table_of(
+        "elasticity",
+        "Stiffness of the teeth, which both programs read from one place, against second values over the "
+        "mesh cycle.",
+        agreements,
+        (
+            Column[StiffnessAgreement]("quantity", "quantity", lambda agreement: agreement.long_name),
+            Column[StiffnessAgreement]("source", "second value", lambda agreement: agreement.source),
+            Column[StiffnessAgreement]("difference", "difference", lambda agreement: agreement.difference),
+            Column[StiffnessAgreement]("limit", "limit", lambda agreement: agreement.limit),
+            Column[StiffnessAgreement]("state", "", _badge),
+        ),
+    )
+
+
+def _badge(agreement: StiffnessAgreement) -> Badge:
+    """Verdict on one elastic quantity. A check that would not see the quantity left out says so."""
+    if not agreement.within:
+        return Badge("failed")
+    telling = agreement.telling or agreement.size == 0.0
+    return Badge("ok") if telling else Badge("ok", "ok, smaller than the limit")
+
+
 class _Loss(NamedTuple):
     """A row of the table of losses: the place and the mean loss there in both programs [W]."""
 
@@ -106,9 +140,6 @@ def _losses_table(loss: LossAgreement, springs: str) -> Table:
             Column[_Loss]("second", "second program", lambda row: row.multibody, "W"),
         ),
     )
-
-
-_FIDELITY = {"linear": "same equations", "exact": "exact contact, finite motions"}
 
 
 def overlay(results: Results) -> xr.Dataset:
