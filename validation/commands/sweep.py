@@ -61,12 +61,12 @@ def sweep(
 
     # The folder's name never comes from inside the file.
     folder = output if output is not None else Path(f"{study.stem}-sweep")
-    wanted = load_study(study)
+    loaded_study = load_study(study)
     processes = cores() if workers is None else workers
-    what = f"{wanted.count} cases, {wanted.analysis}, on {processes} worker(s)"
-    stderr().print(f"{wanted.name}: {what} -> {folder}")
+    description = f"{loaded_study.count} cases, {loaded_study.analysis}, on {processes} worker(s)"
+    stderr().print(f"{loaded_study.name}: {description} -> {folder}")
     if dry_run:
-        _estimate(wanted, processes)
+        _estimate(loaded_study, processes)
         return
     with progress_bar("sweep") as tell:
 
@@ -75,7 +75,7 @@ def sweep(
 
         try:
             summary = run_sweep(
-                wanted,
+                loaded_study,
                 folder,
                 workers=processes,
                 resume=resume,
@@ -99,7 +99,10 @@ def sweep(
 
 
 def _estimate(study: Study, processes: int) -> None:
-    """Say how long a sweep takes, by three of its cases after one that may compile."""
+    """Print the estimated time of a sweep.
+
+    Three cases are timed. One case is computed before them, because the first case may compile.
+    """
     from validation.studies.cases import CaseList, StudyEvaluator
     from validation.studies.workers import evaluate_chunk
 
