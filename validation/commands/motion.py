@@ -1,4 +1,4 @@
-"""spurcheck simulate, uncertainty, teeth, interactive: motions of a gear pair, and influences on the motion."""
+"""spurcheck simulate, uncertainty, teeth, interactive: motions of a gear pair, influences on the motion."""
 
 from __future__ import annotations
 

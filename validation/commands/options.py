@@ -209,7 +209,7 @@ class Files(NamedTuple):
     force: bool
 
     def write(self, data: xr.Dataset, draw: Callable[[], Figure] | None = None) -> None:
-        """Write data or a figure to each file; the suffix decides. ``draw`` replaces the function ``plot``."""
+        """Write data or a figure to each file, by suffix. ``draw``: replaces the function ``plot``."""
         from validation.exchange.results import write_results
         from validation.files.output import DATA_SUFFIXES
 
