@@ -186,7 +186,8 @@ def at_random(count: int, seed: int, *, damping: bool) -> None:
 
 def closed_forms(n: int) -> None:
     """Mathieu to m = 6 and Meissner; parts of tongues that are at most two steps wide are left out."""
-    a, q = np.linspace(0.5, 42.0, n), np.linspace(0.0, 12.0, n)
+    a = np.linspace(0.5, 42.0, n)
+    q = np.linspace(0.0, 12.0, n)
 
     def ask(flat: Any) -> Any:
         i, j = np.unravel_index(flat, (n, n))
@@ -209,8 +210,10 @@ def closed_forms(n: int) -> None:
     epsilon = np.linspace(0.0, 0.45, n)
 
     def trace(d: Any, e: Any) -> Any:
-        w1, w2 = np.sqrt(d + e), np.sqrt(d - e)
-        p1, p2 = np.pi * w1, np.pi * w2
+        w1 = np.sqrt(d + e)
+        w2 = np.sqrt(d - e)
+        p1 = np.pi * w1
+        p2 = np.pi * w2
         return 2.0 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2)
 
     def meissner(flat: Any) -> Any:

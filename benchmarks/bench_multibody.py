@@ -44,13 +44,15 @@ PAIRS = {
 
 def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     """Integrate the lumped equations between switches; force evaluations, and q at the ends of the cycles."""
-    m, p = setup.machine, setup.machine.parameters.copy()
+    m = setup.machine
+    p = setup.machine.parameters.copy()
     gears = np.empty((3, 6))
     contacts = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
     inertia, stiffness, damping, load = m.bodies
 
     def rates(t: float, state: np.ndarray) -> np.ndarray:
-        q, v = state[:6], state[6:]
+        q = state[:6]
+        v = state[6:]
         gears[:2] = q, v
         linear_forces(t, gears, p, setup.model.flags, m.table, contacts)
         return np.concatenate([v, (gears[2] + load - stiffness * q - damping * v) / inertia])

@@ -18,7 +18,8 @@ from lumped.stiffness.energy import Contact, energy_curve
 
 def over_iso(pair: lumped.GearPair, contact: Contact = "weber_banaschek") -> tuple[float, float, float]:
     """Energy stiffness over ISO 6336-1's: mean of the mesh, and its factors by size and by shape."""
-    g, curve = pair.geometry, energy_curve(pair, contact)
+    g = pair.geometry
+    curve = energy_curve(pair, contact)
     mean = curve.mean() * g.contact_ratio / iso6336.mean_of(pair)
     size = float(curve(np.linspace(g.L_XA, g.L_XD, 402)[1:-1]).max()) / iso6336.single_of(pair)
     return mean, size, mean / size

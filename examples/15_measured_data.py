@@ -28,8 +28,10 @@ class Result:
 
 def measured(truth: Prediction) -> Measurement:
     """Forces of one gauged tooth pair over six revolutions, from 0.37 mesh cycles after its start on."""
-    cycles, rng = np.arange(0.0, 6 * 28, 1 / 100.3), np.random.default_rng(4)
-    channels, entries = {}, []
+    cycles = np.arange(0.0, 6 * 28, 1 / 100.3)
+    rng = np.random.default_rng(4)
+    channels = {}
+    entries = []
     for name in ("normal_load", "friction_force"):
         force = truth.value(name, 0.37 + cycles, "A")
         entries.append({"name": name, "column": name, "quantity": name, "unit": "N", "pair": "A"})
@@ -39,7 +41,8 @@ def measured(truth: Prediction) -> Measurement:
         name="tooth forces", source="computed", pinion_speed="800 rpm", pinion_torque="79.1 N*m",
         abscissa={"kind": "time", "column": "t", "unit": "s"}, channel=entries,
     )  # fmt: skip
-    times, noises = cycles * truth.geometry.mesh_period, {one.name: one.noise for one in spec.channel}
+    times = cycles * truth.geometry.mesh_period
+    noises = {one.name: one.noise for one in spec.channel}
     return Measurement(spec, times, channels, noises)
 
 

@@ -20,7 +20,9 @@ def compute() -> xr.Dataset:
     """Mean stiffness over ISO's and transmission error with three bodies."""
     model = {"mesh.stiffness": {"model": "finite_elements"}, "mesh.contact": "loaded"}
     model |= {"pinion.tip_relief": None, "gear.tip_relief": None}
-    pair, errors, ratios = lumped.load_gear_pair("nasa_28_28").with_(model), [], []
+    pair = lumped.load_gear_pair("nasa_28_28").with_(model)
+    errors = []
+    ratios = []
     for bore in BODIES.values():
         one = pair.with_(pinion__bore=bore, gear__bore=bore)
         forms = one, one.with_(mesh__contact="prescribed")  # which leaves pairs alone

@@ -100,7 +100,7 @@ def spurcheck(
 
 
 def paragraphs(text: str | None) -> str:
-    """Return a docstring as help text. The lines of a paragraph are joined, so that the terminal wraps them.
+    """Return a docstring as help text. Lines of a paragraph are joined; the terminal wraps paragraphs.
 
     A line that begins with the name of the program is an example and becomes a paragraph.
     """

@@ -70,7 +70,8 @@ def _standard(pair: GearPair) -> Check:
     rack = pair.basic_rack
     factor = 1.0 + 0.5 * (1.2 - rack.dedendum_coefficient)
     factor *= 1.0 - 0.02 * (20.0 - math.degrees(rack.pressure_angle))
-    e1, e2 = pair.pinion.youngs_modulus, pair.gear.youngs_modulus
+    e1 = pair.pinion.youngs_modulus
+    e2 = pair.gear.youngs_modulus
     width = min(pair.pinion.face_width, pair.gear.face_width)
     single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
     c = circles(pair)

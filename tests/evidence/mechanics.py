@@ -72,7 +72,7 @@ def _speeds(pair: GearPair) -> Check:
 
 
 def _losses(pair: GearPair) -> Check:
-    """Losses of the mesh at rest of a pair whose friction is one coefficient, and its loss factor by hand."""
+    """Quasi-static losses of a pair with constant friction coefficient, and the loss factor by hand."""
     mu = 0.05
     plain = pair.with_({"friction.law": "coulomb", "friction.coefficient": mu})
     still = quasi_static_losses(plain, sharing="uniform")
@@ -172,10 +172,12 @@ def _lumped_identities(pair: GearPair) -> Iterator[Check]:
     free = pair.with_({"friction.law": "none"})
     motion = steady_state(free, samples_per_cycle=1024)
     static = float(motion.attrs["pinion_torque"]) / pair.geometry.base_radius_pinion
-    held = -float(motion["x_p"].mean()) * pair.bearings.pinion.loa_stiffness
+    pair_on_springs = -float(motion["x_p"].mean()) * pair.bearings.pinion.loa_stiffness
     # Mean of 1024 samples of a motion whose second derivative jumps.
     exact = "T_p/r_bp, mean of equations 1 and 6"
-    yield Check("mean load of the pinion bearing without friction", exact, abs(held / static - 1.0), 1e-6)
+    yield Check(
+        "mean load of the pinion bearing without friction", exact, abs(pair_on_springs / static - 1.0), 1e-6
+    )
     # Errors of two quadratures, 1e-7 of losses of up to some percent.
     exact = "the losses of dampers of teeth and bearings; over the driving power"
     yield Check("loss without friction", exact, _efficiency_error(free), 1e-7)

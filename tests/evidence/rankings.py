@@ -177,7 +177,7 @@ def row(case: Case) -> dict[str, Any]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Compute all cases, or those that are named, and print both shares; 1 where they differ too much."""
+    """Compute all cases or the named cases and print both shares. Returns 1 if the shares differ too much."""
     parser = argparse.ArgumentParser(prog="python -m tests.evidence.rankings", description=__doc__)
     parser.add_argument("keys", nargs="*", metavar="CASE", help="cases to compute; default all")
     parser.add_argument("-o", "--output", type=Path, help="rows as .json; those of other cases stay")

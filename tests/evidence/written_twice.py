@@ -56,10 +56,12 @@ def written_twice(pair: GearPair) -> Iterator[Check]:
 
 
 def _geometry(pair: GearPair) -> Check:
-    g, c = pair.geometry, circles(pair)
+    g = pair.geometry
+    c = circles(pair)
     both = c.base_pinion + c.base_gear
     omega = pair.operating.pinion_speed
-    start, end = c.start, c.end
+    start = c.start
+    end = c.end
     both_ways = [
         (g.base_radius_pinion, c.base_pinion), (g.base_radius_gear, c.base_gear),
         (g.tip_radius_pinion, c.tip_pinion), (g.tip_radius_gear, c.tip_gear), (g.base_pitch, c.pitch),
@@ -74,7 +76,8 @@ def _geometry(pair: GearPair) -> Check:
 
 
 def _bodies(pair: GearPair) -> Check:
-    b, (mass, inertia) = bodies(pair), masses(pair)
+    b = bodies(pair)
+    (mass, inertia) = masses(pair)
     c = circles(pair)
     own = 1.0 / (c.base_pinion**2 / inertia[0] + c.base_gear**2 / inertia[1])
     found = [b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass]
@@ -194,7 +197,8 @@ class _Mesh:
 
     def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
-        p, n = self.machine.parameters, places.size
+        p = self.machine.parameters
+        n = places.size
         stiffness = np.array([stiffness_at(self.machine.table, xi) for xi in places])
         coupling = np.zeros((n, n))
         loads = np.zeros(n)
@@ -320,7 +324,8 @@ def _feet(half: float, apart: float, poisson: float) -> FloatArray:
         share = 1.0 / np.pi if n else 0.5 / np.pi
         even = share * np.array([radial @ np.cos(n * x), across @ np.sin(n * x)])
         odd = share * np.array([radial @ np.sin(n * x), -across @ np.cos(n * x)])
-        (up, turn), (up_odd, turn_odd) = ring @ even, ring @ odd
+        (up, turn) = ring @ even
+        (up_odd, turn_odd) = ring @ odd
         there = n * (x + apart)
         moved = np.outer(np.cos(there), up) + np.outer(np.sin(there), up_odd)
         turned = np.outer(np.sin(there), turn) - np.outer(np.cos(there), turn_odd)

@@ -80,7 +80,7 @@ class _Listener:
 
 
 def main() -> None:
-    """Compute a multibody motion and a chart of one point, so that numba stores the compiled kernels."""
+    """Compute a multibody motion and a chart of one point. Numba stores the compiled kernels."""
     import floquet
     import multibody
     from lumped import load_gear_pair

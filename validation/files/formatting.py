@@ -57,9 +57,9 @@ def quantity(
 
 
 def span(low: float, high: float, unit: str, digits: int = 2) -> str:
-    """Return a range as text, with one prefix and one unit for both ends.
+    """Return a range as text, with a common prefix and a common unit.
 
-    ``digits``: significant digits of each end. Up to two digits are added if both ends read the same.
+    ``digits``: significant digits of each end. Up to two digits are added if both ends read alike.
     """
     largest = max(abs(low), abs(high))
     exponent = prefix_exponent(largest, digits) if largest else None

@@ -99,7 +99,7 @@ class Court:
         self._sound: dict[str, tuple[bool, float]] = {}
 
     def judge(self, mutant: Mutant) -> Verdict:
-        """Run tests on a mutant until one fails: those of its folder, then others in the time left."""
+    """Run tests on a mutant until a test fails: tests of the folder, then others until the time is up.
         before = _spent()
         own, others = self.nearest.files(mutant.file)
         verdict = "survived"
@@ -190,7 +190,7 @@ class Court:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and what it has started; workers outlive a parent that a limit has ended."""
+    """End a process and all processes that it has started. Workers would outlive a parent that was ended."""
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()

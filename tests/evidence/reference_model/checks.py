@@ -130,7 +130,8 @@ def half_tooth(pair: GearPair, which: int, base: float, tip: float, points: int)
 
 def _integrals(polygon: FloatArray) -> FloatArray:
     """Area and polar second moment of a closed polygon about the origin, (2,) [m^2], [m^4]."""
-    a, b = polygon[:-1], polygon[1:]
+    a = polygon[:-1]
+    b = polygon[1:]
     cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     spread = np.sum(a * a + a * b + b * b, axis=1)
     return np.array([0.5 * cross.sum(), cross @ spread / 12.0])

@@ -249,7 +249,7 @@ def _read_lubricant(draft: Draft, stage: Component) -> None:
 
 
 def _read_operating_point(draft: Draft, stage: Component, *gears: Component) -> None:
-    """Read speed and torque of the driving gear, which is the first of ``gears``, or of the first load case."""
+    """Read speed and torque of the driving gear (the first gear), or else of the first load case."""
     (pinion, shafts), (gear, others) = ((g, draft.model.neighbours(g, "shaft")) for g in gears)
     speed = draft.first((pinion, *shafts), "rotational_speed")
     if speed is None:
