@@ -96,7 +96,7 @@ def compared(pair: GearPair) -> CrossCheck:
 
 
 def cause(check: CrossCheck) -> tuple[str, str]:
-    """The effect that the cross-check names, and what is left without it."""
+    """Return the effect that the cross-check names, and the difference without this effect."""
     text = cause_of_difference(check)
     if text.startswith("No effect"):
         return "where teeth touch", ""

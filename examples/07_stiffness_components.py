@@ -41,17 +41,19 @@ def compute() -> xr.Dataset:
 
 
 def draw(result: xr.Dataset) -> Figure:
-    """Parts, stacked, and the pair's stiffness."""
+    """Draw the parts of the compliance, stacked, and the stiffness of the tooth pair."""
     figure = Figure(figsize=(9, 4), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    compliance_axes, stiffness_axes = figure.subplots(1, 2)
     xi = result["position"] * 1e3
-    left.stackplot(xi, result["compliance"] * 1e9, labels=result["component"].values)
-    left.set(xlabel="distance from X [mm]", ylabel="compliance [nm/N]", ylim=(0, 26))
-    left.legend(ncols=2, fontsize="small", loc="upper center")
-    right.plot(xi, result["stiffness"] * 1e-6, label="tooth pair")
-    right.axhline(result.attrs["iso_single_stiffness"] * 1e-6, linestyle="--", label="ISO 6336-1 c' b")
-    right.set(xlabel="distance from X [mm]", ylabel="stiffness [MN/m]", ylim=(0, None))
-    right.legend()
+    compliance_axes.stackplot(xi, result["compliance"] * 1e9, labels=result["component"].values)
+    compliance_axes.set(xlabel="distance from X [mm]", ylabel="compliance [nm/N]", ylim=(0, 26))
+    compliance_axes.legend(ncols=2, fontsize="small", loc="upper center")
+    stiffness_axes.plot(xi, result["stiffness"] * 1e-6, label="tooth pair")
+    stiffness_axes.axhline(
+        result.attrs["iso_single_stiffness"] * 1e-6, linestyle="--", label="ISO 6336-1 c' b"
+    )
+    stiffness_axes.set(xlabel="distance from X [mm]", ylabel="stiffness [MN/m]", ylim=(0, None))
+    stiffness_axes.legend()
     return figure
 
 

@@ -56,14 +56,14 @@ def compute() -> Result:
 
 def draw(result: Result) -> Figure:
     """Measured friction force as points, predicted one as a line."""
-    (found,) = result.evaluation.found
+    (identified,) = result.evaluation.found
     band = result.evaluation.points.sel(channel="friction_force")
     figure = Figure(figsize=(7, 4), layout="constrained")
     axes = figure.add_subplot()
     axes.plot(band["phase"], band["measured"], ".", label="measured")
     axes.plot(band["phase"], band["predicted"], "-", label="predicted, mu 0.08")
     axes.set(xlabel="mesh cycles since start of contact [-]", ylabel="friction force [N]")
-    axes.set_title(found.text.split(" (")[0])
+    axes.set_title(identified.text.split(" (")[0])
     axes.legend()
     return figure
 

@@ -27,8 +27,8 @@ def compute() -> xr.Dataset:
         one = pair.with_(pinion__bore=bore, gear__bore=bore)
         forms = one, one.with_(mesh__contact="prescribed")  # which leaves pairs alone
         errors.append([lumped.static_transmission_error(form)["transmission_error"][0] for form in forms])
-        found = lumped.plane_compliance(one).attrs
-        ratios.append([found[name] / found["iso_mean"] for name in ("mean", "mean_alone")])
+        stiffness = lumped.plane_compliance(one).attrs
+        ratios.append([stiffness[name] / stiffness["iso_mean"] for name in ("mean", "mean_alone")])
     result = xr.Dataset(coords={"body": list(BODIES), "pairs": ["coupled", "alone"]})
     result["error"] = ("body", "pairs", "phase"), np.array(errors)
     return result.assign(mean_over_iso=(("body", "pairs"), ratios))

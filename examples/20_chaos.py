@@ -44,22 +44,24 @@ def compute() -> xr.Dataset:
 
 
 def draw(result: xr.Dataset) -> Figure:
-    """All cycles at their start on the left, some whole ones on the right, grey where no tooth is loaded."""
-    figure, ((left, right),) = new_figure(1, 2, height=3.4, width_ratios=(2, 3))
+    """Draw the start of every cycle (left) and some cycles (right), grey where no tooth is loaded."""
+    figure, ((phase_plane, time_axes),) = new_figure(1, 2, height=3.4, width_ratios=(2, 3))
     starts = result.isel(cycle=slice(None, None, SAMPLES))
     some = result.sel(cycle=slice(0, SHOWN))
     for name, look, size in (("chaotic", BLACK, 1.8), ("periodic", RED, 7.0)):
         point = {"color": look, "marker": ".", "markersize": size, "markeredgewidth": 0.0, "linestyle": ""}
-        left.plot(starts[f"{name}_dte"] * 1e6, starts[f"{name}_rate"] * 1e3, **point)
-        right.plot(some["cycle"], some[f"{name}_dte"] * 1e6, color=look, label=name)
-    apart = some["chaotic_load"] == 0.0
-    place = right.get_xaxis_transform()
-    right.fill_between(some["cycle"], 0, 1, where=apart, transform=place, color="0.88", linewidth=0)
-    left.set(xlabel="transmission error [µm]", ylabel="its rate [mm/s]")
-    right.set(xlabel="mesh cycles", ylabel="transmission error [µm]", xlim=(0, SHOWN))
+        phase_plane.plot(starts[f"{name}_dte"] * 1e6, starts[f"{name}_rate"] * 1e3, **point)
+        time_axes.plot(some["cycle"], some[f"{name}_dte"] * 1e6, color=look, label=name)
+    is_separated = some["chaotic_load"] == 0.0
+    place = time_axes.get_xaxis_transform()
+    time_axes.fill_between(
+        some["cycle"], 0, 1, where=is_separated, transform=place, color="0.88", linewidth=0
+    )
+    phase_plane.set(xlabel="transmission error [µm]", ylabel="its rate [mm/s]")
+    time_axes.set(xlabel="mesh cycles", ylabel="transmission error [µm]", xlim=(0, SHOWN))
     exponent = "Lyapunov exponent {exponent:.3f} ± {uncertainty:.3f} per cycle".format(**result.attrs)
-    right.set_title(exponent, fontsize=9)
-    legend(right)
+    time_axes.set_title(exponent, fontsize=9)
+    legend(time_axes)
     return figure
 
 

@@ -16,10 +16,12 @@ PERIOD = 2.0 * np.pi
 EPSILON = 0.4
 
 
-def system(at: dict[str, float]) -> floquet.SecondOrderSystem:
+def system(point: dict[str, float]) -> floquet.SecondOrderSystem:
     """The equation for one δ."""
     sign = floquet.PiecewisePolynomial([0.0, PERIOD / 2, PERIOD], [[1.0], [-1.0]])
-    return floquet.from_second_order(1.0, 0.0, floquet.PeriodicMatrix(at["delta"], (sign, EPSILON)), PERIOD)
+    return floquet.from_second_order(
+        1.0, 0.0, floquet.PeriodicMatrix(point["delta"], (sign, EPSILON)), PERIOD
+    )
 
 
 def exact_trace(delta: np.ndarray) -> np.ndarray:

@@ -99,7 +99,7 @@ class Court:
         self._sound: dict[str, tuple[bool, float]] = {}
 
     def judge(self, mutant: Mutant) -> Verdict:
-    """Run tests on a mutant until a test fails: tests of the folder, then others until the time is up.
+        """Run tests on a mutant until one fails: tests of the folder, then others until the time is up."""
         before = _spent()
         own, others = self.nearest.files(mutant.file)
         verdict = "survived"
