@@ -85,7 +85,7 @@ def test_the_pair_itself_is_on_every_chart(data, pair, results):
     expected = float(stability_chart(pair, axes)["spectral_radius"].squeeze())
     assert results.multipliers.spectral_radius == pytest.approx(expected, abs=1e-9)
     for key, slices in results.stability.items():
-        here = slices.chart.isel({key: slices.own}).sel(speed_rpm=4875.0, damping_ratio=0.016)
+        here = slices.chart.isel({key: slices.index_of_pair}).sel(speed_rpm=4875.0, damping_ratio=0.016)
         assert float(here["spectral_radius"]) == pytest.approx(expected, abs=1e-6), key
 
 
