@@ -108,9 +108,9 @@ def _contact(pair: GearPair) -> Check:
     both = []
     for tooth, length, modulus, nu in zip(teeth, (xi, g.L_XY - xi), moduli, ratios, strict=True):
         module = tooth.wheel.tooth.module
-        whole = tooth.flank.deflection(length / module)
-        whole = whole + (2.0 * np.log(2.0 * module / half) - nu / (1.0 - nu)) / math.pi
-        found = replace(tooth, plane="strain").compliance(length, hertz_half_width(pair, xi))
-        both.append(np.stack([found * modulus / (1.0 - nu**2), whole], axis=-1))
+        deflection = tooth.flank.deflection(length / module)
+        deflection = deflection + (2.0 * np.log(2.0 * module / half) - nu / (1.0 - nu)) / math.pi
+        compliance = replace(tooth, plane="strain").compliance(length, hertz_half_width(pair, xi))
+        both.append(np.stack([compliance * modulus / (1.0 - nu**2), deflection], axis=-1))
     exact = "the plane solution under a Hertzian pressure, half width of the energy method"
     return rows("contact by plane elasticity, plane strain", exact, 1e-12, np.concatenate(both))

@@ -52,9 +52,9 @@ def compare(
 ) -> None:
     r"""Say in how many of 100 possible machines one variant of a gear pair is better than another.
 
-    Every sample is a machine in which all variants run: an input that they share has the same value in all of
-    them. Inputs vary as in 'spurcheck uncertainty'. --speed, --torque, --law and --set change all variants.
-    Smaller results are better, of the efficiency a larger one.
+    Every sample is a machine in which all variants run. A shared input has the same value in all variants.
+    Inputs vary as in 'spurcheck uncertainty'. --speed, --torque, --law and --set change all variants.
+    A smaller result is better, but for the efficiency a larger value is better.
 
     [bold]Examples[/bold]
     spurcheck compare mypair.toml other.toml

@@ -57,11 +57,11 @@ def init(
 ) -> None:
     """Write a commented parameter file to edit.
 
-    Every value has its unit beside it. A bare number means that unit; text may carry any unit of the same
-    kind, such as "200 lbf*in". At the end of the file stands where values come from, and which are assumed.
+    A comment states the unit of every value. A number without a unit is in this unit. A text may carry any
+    unit of the same kind, such as "200 lbf*in". The end of the file lists sources and assumed values.
 
-    REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in. What such a file
-    does not say is marked as assumed; what decides the geometry is asked for, and --set gives it.
+    FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units as REXS files. Values that a REXS
+    file lacks are assumed and marked. Values that decide the geometry are never assumed: use --set.
 
     [bold]Examples[/bold]
     spurcheck init
@@ -161,11 +161,11 @@ def export(
 ) -> None:
     """Write a gear pair or a result for another program.
 
-    REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in; 'spurcheck init
-    --from-rexs' reads it. The linear model is the pair averaged over a mesh cycle: matrices A, B, C, D from
-    the torques to the transmission error and the displacements, for MATLAB (.mat) and for python-control or
-    SciPy (.npz); it is of a pair on the springs of 'bearings', and one with shafts needs --supports springs.
-    A result is any .nc file that spurcheck wrote.
+    FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units as REXS files; 'spurcheck init
+    --from-rexs' reads REXS files. The linear model is the pair averaged over a mesh cycle: matrices A, B, C,
+    D from the torques to the transmission error and the displacements, for MATLAB (.mat) and for
+    python-control or SciPy (.npz). The linear model is on the springs of 'bearings'; a pair with shafts needs
+    --supports springs. A result is any .nc file that spurcheck wrote.
 
     [bold]Examples[/bold]
     spurcheck export nasa_28_28 -o pair.rexs

@@ -301,8 +301,8 @@ def interactive(
     """Write a page to explore stability over speed and damping, and the response over speed.
 
     One HTML file that opens in any browser, without network: point at a chart for values, zoom, move the
-    sliders, or use the keyboard alone. Every number of it is also written as NetCDF. It is of a pair on the
-    springs of 'bearings'; one with shafts needs --supports springs.
+    sliders, or use the keyboard alone. Every number of the page is also written as NetCDF. The page is for a
+    pair on the springs of 'bearings'; a pair with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck interactive -o page.html

@@ -44,9 +44,9 @@ def report(
     """Write the verification report of a gear pair.
 
     One folder: index.html (opens in any browser, without network), report.json (every number), figures
-    (SVG), tables (CSV and one workbook) and data (NetCDF). It says what the model predicts, how sure that is,
-    whether a second program agrees, whether the motion is stable, and what to do next. The exit code is 1 if
-    a check of the program fails.
+    (SVG), tables (CSV and one workbook) and data (NetCDF). The report states the predicted motion, the
+    uncertainty, the agreement of a second program, the stability of the motion, and the next steps. The exit
+    code is 1 if a check of the program fails.
 
     [bold]Examples[/bold]
     spurcheck report -o report

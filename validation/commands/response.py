@@ -37,15 +37,15 @@ def response(
 ) -> None:
     """Follow all motions over speed, stable and unstable, with unilateral contact.
 
-    Prints at which speeds the pair jumps from one motion to another on running up and down, at which it can
-    beat or be chaotic, and how many start states lead to each motion at the operating speed. The figure shows
-    the branches, the jumps, beats and chaos, the linear model and the multipliers.
+    Prints the speeds of jumps between motions on running up and down, the speeds of beats and chaos, and the
+    share of start states that lead to each motion at the operating speed. The figure shows the branches, the
+    jumps, beats and chaos, the linear model and the multipliers.
 
-    With --map the same over speed and torque, mesh damping or tip relief: where contact is lost, where
-    several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
+    --map computes a map over speed and torque, mesh damping or tip relief: loss of contact, ranges with
+    several motions, speeds of jumps, and values that remove the jumps.
 
-    All of it is of a pair on the springs of 'bearings', with like teeth and the stiffness of the static load;
-    one with shafts needs --supports springs.
+    All results are for a pair on the springs of 'bearings', with like teeth and the stiffness of the static
+    load. A pair with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck response my_pair.toml --range 200..3000 -o response.png

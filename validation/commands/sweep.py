@@ -37,8 +37,8 @@ def sweep(
 ) -> None:
     """Compute every case of a study: a grid or samples of any parameters, one analysis per case.
 
-    What is computed is kept at once: after a kill or a full disk the same command with
-    --resume goes on and gives the same result. A failed case is recorded and the sweep goes on. The results
+    Every computed case is stored at once. After a kill or a full disk the same command with --resume
+    continues and gives the same result. A failed case is recorded and the sweep goes on. The results
     are results.nc in the output folder (NetCDF, over the axes of the study).
 
     The exit code is 1 when a case failed, 3 when the store or the workers failed, 130 when interrupted.

@@ -56,8 +56,10 @@ def mathieu_many(a: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     With time in units of 1/sqrt(a) it is z'' + (1 - 2 (q/a) cos) z = 0 with the period pi sqrt(a): one fit.
     """
-    found = fast_multipliers(mathieu_system(), np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13)
-    return found.multipliers, found.errors
+    multipliers = fast_multipliers(
+        mathieu_system(), np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13
+    )
+    return multipliers.multipliers, multipliers.errors
 
 
 def mathieu_system(depth: float | None = None, damping: float = 0.0) -> RankOneSystem:
@@ -74,10 +76,12 @@ def mathieu_system(depth: float | None = None, damping: float = 0.0) -> RankOneS
     none = np.zeros((pieces, 1, 1))
     one[:, :, 0] = 1.0
     errors = np.tile([1e-12, 0.0], (pieces, 1))  # (2 pi/48)^9 2^-7/9! and rounding
-    calm = Gains(one + (0.0 if depth is None else depth * waves), damping * one, (depth or 0.0) * errors)
+    constant_gains = Gains(
+        one + (0.0 if depth is None else depth * waves), damping * one, (depth or 0.0) * errors
+    )
     varied = (Gains(waves, none, errors),) if depth is None else ()
     return RankOneSystem(
-        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, calm, np.pi, np.ones(1), varied
+        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, constant_gains, np.pi, np.ones(1), varied
     )  # fmt: skip
 
 
