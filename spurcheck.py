@@ -124,7 +124,10 @@ def _find(name: str) -> object:
 
 
 def _explained(name: str, function: Any) -> Any:
-    """The function; a call with arguments that it does not take says which, and where a value belongs."""
+    """Wrap a function so that a call with wrong arguments explains the mistake.
+
+    The message names the wrong argument and the place where the value belongs.
+    """
     import inspect
 
     signature = inspect.signature(function)
@@ -150,22 +153,26 @@ def _explained(name: str, function: Any) -> Any:
         takes = f"It takes {', '.join(signature.parameters)}"
         return f"{takes}; {meaning[1]}." if meaning else f"{takes}: see help(spurcheck.{name})."
 
-    # where pickle finds it
+    # pickle looks for the function by these names
     call.__module__ = __name__
     call.__qualname__ = name
     return call
 
 
 def _nearest(name: str) -> str:
-    """Ask whether names that contain this one, or the most similar one, were meant."""
+    """Return a question that proposes names: names that contain ``name``, or else the most similar names."""
     import difflib
 
     for instead, words in _INSTEAD.items():
         if name.lower() in words.split():
             return f". Use {instead}"
-    known = [*_NAMES, *(f"{one}.{other}" for one in _PACKAGES for other in import_module(one).__all__)]
-    close = [one for one in known if name.lower() in one.lower()] or difflib.get_close_matches(name, known)
-    return f". Did you mean {' or '.join(f'spurcheck.{one}' for one in close[:3])}?" if close else ""
+    public_names = [*_NAMES, *(f"{one}.{other}" for one in _PACKAGES for other in import_module(one).__all__)]
+    candidates = [one for one in public_names if name.lower() in one.lower()] or difflib.get_close_matches(
+        name, public_names
+    )
+    return (
+        f". Did you mean {' or '.join(f'spurcheck.{one}' for one in candidates[:3])}?" if candidates else ""
+    )
 
 
 def __getattr__(name: str) -> object:

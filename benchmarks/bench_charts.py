@@ -62,24 +62,25 @@ def by_size() -> None:
         for n in SIZES:
             axes = {"speed_rpm": np.linspace(500.0, 20000.0, n), "damping_ratio": np.linspace(0.001, 0.1, n)}
             got, seconds = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes))
-            known = got.known.values
-            whole = ""
+            is_known = got.known.values
+            words_of_full_grid = ""
             if n == SIZES[0]:
                 full, each = cpu(lambda pair=pair, axes=axes: stability_chart(pair, axes, refine=False))
                 regions, lost, wrong = compared(got, full)
-                off = np.abs(got.spectral_radius - full.spectral_radius).values[~known]
-                rms = np.sqrt(np.mean(off**2))
-                whole = f"{each:.1f}; {regions} regions, {lost} lost, {wrong} wrong; "
-                whole += f"ρ elsewhere {off.max():.1e}, rms {rms:.0e}"
+                error_elsewhere = np.abs(got.spectral_radius - full.spectral_radius).values[~is_known]
+                rms = np.sqrt(np.mean(error_elsewhere**2))
+                words_of_full_grid = f"{each:.1f}; {regions} regions, {lost} lost, {wrong} wrong; "
+                words_of_full_grid += f"ρ elsewhere {error_elsewhere.max():.1e}, rms {rms:.0e}"
             print(
-                f"| {name} | {n} | {known.mean():.2%} | {seconds:.1f} | "
-                f"{got.proven.values[known].mean():.0%} | {got.error.values[known].max():.0e} | {whole} |",
+                f"| {name} | {n} | {is_known.mean():.2%} | {seconds:.1f} | "
+                f"{got.proven.values[is_known].mean():.0%} | {got.error.values[is_known].max():.0e} | "
+                f"{words_of_full_grid} |",
                 flush=True,
             )
 
 
 def proofs() -> None:
-    """Share of charts that is proven, 500 to 20000 rpm and the pair's own; random points against it."""
+    """Proven share of charts, from 500 to 20000 rpm and over the speed range of the pair; random points."""
     print("| pair | rpm | damping | s | stable | unstable | not proven | contradicted |")
     print("|---|---|---|---|---|---|---|---|")
     names = ("nasa_28_28", "fzg_c", "kahraman_blankenship_50_50", "nasa_art_25_31")
@@ -88,21 +89,21 @@ def proofs() -> None:
         for ends in (speed_range(pair), (500.0, 20000.0)):
             for low in (0.01, 0.001):
                 axes = {"speed_rpm": np.linspace(*ends, 801), "damping_ratio": np.linspace(low, 0.1, 201)}
-                found, seconds = cpu(lambda axes=axes, pair=pair: stability_chart(pair, axes, prove=True))
-                cells = found.cell_verdict.values
-                at = rng.integers(0, [[800], [200]], (2, 500))
-                turned = {
+                chart, seconds = cpu(lambda axes=axes, pair=pair: stability_chart(pair, axes, prove=True))
+                cells = chart.cell_verdict.values
+                cell_indices = rng.integers(0, [[800], [200]], (2, 500))
+                random_points = {
                     n: v[k] + rng.uniform(size=k.size) * np.diff(v)[k]
-                    for (n, v), k in zip(axes.items(), at, strict=True)
+                    for (n, v), k in zip(axes.items(), cell_indices, strict=True)
                 }
                 wrong = 0
-                for part in np.array_split(np.arange(at.shape[1]), 50):
+                for part in np.array_split(np.arange(cell_indices.shape[1]), 50):
                     # A chart of some speeds by some damping ratios has all of their pairs.
-                    own = {n: np.unique(v[part]) for n, v in turned.items()}
-                    full = stability_chart(pair, own, refine=False, rtol=1e-9).verdict.values
-                    i, j = (np.searchsorted(axes[n], own[n]) - 1 for n in axes)
-                    here = cells[np.ix_(i, j)]
-                    wrong += int(((full != here) & (here != 0)).sum())
+                    axes_of_part = {n: np.unique(v[part]) for n, v in random_points.items()}
+                    full = stability_chart(pair, axes_of_part, refine=False, rtol=1e-9).verdict.values
+                    i, j = (np.searchsorted(axes[n], axes_of_part[n]) - 1 for n in axes)
+                    verdicts_of_cells = cells[np.ix_(i, j)]
+                    wrong += int(((full != verdicts_of_cells) & (verdicts_of_cells != 0)).sum())
                 shares = " | ".join(f"{np.mean(cells == k):.3%}" for k in (1, -1, 0))
                 rpm = f"{ends[0]:.0f} to {ends[1]:.0f}"
                 print(
@@ -186,7 +187,8 @@ def at_random(count: int, seed: int, *, damping: bool) -> None:
 
 def closed_forms(n: int) -> None:
     """Mathieu to m = 6 and Meissner; parts of tongues that are at most two steps wide are left out."""
-    a, q = np.linspace(0.5, 42.0, n), np.linspace(0.0, 12.0, n)
+    a = np.linspace(0.5, 42.0, n)
+    q = np.linspace(0.0, 12.0, n)
 
     def ask(flat: Any) -> Any:
         i, j = np.unravel_index(flat, (n, n))
@@ -209,8 +211,10 @@ def closed_forms(n: int) -> None:
     epsilon = np.linspace(0.0, 0.45, n)
 
     def trace(d: Any, e: Any) -> Any:
-        w1, w2 = np.sqrt(d + e), np.sqrt(d - e)
-        p1, p2 = np.pi * w1, np.pi * w2
+        w1 = np.sqrt(d + e)
+        w2 = np.sqrt(d - e)
+        p1 = np.pi * w1
+        p2 = np.pi * w2
         return 2.0 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2)
 
     def meissner(flat: Any) -> Any:

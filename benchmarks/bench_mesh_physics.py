@@ -158,7 +158,7 @@ def test_steady_state(benchmark, pair, form):
 @pytest.mark.parametrize("stiffness", ["rectangular", "energy"])
 @pytest.mark.parametrize("name", ["nasa_28_28", "fzg_c", "kahraman_blankenship_50_50"])
 def test_speed_sweep(capsys, name, stiffness):
-    """Sweeps of both forms in turns, so that both meet the same machine; 5 % is asked for, 15 % is noise."""
+    """Alternate sweeps of both forms, so that both see the same machine. Aim: 5 %; the noise is 15 %."""
     pair = lumped.load_gear_pair(name).with_(mesh__stiffness={"model": stiffness})
     forms = {form: pair.with_(mesh__contact=form) for form in ("prescribed", "loaded")}
     speeds = np.linspace(500.0, 12000.0, 60)

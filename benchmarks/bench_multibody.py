@@ -52,7 +52,8 @@ def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     inertia, stiffness, damping, load = (bodies[name] for name in bodies.dtype.names)
 
     def rates(t: float, state: np.ndarray) -> np.ndarray:
-        q, v = state[:6], state[6:]
+        q = state[:6]
+        v = state[6:]
         gears[:2] = q, v
         linear_forces(t, gears, packed, setup.model.flags, contacts)
         return np.concatenate([v, (gears[2] + load - stiffness * q - damping * v) / inertia])

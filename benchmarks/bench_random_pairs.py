@@ -68,7 +68,8 @@ def shafts(pair: GearPair, rng: np.random.Generator) -> dict[str, Any]:
 
 
 def shifts(pair: GearPair, rng: np.random.Generator) -> dict[str, Any]:
-    one, other = round(float(rng.uniform(0.1, 0.5)), 2), round(float(rng.uniform(-0.2, 0.3)), 2)
+    one = round(float(rng.uniform(0.1, 0.5)), 2)
+    other = round(float(rng.uniform(-0.2, 0.3)), 2)
     return {"pinion.profile_shift": one, "gear.profile_shift": other, "centre_distance": None}
 
 
@@ -95,7 +96,7 @@ def compared(pair: GearPair) -> CrossCheck:
 
 
 def cause(check: CrossCheck) -> tuple[str, str]:
-    """The effect that the cross-check names, and what is left without it."""
+    """Return the effect that the cross-check names, and the difference without this effect."""
     text = cause_of_difference(check)
     if text.startswith("No effect"):
         return "where teeth touch", ""
@@ -125,7 +126,9 @@ def main() -> None:
             continue
         word = check.verdict.word
         if check.verdict is Verdict.DIFFERS:
-            (why, without), worst, torque = cause(check), check.worst("exact"), pair.operating.pinion_torque
+            (why, without) = cause(check)
+            worst = check.worst("exact")
+            torque = pair.operating.pinion_torque
             word += f": {why}"
             half = compared(pair.with_(operating__pinion_torque=0.5 * torque)).of("exact")
             left = next(a.difference for a in half if a.quantity == worst.quantity)

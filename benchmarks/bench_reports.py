@@ -37,8 +37,8 @@ from validation.reporting.results import Results
 def drawn(count: int, seed: int) -> Iterator[GearPair]:
     """Random pairs that exist; every third is lightly damped."""
     rng = random.Random(seed)
-    found = 0
-    while found < count:
+    count_drawn = 0
+    while count_drawn < count:
         teeth = rng.randint(17, 60), rng.randint(17, 120)
         module = rng.choice([1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0])
         width = module * rng.uniform(6.0, 14.0)
@@ -48,9 +48,14 @@ def drawn(count: int, seed: int) -> Iterator[GearPair]:
         torque = rng.uniform(4e6, 3e7) * width * module * 1e-6 * radius
         try:
             pair = new_pair(
-                teeth, module, round(width, 1), round(speed, 1), float(f"{torque:.3g}"), name=f"drawn_{found}"
+                teeth,
+                module,
+                round(width, 1),
+                round(speed, 1),
+                float(f"{torque:.3g}"),
+                name=f"drawn_{count_drawn}",
             )
-            if found % 3 == 2:
+            if count_drawn % 3 == 2:
                 ratio = rng.uniform(0.002, 0.01)
                 pair = pair.with_(
                     {"mesh.damping_ratio": ratio, "mesh.contact": rng.choice(["prescribed", "loaded"])}
@@ -64,41 +69,41 @@ def drawn(count: int, seed: int) -> Iterator[GearPair]:
                 )
         except SpurcheckError:
             continue
-        found += 1
+        count_drawn += 1
         yield pair
 
 
 def timed(pair: GearPair, *, quick: bool) -> str:
-    """A line of the table: times of one report, what its limits left open, and its verdict."""
+    """Return a line of the table: times of one report, results that the time limits left open, verdict."""
     warnings.simplefilter("ignore")
     name = f"{pair.pinion.teeth}/{pair.gear.teeth} | {pair.mesh.damping_ratio:.3f}"
     predicted(pair)  # compiles, and solves the finite elements
     started = time.process_time()
     predicted(pair)
     one = time.process_time() - started
-    kept: list[Results] = []
+    results_of_report: list[Results] = []
 
     def keep(*arguments: object, **options: object) -> Results:
-        kept.append(Results(*arguments, **options))  # type: ignore[arg-type]
-        return kept[-1]
+        results_of_report.append(Results(*arguments, **options))  # type: ignore[arg-type]
+        return results_of_report[-1]
 
     seconds: dict[str, float] = defaultdict(float)
     stage = ""
     since = time.process_time()
 
-    def tell(_: float, now: str = "", /) -> None:
+    def tell(_: float, new_stage: str = "", /) -> None:
         nonlocal stage, since
-        if now != stage:
+        if new_stage != stage:
             used = time.process_time()
             seconds[stage] += used - since
-            stage = now
+            stage = new_stage
             since = used
 
     with tempfile.TemporaryDirectory() as folder, mock.patch.object(build, "Results", keep):
         started = time.process_time()
         written = build.report(pair, Path(folder) / "r", quick=quick, progress=tell)
         used = time.process_time() - started
-    results = kept[0]
+    results = results_of_report[0]
     search = results.jump_search
     found = results.uncertainty
     left = f"{sum(b - a for a, b in search.open):.0f} rpm" if search.open else ""

@@ -62,7 +62,8 @@ def overhead(count):
     times(10)
     few = count // 5
     many = count
-    (plain_few, swept_few, _), (plain_many, swept_many, size) = times(few), times(many)
+    (plain_few, swept_few, _) = times(few)
+    (plain_many, swept_many, size) = times(many)
     plain = (plain_many - plain_few) / (many - few)
     swept = (swept_many - swept_few) / (many - few)
     print(f"plain call              {1e6 * plain:10.1f} us a case")

@@ -71,7 +71,7 @@ def motion(pair: lumped.GearPair, form: str) -> xr.Dataset:
 
 
 def forms() -> None:
-    """Error of what one late tooth of 28/28 causes over its largest value, in the linear forms."""
+    """Effect of one late tooth of 28/28: error of the linear forms over the largest effect."""
     line("rpm", "e, um", *(f"({form})" for form in "ko"))
     for rpm, sizes in ((500, (1, 5, 20)), (1500, (5, 20, -20)), (4875, (5, -5, 20))):
         caused: dict[tuple[str, int], np.ndarray] = {}
@@ -82,9 +82,9 @@ def forms() -> None:
                 one = pair.with_({"pinion.deviations": {"index": index, "first_order": "steps"}})
                 caused[form, size] = motion(one, form)["dte"].to_numpy()
         for size in sizes:
-            found = {form: caused[form, size] - caused[form, 0] for form in FORMS}
-            wanted = found["x"]
-            line(rpm, size, *(float(np.abs(found[f] - wanted).max() / np.abs(wanted).max()) for f in "ko"))
+            effects = {form: caused[form, size] - caused[form, 0] for form in FORMS}
+            wanted = effects["x"]
+            line(rpm, size, *(float(np.abs(effects[f] - wanted).max() / np.abs(wanted).max()) for f in "ko"))
 
 
 def classes() -> None:
@@ -103,17 +103,19 @@ def classes() -> None:
 
 
 def cracks() -> None:
-    """Loss of stiffness by a crack of 28/28 at P and D, and E b times its compliance at D."""
+    """Crack in 28/28: loss of stiffness at P and D, and E b times the added compliance at D."""
     line("q, mm", "E b x compliance", "over plane elements", "loss of k at P, %", "at D, %")
     g = ALIKE.geometry
     gear = ALIKE.pinion
     for depth, elements in ((0.5, 0.623), (1.0, 1.963), (2.0, 6.561), (3.0, 15.68)):
         faults = [{"kind": "crack", "tooth": 1, "depth": depth, "angle": 90}]
         laws = ToothLaws(ALIKE.with_({"pinion.faults": faults}))
-        at = np.array([g.L_XP, g.L_XD - 1e-9])
-        whole, left = (laws.of_kind(kind, at)["stiffness"] for kind in (0, 1))
-        more = float((1.0 / left - 1.0 / whole)[1]) * gear.youngs_modulus * g.face_width
-        line(depth, more, more / elements, *(100.0 * (1.0 - left / whole)).tolist())
+        places = np.array([g.L_XP, g.L_XD - 1e-9])
+        sound, cracked = (laws.of_kind(kind, places)["stiffness"] for kind in (0, 1))
+        added_compliance = float((1.0 / cracked - 1.0 / sound)[1]) * gear.youngs_modulus * g.face_width
+        line(
+            depth, added_compliance, added_compliance / elements, *(100.0 * (1.0 - cracked / sound)).tolist()
+        )
 
 
 def faults() -> None:

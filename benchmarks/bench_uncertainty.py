@@ -52,8 +52,8 @@ def line(*cells: object) -> None:
     )
 
 
-def ends_of(found: xr.Dataset, name: str, kind: str = "percentile") -> np.ndarray:
-    return found[f"{name}_{kind}"].sel(percentile=list(ENDS)).to_numpy()
+def ends_of(result: xr.Dataset, name: str, kind: str = "percentile") -> np.ndarray:
+    return result[f"{name}_{kind}"].sel(percentile=list(ENDS)).to_numpy()
 
 
 @cache
@@ -73,12 +73,12 @@ def samples(name: str, reference: int) -> None:
     line("result", "given", "5 %", "95 %", "error of 5 %", "error of 95 %", "interval holds it")
     for quantity in QUANTITIES:
         wanted = ends_of(many, quantity)
-        off = np.array([ends_of(one, quantity) - wanted for one in few]) / np.ptp(wanted)
+        errors_of_ends = np.array([ends_of(one, quantity) - wanted for one in few]) / np.ptp(wanted)
         within = np.array([ends_of(one, quantity, "interval") for one in few])
-        held = (within[..., 0] <= wanted) & (wanted <= within[..., 1])
-        errors = (100.0 * np.sqrt(np.mean(off**2, axis=0))).tolist()
-        given = float(many.attrs[f"given_{quantity}"])
-        line(quantity, given, *wanted.tolist(), *errors, f"{held.sum()} of {held.size}")
+        is_inside = (within[..., 0] <= wanted) & (wanted <= within[..., 1])
+        errors = (100.0 * np.sqrt(np.mean(errors_of_ends**2, axis=0))).tolist()
+        value_as_given = float(many.attrs[f"given_{quantity}"])
+        line(quantity, value_as_given, *wanted.tolist(), *errors, f"{is_inside.sum()} of {is_inside.size}")
 
 
 def order(reference: int) -> None:
@@ -97,24 +97,26 @@ def speeds_between(low: float, high: float, count: int) -> np.ndarray:
 def band(reference: int) -> None:
     """Ends of the band over speed of 19/41 against 128 samples at 61 speeds, in per cent of its width."""
     pair, _ = PAIRS["19/41"]
-    known = uncertainty(pair, SAMPLES)
+    result = uncertainty(pair, SAMPLES)
     ends = speed_range(pair)
-    wide = speeds_between(*ends, 61)
-    many = speed_band(pair, wide, known, 128)
+    many_speeds = speeds_between(*ends, 61)
+    many = speed_band(pair, many_speeds, result, 128)
     width = float((many["high"] - many["low"]).mean())
     print("\nBand over speed of 19/41 against 128 samples at 61 speeds, in per cent of its mean width\n")
     line("samples", "speeds", "lower end", "upper end", "most", "s")
     for count, speeds in ((32, 41), (32, 61), (16, 31)):
-        own = speeds_between(*ends, speeds)
+        few_speeds = speeds_between(*ends, speeds)
         start = time.process_time()
-        found = speed_band(pair, own, known, count)
+        band_of_few = speed_band(pair, few_speeds, result, count)
         took = time.process_time() - start
-        off = [
-            100.0 * (np.interp(wide, own, found[end].to_numpy()) - many[end].to_numpy()) / width
+        errors_of_band = [
+            100.0
+            * (np.interp(many_speeds, few_speeds, band_of_few[end].to_numpy()) - many[end].to_numpy())
+            / width
             for end in ("low", "high")
         ]
-        errors = [float(np.sqrt(np.mean(one**2))) for one in off]
-        line(count, speeds, *errors, float(np.abs(off).max()), took)
+        errors = [float(np.sqrt(np.mean(one**2))) for one in errors_of_band]
+        line(count, speeds, *errors, float(np.abs(errors_of_band).max()), took)
 
 
 #: New pairs that are unlike each other: teeth, module [mm], width [mm], speed [rpm], torque [N m], what else.
@@ -170,14 +172,20 @@ def rank(reference: int) -> None:
     line("pair", *QUANTITIES, "contact lost")
     ranks = []
     for pair in drawn_pairs():
-        found = uncertainty(pair, SAMPLES)
-        own = {name: float(found.attrs[f"given_{name}"]) for name in QUANTITIES}
-        drawn = {name: found[name].to_numpy() for name in QUANTITIES}
-        ranks.append([100.0 * float(np.mean(drawn[name] < own[name])) for name in QUANTITIES])
-        median = [float(np.median(drawn[name])) / own[name] for name in QUANTITIES[:-1]]
-        median.append((1.0 - float(np.median(drawn["efficiency"]))) / (1.0 - own["efficiency"]))
+        result = uncertainty(pair, SAMPLES)
+        values_as_given = {name: float(result.attrs[f"given_{name}"]) for name in QUANTITIES}
+        values_of_samples = {name: result[name].to_numpy() for name in QUANTITIES}
+        ranks.append(
+            [100.0 * float(np.mean(values_of_samples[name] < values_as_given[name])) for name in QUANTITIES]
+        )
+        median = [
+            float(np.median(values_of_samples[name])) / values_as_given[name] for name in QUANTITIES[:-1]
+        ]
+        median.append(
+            (1.0 - float(np.median(values_of_samples["efficiency"]))) / (1.0 - values_as_given["efficiency"])
+        )
         cells = [f"{r:.0f}, {m:.2f}" for r, m in zip(ranks[-1], median, strict=True)]
-        line(pair.name, *cells, found.attrs["contact_lost"])
+        line(pair.name, *cells, result.attrs["contact_lost"])
     inside = [int(np.sum((one >= 20.0) & (one <= 80.0))) for one in np.transpose(ranks)]
     line("from 20 to 80 %", *(f"{count} of {len(ranks)}" for count in inside), "")
 

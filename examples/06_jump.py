@@ -38,8 +38,8 @@ def draw(result: xr.Dataset) -> Figure:
     figure = Figure(figsize=(7, 4), layout="constrained")
     axes = figure.add_subplot()
     for _, one in result[["speed_rpm", "dte_rms", "stable"]].groupby(result["branch"]):
-        for kept, style in ((one["stable"], "-"), (~one["stable"], ":")):
-            axes.plot(one["speed_rpm"], one["dte_rms"].where(kept) * 1e6, style, color="0.5")
+        for is_shown, style in ((one["stable"], "-"), (~one["stable"], ":")):
+            axes.plot(one["speed_rpm"], one["dte_rms"].where(is_shown) * 1e6, style, color="0.5")
     for name, style in (("rising", "o"), ("falling", "s"), ("linear", "--")):
         axes.plot(result["speed"], result[name] * 1e6, style, markersize=4, label=name)
     axes.set(xlabel="pinion speed [rpm]", ylabel="transmission error, rms [µm]")

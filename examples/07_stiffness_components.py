@@ -18,7 +18,8 @@ from lumped.stiffness.energy import Contact, energy_curve
 
 def over_iso(pair: lumped.GearPair, contact: Contact = "weber_banaschek") -> tuple[float, float, float]:
     """Energy stiffness over ISO 6336-1's: mean of the mesh, and its factors by size and by shape."""
-    g, curve = pair.geometry, energy_curve(pair, contact)
+    g = pair.geometry
+    curve = energy_curve(pair, contact)
     mean = curve.mean() * g.contact_ratio / iso6336.mean_of(pair)
     size = float(curve(np.linspace(g.L_XA, g.L_XD, 402)[1:-1]).max()) / iso6336.single_of(pair)
     return mean, size, mean / size
@@ -40,17 +41,19 @@ def compute() -> xr.Dataset:
 
 
 def draw(result: xr.Dataset) -> Figure:
-    """Parts, stacked, and the pair's stiffness."""
+    """Draw the parts of the compliance, stacked, and the stiffness of the tooth pair."""
     figure = Figure(figsize=(9, 4), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    compliance_axes, stiffness_axes = figure.subplots(1, 2)
     xi = result["position"] * 1e3
-    left.stackplot(xi, result["compliance"] * 1e9, labels=result["component"].values)
-    left.set(xlabel="distance from X [mm]", ylabel="compliance [nm/N]", ylim=(0, 26))
-    left.legend(ncols=2, fontsize="small", loc="upper center")
-    right.plot(xi, result["stiffness"] * 1e-6, label="tooth pair")
-    right.axhline(result.attrs["iso_single_stiffness"] * 1e-6, linestyle="--", label="ISO 6336-1 c' b")
-    right.set(xlabel="distance from X [mm]", ylabel="stiffness [MN/m]", ylim=(0, None))
-    right.legend()
+    compliance_axes.stackplot(xi, result["compliance"] * 1e9, labels=result["component"].values)
+    compliance_axes.set(xlabel="distance from X [mm]", ylabel="compliance [nm/N]", ylim=(0, 26))
+    compliance_axes.legend(ncols=2, fontsize="small", loc="upper center")
+    stiffness_axes.plot(xi, result["stiffness"] * 1e-6, label="tooth pair")
+    stiffness_axes.axhline(
+        result.attrs["iso_single_stiffness"] * 1e-6, linestyle="--", label="ISO 6336-1 c' b"
+    )
+    stiffness_axes.set(xlabel="distance from X [mm]", ylabel="stiffness [MN/m]", ylim=(0, None))
+    stiffness_axes.legend()
     return figure
 
 

@@ -21,8 +21,10 @@ def compute() -> xr.Dataset:
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         mesh__contact="prescribed", mesh__relief="ignored", friction__law="none"
     )
-    body, bearings = lumped.bodies(pair), pair.bearings
-    v, mass = np.array([1.0, 1.0, -1.0]), np.diag([body.effective_mass, body.mass_pinion, body.mass_gear])
+    body = lumped.bodies(pair)
+    bearings = pair.bearings
+    v = np.array([1.0, 1.0, -1.0])
+    mass = np.diag([body.effective_mass, body.mass_pinion, body.mass_gear])
     supports = np.diag([0.0, bearings.pinion.loa_stiffness, bearings.gear.loa_stiffness])
     tooth = float(lumped.mesh_stiffness(pair)["pair_stiffness"].max())
     single, double = (np.sqrt(eigh(k * np.outer(v, v) + supports, mass)[0][-1]) for k in (tooth, 2 * tooth))

@@ -28,8 +28,10 @@ class Result:
 
 def measured(truth: Prediction) -> Measurement:
     """Forces of one gauged tooth pair over six revolutions, from 0.37 mesh cycles after its start on."""
-    cycles, rng = np.arange(0.0, 6 * 28, 1 / 100.3), np.random.default_rng(4)
-    channels, entries = {}, []
+    cycles = np.arange(0.0, 6 * 28, 1 / 100.3)
+    rng = np.random.default_rng(4)
+    channels = {}
+    entries = []
     for name in ("normal_load", "friction_force"):
         force = truth.value(name, 0.37 + cycles, "A")
         entries.append({"name": name, "column": name, "quantity": name, "unit": "N", "pair": "A"})
@@ -39,7 +41,8 @@ def measured(truth: Prediction) -> Measurement:
         name="tooth forces", source="computed", pinion_speed="800 rpm", pinion_torque="79.1 N*m",
         abscissa={"kind": "time", "column": "t", "unit": "s"}, channel=entries,
     )  # fmt: skip
-    times, noises = cycles * truth.geometry.mesh_period, {one.name: one.noise for one in spec.channel}
+    times = cycles * truth.geometry.mesh_period
+    noises = {one.name: one.noise for one in spec.channel}
     return Measurement(spec, times, channels, noises)
 
 
@@ -53,14 +56,14 @@ def compute() -> Result:
 
 def draw(result: Result) -> Figure:
     """Measured friction force as points, predicted one as a line."""
-    (found,) = result.evaluation.found
+    (identified,) = result.evaluation.found
     band = result.evaluation.points.sel(channel="friction_force")
     figure = Figure(figsize=(7, 4), layout="constrained")
     axes = figure.add_subplot()
     axes.plot(band["phase"], band["measured"], ".", label="measured")
     axes.plot(band["phase"], band["predicted"], "-", label="predicted, mu 0.08")
     axes.set(xlabel="mesh cycles since start of contact [-]", ylabel="friction force [N]")
-    axes.set_title(found.text.split(" (")[0])
+    axes.set_title(identified.text.split(" (")[0])
     axes.legend()
     return figure
 

@@ -21,11 +21,11 @@ FORMS = ("prescribed", "loaded")
 
 def motions(pair: lumped.GearPair) -> dict[str, np.ndarray]:
     """Transmission error over a mesh cycle [m] in both forms of the lumped model, and with exact contact."""
-    found = {
+    results = {
         form: lumped.steady_state(pair.with_(mesh__contact=form), samples_per_cycle=128) for form in FORMS
     }
-    found["exact"] = multibody.steady_state(pair.with_(mesh__contact="loaded"), samples_per_cycle=128)
-    return {name: motion["dte"].to_numpy()[:128] for name, motion in found.items()}
+    results["exact"] = multibody.steady_state(pair.with_(mesh__contact="loaded"), samples_per_cycle=128)
+    return {name: motion["dte"].to_numpy()[:128] for name, motion in results.items()}
 
 
 def compute() -> xr.Dataset:
@@ -33,30 +33,30 @@ def compute() -> xr.Dataset:
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         mesh__stiffness={"model": "energy"}, mesh__relief="ignored"
     )
-    found = [motions(pair.with_(operating__pinion_speed=speed)) for speed in SPEEDS]
-    off = {
-        form: ("speed", [np.abs(m[form] - m["exact"]).max() / np.ptp(m["exact"]) for m in found])
+    motions_by_speed = [motions(pair.with_(operating__pinion_speed=speed)) for speed in SPEEDS]
+    differences = {
+        form: ("speed", [np.abs(m[form] - m["exact"]).max() / np.ptp(m["exact"]) for m in motions_by_speed])
         for form in FORMS
     }
-    shown = {f"dte_{name}": ("cycles", dte) for name, dte in found[SPEEDS.index(2000.0)].items()}
-    return xr.Dataset(off | shown, coords={"speed": list(SPEEDS), "cycles": np.arange(128) / 128})
+    shown = {f"dte_{name}": ("cycles", dte) for name, dte in motions_by_speed[SPEEDS.index(2000.0)].items()}
+    return xr.Dataset(differences | shown, coords={"speed": list(SPEEDS), "cycles": np.arange(128) / 128})
 
 
 def draw(result: xr.Dataset) -> Figure:
     """Left: one mesh cycle at 2000 rpm. Right: the difference over speed."""
     figure = Figure(figsize=(9, 3.6), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    motion_axes, difference_axes = figure.subplots(1, 2)
     for name, words, line in (
         ("exact", "exact contact", "k-"),
         ("loaded", "loaded contact", "C0--"),
         ("prescribed", "prescribed contact", "C1:"),
     ):
-        left.plot(result["cycles"], 1e6 * result[f"dte_{name}"], line, label=words)
+        motion_axes.plot(result["cycles"], 1e6 * result[f"dte_{name}"], line, label=words)
         if name != "exact":
-            right.semilogy(result["speed"], 100 * result[name], line + "o", label=words)
-    left.set(xlabel="time [mesh cycles]", ylabel="transmission error at 2000 rpm [µm]")
-    right.set(xlabel="pinion speed [rpm]", ylabel="off the exact contact / peak to peak [%]")
-    figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+            difference_axes.semilogy(result["speed"], 100 * result[name], line + "o", label=words)
+    motion_axes.set(xlabel="time [mesh cycles]", ylabel="transmission error at 2000 rpm [µm]")
+    difference_axes.set(xlabel="pinion speed [rpm]", ylabel="off the exact contact / peak to peak [%]")
+    figure.legend(*motion_axes.get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return figure
 
 

@@ -20,13 +20,15 @@ def compute() -> xr.Dataset:
     """Mean stiffness over ISO's and transmission error with three bodies."""
     model = {"mesh.stiffness": {"model": "finite_elements"}, "mesh.contact": "loaded"}
     model |= {"pinion.tip_relief": None, "gear.tip_relief": None}
-    pair, errors, ratios = lumped.load_gear_pair("nasa_28_28").with_(model), [], []
+    pair = lumped.load_gear_pair("nasa_28_28").with_(model)
+    errors = []
+    ratios = []
     for bore in BODIES.values():
         one = pair.with_(pinion__bore=bore, gear__bore=bore)
         forms = one, one.with_(mesh__contact="prescribed")  # which leaves pairs alone
         errors.append([lumped.static_transmission_error(form)["transmission_error"][0] for form in forms])
-        found = lumped.plane_compliance(one).attrs
-        ratios.append([found[name] / found["iso_mean"] for name in ("mean", "mean_alone")])
+        stiffness = lumped.plane_compliance(one).attrs
+        ratios.append([stiffness[name] / stiffness["iso_mean"] for name in ("mean", "mean_alone")])
     result = xr.Dataset(coords={"body": list(BODIES), "pairs": ["coupled", "alone"]})
     result["error"] = ("body", "pairs", "phase"), np.array(errors)
     return result.assign(mean_over_iso=(("body", "pairs"), ratios))

@@ -12,19 +12,24 @@ from matplotlib.figure import Figure
 
 import floquet
 
-PERIOD, EPSILON = 2.0 * np.pi, 0.4
+PERIOD = 2.0 * np.pi
+EPSILON = 0.4
 
 
-def system(at: dict[str, float]) -> floquet.SecondOrderSystem:
+def system(point: dict[str, float]) -> floquet.SecondOrderSystem:
     """The equation for one δ."""
     sign = floquet.PiecewisePolynomial([0.0, PERIOD / 2, PERIOD], [[1.0], [-1.0]])
-    return floquet.from_second_order(1.0, 0.0, floquet.PeriodicMatrix(at["delta"], (sign, EPSILON)), PERIOD)
+    return floquet.from_second_order(
+        1.0, 0.0, floquet.PeriodicMatrix(point["delta"], (sign, EPSILON)), PERIOD
+    )
 
 
 def exact_trace(delta: np.ndarray) -> np.ndarray:
     """2 cos p₁ cos p₂ − (ω₁/ω₂ + ω₂/ω₁) sin p₁ sin p₂, ω² = δ ± ε, p = ωT/2 (Meissner 1918)."""
-    first, second = np.sqrt(delta + EPSILON), np.sqrt(delta - EPSILON)
-    p, q = first * PERIOD / 2, second * PERIOD / 2
+    first = np.sqrt(delta + EPSILON)
+    second = np.sqrt(delta - EPSILON)
+    p = first * PERIOD / 2
+    q = second * PERIOD / 2
     return 2 * np.cos(p) * np.cos(q) - (first / second + second / first) * np.sin(p) * np.sin(q)
 
 
@@ -39,7 +44,8 @@ def compute() -> xr.Dataset:
 def draw(result: xr.Dataset) -> Figure:
     """Computed trace on the exact one, and where the multipliers say that vibration grows."""
     axes = Figure(figsize=(7, 3.5), layout="constrained").add_subplot()
-    delta, trace = result["delta"], result["multipliers"].sum("multiplier").real
+    delta = result["delta"]
+    trace = result["multipliers"].sum("multiplier").real
     axes.plot(delta, result["exact"], label="exact trace")
     axes.plot(delta, trace, ".", markersize=4, label="sum of the multipliers")
     grows = result["verdict"] == -1

@@ -16,10 +16,12 @@ import floquet
 from validation import plot
 
 
-def system(at: dict[str, float]) -> floquet.SecondOrderSystem:
+def system(point: dict[str, float]) -> floquet.SecondOrderSystem:
     """The equation for one a and q."""
     wave = floquet.FourierSeries(np.pi, 0.0, [1.0])  # cos 2t
-    return floquet.from_second_order(1.0, 0.0, floquet.PeriodicMatrix(at["a"], (wave, -2.0 * at["q"])), np.pi)
+    return floquet.from_second_order(
+        1.0, 0.0, floquet.PeriodicMatrix(point["a"], (wave, -2.0 * point["q"])), np.pi
+    )
 
 
 def compute() -> xr.Dataset:

@@ -16,20 +16,23 @@ MASS, SOFT, STIFF = 10.0, 0.9e6, 1.1e6  # kg, N/m
 CRITICAL = np.sqrt(np.array([SOFT, STIFF]) / MASS)  # rad/s
 
 
-def system(at: dict[str, float]) -> floquet.SecondOrderSystem:
+def system(point: dict[str, float]) -> floquet.SecondOrderSystem:
     """Disc on a light shaft, seen from the ground, with damping by the air."""
-    half = np.pi / at["speed"]  # the stiffness repeats after half a turn
-    mean, vary = 0.5 * (STIFF + SOFT), 0.5 * (STIFF - SOFT)
-    cos, sin = floquet.FourierSeries(half, 0.0, [1.0]), floquet.FourierSeries(half, 0.0, [], [1.0])
+    half = np.pi / point["speed"]  # the stiffness repeats after half a turn
+    mean = 0.5 * (STIFF + SOFT)
+    vary = 0.5 * (STIFF - SOFT)
+    cos = floquet.FourierSeries(half, 0.0, [1.0])
+    sin = floquet.FourierSeries(half, 0.0, [], [1.0])
     turning = (cos, vary * np.diag([1.0, -1.0])), (sin, vary * np.array([[0.0, 1.0], [1.0, 0.0]]))
     shaft = floquet.PeriodicMatrix(mean * np.eye(2), *turning)
-    damping = 2.0 * at["ratio"] * np.sqrt(mean * MASS) * np.eye(2)
+    damping = 2.0 * point["ratio"] * np.sqrt(mean * MASS) * np.eye(2)
     return floquet.from_second_order(MASS * np.eye(2), damping, shaft, half)
 
 
 def exact_growth(speed: np.ndarray) -> np.ndarray:
     """Growth s [1/s] without damping, turning with the shaft: (ω₁² − Ω² + s²)(ω₂² − Ω² + s²) + 4Ω²s² = 0."""
-    first, second = CRITICAL[0] ** 2 - speed**2, CRITICAL[1] ** 2 - speed**2
+    first = CRITICAL[0] ** 2 - speed**2
+    second = CRITICAL[1] ** 2 - speed**2
     half = 0.5 * (first + second + 4.0 * speed**2)
     return np.sqrt(np.maximum(np.sqrt(half**2 - first * second) - half, 0.0))
 

@@ -20,15 +20,17 @@ A1, A2, A3 = (quad(lambda x, m=m: MU ** (2 - m) * x ** (2 * m) / np.hypot(MU, x)
 ONE, TURN = np.eye(2), OMEGA * np.array([[0, -1], [1, 0]])  # rate in space: on the blades + TURN angle
 
 
-def two_blades(at: dict[str, float]) -> floquet.SecondOrderSystem:
+def two_blades(stiffness: dict[str, float]) -> floquet.SecondOrderSystem:
     """Angles about the blades' line and across it; strip theory on each blade."""
     drag = DAMPING * ONE + LIFT * np.array([[A**2 * A1, -A * A2], [-A * A2, A3]])
     wind = LIFT * OMEGA * MU * np.array([[A * A1, 0.0], [-A2, 0.0]])
-    mean, vary = 0.5 * (at["pitch"] + at["yaw"]), 0.5 * (at["pitch"] - at["yaw"])
+    mean = 0.5 * (stiffness["pitch"] + stiffness["yaw"])
+    vary = 0.5 * (stiffness["pitch"] - stiffness["yaw"])
     K = drag @ TURN - wind + mean * ONE + OMEGA**2 * np.diag([-NACELLE, BLADES - NACELLE])
     cos, sin = (floquet.FourierSeries(np.pi / OMEGA, 0.0, *row) for row in ([[vary]], [[], [-vary]]))
     mount = floquet.PeriodicMatrix(K, (cos, np.diag([1.0, -1.0])), (sin, ONE[::-1]))
-    M, C = np.diag([NACELLE, NACELLE + BLADES]), drag + 2.0 * NACELLE * TURN
+    M = np.diag([NACELLE, NACELLE + BLADES])
+    C = drag + 2.0 * NACELLE * TURN
     return floquet.from_second_order(M, C, mount, np.pi / OMEGA)
 
 

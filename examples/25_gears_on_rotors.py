@@ -21,7 +21,8 @@ PAIR = PAIR.with_(mesh__contact="prescribed", mesh__relief="ignored", mesh__damp
 
 def over_time(cycle, law: str) -> floquet.PiecewisePolynomial:
     """Sum of a law over all tooth pairs as polynomials of degree 8 between its breaks, by values there."""
-    u, width = 0.5 - 0.5 * np.cos(np.pi * (np.arange(9) + 0.5) / 9), np.diff(cycle.breaks)[:, None]
+    u = 0.5 - 0.5 * np.cos(np.pi * (np.arange(9) + 0.5) / 9)
+    width = np.diff(cycle.breaks)[:, None]
     values = getattr(cycle.sample((cycle.breaks[:-1, None] + width * u).ravel()), law).sum(axis=0)
     rows = np.linalg.solve(np.vander(u, increasing=True), values.reshape(-1, 9).T).T
     return floquet.PiecewisePolynomial(cycle.breaks, rows / width ** np.arange(9))
@@ -29,8 +30,10 @@ def over_time(cycle, law: str) -> floquet.PiecewisePolynomial:
 
 def joined(pair, M, C, K, stations, modes: int = 9, angle: float = 0.0) -> floquet.SecondOrderSystem:
     """Rotors and mesh; stations: x, y and rotation of the pinion and of the gear, which is at this angle."""
-    cycle, g = lumped.mesh_cycle(pair), pair.geometry
-    push, v = 0.5 * np.pi - g.operating_pressure_angle + angle, np.zeros(len(M))
+    cycle = lumped.mesh_cycle(pair)
+    g = pair.geometry
+    push = 0.5 * np.pi - g.operating_pressure_angle + angle
+    v = np.zeros(len(M))
     v[stations[0]] = np.cos(push), np.sin(push), g.base_radius_pinion
     v[stations[1]] = -np.cos(push), -np.sin(push), g.base_radius_gear
     squares, shapes = eigh(K + cycle.mean_stiffness * np.outer(v, v), M)

@@ -44,8 +44,8 @@ def span(pair: lumped.GearPair, model: str) -> float:
 def compute() -> xr.Dataset:
     """Peak to peak of the transmission error over set, model and speed [m]."""
     pairs = [[on_shafts(d).with_(operating__pinion_speed=rpm) for rpm in SPEEDS] for d in SETS.values()]
-    found = [[[span(pair, model) for pair in row] for model in SHOWN] for row in pairs]
-    dte = ("set", "model", "speed"), np.array(found)
+    spans = [[[span(pair, model) for pair in row] for model in SHOWN] for row in pairs]
+    dte = ("set", "model", "speed"), np.array(spans)
     return xr.Dataset({"dte": dte}, coords={"set": list(SETS), "model": list(SHOWN), "speed": SPEEDS})
 
 

@@ -45,7 +45,7 @@ _INSTEAD = {
 
 
 class Commands(TyperGroup):
-    """The commands; what is none of them or of their options gets the one that was meant."""
+    """Group of all commands. An unknown command or option is refused with the command to type instead."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse a line, its command and options included."""
@@ -100,9 +100,9 @@ def spurcheck(
 
 
 def paragraphs(text: str | None) -> str:
-    """Docstring as help text: lines of a paragraph joined, so that the terminal's width wraps them.
+    """Return a docstring as help text. Lines of a paragraph are joined; the terminal wraps paragraphs.
 
-    An example, which begins with the name of the program, is a paragraph.
+    A line that begins with the name of the program is an example and becomes a paragraph.
     """
     blocks = inspect.cleandoc(text or "").replace("\nspurcheck ", "\n\nspurcheck ").split("\n\n")
     return "\n\n".join(" ".join(block.split()) for block in blocks)
@@ -118,7 +118,7 @@ app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 
 
 def _open_streams() -> None:
-    """Open closed standard streams; otherwise the next file opened, such as a journal, takes their number."""
+    """Open closed standard streams. Otherwise the next file that is opened would take a number of 0 to 2."""
     for number in range(3):
         try:
             os.fstat(number)
@@ -133,9 +133,9 @@ def _open_streams() -> None:
 
 def main() -> None:
     """Entry point of the installed command."""
-    # Before numpy is imported: the matrices are small, threads inside BLAS only wait for each other.
+    # Must be set before numpy is imported. The matrices are small: BLAS threads only wait for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # Results live to the end: to search them for cycles as often as Python does takes a 20th of a report.
+    # Results live until the end. The default garbage collection would take 5 % of the time of a report.
     gc.set_threshold(1_000_000)
     _open_streams()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
@@ -146,7 +146,7 @@ def main() -> None:
             print(f"error: {unprinted(error)}", file=sys.stderr)
         sys.exit(NUMERICAL)
     finally:
-        gc.freeze()  # or else Python searches all of them once more before it ends
+        gc.freeze()  # prevents one more garbage collection of all results at the end
 
 
 if __name__ == "__main__":

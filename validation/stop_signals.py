@@ -1,4 +1,4 @@
-"""The signals that ask a program to stop: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal."""
+"""Signals that stop the program: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal."""
 
 from __future__ import annotations
 
@@ -15,14 +15,17 @@ _OURS = (signal.SIG_DFL, signal.default_int_handler)
 
 
 def _signals() -> list[signal.Signals]:
-    """Signals that a handler here can be set for: not those that nohup, a shell or the caller took."""
+    """Return the signals for which this thread can set a handler. Empty outside the main thread."""
     if threading.current_thread() is not threading.main_thread() or os.name != "posix":
         return []
     return [signal.Signals[name] for name in _NAMES]
 
 
 def interrupt_once() -> dict[signal.Signals, Any]:
-    """Let the first signal raise KeyboardInterrupt, and none after it; return the handlers before."""
+    """Let the first signal raise KeyboardInterrupt and ignore later signals.
+
+    Signals that nohup, a shell or the caller handles are left alone. Returns signal -> earlier handler.
+    """
     before = {number: signal.getsignal(number) for number in _signals()}
     before = {number: handler for number, handler in before.items() if handler in _OURS}
 
@@ -38,7 +41,7 @@ def interrupt_once() -> dict[signal.Signals, Any]:
 
 @contextmanager
 def stopping_as_interrupt() -> Iterator[None]:
-    """Let the first signal in the block raise KeyboardInterrupt, and no other until its end."""
+    """Let the first signal in the block raise KeyboardInterrupt. Later signals in the block are ignored."""
     before = interrupt_once()
     try:
         yield

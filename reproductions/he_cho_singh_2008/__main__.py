@@ -45,9 +45,9 @@ def main(folder: Path, samples: int = SAMPLES) -> None:
         errata = errata_chapter(pair)
         _draw(draw_errata(errata), folder, "errata")
         table = claims(pair, samples=samples, runs=runs)
-    for name, found in (("claims", asdict(table)), ("errata", asdict(errata))):
+    for name, content in (("claims", asdict(table)), ("errata", asdict(errata))):
         (folder / f"{name}.json").write_text(
-            json.dumps(found, indent=1, default=_plain) + "\n", encoding="utf-8"
+            json.dumps(content, indent=1, default=_plain) + "\n", encoding="utf-8"
         )
     print(f"{sum(c.verdict == 'reproduced' for c in table.claims)} of {len(table.claims)} claims reproduced")
     print(f"{len(errata.errata)} errata shown: {folder}")

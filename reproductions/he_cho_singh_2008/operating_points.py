@@ -45,9 +45,9 @@ def papers_pair(pair: AnyPair) -> GearPair:
 
 
 def second_pair(pair: GearPair) -> GearPair:
-    """The 25/31 pair with oil and flanks of the first one, so that Fig. 2a compares geometries only.
+    """Return the 25/31 pair with oil and flanks of ``pair``: Fig. 2a compares geometries only.
 
-    For a first pair of 25/31 teeth the 28/28 pair takes this place.
+    If ``pair`` is the 25/31 pair, the 28/28 pair is returned.
     """
     candidates = (papers_pair(name) for name in PAIRS_2A)
     other = next(c for c in candidates if c.pinion.teeth != pair.pinion.teeth)

@@ -56,7 +56,7 @@ def mark_switches(ax: Axes, events: Mapping[str, float]) -> None:
     """Mark events on the x axis by thin lines, letters above the axes; equal places share a label."""
     places: dict[float, list[str]] = {}
     for name, place in events.items():
-        key = next((known for known in places if abs(known - place) < 1e-6), place)
+        key = next((label_place for label_place in places if abs(label_place - place) < 1e-6), place)
         places.setdefault(key, []).append(name)
     for place, names in places.items():
         ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
@@ -66,14 +66,14 @@ def mark_switches(ax: Axes, events: Mapping[str, float]) -> None:
 def twin_points(
     ax: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str, place: int = 0
 ) -> None:
-    """Draw the multibody twin as hollow points, those of different curves shifted against each other."""
+    """Draw the multibody twin as hollow points. ``place``: number of the curve, shifts the points."""
     step = max(x.size // _TWIN_POINTS, 1)
-    at = slice((place * step) // 4, None, step)
-    ax.plot(x[at], y[at], color=colour, markeredgewidth=0.9, **TWIN)
+    shown = slice((place * step) // 4, None, step)
+    ax.plot(x[shown], y[shown], color=colour, markeredgewidth=0.9, **TWIN)
 
 
 def twin_lines(ax: Axes, x: NDArray[np.float64], values: xr.DataArray, colour: str) -> None:
-    """Draw a lumped history (model, ...) as a broad pale line and its twin as a thin one on it."""
+    """Draw a history (model, ...): lumped model as a broad pale line, multibody twin as a thin line."""
     broad: dict[str, Any] = (
         {"linewidth": 3.0, "alpha": 0.35} if "multibody" in values["model"] else {"linewidth": 1.3}
     )
@@ -180,10 +180,10 @@ def draw_figure3(record: FigureRecord) -> Figure:
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.axvline(pitch, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
         ax.set_ylabel("µ / mean of |µ| [-]")
-    whole, close = axes[0]
-    mark_switches(whole, {"A": 0.0, "B": end - 1.0, "P": pitch, "C": 1.0, "D": end})
-    whole.set(xlim=(0.0, end), xlabel="$t/t_c$ [mesh cycles since A]")
-    legend(whole, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=1.7)
+    full_path, close = axes[0]
+    mark_switches(full_path, {"A": 0.0, "B": end - 1.0, "P": pitch, "C": 1.0, "D": end})
+    full_path.set(xlim=(0.0, end), xlabel="$t/t_c$ [mesh cycles since A]")
+    legend(full_path, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=1.7)
     close.set(xlim=(pitch - 0.03, pitch + 0.03), xlabel="close-up of P [mesh cycles since A]")
     return figure
 

@@ -22,7 +22,7 @@ ClaimVerdict = Literal["reproduced", "not reproduced", "cannot be judged"]
 
 @dataclass(frozen=True)
 class Number:
-    """A value with its unit; "" where it has none. As text it has three figures."""
+    """A value and a unit ("" for a number without unit). The text of a number has three figures."""
 
     value: float
     unit: str = ""
@@ -133,7 +133,7 @@ class ErrataChapter:
 
 @dataclass(frozen=True, kw_only=True)
 class Statement:
-    """One statement of the paper that one number can judge.
+    """One statement of the paper that can be judged by a number.
 
     Attributes
     ----------

@@ -86,8 +86,8 @@ def _cycle(data: xr.Dataset, samples: int) -> xr.Dataset:
     phase = xr.DataArray(
         np.arange(samples) / samples, dims="phase", attrs={"units": "1", "long_name": "mesh cycles"}
     )
-    kept = data[list(VARIABLES)].drop_vars("time").rename(time="phase").assign_coords(phase=phase)
-    return kept.drop_attrs(deep=False)
+    cycle = data[list(VARIABLES)].drop_vars("time").rename(time="phase").assign_coords(phase=phase)
+    return cycle.drop_attrs(deep=False)
 
 
 def agreement(result: xr.Dataset, names: Sequence[str]) -> dict[str, float]:
@@ -98,18 +98,18 @@ def agreement(result: xr.Dataset, names: Sequence[str]) -> dict[str, float]:
     result : of ``twins``, with both models
     names : variables; tooth forces are summed over the pairs
     """
-    found: dict[str, float] = {}
+    differences: dict[str, float] = {}
     for name in names:
         values = total(result[name])
-        own, other = (values.sel(model=model) for model in ("lumped", "multibody"))
-        axes = [axis for axis in own.dims if axis != "variant"]
-        rms = np.sqrt(((other - own) ** 2).mean(axes))
-        found[name] = float((rms / (own.max(axes) - own.min(axes))).max())
-    return found
+        lumped_values, multibody_values = (values.sel(model=model) for model in ("lumped", "multibody"))
+        axes = [axis for axis in lumped_values.dims if axis != "variant"]
+        rms = np.sqrt(((multibody_values - lumped_values) ** 2).mean(axes))
+        differences[name] = float((rms / (lumped_values.max(axes) - lumped_values.min(axes))).max())
+    return differences
 
 
 def quality(result: xr.Dataset) -> tuple[dict[str, Number], str]:
-    """How far the motions may be trusted: numbers, and a warning where one is unstable.
+    """Return numbers that judge the motions, and a warning if a motion is unstable.
 
     Parameters
     ----------
@@ -134,9 +134,9 @@ def total(values: xr.DataArray) -> xr.DataArray:
 
 def mesh_orders(values: xr.DataArray, highest: int = 10) -> xr.DataArray:
     """Amplitudes by mesh order of one cycle (..., phase) -> (..., order), orders 1 to ``highest``."""
-    flat = values.transpose(..., "phase")
-    amplitudes = 2.0 * np.abs(np.fft.rfft(flat.to_numpy())[..., 1 : highest + 1]) / values.sizes["phase"]
-    dims = [*flat.dims[:-1], "order"]
+    histories = values.transpose(..., "phase")
+    amplitudes = 2.0 * np.abs(np.fft.rfft(histories.to_numpy())[..., 1 : highest + 1]) / values.sizes["phase"]
+    dims = [*histories.dims[:-1], "order"]
     coords = {d: values[d] for d in dims if d in values.coords}
     order = xr.DataArray(np.arange(1, highest + 1), dims="order", attrs={"long_name": "mesh order"})
     return xr.DataArray(amplitudes, dims=dims, coords=coords | {"order": order}, attrs=values.attrs)

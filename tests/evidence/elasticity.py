@@ -70,7 +70,8 @@ def _standard(pair: GearPair) -> Check:
     rack = pair.basic_rack
     factor = 1.0 + 0.5 * (1.2 - rack.dedendum_coefficient)
     factor *= 1.0 - 0.02 * (20.0 - math.degrees(rack.pressure_angle))
-    e1, e2 = pair.pinion.youngs_modulus, pair.gear.youngs_modulus
+    e1 = pair.pinion.youngs_modulus
+    e2 = pair.gear.youngs_modulus
     width = min(pair.pinion.face_width, pair.gear.face_width)
     single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
     c = circles(pair)
@@ -107,9 +108,9 @@ def _contact(pair: GearPair) -> Check:
     both = []
     for tooth, length, modulus, nu in zip(teeth, (xi, g.L_XY - xi), moduli, ratios, strict=True):
         module = tooth.wheel.tooth.module
-        whole = tooth.flank.deflection(length / module)
-        whole = whole + (2.0 * np.log(2.0 * module / half) - nu / (1.0 - nu)) / math.pi
-        found = replace(tooth, plane="strain").compliance(length, hertz_half_width(pair, xi))
-        both.append(np.stack([found * modulus / (1.0 - nu**2), whole], axis=-1))
+        deflection = tooth.flank.deflection(length / module)
+        deflection = deflection + (2.0 * np.log(2.0 * module / half) - nu / (1.0 - nu)) / math.pi
+        compliance = replace(tooth, plane="strain").compliance(length, hertz_half_width(pair, xi))
+        both.append(np.stack([compliance * modulus / (1.0 - nu**2), deflection], axis=-1))
     exact = "the plane solution under a Hertzian pressure, half width of the energy method"
     return rows("contact by plane elasticity, plane strain", exact, 1e-12, np.concatenate(both))

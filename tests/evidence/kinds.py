@@ -105,7 +105,7 @@ def _stored(name: str) -> list[dict[str, Any]]:
 
 
 def _faults() -> dict[str, int]:
-    """How many faults the stored table has, and which part of the program or its tests sees them first."""
+    """Number of faults in the stored table, by the first part of program or tests that sees the fault."""
     rows = _stored("faults.json")
     seen = Counter(next(iter(row["caught"]), row["verdict"]) for row in rows)
     return {"all": len(rows), **dict(sorted(seen.items()))}

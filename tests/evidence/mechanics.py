@@ -53,16 +53,16 @@ def _speeds(pair: GearPair) -> Check:
     """Speed in rpm, natural frequency off the line of action and its speed, from the fields of the schema."""
     both = [(operating_rpm(pair), pair.operating.pinion_speed * 60.0 / (2.0 * math.pi))]
     try:
-        found = modes(pair)
+        results = modes(pair)
     except NumericalError:
-        found = ()
+        results = ()
     for mass, bearing in zip(
         (bodies(pair).mass_pinion, bodies(pair).mass_gear),
         (pair.bearings.pinion, pair.bearings.gear),
         strict=True,
     ):
         wanted = math.sqrt(bearing.oloa_stiffness / mass) / (2.0 * math.pi)
-        near = min(found, key=lambda mode: abs(mode.natural_frequency - wanted), default=None)
+        near = min(results, key=lambda mode: abs(mode.natural_frequency - wanted), default=None)
         if near is not None:
             both.append((near.natural_frequency, wanted))
             both.append((near.resonant_speed, 60.0 * near.natural_frequency / pair.pinion.teeth))
@@ -72,7 +72,7 @@ def _speeds(pair: GearPair) -> Check:
 
 
 def _losses(pair: GearPair) -> Check:
-    """Losses of the mesh at rest of a pair whose friction is one coefficient, and its loss factor by hand."""
+    """Quasi-static losses of a pair with constant friction coefficient, and the loss factor by hand."""
     mu = 0.05
     plain = pair.with_({"friction.law": "coulomb", "friction.coefficient": mu})
     still = quasi_static_losses(plain, sharing="uniform")
@@ -122,8 +122,8 @@ def _forces(pair: GearPair) -> Check:
     sliding = omega_p * motion["position"] - omega_p * teeth * (pair.geometry.L_XY - motion["position"])
     wanted = -(motion["friction_force"] * sliding).sum("pair")
     size = max(float(np.abs(wanted).max()), 1e-300)
-    found = motion["friction_power_nominal"].sum("pair")
-    both.append((float(np.abs(found - wanted).max()) / size + 1.0, 1.0))
+    results = motion["friction_power_nominal"].sum("pair")
+    both.append((float(np.abs(results - wanted).max()) / size + 1.0, 1.0))
     if pair.operating.brake_torque == "balanced":
         both.append((float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque))
     # A pair is in contact from A to D, loaded where the static mesh has it; samples on either end
@@ -155,15 +155,15 @@ def _sharing() -> Check:
 
     Then two that move each other by 1e-9 m/N: late by 1 um the second helps, by 4.5 um it is pushed away.
     """
-    found = share_load([2e8, 1e8, 3e8], [0.0, 2e-6, 1.0], 1000.0)
+    results = share_load([2e8, 1e8, 3e8], [0.0, 2e-6, 1.0], 1000.0)
     delta = (1000.0 + 1e8 * 2e-6) / 3e8
-    both = [(float(found.transmission_error), delta), (float(found.load[0]), 2e8 * delta)]
-    both += [(float(found.load[1]), 1e8 * delta - 200.0)]
+    both = [(float(results.transmission_error), delta), (float(results.load[0]), 2e8 * delta)]
+    both += [(float(results.load[1]), 1e8 * delta - 200.0)]
     coupling = [[0.0, 1e-9], [1e-9, 0.0]]
     late = [[0.0, 1e-6], [0.0, 4.5e-6]]
-    found = share_load([2e8, 1e8], late, [1000.0, 1000.0], coupling)
-    both += list(zip(found.load.ravel().tolist(), [1e4 / 13.0, 3e3 / 13.0, 1000.0, 0.0], strict=True))
-    both += list(zip(found.transmission_error.tolist(), [53e-6 / 13.0, 5e-6], strict=True))
+    results = share_load([2e8, 1e8], late, [1000.0, 1000.0], coupling)
+    both += list(zip(results.load.ravel().tolist(), [1e4 / 13.0, 3e3 / 13.0, 1000.0, 0.0], strict=True))
+    both += list(zip(results.transmission_error.tolist(), [53e-6 / 13.0, 5e-6], strict=True))
     return rows("static load sharing", "three cases solved by hand", 1e-12, both)
 
 
@@ -172,10 +172,12 @@ def _lumped_identities(pair: GearPair) -> Iterator[Check]:
     free = pair.with_({"friction.law": "none"})
     motion = steady_state(free, samples_per_cycle=1024)
     static = float(motion.attrs["pinion_torque"]) / pair.geometry.base_radius_pinion
-    held = -float(motion["x_p"].mean()) * pair.bearings.pinion.loa_stiffness
+    pair_on_springs = -float(motion["x_p"].mean()) * pair.bearings.pinion.loa_stiffness
     # Mean of 1024 samples of a motion whose second derivative jumps.
     exact = "T_p/r_bp, mean of equations 1 and 6"
-    yield Check("mean load of the pinion bearing without friction", exact, abs(held / static - 1.0), 1e-6)
+    yield Check(
+        "mean load of the pinion bearing without friction", exact, abs(pair_on_springs / static - 1.0), 1e-6
+    )
     # Errors of two quadratures, 1e-7 of losses of up to some percent.
     exact = "the losses of dampers of teeth and bearings; over the driving power"
     yield Check("loss without friction", exact, _efficiency_error(free), 1e-7)

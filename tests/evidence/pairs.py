@@ -20,13 +20,15 @@ _RELIEF = {"shape": "linear", "amount": 15.0, "start_roll_angle": 26.0}
 
 
 def pairs(fault: Fault | None = None, *, wrong: bool = False) -> Iterator[GearPair]:
-    """The default pair without relief, with which it would lose contact, and the asymmetric variant.
+    """Yield the default pair and the asymmetric variant, with the changes that the fault needs.
 
-    Both have what the fault needs."""
-    own = {} if fault is None else dict(fault.on) | (dict(fault.input) if wrong else {})
+    The default pair has no relief, because with relief contact would be lost. ``wrong``: with the wrong input
+    of the fault.
+    """
+    changes_of_fault = {} if fault is None else dict(fault.on) | (dict(fault.input) if wrong else {})
     for changes in ({}, ASYMMETRIC):
-        fields = {"mesh.relief": "ignored", **changes, **own}
-        if changes and "mesh.relief" in own:
+        fields = {"mesh.relief": "ignored", **changes, **changes_of_fault}
+        if changes and "mesh.relief" in changes_of_fault:
             fields |= {"pinion.tip_relief": _RELIEF, "gear.tip_relief": _RELIEF | {"amount": 10.0}}
         yield load_gear_pair(PAIR).with_(fields)
 

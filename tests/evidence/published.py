@@ -101,7 +101,7 @@ def published(pair: GearPair) -> Iterator[Check]:
 
 
 def missed_values() -> list[str]:
-    """Formulas whose stated numbers this program does not give, with the model that misses them."""
+    """Formulas with published numbers that the program does not reproduce, and the model."""
     found = []
     for name, formulas in FORMULAS.items():
         module = importlib.import_module(name)

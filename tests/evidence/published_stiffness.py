@@ -61,7 +61,7 @@ def held_rim(rims: tuple[float, float]) -> float:
 
 
 def published_stiffness() -> Iterator[Beside]:
-    """Every published number, one after the other as it is computed."""
+    """Yield every published number with the computed number."""
     for rims, theirs in RIMS.items():
         source = "gearcalc, finite elements, plane strain, held at the bore"
         name = f"17/43, rims {rims[0]:g} and {rims[1]:g} mm at 1 mm"
@@ -131,7 +131,7 @@ def framed_pairs() -> Iterator[GearPair]:
 
 
 def framed(pair: GearPair) -> Iterator[Framed]:
-    """A pair in every frame that it has: a solid gear only free ones."""
+    """Yield a pair in every frame of the elasticity. A solid gear has free frames only."""
     for frame, (plane, support) in FRAMES.items():
         if support != "free" and not min(pair.pinion.bore, pair.gear.bore) > 0.0:
             continue

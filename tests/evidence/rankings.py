@@ -177,29 +177,29 @@ def row(case: Case) -> dict[str, Any]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Compute all cases, or those that are named, and print both shares; 1 where they differ too much."""
+    """Compute all cases or the named cases and print both shares. Returns 1 if the shares differ too much."""
     parser = argparse.ArgumentParser(prog="python -m tests.evidence.rankings", description=__doc__)
     parser.add_argument("keys", nargs="*", metavar="CASE", help="cases to compute; default all")
     parser.add_argument("-o", "--output", type=Path, help="rows as .json; those of other cases stay")
-    given = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     rows = {}
-    if given.output is not None and given.output.exists():
-        rows = {one["key"]: one for one in json.loads(given.output.read_text("utf-8"))["cases"]}
+    if options.output is not None and options.output.exists():
+        rows = {one["key"]: one for one in json.loads(options.output.read_text("utf-8"))["cases"]}
     wrong = 0
     warnings.simplefilter("ignore")
     for case in cases():
-        if given.keys and case.key not in given.keys:
+        if options.keys and case.key not in options.keys:
             continue
         rows[case.key] = found = row(case)
         for name, shares in found["results"].items():
             points = 100.0 * abs(shares["compare"] - shares["plain"])
             wrong += points > LIMIT
-            told = "".join(f"{key} {100.0 * shares[key]:5.1f}  " for key in ("compare", "first", "plain"))
-            print(f"{case.key:10} {name:18} {told} {points:4.1f}", flush=True)
-        if given.output is not None:
-            known = [rows[one.key] for one in cases() if one.key in rows]
-            stored = {"samples": SAMPLES, "few": FEW, "plain": PLAIN, "limit": LIMIT, "cases": known}
-            given.output.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
+            words = "".join(f"{key} {100.0 * shares[key]:5.1f}  " for key in ("compare", "first", "plain"))
+            print(f"{case.key:10} {name:18} {words} {points:4.1f}", flush=True)
+        if options.output is not None:
+            computed_cases = [rows[one.key] for one in cases() if one.key in rows]
+            stored = {"samples": SAMPLES, "few": FEW, "plain": PLAIN, "limit": LIMIT, "cases": computed_cases}
+            options.output.write_text(json.dumps(stored, indent=1) + "\n", encoding="utf-8")
     print(f"{wrong} shares differ by more than {LIMIT:g} points")
     return int(wrong > 0)
 

@@ -21,7 +21,7 @@ _SAMPLES = 64
 
 
 class Level(NamedTuple):
-    """A resolution in words, its difference from the finest one, and whether the report computes with it."""
+    """A resolution: name, difference from the finest resolution, and whether the report uses it."""
 
     setting: str
     error: float

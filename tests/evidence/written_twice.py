@@ -59,10 +59,12 @@ def written_twice(pair: GearPair) -> Iterator[Check]:
 
 
 def _geometry(pair: GearPair) -> Check:
-    g, c = pair.geometry, circles(pair)
+    g = pair.geometry
+    c = circles(pair)
     both = c.base_pinion + c.base_gear
     omega = pair.operating.pinion_speed
-    start, end = c.start, c.end
+    start = c.start
+    end = c.end
     both_ways = [
         (g.base_radius_pinion, c.base_pinion), (g.base_radius_gear, c.base_gear),
         (g.tip_radius_pinion, c.tip_pinion), (g.tip_radius_gear, c.tip_gear), (g.base_pitch, c.pitch),
@@ -77,11 +79,17 @@ def _geometry(pair: GearPair) -> Check:
 
 
 def _bodies(pair: GearPair) -> Check:
-    b, (mass, inertia) = bodies(pair), masses(pair)
+    b = bodies(pair)
+    (mass, inertia) = masses(pair)
     c = circles(pair)
-    own = 1.0 / (c.base_pinion**2 / inertia[0] + c.base_gear**2 / inertia[1])
-    found = [b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass]
-    return rows("masses and inertias", _OWN, 1e-12, list(zip(found, [*mass, *inertia, own], strict=True)))
+    multibody_effective_mass = 1.0 / (c.base_pinion**2 / inertia[0] + c.base_gear**2 / inertia[1])
+    lumped_values = [b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass]
+    return rows(
+        "masses and inertias",
+        _OWN,
+        1e-12,
+        list(zip(lumped_values, [*mass, *inertia, multibody_effective_mass], strict=True)),
+    )
 
 
 def _inside(pair: GearPair) -> FloatArray:
@@ -96,10 +104,15 @@ def _damping(pair: GearPair) -> Iterator[Check]:
     elements = mesh_elements(pair)
     xi = _inside(pair)
     p = machine(pair).record
-    own = p.pair_law.damping * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
-    scale = max(float(np.abs(own).max()), 1e-300)
-    found = elements.damping(xi)
-    yield rows("damping of a tooth pair", _OWN, 1e-6, np.stack([found, own], axis=1) / scale + 1.0)
+    multibody_damping = p.pair_law.damping * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
+    scale = max(float(np.abs(multibody_damping).max()), 1e-300)
+    lumped_damping = elements.damping(xi)
+    yield rows(
+        "damping of a tooth pair",
+        _OWN,
+        1e-6,
+        np.stack([lumped_damping, multibody_damping], axis=1) / scale + 1.0,
+    )
 
 
 def _laws(pair: GearPair) -> Check:
@@ -112,11 +125,11 @@ def _laws(pair: GearPair) -> Check:
             packed = machine(pair.with_(friction__law=name)).packed
         except ParameterError:  # a law that this pair does not allow
             continue
-        own = np.array([nominal_friction(packed, x) for x in xi])
-        away = np.abs(law(xi) - own)
+        multibody_law = np.array([nominal_friction(packed, x) for x in xi])
+        differences = np.abs(law(xi) - multibody_law)
         # Where a law jumps, rounding of the place decides; such a place is left out.
-        away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
-        worst = max(worst, float(away.max() / max(np.abs(own).max(), 1e-300)))
+        differences[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
+        worst = max(worst, float(differences.max() / max(np.abs(multibody_law).max(), 1e-300)))
     # Laws near the pitch point vary fast; polynomials are fitted to 1e-10.
     return Check(
         "every friction law over the path of contact", f"{_OWN}; over its largest value", worst, 1e-8
@@ -183,7 +196,7 @@ class _Mesh:
         half = 0.5 * (delta + self.longer)
         length = float(p.geometry.L_XY + self.longer)
         line = Line(1.0, 0.0, length, DRIVE, float(p.geometry.radius_p), float(p.geometry.radius_g))
-        found = np.empty(places.size)
+        approaches = np.empty(places.size)
         tilt = np.empty(places.size)
         for i, xi in enumerate(places):
             arms = xi + half, p.geometry.L_XY - xi + half
@@ -191,11 +204,11 @@ class _Mesh:
                 line, *arms, (p.geometry.tip_p, p.geometry.tip_g), (p.geometry.edge_p, p.geometry.edge_g)
             )
             relief, _ = relief_at(p, min(max(xi, p.geometry.L_XA), p.geometry.L_XD), 0.0, 0.0)
-            found[i] = delta - relief - corners.gap
+            approaches[i] = delta - relief - corners.gap
             wrench = np.zeros(6)
             add_gradient(wrench, line, corners.by_p, corners.by_g, corners.by_length)
             tilt[i] = -wrench[1]
-        return found, tilt
+        return approaches, tilt
 
     def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
@@ -215,7 +228,7 @@ class _Mesh:
         reach = 0.4 * self.machine.record.geometry.pitch
         places = xi + p.geometry.pitch * np.arange(-4, 5)
         near = (places > p.geometry.L_XA - reach) & (places < p.geometry.L_XD + reach)
-        own = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0])
+        index_of_pair = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0])
         places = places[near]
 
         def missing(delta: float) -> float:
@@ -223,17 +236,19 @@ class _Mesh:
 
         delta = float(brentq(missing, 0.0, 1e-3, xtol=1e-17, rtol=1e-14))
         pressed, tilt = self.pressed(places, delta)
-        loads, left = self.loads(places, pressed)
+        loads, compressions = self.loads(places, pressed)
         more, less = (self.loads(places, pressed + s * _STEP * delta)[0] for s in (1.0, -1.0))
-        share = gradual(float(loads[own]) / (FULL_DAMPING * self.force))
+        share = gradual(float(loads[index_of_pair]) / (FULL_DAMPING * self.force))
         # The contact moves outside with the approach: a corner closes by less than that.
-        ahead, behind = (self.pressed(places, delta + s * _STEP * delta)[0][own] for s in (1.0, -1.0))
+        ahead, behind = (
+            self.pressed(places, delta + s * _STEP * delta)[0][index_of_pair] for s in (1.0, -1.0)
+        )
         closing = (ahead - behind) / (2.0 * _STEP * delta)
         damping = (
             p.pair_law.damping * np.sqrt(table_value(self.machine.stiffness_table, xi)) * share * closing
         )
-        tangent = (more - less)[own] / (2.0 * _STEP * delta)
-        values = (loads[own], tangent, damping, left[own], tilt[own])
+        tangent = (more - less)[index_of_pair] / (2.0 * _STEP * delta)
+        values = (loads[index_of_pair], tangent, damping, compressions[index_of_pair], tilt[index_of_pair])
         return _Equilibrium(delta, *(float(value) for value in values))
 
 
@@ -248,16 +263,16 @@ def _static_mesh(pair: GearPair) -> Check:
     places = places[np.abs(places[:, None] - elements.stiffness.switches).min(axis=1) > 1e-5 * (high - low)]
     # At the end of a ramp neither load nor tangent is left.
     places = places[elements.stiffness(places) > 1e-6 * float(elements.stiffness(places).max())]
-    found = [mesh.at(float(xi)) for xi in places]
-    own = {
-        "stiffness": np.array([one.tangent for one in found]),
-        "error": np.array([one.approach - one.load / one.tangent for one in found]),
-        "damping": np.array([one.damping for one in found]),
-        "tilt": np.array([one.tilt for one in found]),
+    equilibria = [mesh.at(float(xi)) for xi in places]
+    multibody_laws = {
+        "stiffness": np.array([one.tangent for one in equilibria]),
+        "error": np.array([one.approach - one.load / one.tangent for one in equilibria]),
+        "damping": np.array([one.damping for one in equilibria]),
+        "tilt": np.array([one.tilt for one in equilibria]),
     }
-    delta = found[0].approach
+    delta = equilibria[0].approach
     found_rows = []
-    for name, values in own.items():
+    for name, values in multibody_laws.items():
         scale = delta if name == "error" else max(float(values.max()), 1e-300)
         found_rows.append(np.stack([getattr(elements, name)(places), values], axis=1) / scale + 1.0)
     # Contact begins and ends where nothing is left of a pair's compression.
@@ -274,9 +289,11 @@ def _softening(pair: GearPair, softening: float) -> Check:
     torque = pair.operating.pinion_torque
     places = np.linspace(*pair_stiffness(pair).interval, 5)[1:-1]
     twice = pair.with_({"operating.pinion_torque": 2.0 * torque})
-    found = (1.0 / pair_stiffness(pair)(places) - 1.0 / pair_stiffness(twice)(places)) / np.log(2.0)
+    softening_of_curves = (1.0 / pair_stiffness(pair)(places) - 1.0 / pair_stiffness(twice)(places)) / np.log(
+        2.0
+    )
     exact = "stiffness curves at two torques"  # fitted to 1e-10, of which the softening is a hundredth
-    both = np.stack([np.full(places.size, softening), found], axis=1)
+    both = np.stack([np.full(places.size, softening), softening_of_curves], axis=1)
     return rows("softening of a pair by load, Hertz", exact, 1e-6, both)
 
 
@@ -326,7 +343,8 @@ def _feet(half: float, apart: float, poisson: float) -> FloatArray:
         share = 1.0 / np.pi if n else 0.5 / np.pi
         even = share * np.array([radial @ np.cos(n * x), across @ np.sin(n * x)])
         odd = share * np.array([radial @ np.sin(n * x), -across @ np.cos(n * x)])
-        (up, turn), (up_odd, turn_odd) = ring @ even, ring @ odd
+        (up, turn) = ring @ even
+        (up_odd, turn_odd) = ring @ odd
         there = n * (x + apart)
         moved = np.outer(np.cos(there), up) + np.outer(np.sin(there), up_odd)
         turned = np.outer(np.sin(there), turn) - np.outer(np.cos(there), turn_odd)

@@ -126,7 +126,8 @@ class Contact:
     def __init__(self, pair: GearPair, xi: FloatArray | None = None) -> None:
         hand = ByHand(pair, "pinion")
         steel = (pair.pinion, pair.gear)
-        self.start, self.end = 1e-3 * hand.start_length, 1e-3 * hand.tip_length
+        self.start = 1e-3 * hand.start_length
+        self.end = 1e-3 * hand.tip_length
         line = 1e-3 * hand.line
         self.pitch = 1e-3 * hand.r_b * math.tan(hand.operating_angle)
         self.xi = np.linspace(self.start, self.end, 203)[1:-1] if xi is None else xi
@@ -144,7 +145,8 @@ class Contact:
         self.viscosity = float(pair.lubricant.dynamic_viscosity)
         self.roughness = 0.5 * (pair.pinion.roughness + pair.gear.roughness)
         # Of mPa s and mm^2/N to SI.
-        k, s = pair.lubricant.pressure_viscosity_k, pair.lubricant.pressure_viscosity_s
+        k = pair.lubricant.pressure_viscosity_k
+        s = pair.lubricant.pressure_viscosity_s
         self.pressure_viscosity = 1e-6 * k * (1e3 * self.viscosity) ** s
         material = self.pressure_viscosity * self.modulus
         speed = self.viscosity * self.entraining / (2.0 * self.modulus * self.radius)

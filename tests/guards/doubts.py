@@ -99,7 +99,7 @@ def _light(pair: GearPair, gear: str) -> float:
 
 
 def _springs(line: str) -> Callable[[GearPair, str, float], Changes]:
-    """Springs that stand for the shafts, but one, which is a multiple of that."""
+    """Springs that are equivalent to the shafts, except for one spring with a multiple of this stiffness."""
 
     def sets(pair: GearPair, gear: str, factor: float) -> Changes:
         static = condensed_bearings(pair).bearings
@@ -277,7 +277,8 @@ class Level:
 
     def complaints(self) -> list[str]:
         """Sides of both limits on which the state is another one."""
-        low, high = 1.0 - self.near, 1.0 + self.near
+        low = 1.0 - self.near
+        high = 1.0 + self.near
         tried = {self.good * low: "ok", self.warned * high: "violated"}
         if self.warned != self.good:
             tried |= {self.good * high: "warning", self.warned * low: "warning"}

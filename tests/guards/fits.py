@@ -111,12 +111,15 @@ STIFFNESS = (
 
 
 def _scaled(quantity: Callable[[Contact], float], limit: float, power: float, field: str) -> Callable:
-    """The value of a field with which a quantity, which goes with a power of it, is at its limit."""
+    """Return the value of a field at which a quantity reaches its limit.
+
+    The quantity is proportional to a power of the field.
+    """
 
     def value(pair: GearPair, gear: str) -> float:
-        own = getattr(pair.operating, field)
-        now = own * 30.0 / math.pi if field == "pinion_speed" else own
-        return float(now * (limit / quantity(Contact(pair))) ** (1.0 / power))
+        si_value = getattr(pair.operating, field)
+        stated_value = si_value * 30.0 / math.pi if field == "pinion_speed" else si_value
+        return float(stated_value * (limit / quantity(Contact(pair))) ** (1.0 / power))
 
     return value
 

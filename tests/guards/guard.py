@@ -57,7 +57,7 @@ def law_range(pair: GearPair, changes: Changes) -> Acts:
 
 
 def stiffness_range(pair: GearPair, changes: Changes) -> Acts:
-    """What leaves the ranges of the stiffness model's fits: of which part, and which quantity."""
+    """Quantities outside the range of the fits of the stiffness model, with the part of the model."""
     changed = pair.with_(dict(changes))
     return [(f"{v.law}: {v.range.quantity}", str(v)) for v in changed.mesh.stiffness.violations(changed)]
 
@@ -66,22 +66,23 @@ def stiffness_range(pair: GearPair, changes: Changes) -> Acts:
 class Guard:
     """One limit of the program: a row of the table.
 
-    ``{gear}`` and ``{mate}`` in the texts are the gear in question and the other one: a row with either is
+    In the texts ``{gear}`` stands for one gear and ``{mate}`` for the other gear. A row with one of both is
     tried for both gears. Numbers are in the unit of the parameter file.
 
     Attributes
     ----------
-    where : the file that has the guard
-    names : the field, range or sentence by which it acts
-    least, most : the last value inside; a number, or a function of the pair and the name of the gear
-    source : where the limit comes from
-    base : name of the unlike pair on which it is tried, and changes that go before
-    sets : what takes the value: the path of a field, or a function of pair, gear and value; default ``names``
-    judge : what acts
-    says : words of it that tell it from others with the same name
-    beside : whether other guards may act beside it, on either side; else it must act alone
-    near : distance of the values tried from the limit, relative (absolute at 0)
-    whole : whether the value is a whole number: it is tried at the limit and one beyond
+    where : file with the guard
+    names : field, range or sentence that the guard names
+    least, most : last allowed value; a number, or a function of the pair and the name of the gear
+    source : source of the limit
+    base : name of the unlike pair on which the guard is tried
+    after : changes of this pair that are made first
+    sets : path of the field that takes the value, or function of pair, gear and value; default ``names``
+    judge : function that returns the guards that act
+    says : words of the message, different from the messages of other guards with the same name
+    beside : whether other guards may act at the same values; else the guard must act alone
+    near : distance of the tried values from the limit, relative (absolute at 0)
+    whole : whether the value is a whole number; tried are the limit and the next whole number
     """
 
     where: str
@@ -100,7 +101,7 @@ class Guard:
 
     @property
     def gears(self) -> tuple[str, ...]:
-        """Gears for which it is tried; one that no text names is tried once."""
+        """Gears for which the guard is tried. A guard without ``{gear}`` and ``{mate}`` is tried once."""
         texts = (self.names, self.says, *(self.after), self.sets if isinstance(self.sets, str) else "")
         return (
             GEARS
@@ -134,24 +135,26 @@ class Guard:
         yield True, value + out * step
 
     def acts(self, gear: str, value: Any) -> tuple[Acts, Acts]:
-        """What acts at a value: under this guard's name and words, and beside it."""
+        """Return the guards that act at a value: guards with this name and these words, and all others."""
         names = {"gear": gear, "mate": MATE[gear]}
         sets = self.names if self.sets is None else self.sets
         pair = self.pair(gear)
         changes = sets(pair, gear, value) if callable(sets) else {sets.format(**names): value}
-        found = self.judge(pair, changes)
-        own = [a for a in found if a[0] == self.names.format(**names) and self.says.format(**names) in a[1]]
-        return own, [a for a in found if a not in own]
+        guards = self.judge(pair, changes)
+        matching = [
+            a for a in guards if a[0] == self.names.format(**names) and self.says.format(**names) in a[1]
+        ]
+        return matching, [a for a in guards if a not in matching]
 
     def complaints(self) -> list[str]:
-        """Sides of the limit on which it does not do as the row says."""
+        """Sides of the limit on which the guard does not act as the row says."""
         wrong = []
         for gear in self.gears:
             for outside, value in self.sides(gear):
-                own, others = self.acts(gear, value)
+                matching, others = self.acts(gear, value)
                 side = "outside" if outside else "inside"
-                if len(own) != outside:
-                    wrong.append(f"{gear}, {value!r}, {side}: acts {len(own)} times; beside it {others}")
+                if len(matching) != outside:
+                    wrong.append(f"{gear}, {value!r}, {side}: acts {len(matching)} times; beside it {others}")
                 elif others and not self.beside:
                     wrong.append(f"{gear}, {value!r}, {side}: beside it {others}")
         return wrong
@@ -159,7 +162,7 @@ class Guard:
 
 @dataclass(frozen=True)
 class Choice:
-    """A row of what is no number: changes that are refused, and the nearest that are taken."""
+    """A row of the table without a number: changes that are refused, and changes that are accepted."""
 
     where: str
     names: str
@@ -176,13 +179,15 @@ class Choice:
         return f"{self.names}-choice"
 
     def complaints(self) -> list[str]:
-        """Sides on which it does not do as the row says."""
+        """Changes with which the guard does not act as the row says."""
         wrong = []
         for gear, (outside, changes) in itertools.product(GEARS, ((True, self.refused), (False, self.taken))):
             names = {"gear": gear, "mate": MATE[gear]}
-            own = self.names.format(**names)
+            expected_name = self.names.format(**names)
             named = {path.format(**names): value for path, value in changes.items()}
-            found = self.judge(unlike_pair(self.base), named)
-            if [a[0] for a in found] != [own] * outside or any(self.says not in a[1] for a in found):
-                wrong.append(f"{gear}, {named}: {found}")
+            guards = self.judge(unlike_pair(self.base), named)
+            if [a[0] for a in guards] != [expected_name] * outside or any(
+                self.says not in a[1] for a in guards
+            ):
+                wrong.append(f"{gear}, {named}: {guards}")
         return wrong

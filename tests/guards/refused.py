@@ -54,8 +54,8 @@ def _wedged_centre(hand: ByHand) -> float:
 
 def _wedged_shift(hand: ByHand) -> float:
     """Own shift with that overlap: r_b psi_b grows by x m sin(alpha)."""
-    room = 2.0 * hand.base_radii * (inv(hand.operating_angle) - _wedged(hand))
-    return hand.x + room / (2.0 * hand.m * math.sin(hand.alpha))
+    play = 2.0 * hand.base_radii * (inv(hand.operating_angle) - _wedged(hand))
+    return hand.x + play / (2.0 * hand.m * math.sin(hand.alpha))
 
 
 def _least_shift(hand: ByHand) -> float:
@@ -82,7 +82,7 @@ def _widest(hand: ByHand) -> float:
 
 
 def _edge(hand: ByHand) -> float:
-    """Length at which the undercut ends the flank, as the other model draws it [mm]."""
+    """Length [mm] at which the undercut ends the flank, by the drawing of the multibody model."""
     return 1e3 * undercut_edge(hand.pair.basic_rack, hand.z, hand.x)
 
 
@@ -95,13 +95,17 @@ def _deepest_tip(hand: ByHand) -> float:
     mate = hand.mate
     r = hand.r
     m = hand.m
-    down = m * (hand.dedendum - hand.fillet - hand.x)
-    off = m * (0.25 * math.pi - (hand.dedendum - hand.fillet) * math.tan(hand.alpha))
-    off -= m * hand.fillet / math.cos(hand.alpha)
-    roll = np.linspace(off / r, off / r - down / (r * math.tan(hand.alpha)), 4001)
-    stretch = 1.0 + m * hand.fillet / np.hypot(off - r * roll, down)
-    cut = ((off - r * roll) * stretch + 1j * (r - down * stretch)) * np.exp(-1j * roll)
-    far = np.abs(cut)
+    tip_centre_down = m * (hand.dedendum - hand.fillet - hand.x)
+    tip_centre_across = m * (0.25 * math.pi - (hand.dedendum - hand.fillet) * math.tan(hand.alpha))
+    tip_centre_across -= m * hand.fillet / math.cos(hand.alpha)
+    roll = np.linspace(
+        tip_centre_across / r, tip_centre_across / r - tip_centre_down / (r * math.tan(hand.alpha)), 4001
+    )
+    stretch = 1.0 + m * hand.fillet / np.hypot(tip_centre_across - r * roll, tip_centre_down)
+    cut = ((tip_centre_across - r * roll) * stretch + 1j * (r - tip_centre_down * stretch)) * np.exp(
+        -1j * roll
+    )
+    radii = np.abs(cut)
     cut_at = np.arctan2(cut.real, cut.imag)
     centre = hand.base_radii / math.cos(hand.operating_angle)
     play = math.pi / hand.z - (hand.psi_b - inv(hand.operating_angle))
@@ -110,11 +114,11 @@ def _deepest_tip(hand: ByHand) -> float:
     def depth(tip: float) -> float:
         half = mate.psi_b - inv(math.acos(mate.r_b / tip))
         turn = np.linspace(-0.2, 0.6, 40001)
-        seen = centre - tip * np.exp(1j * (turn + half))
-        at = np.abs(np.angle(seen) + turn * mate.z / hand.z) + play
-        met = (np.abs(seen) > far[0]) & (np.abs(seen) < math.hypot(hand.r_b, _edge(hand)))
-        room = np.interp(np.abs(seen[met]), far, cut_at) - at[met]
-        return float(-(np.abs(seen[met]) * room).min()) - 1e-4 * m
+        corner = centre - tip * np.exp(1j * (turn + half))
+        angles = np.abs(np.angle(corner) + turn * mate.z / hand.z) + play
+        in_space = (np.abs(corner) > radii[0]) & (np.abs(corner) < math.hypot(hand.r_b, _edge(hand)))
+        clearances = np.interp(np.abs(corner[in_space]), radii, cut_at) - angles[in_space]
+        return float(-(np.abs(corner[in_space]) * clearances).min()) - 1e-4 * m
 
     return root_of(depth, mate.r_a, mate.r_a + 0.5 * m)
 
@@ -226,8 +230,8 @@ def _full_radius(pair: GearPair, gear: str) -> float:
     return _room(pair) / math.tan(0.25 * math.pi - 0.5 * pair.basic_rack.pressure_angle)
 
 
-def _bearing(at: float, **more: float) -> dict[str, float]:
-    return {"position": at, "loa_stiffness": 2e8, "oloa_stiffness": 3e8} | more
+def _bearing(position: float, **more: float) -> dict[str, float]:
+    return {"position": position, "loa_stiffness": 2e8, "oloa_stiffness": 3e8} | more
 
 
 def _two_bearings(pair: GearPair, gear: str, apart: float) -> Changes:
@@ -235,17 +239,17 @@ def _two_bearings(pair: GearPair, gear: str, apart: float) -> Changes:
 
 
 def _one_segment(long: bool) -> Callable[[GearPair, str, float], Changes]:
-    """A shaft of one segment whose length over diameter is a value, with its gear and bearings on it."""
+    """Shaft with gear and bearings. The shaft has one segment; the value is length over diameter."""
 
     def sets(pair: GearPair, gear: str, ratio: float) -> Changes:
         diameter = 2.0 if long else 300.0
         length = ratio * diameter
         on_it = {"gear_position": 0.5 * length, "bearings": [_bearing(0.0), _bearing(length)]}
-        own = on_it | {"segments": [{"length": length, "diameter": diameter}]}
+        shaft = on_it | {"segments": [{"length": length, "diameter": diameter}]}
         return {
             "shafts.motor": None,
             "shafts.load": None,
-            **{f"shafts.{gear}.{k}": v for k, v in own.items()},
+            **{f"shafts.{gear}.{k}": v for k, v in shaft.items()},
         }
 
     return sets

@@ -16,7 +16,7 @@ from lumped.schema.pair import leaf_paths, stated_unit
 
 
 def quiet(function, *arguments, **options):
-    """Result of a computation whose friction law may be outside its range; None where it is refused."""
+    """Return the result of a computation without warnings of the friction law. None: the input is refused."""
     name = function.__name__
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
@@ -88,7 +88,7 @@ def factor(exponents, scales):
 
 
 def scaled(pair, scales):
-    """The same pair in other units: every quantity of the schema times the factor of its dimension."""
+    """Return the pair in other units: every quantity is multiplied by the factor of the dimension."""
     changes = {}
     for path, value in leaf_paths(pair).items():
         unit = stated_unit(path)
@@ -102,7 +102,7 @@ def scaled(pair, scales):
 
 @pytest.fixture(scope="module")
 def similar():
-    """A pair without empirical laws, which have units of their own; inertia given, so that it scales."""
+    """Return a pair without empirical laws, because these laws have fixed units. The inertia is stated."""
     return load_gear_pair("nasa_28_28").with_(
         friction__law="smoothed_coulomb",
         friction__coefficient=0.06,

@@ -90,7 +90,8 @@ def ratio_of(pair: GearPair) -> str:
 
 
 def teeth_of(pair: GearPair) -> str:
-    pinion, gear = pair.pinion.teeth, pair.gear.teeth
+    pinion = pair.pinion.teeth
+    gear = pair.gear.teeth
     return "equal" if pinion == gear else "larger gear drives" if pinion > gear else "pinion drives"
 
 

@@ -34,7 +34,7 @@ REPORT = "validation.report"
 
 
 def _stated(name, **changes):
-    """An unlike pair all of whose values are known, so that none is uncertain."""
+    """Return an unlike pair with known values only, so that no input is uncertain."""
     return unlike_pair(name).with_(**changes).with_(assumed={})
 
 
@@ -96,8 +96,8 @@ def datasets(value: Any, path: str = "") -> Iterator[tuple[str, xr.Dataset]]:
 
 
 def _properties(owner: type, annotations: tuple[str, ...]) -> list[str]:
-    """Names of the public properties that return one of these types."""
-    found = []
+    """Return the names of the public properties with one of the return annotations."""
+    names = []
     for name, member in inspect.getmembers(owner):
         function = member.fget if isinstance(member, property) else None
         if isinstance(member, functools.cached_property):
@@ -105,8 +105,8 @@ def _properties(owner: type, annotations: tuple[str, ...]) -> list[str]:
         if function is not None and not name.startswith("_"):
             annotation = inspect.signature(function).return_annotation
             if annotation in annotations:
-                found.append(name)
-    return found
+                names.append(name)
+    return names
 
 
 def changed(name: str, pair: lumped.GearPair) -> lumped.GearPair:
@@ -122,21 +122,21 @@ def _options(name: str, kind: str) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    """Function: the result of a public function for a kind of pair, or its refusal; computed once."""
-    known = {}
+    """Return a function: (name of a public function, kind of pair) -> result or refusal, computed once."""
+    results = {}
 
     def of(name, kind):
-        if (name, kind) not in known:
+        if (name, kind) not in results:
             folder = tmp_path_factory.mktemp("call")
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", LawRangeWarning)
                 warnings.simplefilter("ignore", LikeTeethWarning)
                 try:
-                    found = CALLS[name](KINDS[kind], folder, **_options(name, kind))
+                    value = CALLS[name](KINDS[kind], folder, **_options(name, kind))
                 except (ParameterError, NumericalError) as error:
-                    found = error
-            known[name, kind] = found
-        return known[name, kind]
+                    value = error
+            results[name, kind] = value
+        return results[name, kind]
 
     return of
 
@@ -147,20 +147,20 @@ NAMES = sorted(CALLS.keys() - {REPORT})
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_function_returns_a_result_or_names_what_it_refuses(result, name, kind):
-    found = result(name, kind)
+    outcome = result(name, kind)
     if (name, kind) in NOT_DONE:
         field = NOT_DONE[name, kind]
-        assert isinstance(found, ParameterError if field else NumericalError)
-        assert {one.field for one in getattr(found, "problems", ())} == ({field} if field else set())
+        assert isinstance(outcome, ParameterError if field else NumericalError)
+        assert {one.field for one in getattr(outcome, "problems", ())} == ({field} if field else set())
     else:
-        assert not isinstance(found, Exception), found
+        assert not isinstance(outcome, Exception), outcome
 
 
-def _expected(name, kind, found):
-    """The pair that a result is of; one beside a record is at the operating point of the record."""
+def _expected(name, kind, outcome):
+    """Return the pair of a result. A comparison with a record is at the operating point of the record."""
     pair = changed(name, KINDS[kind])
     if name == "validation.measurements.evaluate":
-        at_record = found.prediction.pair
+        at_record = outcome.prediction.pair
         ours = pair.to_mapping()
         theirs = at_record.to_mapping()
         for key in ("operating", "sources", "assumed"):
@@ -174,33 +174,41 @@ def _expected(name, kind, found):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_dataset_says_what_it_was_made_from(result, name, kind, tmp_path):
-    found = result(name, kind)
-    if isinstance(found, Exception):
+    outcome = result(name, kind)
+    if isinstance(outcome, Exception):
         return
-    pair = _expected(name, kind, found)
-    for number, (path, data) in enumerate(datasets(found)):
-        given = data.attrs
-        made_with = spurcheck.load_gear_pair(tomllib.loads(given["parameters"]))
-        assert made_with == pair or (given["teeth"] == "alike" and made_with == pair.healthy), path
-        assert given["parameters_sha256"] == parameters_hash(made_with), path
-        assert given["gear_pair"] == pair.name, path
-        own = kind == "own teeth" and name in AS_GIVEN
-        assert given["teeth"] == ("as given" if own else "alike"), path
+    pair = _expected(name, kind, outcome)
+    for number, (path, data) in enumerate(datasets(outcome)):
+        attributes = data.attrs
+        made_with = spurcheck.load_gear_pair(tomllib.loads(attributes["parameters"]))
+        assert made_with == pair or (attributes["teeth"] == "alike" and made_with == pair.healthy), path
+        assert attributes["parameters_sha256"] == parameters_hash(made_with), path
+        assert attributes["gear_pair"] == pair.name, path
+        unlike_teeth = kind == "own teeth" and name in AS_GIVEN
+        assert attributes["teeth"] == ("as given" if unlike_teeth else "alike"), path
         if "supports" in inspect.signature(PUBLIC[name]).parameters or name.endswith("run_sweep"):
-            assert given["supports"] == supports_of(pair, None), path
+            assert attributes["supports"] == supports_of(pair, None), path
         if "time" in data.dims:
             _check_motion(name, data, _options(name, kind))
         file = tmp_path / f"{number}.nc"
         spurcheck.write_results(data, file)
-        kept = ("parameters", "parameters_sha256", "gear_pair", "teeth", "supports", "contact", "fidelity")
+        compared_keys = (
+            "parameters",
+            "parameters_sha256",
+            "gear_pair",
+            "teeth",
+            "supports",
+            "contact",
+            "fidelity",
+        )
         read = read_netcdf(file).attrs
-        assert {key: read[key] for key in kept if key in given} == {
-            key: given[key] for key in kept if key in given
+        assert {key: read[key] for key in compared_keys if key in attributes} == {
+            key: attributes[key] for key in compared_keys if key in attributes
         }
 
 
 def _check_motion(name, data, options):
-    """A motion says by which contact or at which fidelity, and its spectrum which pair it is of."""
+    """Check that a motion states contact or fidelity, and that the spectrum states the pair."""
     if "contact" in inspect.signature(PUBLIC[name]).parameters:
         assert data.attrs["contact"] == options.get("contact", "linear")
     if data.attrs["model"] == "multibody":
@@ -285,7 +293,8 @@ def _repeated(like: Any, own: Any) -> tuple[Any, Any]:
 
 def moved(like: Any, own: Any, counts: tuple[str, ...] = ()) -> dict[str, float]:
     """Name of what differs by more than 1e-6 of itself -> by how much."""
-    before, after = leaves(like), leaves(own)
+    before = leaves(like)
+    after = leaves(own)
     found = {}
     for name, value in before.items():
         of_the_method = any(word in name.replace("transmission_error", "") for word in OF_THE_METHOD)

@@ -111,21 +111,23 @@ def test_the_lists_of_exceptions_name_what_exists() -> None:
 
 
 def test_every_number_of_a_parameter_file_has_its_range() -> None:
-    known = {pattern.format(gear=gear) for pattern in (*DECLARED, *WHOLE) for gear in GEARS}
-    assert {path for path, _ in fields()} == known
+    declared = {pattern.format(gear=gear) for pattern in (*DECLARED, *WHOLE) for gear in GEARS}
+    assert {path for path, _ in fields()} == declared
 
 
 def test_every_stated_range_is_the_one_of_the_table() -> None:
-    """The same limits, units and names; and each has a row on a pair, but one that no pair can reach."""
+    """The limits, units and names are equal. Each range has a row, but for a range that no pair can leave."""
     stated = {
         (law, r) for law, record in LAWS.items() for r in record.ranges if r.stated and not record.parts
     }
     stated |= {("iso6336", r) for r in iso6336.RANGES}
     stated |= {("foundation", r) for r in (foundation.HALF_ANGLE, foundation.BODY_RATIO)}
-    found = {(where, r.quantity): (r.unit, r.low, r.high) for where, r in stated}
-    assert found == RANGES
-    known = {(Path(row.where).stem, row.names.rpartition(": ")[2]) for row in GUARDS}
-    assert set(RANGES) - known == {("xu_kahraman", "slide_to_roll")}  # both flanks roll the same way
+    stated_limits = {(where, r.quantity): (r.unit, r.low, r.high) for where, r in stated}
+    assert stated_limits == RANGES
+    ranges_with_row = {(Path(row.where).stem, row.names.rpartition(": ")[2]) for row in GUARDS}
+    assert set(RANGES) - ranges_with_row == {
+        ("xu_kahraman", "slide_to_roll")
+    }  # both flanks roll the same way
 
 
 def test_every_flag_has_a_row() -> None:

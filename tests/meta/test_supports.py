@@ -67,14 +67,16 @@ def test_supports_are_a_keyword_whose_default_is_none(name):
 @pytest.mark.parametrize("name", COMPUTED)
 def test_shafts_of_the_file_hold_the_gears_by_default(name, tmp_path):
     call = COMPUTED[name]
-    found = {}
-    for number, held in enumerate(({}, {"supports": "shafts"}, {"supports": "springs"})):
+    numbers_by_call = {}
+    for number, arguments in enumerate(({}, {"supports": "shafts"}, {"supports": "springs"})):
         folder = tmp_path / str(number)
         folder.mkdir()
-        found[number] = numbers(call(SMALL, folder, **held))
-    assert found[0].size
-    assert np.array_equal(found[0], found[1])
-    assert found[0].shape != found[2].shape or not np.allclose(found[0], found[2], rtol=1e-6)
+        numbers_by_call[number] = numbers(call(SMALL, folder, **arguments))
+    assert numbers_by_call[0].size
+    assert np.array_equal(numbers_by_call[0], numbers_by_call[1])
+    assert numbers_by_call[0].shape != numbers_by_call[2].shape or not np.allclose(
+        numbers_by_call[0], numbers_by_call[2], rtol=1e-6
+    )
 
 
 @pytest.mark.parametrize("name", COMPUTED)
@@ -87,18 +89,18 @@ def test_shafts_that_a_pair_does_not_have_are_refused(name, tmp_path):
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_be_done_on_shafts_says_so(name, tmp_path):
     call = REFUSED[name]
-    for held in ({}, {"supports": "shafts"}):
+    for arguments in ({}, {"supports": "shafts"}):
         with pytest.raises(ParameterError) as caught:
-            call(SMALL, tmp_path, **held)
+            call(SMALL, tmp_path, **arguments)
         (problem,) = caught.value.problems
         assert problem.field == "supports"
-        assert problem.value == held.get("supports", "left out for a pair with shafts")
+        assert problem.value == arguments.get("supports", "left out for a pair with shafts")
         assert '"springs"' in problem.allowed
         assert problem.action == 'Give supports="springs".'
     (tmp_path / "other").mkdir()
-    asked = numbers(call(SMALL, tmp_path, supports="springs"))
-    assert asked.size
-    assert np.array_equal(asked, numbers(call(without_shafts(SMALL), tmp_path / "other")))
+    on_springs = numbers(call(SMALL, tmp_path, supports="springs"))
+    assert on_springs.size
+    assert np.array_equal(on_springs, numbers(call(without_shafts(SMALL), tmp_path / "other")))
 
 
 @pytest.mark.parametrize("name", WITHOUT)

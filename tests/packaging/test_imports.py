@@ -99,7 +99,7 @@ SOURCE = ast.parse(Path(spurcheck.__file__).read_text(encoding="utf-8"))
 
 
 def test_every_name_is_what_its_annotation_imports():
-    """What a type checker sees, the imports of the block for it, is what `__getattr__` gives."""
+    """Every name that `__getattr__` returns is the object of the import under TYPE_CHECKING."""
     (block,) = (
         node for node in SOURCE.body if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node)
     )

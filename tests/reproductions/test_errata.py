@@ -42,7 +42,8 @@ def evidence(chapter, equation, quantity):
 
 def losses(pair, r):
     """Mean friction, mesh damping and bearing damping power of a response, from its own histories [W]."""
-    d, s = r.cycle, periodic_system(pair, "full").structure
+    d = r.cycle
+    s = periodic_system(pair, "full").structure
     friction = (d["friction_force"] * d["sliding_velocity"]).sum("pair").mean()
     names = ("x_p", "x_g", "y_p", "y_g")
     bearings = sum(c * (d[f"{n}_dot"] ** 2).mean() for c, n in zip(s.damping[2:], names, strict=True))
@@ -90,7 +91,8 @@ def test_drift_is_that_of_the_unbalanced_torque(pair):
     assert abs(speed_drift(pair)) < 1e-9  # 20 cycles at a tolerance of 1e-8 of the deflection
     right = response(pair)
     wrong = response(pair, as_printed=(1,))
-    b, g = bodies(pair), geometry(pair)
+    b = bodies(pair)
+    g = geometry(pair)
     acceleration = (wrong.brake_torque - right.brake_torque) / (b.inertia_pinion + b.inertia_gear)
     expected = acceleration * 20 * g.mesh_period / g.omega_pinion
     # 1 %: the start is the repaired model's motion, so the printed one has a decaying transient

@@ -52,9 +52,9 @@ def compare(
 ) -> None:
     r"""Say in how many of 100 possible machines one variant of a gear pair is better than another.
 
-    Every sample is a machine in which all variants run: an input that they share has the same value in all of
-    them. Inputs vary as in 'spurcheck uncertainty'. --speed, --torque, --law and --set change all variants.
-    Smaller results are better, of the efficiency a larger one.
+    Every sample is a machine in which all variants run. A shared input has the same value in all variants.
+    Inputs vary as in 'spurcheck uncertainty'. --speed, --torque, --law and --set change all variants.
+    A smaller result is better, but for the efficiency a larger value is better.
 
     [bold]Examples[/bold]
     spurcheck compare mypair.toml other.toml
@@ -67,23 +67,23 @@ def compare(
     """
     from validation.prediction.compare import compare as run
 
-    names, given = _variants(pairs, variant, speed=speed, torque=torque, law=law, settings=settings)
+    names, gear_pairs = _variants(pairs, variant, speed=speed, torque=torque, law=law, settings=settings)
     limits = opt.limits_of_samples(samples, seconds)
     with progress_bar("possible machines") as tell:
-        found = run(*given, names=names, seed=seed, supports=supports, progress=tell, **limits)
+        comparison = run(*gear_pairs, names=names, seed=seed, supports=supports, progress=tell, **limits)
     if as_json:
-        print_json(_as_json(found))
+        print_json(_as_json(comparison))
     else:
-        _show(found)
-    for remark in found.attrs["remarks"]:
+        _show(comparison)
+    for remark in comparison.attrs["remarks"]:
         note(f"{remark}.")
-    files.write(found)
+    files.write(comparison)
 
 
 def _variants(
     pairs: Sequence[str] | None, changes: Sequence[str] | None, **options: Any
 ) -> tuple[list[str], list[GearPair]]:
-    """What each variant is called, and the variants; refused are several pairs beside changes."""
+    """Return the names of the variants and the variants. Several pairs together with changes are refused."""
     from lumped.errors import refuse
 
     if changes is None:
@@ -94,12 +94,12 @@ def _variants(
     if len(pairs or ()) > 1:
         raise refuse("--variant", changes[0], "one pair, which it changes", "Leave the other pairs out.")
     base = pairs[0] if pairs else None
-    made = [opt.gear_pair(base, variant=one, **options) for one in (None, *changes)]
-    return [base or opt.DEFAULT_PAIR, *changes], made
+    variants = [opt.gear_pair(base, variant=one, **options) for one in (None, *changes)]
+    return [base or opt.DEFAULT_PAIR, *changes], variants
 
 
-def _show(found: xr.Dataset) -> None:
-    """Print a sentence, the variants, one table, and how to read it."""
+def _show(comparison: xr.Dataset) -> None:
+    """Print one sentence, the list of variants, one table, and how to read the table."""
     from validation.prediction.compare import (
         FLAGS,
         LARGER,
@@ -111,43 +111,51 @@ def _show(found: xr.Dataset) -> None:
         ranking,
     )
 
-    letters = [str(one) for one in found["variant"].to_numpy()]
+    letters = [str(result) for result in comparison["variant"].to_numpy()]
     console = stdout()
-    console.print(str(found["sentence"][0].item()))
-    for letter, name in zip(letters, found["name"].to_numpy(), strict=True):
+    console.print(str(comparison["sentence"][0].item()))
+    for letter, name in zip(letters, comparison["name"].to_numpy(), strict=True):
         console.print(f"{letter}  {name}")
-    two = len(letters) == 2
+    two_variants = len(letters) == 2
     rows = []
-    for one in found["result"].to_numpy():
-        of = found.sel(result=one)
-        given = found[f"{one}_given"].to_numpy()
-        cells, unit = as_read(one, given)
-        better = ", larger is better" if one in LARGER else ""
-        text = f"{(RESULTS | OF_TEETH)[str(one)]}{better}" + (f" [{unit.strip()}]" if unit else "")
-        if two:
-            ends = found[f"{one}_difference"].sel(variant="B", other="A", percentile=[5.0, 95.0])
-            (low, high), _ = as_read(one, ends.to_numpy(), 2, given)
-            other = f"{low} to {high}"
+    for result in comparison["result"].to_numpy():
+        of_result = comparison.sel(result=result)
+        values_as_given = comparison[f"{result}_given"].to_numpy()
+        cells, unit = as_read(result, values_as_given)
+        better = ", larger is better" if result in LARGER else ""
+        text = f"{(RESULTS | OF_TEETH)[str(result)]}{better}" + (f" [{unit.strip()}]" if unit else "")
+        if two_variants:
+            ends = comparison[f"{result}_difference"].sel(variant="B", other="A", percentile=[5.0, 95.0])
+            (low, high), _ = as_read(result, ends.to_numpy(), 2, values_as_given)
+            last_column = f"{low} to {high}"
         else:
-            best = of["best"].to_numpy()
-            other = f"{letters[int(best.argmax())]} in {of_hundred(float(best.max()))}"
-        least, most = (of_hundred(float(end)) for end in of["holds_interval"])
-        holds = f"{of_hundred(float(of['holds']))} ({least} to {most})"
-        order = ranking(of["place"].to_numpy().tolist(), letters)
-        rows.append((text, *cells, other, order, holds))
+            best = of_result["best"].to_numpy()
+            last_column = f"{letters[int(best.argmax())]} in {of_hundred(float(best.max()))}"
+        least, most = (of_hundred(float(end_words)) for end_words in of_result["holds_interval"])
+        holds = f"{of_hundred(float(of_result['holds']))} ({least} to {most})"
+        order = ranking(of_result["place"].to_numpy().tolist(), letters)
+        rows.append((text, *cells, last_column, order, holds))
     for name, text in FLAGS.items():
-        if found[name].any() or name == "contact_lost":
-            shares = [str(of_hundred(float(share))) for share in found[name]]
+        if comparison[name].any() or name == "contact_lost":
+            shares = [str(of_hundred(float(share))) for share in comparison[name]]
             rows.append((f"{text} [of 100]", *shares, "", "", ""))
     values = "".join(f" | >{letter}" for letter in letters)
-    show("", f"result{values} | >{'B less A' if two else 'best'} | as given | >holds in, of 100", rows)
-    refused = f", {found.attrs['refused']} left out without a prediction" if found.attrs["refused"] else ""
-    taken = found.attrs["taken"]
-    asked = found.attrs["asked"]
-    begun = f"{taken} of {asked}" if taken < asked else f"{taken}"
-    end = f"; {opt.time_words(found)}" if taken < asked else ""
-    console.print(f"{begun} possible machines, seed {found.attrs['seed']}{refused}{end}")
-    if two:
+    show(
+        "", f"result{values} | >{'B less A' if two_variants else 'best'} | as given | >holds in, of 100", rows
+    )
+    refused = (
+        f", {comparison.attrs['refused']} left out without a prediction"
+        if comparison.attrs["refused"]
+        else ""
+    )
+    samples_taken = comparison.attrs["taken"]
+    samples_wanted = comparison.attrs["asked"]
+    count_words = (
+        f"{samples_taken} of {samples_wanted}" if samples_taken < samples_wanted else f"{samples_taken}"
+    )
+    end_words = f"; {opt.time_words(comparison)}" if samples_taken < samples_wanted else ""
+    console.print(f"{count_words} possible machines, seed {comparison.attrs['seed']}{refused}{end_words}")
+    if two_variants:
         console.print("B less A: 5 to 95 % of the difference in the same machine")
     else:
         console.print("best: the variant that is best most often, and in how many of 100 machines")
@@ -155,37 +163,41 @@ def _show(found: xr.Dataset) -> None:
     console.print(f"holds in: machines in which the order is this one, and the {100 * SURE:.0f} % interval")
 
 
-def _as_json(found: xr.Dataset) -> dict[str, Any]:
-    """The table in SI; shares of the machines from 0 to 1."""
+def _as_json(comparison: xr.Dataset) -> dict[str, Any]:
+    """Return the table as JSON data: numbers in SI, shares of the machines from 0 to 1."""
     from validation.prediction.compare import FLAGS
 
-    letters = [str(one) for one in found["variant"].to_numpy()]
+    letters = [str(result) for result in comparison["variant"].to_numpy()]
 
     def by_letter(values: xr.DataArray) -> dict[str, Any]:
         return dict(zip(letters, values.to_numpy().tolist(), strict=True))
 
     results = {}
-    for one in map(str, found["result"].to_numpy()):
-        of = found.sel(result=one)
-        results[one] = {
-            "unit": found[one].attrs["units"],
-            "given": by_letter(found[f"{one}_given"]),
-            "place": by_letter(of["place"]),
-            "holds": float(of["holds"]),
-            "holds_interval": of["holds_interval"].to_numpy().tolist(),
-            "best": by_letter(of["best"]),
-            "better": {a: by_letter(of["better"].sel(variant=a)) for a in letters},
+    for result in map(str, comparison["result"].to_numpy()):
+        of_result = comparison.sel(result=result)
+        results[result] = {
+            "unit": comparison[result].attrs["units"],
+            "given": by_letter(comparison[f"{result}_given"]),
+            "place": by_letter(of_result["place"]),
+            "holds": float(of_result["holds"]),
+            "holds_interval": of_result["holds_interval"].to_numpy().tolist(),
+            "best": by_letter(of_result["best"]),
+            "better": {a: by_letter(of_result["better"].sel(variant=a)) for a in letters},
             "difference": {
                 a: {
-                    b: found[f"{one}_difference"].sel(variant=a, other=b).to_numpy().tolist()
+                    b: comparison[f"{result}_difference"].sel(variant=a, other=b).to_numpy().tolist()
                     for b in letters
                     if b != a
                 }
                 for a in letters
             },
-            "sentence": str(of["sentence"].item()),
+            "sentence": str(of_result["sentence"].item()),
         }
-    flags = {name: by_letter(found[name]) for name in FLAGS}
-    names = dict(zip(letters, map(str, found["name"].to_numpy()), strict=True))
-    kept = {key: found.attrs[key] for key in ("supports", "seed", "taken", "asked", "refused", "remarks")}
-    return {"variants": names, "samples": found.sizes["sample"]} | kept | {"results": results} | flags
+    flags = {name: by_letter(comparison[name]) for name in FLAGS}
+    names = dict(zip(letters, map(str, comparison["name"].to_numpy()), strict=True))
+    settings = {
+        key: comparison.attrs[key] for key in ("supports", "seed", "taken", "asked", "refused", "remarks")
+    }
+    return (
+        {"variants": names, "samples": comparison.sizes["sample"]} | settings | {"results": results} | flags
+    )

@@ -57,11 +57,11 @@ def init(
 ) -> None:
     """Write a commented parameter file to edit.
 
-    Every value has its unit beside it. A bare number means that unit; text may carry any unit of the same
-    kind, such as "200 lbf*in". At the end of the file stands where values come from, and which are assumed.
+    A comment states the unit of every value. A number without a unit is in this unit. A text may carry any
+    unit of the same kind, such as "200 lbf*in". The end of the file lists sources and assumed values.
 
-    REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in. What such a file
-    does not say is marked as assumed; what decides the geometry is asked for, and --set gives it.
+    FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units as REXS files. Values that a REXS
+    file lacks are assumed and marked. Values that decide the geometry are never assumed: use --set.
 
     [bold]Examples[/bold]
     spurcheck init
@@ -89,30 +89,32 @@ def init(
     from validation.files.output import check_file, write_text
 
     sizes = {"module": module, "face_width": face_width, "speed": speed, "torque": torque}
-    own = {f"--{name.replace('_', '-')}": (name, value) for name, value in sizes.items()}
-    own |= {"--oil": ("oil", oil), "--law": ("law", law)}
-    own |= {f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()}
+    fields_by_option = {f"--{name.replace('_', '-')}": (name, value) for name, value in sizes.items()}
+    fields_by_option |= {"--oil": ("oil", oil), "--law": ("law", law)}
+    fields_by_option |= {f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()}
     if preset not in preset_names() and (Path(preset).exists() or preset.endswith(".toml")):
-        made = "This is a file already: edit it, or copy it."
-        action = made if Path(preset).exists() else f"To write this file: spurcheck init -o {preset}."
+        advice = "This is a file already: edit it, or copy it."
+        action = advice if Path(preset).exists() else f"To write this file: spurcheck init -o {preset}."
         raise refuse("preset", preset, "one of " + ", ".join(preset_names()), action)
     text = preset_text(preset)
     name = preset
-    given = {option: (path, value) for option, (path, value) in own.items() if value is not None}
-    values = {path: opt.value_of(value) for path, value in given.values()}
-    options = {field: option for option, (path, _) in given.items() for field in fields_of(path)}
+    options_set = {
+        option: (path, value) for option, (path, value) in fields_by_option.items() if value is not None
+    }
+    values = {path: opt.value_of(value) for path, value in options_set.values()}
+    options = {field: option for option, (path, _) in options_set.items() for field in fields_of(path)}
     options |= dict.fromkeys(("pinion.teeth", "gear.teeth", "teeth"), "--teeth") | {"oil": "--oil"}
     if teeth is not None:
         if preset != opt.DEFAULT_PAIR or from_rexs is not None:
             raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
-        for option in own:
-            if option not in given and own[option][0] in sizes:
+        for option in fields_by_option:
+            if option not in options_set and fields_by_option[option][0] in sizes:
                 raise refuse(option, "missing", "a value beside --teeth", "Give it.")
         name = f"pair_{re.sub('[^0-9]+', '_', teeth)}"
         if output is not None and str(output) != "-":
             name = output.stem
     elif from_rexs is None:
-        for option, (_, value) in given.items():
+        for option, (_, value) in options_set.items():
             action = "Give --teeth PINION/GEAR too, or edit the file."
             raise refuse(option, value, "with --teeth or --from-rexs", action)
     if stage is not None and from_rexs is None:
@@ -159,11 +161,11 @@ def export(
 ) -> None:
     """Write a gear pair or a result for another program.
 
-    REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in; 'spurcheck init
-    --from-rexs' reads it. The linear model is the pair averaged over a mesh cycle: matrices A, B, C, D from
-    the torques to the transmission error and the displacements, for MATLAB (.mat) and for python-control or
-    SciPy (.npz); it is of a pair on the springs of 'bearings', and one with shafts needs --supports springs.
-    A result is any .nc file that spurcheck wrote.
+    FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units as REXS files; 'spurcheck init
+    --from-rexs' reads REXS files. The linear model is the pair averaged over a mesh cycle: matrices A, B, C,
+    D from the torques to the transmission error and the displacements, for MATLAB (.mat) and for
+    python-control or SciPy (.npz). The linear model is on the springs of 'bearings'; a pair with shafts needs
+    --supports springs. A result is any .nc file that spurcheck wrote.
 
     [bold]Examples[/bold]
     spurcheck export nasa_28_28 -o pair.rexs
@@ -181,14 +183,14 @@ def export(
     from validation.files.output import DATA_SUFFIXES, check_file
 
     if source.lower().endswith(".nc"):
-        given = {
+        options_of_pairs = {
             "--speed": speed,
             "--torque": torque,
             "--law": law,
             "--set": settings,
             "--supports": supports,
         }
-        for option, value in given.items():
+        for option, value in options_of_pairs.items():
             if value is not None:
                 raise refuse(option, "with a result file", "a gear pair", "Leave it out.")
         check_file(output, DATA_SUFFIXES, force=force)
@@ -208,6 +210,6 @@ def export(
             raise refuse("--supports", supports, "with a linear model, .mat or .npz", "Leave it out.")
         else:
             write_rexs(pair, output, force=force)
-            kept = "bearings, shafts, damping, friction law, stiffness model and inertia"
-            note(f"REXS is written without {kept}: keep the parameter file")
+            left_out_fields = "bearings, shafts, damping, friction law, stiffness model and inertia"
+            note(f"REXS is written without {left_out_fields}: keep the parameter file")
     stderr().print(f"wrote {output}")

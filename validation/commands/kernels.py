@@ -1,4 +1,8 @@
-"""The first run on a machine compiles for a minute: a second process helps, and the bar says what goes on."""
+"""Compilation during the first run on a machine.
+
+The first run compiles for about a minute. A second process compiles at the same time, and the progress bar
+shows the number of compiled functions.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +15,17 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lumped.typing import Progress
 
-#: Functions that a whole report compiles, nested ones too (listener on an empty cache, numba 0.63).
+#: Functions that a report compiles, with nested functions (counted on an empty cache, numba 0.63).
 _FUNCTIONS = 150
 
 
 @contextmanager
 def compiling(bar: Progress) -> Iterator[Progress]:
-    """Compile beside the block what it needs late; the block's own progress, with what it compiles itself.
+    """Compile in a second process while the block runs. Yields the progress function for the block.
 
-    The second process compiles the multibody model, then stability charts, while the block compiles the
-    lumped model with contact loss and takes samples of it. A kernel that one of them compiles, the other one
-    waits for.
+    The second process compiles the multibody model and the stability charts, which the block needs last.
+    Meanwhile the block compiles the lumped model with contact loss and computes samples. If both processes
+    need the same kernel, the second waits until the first has compiled the kernel.
     """
     from numba.core import event
 
@@ -49,14 +53,14 @@ def _all_stored() -> bool:
 
 
 def _start() -> subprocess.Popen[bytes]:
-    """Start this file as a program; -P keeps folders of the user's from standing for the packages."""
+    """Start this file as a program. -P: a folder of the user cannot replace a package of the same name."""
     nothing = subprocess.DEVNULL
     command = [sys.executable, "-P", "-m", "validation.commands.kernels"]
     return subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing)
 
 
 class _Listener:
-    """Tells how many functions numba has compiled, beside the progress of the work."""
+    """Adds the number of functions that numba has compiled to the progress of the work."""
 
     def __init__(self, bar: Progress) -> None:
         self._bar = bar
@@ -64,19 +68,19 @@ class _Listener:
         self._fraction = 0.0
 
     def tell(self, fraction: float, stage: str = "", /) -> None:
-        """Take the progress of the work, and remember how far it is."""
+        """Take the progress of the work and store the fraction."""
         self._fraction = fraction
         self._bar(fraction, stage)
 
     def notify(self, event: Any) -> None:
-        """Take one event of numba, the begin or the end of a compilation."""
+        """Take one event of numba: the start or the end of a compilation."""
         self._done += event.is_end
         share = f"{self._done} of about {_FUNCTIONS} functions"
         self._bar(self._fraction, f"compiling, once for this machine, for a minute: {share}")
 
 
 def main() -> None:
-    """Compute a motion of the multibody model and a chart of one point: their kernels are stored."""
+    """Compute a multibody motion and a chart of one point. Numba stores the compiled kernels."""
     import floquet
     import multibody
     from lumped import load_gear_pair

@@ -1,4 +1,4 @@
-"""spurcheck simulate, uncertainty, teeth, interactive: motions of a pair, and what changes them."""
+"""spurcheck simulate, uncertainty, teeth, interactive: motions of a gear pair, influences on the motion."""
 
 from __future__ import annotations
 
@@ -64,19 +64,19 @@ def simulate(
     from lumped.quasi_static.contacts import contact_of
     from validation.validity.flags import contact_loss
 
-    held = supports_of(pair, supports)
-    rising = run_up is not None
-    exact = model == "multibody"
-    for option, wrong, allowed in (
-        ("--steady", steady and exact, "without --model multibody"),
-        ("--run-up", rising and (steady or exact), "without --steady and --model multibody"),
-        ("--seconds", seconds != 2.0 and not rising, "with --run-up"),
-        ("--contact", contact != "linear" and exact, "without --model multibody"),
-        ("--fidelity", fidelity != "exact" and not exact, "with --model multibody"),
-        ("--cycles", cycles != 20 and (steady or rising), "without --steady and --run-up"),
-        ("--initial", initial != "static" and (steady or rising), "without --steady and --run-up"),
+    supports_used = supports_of(pair, supports)
+    is_run_up = run_up is not None
+    is_multibody = model == "multibody"
+    for option, has_no_effect, allowed in (
+        ("--steady", steady and is_multibody, "without --model multibody"),
+        ("--run-up", is_run_up and (steady or is_multibody), "without --steady and --model multibody"),
+        ("--seconds", seconds != 2.0 and not is_run_up, "with --run-up"),
+        ("--contact", contact != "linear" and is_multibody, "without --model multibody"),
+        ("--fidelity", fidelity != "exact" and not is_multibody, "with --model multibody"),
+        ("--cycles", cycles != 20 and (steady or is_run_up), "without --steady and --run-up"),
+        ("--initial", initial != "static" and (steady or is_run_up), "without --steady and --run-up"),
     ):
-        if wrong:
+        if has_no_effect:
             raise refuse(option, "given", allowed, "Here it has no effect: leave it out.")
     if run_up is not None:
         with progress_bar("run-up") as tell:
@@ -84,11 +84,13 @@ def simulate(
             if not end:
                 raise refuse("--run-up", run_up, "two speeds FROM..TO", "For example 500..6000.")
             ends = (opt.number_in("--run-up", begin, "rpm"), opt.number_in("--run-up", end, "rpm"))
-            result = lumped.run_up(pair, ends, seconds, contact=contact, supports=held, progress=tell)
-        _show_run_up(pair.name, held, result, as_json=as_json)
+            result = lumped.run_up(
+                pair, ends, seconds, contact=contact, supports=supports_used, progress=tell
+            )
+        _show_run_up(pair.name, supports_used, result, as_json=as_json)
         return files.write(result)
     with progress_bar(f"{model} model") as tell:
-        common: dict[str, Any] = {"samples_per_cycle": samples, "supports": held}
+        common: dict[str, Any] = {"samples_per_cycle": samples, "supports": supports_used}
         if steady:
             result = lumped.steady_state(pair, contact=contact, **common)
         elif model == "lumped":
@@ -99,7 +101,7 @@ def simulate(
             common |= {"fidelity": fidelity, "initial": initial}
             result = multibody.simulate(pair, cycles, progress=tell, **common)
     g = pair.geometry
-    form = contact_of(pair)
+    contact_form = contact_of(pair)
     # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
     last = result.isel(time=slice(-samples - (not steady), None))
     largest, smallest = load_range(pair, last["normal_load"].to_numpy(), last["contact"].to_numpy())
@@ -109,25 +111,25 @@ def simulate(
         "dte_peak_to_peak": ("transmission error, peak to peak", dte, "m", 3),
         "dte_mean": ("transmission error, mean", float(last["dte"][:samples].mean()), "m", 4),
         "normal_load_max": ("largest load of a tooth pair", largest, "N", 3),
-        "normal_load_min": (f"smallest load of {form.pressed}", smallest, "N", 3),
+        "normal_load_min": (f"smallest load of {contact_form.pressed}", smallest, "N", 3),
         "load_factor": ("largest load over static load", factor, "1", 3),
         "mesh_efficiency": ("mesh efficiency", float(result.attrs.get("mesh_efficiency", np.nan)), "%", 4),
         "brake_torque": ("brake torque that holds the speed", float(result.attrs["brake_torque"]), "N m", 6),
     }
     # Where energy is not conserved the brake torque balances sliding alone.
-    if not form.conservative and "power_energy_residual" in result.attrs:
+    if not contact_form.conservative and "power_energy_residual" in result.attrs:
         residual = float(result.attrs["power_energy_residual"])
         words = "losses that the torques do not balance"
         numbers["power_energy_residual"] = (words, residual, "W", 4)
     if as_json:
         values = {key: value for key, (_, value, *_) in numbers.items()}
-        print_json({"gear_pair": pair.name, "model": model, "supports": held} | values)
+        print_json({"gear_pair": pair.name, "model": model, "supports": supports_used} | values)
     else:
         rows = (
             (words, quantity(100.0 * value if unit == "%" else value, unit, digits, measured=True))
             for words, value, unit, digits in numbers.values()
         )
-        show(f"{pair.name} on {held}, last mesh cycle", "quantity | >value", rows)
+        show(f"{pair.name} on {supports_used}, last mesh cycle", "quantity | >value", rows)
     separation = contact_loss(pair, g, last)
     linear = contact == "linear" if model == "lumped" else fidelity == "linear"
     if separation.state != "ok" and linear:
@@ -144,18 +146,25 @@ def simulate(
 
 
 def _show_run_up(name: str, supports: opt.SupportsName, result: xr.Dataset, *, as_json: bool) -> None:
-    """Print where each mesh order is largest."""
+    """Print the largest amplitude of each mesh order and the speed at which the order is largest."""
     from validation.signals import waterfall
 
     orders = range(1, _MESH_ORDERS + 1)
     amplitude = waterfall(result)["amplitude"].sel(order=list(orders), method="nearest")
-    sizes = amplitude.max("speed_rpm").to_numpy()
-    speeds = amplitude.idxmax("speed_rpm").to_numpy()
+    largest_amplitudes = amplitude.max("speed_rpm").to_numpy()
+    speeds_of_largest = amplitude.idxmax("speed_rpm").to_numpy()
     if as_json:
-        largest = dict(zip(orders, zip(sizes.tolist(), speeds.tolist(), strict=True), strict=True))
+        largest = dict(
+            zip(
+                orders, zip(largest_amplitudes.tolist(), speeds_of_largest.tolist(), strict=True), strict=True
+            )
+        )
         print_json({"gear_pair": name, "supports": supports, "variable": "dte", "largest": largest})
     else:
-        rows = ((f"{n}", (size, "m"), rpm) for n, size, rpm in zip(orders, sizes, speeds, strict=True))
+        rows = (
+            (f"{n}", (size, "m"), rpm)
+            for n, size, rpm in zip(orders, largest_amplitudes, speeds_of_largest, strict=True)
+        )
         columns = ">mesh order | >largest amplitude | >at speed [rpm]"
         show(f"{name} on {supports}, run-up: transmission error", columns, rows)
 
@@ -190,37 +199,43 @@ def uncertainty(
 
     limits = opt.limits_of_samples(samples, seconds)
     with progress_bar("uncertain inputs") as tell:
-        found = run(pair, seed=seed, supports=supports, progress=tell, **limits)
+        predictions = run(pair, seed=seed, supports=supports, progress=tell, **limits)
     rows = (
-        (words, *((float(v), unit) for v in (found.attrs[f"given_{name}"], *found[f"{name}_percentile"])))
+        (
+            words,
+            *(
+                (float(v), unit)
+                for v in (predictions.attrs[f"given_{name}"], *predictions[f"{name}_percentile"])
+            ),
+        )
         for name, (unit, words) in (QUANTITIES | TEETH).items()
-        if f"given_{name}" in found.attrs
+        if f"given_{name}" in predictions.attrs
     )
     show(
-        f"{pair.name} on {found.attrs['supports']}: results",
+        f"{pair.name} on {predictions.attrs['supports']}: results",
         "result | >as given | >5 % | >50 % | >95 %",
         rows,
     )
-    name = transmission_error(found)
-    swing, correlation = (found[f"{name}_{one}"].to_numpy() for one in ("swing", "rank_correlation"))
-    moves = [
-        (str(found["input"].to_numpy()[j]), str(found.attrs["written"][j]), (swing[j].min(), "m"),
+    name = transmission_error(predictions)
+    swing, correlation = (predictions[f"{name}_{one}"].to_numpy() for one in ("swing", "rank_correlation"))
+    input_rows = [
+        (str(predictions["input"].to_numpy()[j]), str(predictions.attrs["written"][j]), (swing[j].min(), "m"),
          (swing[j].max(), "m"), round(float(correlation[j]), 2))
         for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
     ]  # fmt: skip
     title = f"what moves the {(QUANTITIES | TEETH)[name][1]}"
-    show(title, "input | range | >from | >to | >rank corr.", moves)
+    show(title, "input | range | >from | >to | >rank corr.", input_rows)
     counts = {
         "refused": "refused", "contact_lost": "contact lost", "unstable": "unstable",
         "linear": "with the linear motion, as no other was found",
     }  # fmt: skip
-    shares = ", ".join(f"{found.attrs[name]} {words}" for name, words in counts.items())
-    taken = found.attrs["taken"]
-    asked = found.attrs["asked"]
-    stdout().print(f"{taken} of {asked} samples, seed {seed}: {shares}")
-    if taken < asked:
-        note(f"{opt.time_words(found)}.")
-    files.write(found)
+    shares = ", ".join(f"{predictions.attrs[name]} {words}" for name, words in counts.items())
+    samples_taken = predictions.attrs["taken"]
+    samples_wanted = predictions.attrs["asked"]
+    stdout().print(f"{samples_taken} of {samples_wanted} samples, seed {seed}: {shares}")
+    if samples_taken < samples_wanted:
+        note(f"{opt.time_words(predictions)}.")
+    files.write(predictions)
 
 
 @guarded
@@ -243,33 +258,35 @@ def teeth(pair: opt.Pair, files: opt.DataFiles, supports: opt.Supports = None) -
     from validation.signals.findings import GEARS, NOISE, TeethFindings, deviations_table, rpm_and_period
 
     with progress_bar("motion over the period of the teeth"):
-        found = TeethFindings(pair, supports)
+        findings = TeethFindings(pair, supports)
     console = stdout()
-    console.print(f"{pair.name} on {found.supports}: at {rpm_and_period(found)}")
-    console.print(f"contact: {found.motion.attrs['touch']}")
-    given = deviations_table(pair).to_dataframe()
+    console.print(f"{pair.name} on {findings.supports}: at {rpm_and_period(findings)}")
+    console.print(f"contact: {findings.motion.attrs['touch']}")
+    deviations = deviations_table(pair).to_dataframe()
     columns = "gear | >index deviations | >largest step | >eccentricity | >ISO 1328-1 class"
     sizes = ["cumulative", "pitch", "eccentricity"]
-    classes = ("none" if one == 12 else f"{one:g}" for one in given["tolerance_class"])
-    lengths = ([(length, "m") for length in row] for row in given[sizes].to_numpy())
-    show("", columns, ((gear, *row, one) for gear, row, one in zip(GEARS, lengths, classes, strict=True)))
-    both = found.motion, found.twin
-    swings = [(float(one.attrs["dte_peak_to_peak"]), "m") for one in both]
-    loads = [(found.load(one) / found.static_force, "1") for one in both]
+    classes = ("none" if number == 12 else f"{number:g}" for number in deviations["tolerance_class"])
+    lengths = ([(length, "m") for length in row] for row in deviations[sizes].to_numpy())
+    show(
+        "", columns, ((gear, *row, number) for gear, row, number in zip(GEARS, lengths, classes, strict=True))
+    )
+    motions = findings.motion, findings.twin
+    swings = [(float(number.attrs["dte_peak_to_peak"]), "m") for number in motions]
+    loads = [(findings.load(number) / findings.static_force, "1") for number in motions]
     rows: list[tuple[Any, ...]] = [
         ("transmission error, peak to peak", *swings),
         ("largest load on one tooth / mean mesh force", *loads),
-        ("growth of a perturbation in a mesh cycle", *found.rates),
+        ("growth of a perturbation in a mesh cycle", *findings.rates),
     ]
     for gear in GEARS:
-        data = found.indicators(gear)["value"].sel(record=["pair", "healthy twin"])
+        data = findings.indicators(gear)["value"].sel(record=["pair", "healthy twin"])
         for name in ("RMS_residual", "FM4"):
             unit = "m/s^2" if name.startswith("RMS") else "1"
-            rows.append((f"{name}, {gear}", *((float(one), unit) for one in data.sel(indicator=name))))
+            rows.append((f"{name}, {gear}", *((float(number), unit) for number in data.sel(indicator=name))))
     show("", "result | >teeth as given | >like teeth", rows)
     console.print(f"indicators: acceleration of the pinion, with noise of {100 * NOISE:.0f} % of its rms")
-    console.print(found.sentence)
-    files.write(found.motion)
+    console.print(findings.sentence)
+    files.write(findings.motion)
 
 
 @guarded
@@ -284,8 +301,8 @@ def interactive(
     """Write a page to explore stability over speed and damping, and the response over speed.
 
     One HTML file that opens in any browser, without network: point at a chart for values, zoom, move the
-    sliders, or use the keyboard alone. Every number of it is also written as NetCDF. It is of a pair on the
-    springs of 'bearings'; one with shafts needs --supports springs.
+    sliders, or use the keyboard alone. Every number of the page is also written as NetCDF. The page is for a
+    pair on the springs of 'bearings'; a pair with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck interactive -o page.html

@@ -1,4 +1,4 @@
-"""Options that several commands share, and how they become gear pairs, axes and files."""
+"""Options that several commands share. Functions here turn options into gear pairs, axes and files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _READ_BY_LAWS = re.compile(r"^(friction\.(?!law$)|lubricant\.)|\.(roughness$|(ti
 
 
 def output(help: str) -> Any:
-    """Return the option that names the file or folder to write; ``help`` says what can be written."""
+    """Return the option --output, which names the file or folder to write. ``help``: kinds of files."""
     return typer.Option("--output", "-o", help=help)
 
 
@@ -99,15 +99,20 @@ ForceFolder = Annotated[
 
 
 def limits_of_samples(samples: int | None, seconds: float | None) -> dict[str, Any]:
-    """How many samples, and for how long: a number that is asked for is computed however long it takes."""
+    """Return the number of samples and the time limit.
+
+    If the user states a number of samples, all samples are computed, unless --seconds sets a limit.
+    """
     if samples is None:
         return {"samples": SAMPLES, "seconds": SAMPLE_SECONDS if seconds is None else seconds}
     return {"samples": samples, "seconds": seconds}
 
 
-def time_words(found: xr.Dataset) -> str:
-    """What ended the samples, and how they go on."""
-    return f"the time of {found.attrs['seconds']:g} s was used up; --samples {found.attrs['asked']} takes all"
+def time_words(samples: xr.Dataset) -> str:
+    """Say that the time limit ended the sampling, and how to compute all samples."""
+    seconds = samples.attrs["seconds"]
+    samples_wanted = samples.attrs["asked"]
+    return f"the time of {seconds:g} s was used up; --samples {samples_wanted} takes all"
 
 
 def gear_pair(
@@ -119,79 +124,92 @@ def gear_pair(
     speed_range: str | None = None,
     variant: str | None = None,
 ) -> GearPair:
-    """Load a gear pair and apply the options of the command line; None: the example, which a note says.
+    """Load a gear pair and apply the options of the command line.
 
-    ``variant`` holds further changes, FIELD=VALUE, between semicolons.
+    Without a name of a pair, the example is loaded and a note says so. ``variant`` holds further changes,
+    FIELD=VALUE, separated by semicolons.
     """
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
     from lumped.schema.changes import fields_of
     from validation.validity.plausibility import parameter_warnings
 
-    asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
+    settings_wanted = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
     changes = [] if variant is None else variant.split(";")
-    asked += [(f"--variant {path}", path, text) for path, text in set_fields(changes, "--variant").items()]
+    settings_wanted += [
+        (f"--variant {path}", path, text) for path, text in set_fields(changes, "--variant").items()
+    ]
     for name, text in (("speed", speed), ("torque", torque), ("law", law), ("range", speed_range)):
         if text is not None:
-            asked.append((f"--{name}", fields_of(name)[0], text))
-    once(field for _, path, _ in asked for field in fields_of(path))
+            settings_wanted.append((f"--{name}", fields_of(name)[0], text))
+    once(field for _, path, _ in settings_wanted for field in fields_of(path))
     if pair is None:
         note(f"no gear pair is named, so this is the example {DEFAULT_PAIR}: name your parameter file.")
-    own = load_gear_pair(pair or DEFAULT_PAIR)
+    pair_as_read = load_gear_pair(pair or DEFAULT_PAIR)
     try:
-        varied = own.with_({path: value_of(text) for _, path, text in asked})
+        pair_as_set = pair_as_read.with_({path: value_of(text) for _, path, text in settings_wanted})
     except ParameterError as error:
-        options = {field: option for option, path, _ in asked for field in (path, *fields_of(path))}
+        options = {field: option for option, path, _ in settings_wanted for field in (path, *fields_of(path))}
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
-    for option, path, text in asked:
-        others = {other: value_of(value) for _, other, value in asked if other != path}
-        if _READ_BY_LAWS.search(fields_of(path)[0]) and not _has_effect(own, varied, others):
-            given = path.endswith(".roughness") and varied.friction.composite_roughness is not None
-            law = "friction.composite_roughness is given" if given else f"the law is {varied.friction.law}"
-            why = f"mesh.relief is '{varied.mesh.relief}'" if "relief" in path else law
+    for option, path, text in settings_wanted:
+        others = {other: value_of(value) for _, other, value in settings_wanted if other != path}
+        if _READ_BY_LAWS.search(fields_of(path)[0]) and not _has_effect(pair_as_read, pair_as_set, others):
+            has_composite_roughness = (
+                path.endswith(".roughness") and pair_as_set.friction.composite_roughness is not None
+            )
+            law = (
+                "friction.composite_roughness is given"
+                if has_composite_roughness
+                else f"the law is {pair_as_set.friction.law}"
+            )
+            why = f"mesh.relief is '{pair_as_set.mesh.relief}'" if "relief" in path else law
             note(f"{option} = {text} changes nothing in the motion: {why}.")
-        if varied.shafts is not None and fields_of(path)[0].startswith("bearings."):
+        if pair_as_set.shafts is not None and fields_of(path)[0].startswith("bearings."):
             note(f"{option} = {text} changes nothing on the shafts, which hold the gears: see --supports.")
-    if varied.stiffness_note:
-        note(varied.stiffness_note)
-    for warning in parameter_warnings(varied):
+    if pair_as_set.stiffness_note:
+        note(pair_as_set.stiffness_note)
+    for warning in parameter_warnings(pair_as_set):
         note(warning)
-    return varied
+    return pair_as_set
 
 
-def _has_effect(own: GearPair, varied: GearPair, others: dict[str, Any]) -> bool:
-    """Whether the laws of ``varied`` are other than those of ``own`` with the ``others`` of its changes."""
+def _has_effect(pair_as_read: GearPair, pair_as_set: GearPair, other_changes: dict[str, Any]) -> bool:
+    """Whether one of several changes has an effect on the laws of a gear pair.
+
+    The laws with all changes (``pair_as_set``) are compared with the laws without this change
+    (``pair_as_read`` with ``other_changes``).
+    """
     from lumped import LawRangeWarning
     from lumped.errors import ParameterError
     from lumped.quasi_static.contacts import contact_of
 
-    def laws(of: GearPair) -> list[bytes]:
-        elements = contact_of(of).elements(of)
+    def laws(gear_pair: GearPair) -> list[bytes]:
+        elements = contact_of(gear_pair).elements(gear_pair)
         functions = (elements.stiffness, elements.friction, elements.error)
         return [array.tobytes() for law in functions for array in (law.breaks, law.coefficients)]
 
-    with warnings.catch_warnings(), suppress(ParameterError):  # of the pair without it
+    with warnings.catch_warnings(), suppress(ParameterError):  # the other changes alone may be refused
         warnings.simplefilter("ignore", LawRangeWarning)
-        without = own.with_(others)
-        return without == varied or laws(without) != laws(varied)
+        without_the_change = pair_as_read.with_(other_changes)
+        return without_the_change == pair_as_set or laws(without_the_change) != laws(pair_as_set)
     return True
 
 
 def alike(pair: GearPair) -> GearPair:
-    """The twin with like teeth, for a command that takes no teeth that differ; a note says so."""
+    """Return the twin with like teeth, for a command that needs like teeth. A note names this replacement."""
     if pair.healthy is not pair:
         note("this command takes all teeth of a gear as alike; spurcheck teeth takes them as given.")
     return pair.healthy
 
 
 class Files(NamedTuple):
-    """Files that a command writes, checked before any work."""
+    """Output files of a command. The paths are checked before any computation."""
 
     paths: tuple[Path, ...]
     force: bool
 
     def write(self, data: xr.Dataset, draw: Callable[[], Figure] | None = None) -> None:
-        """Write data or its figure, as each suffix says; ``draw`` makes another figure than ``plot``."""
+        """Write data or a figure to each file, by suffix. ``draw``: replaces the function ``plot``."""
         from validation.exchange.results import write_results
         from validation.files.output import DATA_SUFFIXES
 
@@ -209,7 +227,7 @@ class Files(NamedTuple):
 
 
 def _files(kinds: str) -> Group:
-    """The options --output and --force for files of "data", "figure" or both."""
+    """Return the options --output and --force. ``kinds``: "data", "figure" or "data figure"."""
     words = {
         "data": ".nc (NetCDF), .mat (MATLAB) or .csv for data",
         "figure": ".png, .svg or .pdf for the figure",
@@ -219,8 +237,8 @@ def _files(kinds: str) -> Group:
     def make(output: list[Path] | None, force: bool | None) -> Files:
         from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
-        known = {"data": DATA_SUFFIXES, "figure": FIGURE_SUFFIXES}
-        suffixes = tuple(suffix for kind in kinds.split() for suffix in known[kind])
+        suffixes_by_kind = {"data": DATA_SUFFIXES, "figure": FIGURE_SUFFIXES}
+        suffixes = tuple(suffix for kind in kinds.split() for suffix in suffixes_by_kind[kind])
         return Files(tuple(check_file(one, suffixes, force=bool(force)) for one in output or ()), bool(force))
 
     return Group({"output": Annotated[list[Path] | None, output(text)], "force": Force}, make)
@@ -231,7 +249,8 @@ DataFiles = Annotated[Files, _files("data")]
 FigureFiles = Annotated[Files, _files("figure")]
 _PAIR = {"pair": PairArgument, "speed": Speed, "torque": Torque, "law": Law, "settings": Settings}
 _RANGED = _PAIR | {"speed_range": Range}
-#: A pair with its teeth as given; the same with what it is called and a range of speeds; one with like teeth.
+#: `Pair`: a pair with its teeth as given. `NamedPair`: the name of the pair and the pair, with --range.
+#: `AlikePair`: a pair with like teeth, with --range.
 Pair = Annotated["GearPair", Group(_PAIR, gear_pair)]
 NamedPair = Annotated[
     "tuple[str, GearPair]",
@@ -241,7 +260,7 @@ AlikePair = Annotated["GearPair", Group(_RANGED, lambda **options: alike(gear_pa
 
 
 def once(fields: Iterable[str]) -> None:
-    """Refuse a field that two options set, of which only the last would count."""
+    """Refuse a field that is set twice: only the last value would count."""
     from lumped.errors import refuse
 
     for field, count in Counter(fields).items():
@@ -250,21 +269,21 @@ def once(fields: Iterable[str]) -> None:
 
 
 def set_fields(settings: list[str] | None, option: str = "--set") -> dict[str, str]:
-    """Return field path -> text of its value of every --set; ``option`` is named in a refusal."""
+    """Return field path -> text of the value, for every --set. ``option``: the name in a refusal."""
     from lumped.errors import refuse
 
-    found: dict[str, str] = {}
+    fields: dict[str, str] = {}
     for item in settings or []:
         path, separator, text = item.partition("=")
         if not separator or not path.strip():
             raise refuse(option, item, "FIELD=VALUE", f"For example {option} mesh.damping_ratio=0.03.")
-        once([*found, path.strip()])
-        found[path.strip()] = text.strip()
-    return found
+        once([*fields, path.strip()])
+        fields[path.strip()] = text.strip()
+    return fields
 
 
 def by_option(error: ParameterError, options: Mapping[str, str], source: str) -> ParameterError:
-    """Return a refusal that names the options where fields come from them, each problem of an option once."""
+    """Return the refusal with names of options in place of fields. Equal problems are listed once."""
     from lumped.errors import ParameterError
 
     problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
@@ -272,7 +291,7 @@ def by_option(error: ParameterError, options: Mapping[str, str], source: str) ->
 
 
 def value_of(text: str) -> Any:
-    """Value of an option as a parameter file would read it; anything but a TOML value is text."""
+    """Return the value of an option as a parameter file reads it. A text that is no TOML value stays text."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except (tomllib.TOMLDecodeError, RecursionError):
@@ -280,9 +299,12 @@ def value_of(text: str) -> Any:
 
 
 def axis_values(
-    text: str, known: Mapping[str, ChartAxis], option: str = "--axis"
+    text: str, axes: Mapping[str, ChartAxis], option: str = "--axis"
 ) -> tuple[str, NDArray[np.float64]]:
-    """Name and values of an axis written NAME=FROM:TO:COUNT; ``option`` is named in a refusal."""
+    """Return name and values of an axis written NAME=FROM:TO:COUNT.
+
+    ``axes``: the axes that are allowed. ``option``: name of the option in a refusal.
+    """
     import numpy as np
 
     from lumped.arguments import nearest
@@ -290,34 +312,37 @@ def axis_values(
 
     name, separator, values = (part.strip() for part in text.partition("="))
     allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
-    example = "speed_rpm=1000:20000:80" if "speed_rpm" in known else f"{next(iter(known))}=1:2:80"
-    wrong = refuse(option, text, allowed, f"For example {option} {example}.")
-    *ends, many = values.split(":")
-    if not separator or len(ends) != 2 or not many.strip().isdecimal():
-        raise wrong
-    if name not in known:
-        advice = nearest(name, known) or "Choose one of them."
-        raise refuse(option, name, "one of " + ", ".join(known), advice)
-    low, high = sorted(number_in(option, end, known[name].units) for end in ends)
-    if low == high or not 2 <= int(many) <= _LARGEST_COUNT:
-        raise wrong
-    found = np.linspace(low, high, int(many))
+    example = "speed_rpm=1000:20000:80" if "speed_rpm" in axes else f"{next(iter(axes))}=1:2:80"
+    refusal = refuse(option, text, allowed, f"For example {option} {example}.")
+    *ends, count = values.split(":")
+    if not separator or len(ends) != 2 or not count.strip().isdecimal():
+        raise refusal
+    if name not in axes:
+        advice = nearest(name, axes) or "Choose one of them."
+        raise refuse(option, name, "one of " + ", ".join(axes), advice)
+    low, high = sorted(number_in(option, end, axes[name].units) for end in ends)
+    if low == high or not 2 <= int(count) <= _LARGEST_COUNT:
+        raise refusal
+    axis_points = np.linspace(low, high, int(count))
     try:
-        known[name].check(name, found)
+        axes[name].check(name, axis_points)
     except ParameterError as error:
         raise by_option(error, {f"axes[{name!r}]": f"{option} {name}"}, "") from None
-    return name, found
+    return name, axis_points
 
 
-def axes_values(texts: list[str] | None, known: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
-    """Axes by name, see `axis_values`; refuses a name that comes twice."""
-    found = [axis_values(text, known) for text in texts or []]
-    once(f"--axis {name}" for name, _ in found)
-    return dict(found)
+def axes_values(texts: list[str] | None, axes: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
+    """Return axis name -> values, see `axis_values`. An axis that is given twice is refused."""
+    values_by_name = [axis_values(text, axes) for text in texts or []]
+    once(f"--axis {name}" for name, _ in values_by_name)
+    return dict(values_by_name)
 
 
 def number_in(option: str, text: str, unit: str) -> float:
-    """Number in a unit, of text that may carry another one of its kind; ``option`` is named in a refusal."""
+    """Return the number that a text states, in ``unit``. The text may carry any unit of the same kind.
+
+    ``option``: name of the option in a refusal.
+    """
     from lumped.errors import refuse
     from lumped.fields.units import to_si, to_stated
 

@@ -1,4 +1,4 @@
-"""spurcheck report, crosscheck: the verification report, and the lumped against the multibody model."""
+"""spurcheck report, crosscheck: the verification report; comparison of the lumped and multibody models."""
 
 from __future__ import annotations
 
@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 #: Changes listed in the terminal.
 _MOST = 30
-#: Exit code of a finding: one about the machine that ``--require`` forbids, or about the lumped model, where
-#: the multibody model has another motion.
+#: Exit code of a finding: the machine does not meet ``--require``, or both models have different motions.
 _FOUND = 4
 
 
@@ -45,9 +44,9 @@ def report(
     """Write the verification report of a gear pair.
 
     One folder: index.html (opens in any browser, without network), report.json (every number), figures
-    (SVG), tables (CSV and one workbook) and data (NetCDF). It says what the model predicts, how sure that is,
-    whether a second program agrees, whether the motion is stable, and what to do next. The exit code is 1 if
-    a check of the program fails.
+    (SVG), tables (CSV and one workbook) and data (NetCDF). The report states the predicted motion, the
+    uncertainty, the agreement of a second program, the stability of the motion, and the next steps. The exit
+    code is 1 if a check of the program fails.
 
     [bold]Examples[/bold]
     spurcheck report -o report
@@ -112,7 +111,7 @@ def report(
 
 
 def _show_early(title: str, numbers: Sequence[Number]) -> None:
-    """Print what is known before the range of the inputs, the second program and the charts."""
+    """Print the first results, before the computation of uncertainty, second program and charts."""
     console = stderr()
     console.print(f"{title}\nFirst result, inputs as given:")
     for row in numbers:
@@ -176,8 +175,8 @@ def crosscheck(
     if as_json:
         agreements = [asdict(one) | {"within": one.within} for one in check.agreements]
         loss = None if check.loss is None else asdict(check.loss) | {"within": check.loss.within}
-        found = {"failures": check.failures, "agreements": agreements, "loss": loss}
-        print_json({"verdict": check.verdict.word, "supports": "springs", **found})
+        results = {"failures": check.failures, "agreements": agreements, "loss": loss}
+        print_json({"verdict": check.verdict.word, "supports": "springs", **results})
     else:
         _print(check)
     files.write(check.lumped, lambda: _figure(check))

@@ -1,4 +1,4 @@
-"""spurcheck response: motions over speed with unilateral contact, the jumps between them, and their map."""
+"""spurcheck response: motions over speed with unilateral contact, jumps between motions, map of the jumps."""
 
 from __future__ import annotations
 
@@ -37,15 +37,15 @@ def response(
 ) -> None:
     """Follow all motions over speed, stable and unstable, with unilateral contact.
 
-    Prints at which speeds the pair jumps from one motion to another on running up and down, at which it can
-    beat or be chaotic, and how many start states lead to each motion at the operating speed. The figure shows
-    the branches, the jumps, beats and chaos, the linear model and the multipliers.
+    Prints the speeds of jumps between motions on running up and down, the speeds of beats and chaos, and the
+    share of start states that lead to each motion at the operating speed. The figure shows the branches, the
+    jumps, beats and chaos, the linear model and the multipliers.
 
-    With --map the same over speed and torque, mesh damping or tip relief: where contact is lost, where
-    several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
+    --map computes a map over speed and torque, mesh damping or tip relief: loss of contact, ranges with
+    several motions, speeds of jumps, and values that remove the jumps.
 
-    All of it is of a pair on the springs of 'bearings', with like teeth and the stiffness of the static load;
-    one with shafts needs --supports springs.
+    All results are for a pair on the springs of 'bearings', with like teeth and the stiffness of the static
+    load. A pair with shafts needs --supports springs.
 
     [bold]Examples[/bold]
     spurcheck response my_pair.toml --range 200..3000 -o response.png
@@ -77,36 +77,36 @@ def response(
         return
     whole_number("--periods", periods, 1, 8)
     with progress_bar("branches") as tell:
-        many = 20 if seeds is None else seeds
+        settling_speeds = 20 if seeds is None else seeds
         cycles = range(1, periods + 1)
-        found = floquet.response_branches(
-            pair, None, cycles, seeds=many, back_side=back_side, seconds=budget, progress=tell
+        branches = floquet.response_branches(
+            pair, None, cycles, seeds=settling_speeds, back_side=back_side, seconds=budget, progress=tell
         )
     if as_json:
         names = ("jumps", "attractors", "gaps", "bifurcations", "open")
-        lists = {name: getattr(found, name) for name in names}
-        about = {"gear_pair": pair.name, "supports": "springs", "speeds_rpm": list(found.speeds_rpm)}
-        print_json(about | lists | {"basins": _basins(found)})
+        lists = {name: getattr(branches, name) for name in names}
+        about = {"gear_pair": pair.name, "supports": "springs", "speeds_rpm": list(branches.speeds_rpm)}
+        print_json(about | lists | {"basins": _basins(branches)})
     else:
-        _print(pair, found)
-    if not back_side and any(o.reaches_back_side for o in found.at(operating_rpm(pair))):
+        _print(pair, branches)
+    if not back_side and any(o.reaches_back_side for o in branches.at(operating_rpm(pair))):
         note("a motion at the operating speed is larger than the backlash: try --back-side.")
 
     def draw() -> Figure:
         from validation.plots.contact_loss import response_figure
 
-        linear = lumped.speed_sweep(pair, np.linspace(*found.speeds_rpm, _LINEAR_SPEEDS))
-        return response_figure(found.dataset, linear)
+        linear = lumped.speed_sweep(pair, np.linspace(*branches.speeds_rpm, _LINEAR_SPEEDS))
+        return response_figure(branches.dataset, linear)
 
-    files.write(found.dataset, draw)
+    files.write(branches.dataset, draw)
 
 
-def _print(pair: GearPair, found: ResponseBranches) -> None:
+def _print(pair: GearPair, branches: ResponseBranches) -> None:
     def motion(rms: float, load: float, kind: str, n: int) -> str:
         if kind == "grows":
             return "grows beyond twice the backlash"
-        words = {1: "", 0: f", {kind}"}.get(n, f", repeats after {n} cycles")
-        return f"{quantity(rms, 'm', 3)} rms{words}; load {quantity(load, 'N', 3)}"
+        motion_kind = {1: "", 0: f", {kind}"}.get(n, f", repeats after {n} cycles")
+        return f"{quantity(rms, 'm', 3)} rms{motion_kind}; load {quantity(load, 'N', 3)}"
 
     rows = [
         (
@@ -115,23 +115,23 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
             motion(jump.dte_rms, jump.largest_load, "does not repeat", jump.n),
             motion(jump.dte_rms_after, jump.largest_load_after, jump.after, jump.n_after),
         )
-        for jump in found.jumps
+        for jump in branches.jumps
     ]
     if rows:
         show(f"{pair.name} on springs: jumps", "pinion speed | running | from | to", rows)
     lines = [] if rows else ["no jumps: one stable motion leads to the next"]
-    if found.open:
+    if branches.open:
         lines = [] if rows else ["no jumps were found in the time"]
-        ranges = ", ".join(f"{number(low, 5)} to {number(high, 5)} rpm" for low, high in found.open)
+        ranges = ", ".join(f"{number(low, 5)} to {number(high, 5)} rpm" for low, high in branches.open)
         lines.append(f"the time left open: {ranges}; go on with a larger --budget or a smaller --range")
-    if found.contact_kept:
-        runs = found.response.runs
+    if branches.contact_kept:
+        runs = branches.response.runs
         looked = f"{runs} runs from far starts found no other" if runs else "no others were looked for"
         lines.append(f"contact is never lost in these motions; {looked}{'' if runs else ' (--seeds)'}")
-    for low, high in found.gaps:
+    for low, high in branches.gaps:
         lines.append(f"{number(low, 5)} to {number(high, 5)} rpm: no stable motion of few cycles was found")
-    lines += [one.text for one in found.attractors]
-    for basin in _basins(found):
+    lines += [one.text for one in branches.attractors]
+    for basin in _basins(branches):
         least, most = (number(100.0 * share, 3) for share in basin.share_interval)
         lines.append(
             f"at the operating speed {number(100.0 * basin.share, 3)} % ({least} to {most} %) of the start "
@@ -141,17 +141,20 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         stdout().print(line)
 
 
-def _basins(found: ResponseBranches) -> tuple[Basin, ...]:
-    """Shares of start states at the operating speed, where it is in the range and motions coexist."""
+def _basins(branches: ResponseBranches) -> tuple[Basin, ...]:
+    """Return the share of start states that lead to each motion at the operating speed.
+
+    Empty where the operating speed is outside the range, or where only one motion exists.
+    """
     from floquet.gear.axes import operating_rpm
 
-    low, high = found.speeds_rpm
-    shares = found.basins() if low <= operating_rpm(found.pair) <= high else ()
+    low, high = branches.speeds_rpm
+    shares = branches.basins() if low <= operating_rpm(branches.pair) <= high else ()
     return shares if len(shares) > 1 else ()
 
 
 def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, as_json: bool) -> None:
-    """Map the jumps over speed and a second axis, and find what removes them."""
+    """Map the jumps over speed and a second axis, and find which values of this axis remove the jumps."""
     import numpy as np
 
     import floquet
@@ -160,37 +163,48 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, files: opt.Files, a
     name, values = _axis(axis, pair)
     axes = {"speed_rpm": np.linspace(*speed_range(pair), speeds), name: values}
     with progress_bar("jump map") as tell:
-        found = floquet.jump_map(pair, axes, seeds=seeds, progress=tell)
+        jump_map = floquet.jump_map(pair, axes, seeds=seeds, progress=tell)
     with progress_bar("what removes jumps") as tell:
         branches = floquet.response_branches(pair, periods=(1, 2), seeds=0, progress=tell)
         removed = floquet.jumps_removed_by(branches, name)
-    jumps = found.drop_dims([name, "speed_rpm"]).to_dataframe()
+    jumps = jump_map.drop_dims([name, "speed_rpm"]).to_dataframe()
     jumps = jumps.rename(columns=lambda column: column.removeprefix("jump_"))
-    files.write(found)
+    files.write(jump_map)
     if as_json:
         about = {"gear_pair": pair.name, "supports": "springs", "axis": name, "values": values.tolist()}
         print_json(about | {"jumps": jumps.to_dict("records"), "removed_by": removed})
         return
-    unit = found[name].attrs["units"].removeprefix("1")
-    several = (found["motions"] > 1).mean("speed_rpm").to_series()
+    unit = jump_map[name].attrs["units"].removeprefix("1")
+    share_of_several = (jump_map["motions"] > 1).mean("speed_rpm").to_series()
     rows = []
-    for value, share in several.items():
-        here = jumps[jumps[name] == value].groupby(jumps["rising"].astype(bool))["speed_rpm"]
-        ways = {way: ", ".join(number(rpm, 5) for rpm in speeds) for way, speeds in here}
-        rows.append((value, ways.get(True, ""), ways.get(False, ""), f"{100.0 * share:.0f} %"))
-    axis_name = found[name].attrs["long_name"]
+    for value, share in share_of_several.items():
+        jumps_at_value = jumps[jumps[name] == value].groupby(jumps["rising"].astype(bool))["speed_rpm"]
+        speeds_by_direction = {
+            rising: ", ".join(number(rpm, 5) for rpm in speeds) for rising, speeds in jumps_at_value
+        }
+        rows.append(
+            (
+                value,
+                speeds_by_direction.get(True, ""),
+                speeds_by_direction.get(False, ""),
+                f"{100.0 * share:.0f} %",
+            )
+        )
+    axis_name = jump_map[name].attrs["long_name"]
     title = f"{pair.name} on springs: jumps over {axis_name}; share of speeds with several motions"
     show(title, f">{name}{unit and f' [{unit}]'} | up at [rpm] | down at [rpm] | >share", rows)
     if not removed:
         stdout().print("the pair itself has no folds: nothing is to be removed")
     for one in removed:
-        left = f"{one.direction} {name}, up to {number(one.limit, 3)} {unit}".rstrip() + ": jumps are left"
-        gone = f"no jumps are left from {name} = {number(one.value, 4)} {unit}".rstrip()
-        stdout().print(f"{gone} on ({one.direction} values)" if one.found else left)
+        jumps_left = (
+            f"{one.direction} {name}, up to {number(one.limit, 3)} {unit}".rstrip() + ": jumps are left"
+        )
+        no_jumps_left = f"no jumps are left from {name} = {number(one.value, 4)} {unit}".rstrip()
+        stdout().print(f"{no_jumps_left} on ({one.direction} values)" if one.found else jumps_left)
 
 
 def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
-    """Name and values of the second axis."""
+    """Return name and values of the second axis of a map."""
     import numpy as np
 
     from floquet.gear.jumps import JUMP_AXES, checked_axis, search_range
@@ -199,5 +213,5 @@ def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
     checked_axis(pair, name, "--map")
     if "=" in text:
         return opt.axis_values(text, JUMP_AXES, "--map")
-    own = float(JUMP_AXES[name].own(pair))
-    return name, np.linspace(*search_range(name, own), _VALUES)
+    pair_value = float(JUMP_AXES[name].own(pair))
+    return name, np.linspace(*search_range(name, pair_value), _VALUES)

@@ -73,32 +73,36 @@ def stability(
     from floquet.gear.tongues import campbell
     from lumped.model.periodic_system import supports_of
 
-    held = supports_of(pair, supports)
+    supports_used = supports_of(pair, supports)
     grid = opt.axes_values(axis, GEAR_AXES)
-    _check(view, grid, files, tongues, prove, held)
-    found = gear_pair_multipliers(pair, supports=held)
-    margin = 1.0 - found.spectral_radius
+    _check(view, grid, files, tongues, prove, supports_used)
+    multipliers = gear_pair_multipliers(pair, supports=supports_used)
+    margin = 1.0 - multipliers.spectral_radius
     if as_json:
-        point = {"verdict": found.verdict, "spectral_radius": found.spectral_radius, "error": found.error}
-        point |= {"certificate": found.certificate, "margin": margin}
-        print_json({"gear_pair": pair.name, "supports": held} | point)
+        point = {
+            "verdict": multipliers.verdict,
+            "spectral_radius": multipliers.spectral_radius,
+            "error": multipliers.error,
+        }
+        point |= {"certificate": multipliers.certificate, "margin": margin}
+        print_json({"gear_pair": pair.name, "supports": supports_used} | point)
     else:
         rows = {
-            "verdict": found.verdict,
-            "largest multiplier": f"{found.spectral_radius:.8f}",
-            "bound on its error": f"{number(found.error, 2)} ({found.certificate})",
+            "verdict": multipliers.verdict,
+            "largest multiplier": f"{multipliers.spectral_radius:.8f}",
+            "bound on its error": f"{number(multipliers.error, 2)} ({multipliers.certificate})",
             "margin, 1 - largest multiplier": margin,
         }
-        show(f"{pair.name} on {held}: operating point", "quantity | >value", rows.items())
+        show(f"{pair.name} on {supports_used}: operating point", "quantity | >value", rows.items())
     if files.paths or axis or tongues or prove or view != "chart":
         if view == "chart":
-            files.write(*_chart(pair, grid, tongues, held, prove))
+            files.write(*_chart(pair, grid, tongues, supports_used, prove))
         elif view == "boundaries":
-            files.write(_boundaries(pair, grid, held))
+            files.write(_boundaries(pair, grid, supports_used))
         else:
             speeds = grid.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
-            files.write(campbell(pair, speeds, supports=held))
-    if found.verdict != "stable":
+            files.write(campbell(pair, speeds, supports=supports_used))
+    if multipliers.verdict != "stable":
         raise typer.Exit(FAILED)
 
 
@@ -120,7 +124,7 @@ def _check(
     figure = next((one for one in files.paths if one.suffix.lower() not in DATA_SUFFIXES), None)
     shafts = supports == "shafts"
     layer = "--prove" if prove else "--tongues"
-    for wrong, option, value, allowed, action in (
+    for is_wrong, option, value, allowed, action in (
         (view == "boundaries" and others != 1, "--axis", named, "one axis other than speed_rpm, with or "
          "without speed_rpm, for --view boundaries", "For example --axis damping_ratio=0.005:0.05:5."),
         (view == "campbell" and others, "--axis", named, "no axis but speed_rpm for --view campbell",
@@ -134,7 +138,7 @@ def _check(
         (prove and axes and set(axes) != _BOTH, "--prove", named, "the axes speed_rpm and damping_ratio",
          "Name both or none."),
     ):  # fmt: skip
-        if wrong:
+        if is_wrong:
             raise refuse(option, value, allowed, action)
     if axes:
         gear_grid(axes, supports)
@@ -167,19 +171,19 @@ def _chart(
     def draw() -> Figure:
         from validation.plots.stability import stability_figure
 
-        at = {name: GEAR_AXES[name].own(pair) for name in grid}
+        operating_point = {name: GEAR_AXES[name].own(pair) for name in grid}
         lines = (
             {str(tongue): rpm for tongue, rpm in predicted_lines(pair, supports=supports).items()}
             if regions
             else {}
         )
-        return stability_figure(chart, at, regions, lines)
+        return stability_figure(chart, operating_point, regions, lines)
 
     return data, draw
 
 
 def _tongues(pair: GearPair, chart: xr.Dataset) -> tuple[xr.Dataset, Sequence[TongueMargin | LabelledRegion]]:
-    """Name the unstable regions of a chart and print them; over speed and damping trace them, too."""
+    """Name the unstable regions of a chart and print a table. Over speed and damping, trace the tongues."""
     from floquet.gear.chart import label_regions
     from floquet.gear.tongues import stability_margins
 
@@ -189,38 +193,39 @@ def _tongues(pair: GearPair, chart: xr.Dataset) -> tuple[xr.Dataset, Sequence[To
         columns = " | ".join(("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points"))
         points = ([f"{one.point[name]:.6g}" for name in names] for one in regions)
         rows = (
-            (str(one.label), *at, f"{one.radius:.6f}", str(one.nodes))
-            for one, at in zip(regions, points, strict=True)
+            (str(one.label), *coordinates, f"{one.radius:.6f}", str(one.nodes))
+            for one, coordinates in zip(regions, points, strict=True)
         )
         show("unstable regions, by mode shape (w: natural frequencies)", columns, rows)
         return chart, regions
     with progress_bar("tongues"):
         ends = float(chart["speed_rpm"].min()), float(chart["speed_rpm"].max())
-        found = stability_margins(pair, ends, supports="springs")
-    edges = found.dataset.rename(damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper")
-    if (above := found.above) is not None:
+        margins = stability_margins(pair, ends, supports="springs")
+    edges = margins.dataset.rename(damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper")
+    if (above := margins.above) is not None:
         stdout().print(
             f"next tongue above the range, without mesh damping: {above.label}, {above.lower:.0f} to "
             f"{above.upper:.0f} rpm, closed by a mesh damping ratio of {above.critical_damping:.6f}"
         )
-    if found.tongues:
+    if margins.tongues:
         show(
             "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
             "tongue | >from | >to | >multiplier | >critical damping | >closes at",
             (
                 (t.label, f"{t.lower:.1f}", f"{t.upper:.1f}", f"{t.radius:.6f}", f"{t.critical_damping:.6f}",
                  f"{t.tip_speed:.1f}")
-                for t in sorted(found.tongues, key=lambda t: -t.critical_damping)
+                for t in sorted(margins.tongues, key=lambda t: -t.critical_damping)
             ),
         )  # fmt: skip
         stdout().print(
-            f"Friction is constant at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio "
-            f"of {found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}."
+            f"Friction is constant at its mean, {margins.friction_coefficient:.4f}. "
+            f"Above a mesh damping ratio of {margins.critical_damping:.6f} every speed is stable; "
+            f"this pair has {margins.damping:g}."
         )
     else:
-        low, high = found.speed_range
+        low, high = margins.speed_range
         stdout().print(f"no tongue from {low:g} to {high:g} rpm, even without mesh damping")
-    return chart.merge(edges, combine_attrs="override"), found.tongues
+    return chart.merge(edges, combine_attrs="override"), margins.tongues
 
 
 def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.SupportsName) -> xr.Dataset:
@@ -229,20 +234,21 @@ def _boundaries(pair: GearPair, axes: Mapping[str, FloatArray], supports: opt.Su
 
     grid = dict(axes)
     speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
-    ends, (name,) = (float(speeds.min()), float(speeds.max())), grid
+    ends = float(speeds.min()), float(speeds.max())
+    (name,) = grid
     with progress_bar("boundaries") as tell:
-        found = stability_boundaries(pair, ends, {name: grid[name]}, supports=supports, progress=tell)
-    if not found.sizes["tongue"]:
+        boundaries = stability_boundaries(pair, ends, {name: grid[name]}, supports=supports, progress=tell)
+    if not boundaries.sizes["tongue"]:
         stdout().print(f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value")
-        return found
+        return boundaries
     rows = (
         (str(one["label"].item()), str(int(one["present"].sum())), f"{float(one['lower'].min()):.1f}",
          f"{float(one['upper'].max()):.1f}", f"{float(one['peak_radius'].max()):.6f}")
-        for one in (found.isel(tongue=row) for row in range(found.sizes["tongue"]))
+        for one in (boundaries.isel(tongue=row) for row in range(boundaries.sizes["tongue"]))
     )  # fmt: skip
     columns = "tongue | >values | >from, rpm | >to, rpm | >largest multiplier"
     show(f"tongues over {GEAR_AXES[name].long_name}", columns, rows)
-    return found
+    return boundaries
 
 
 @guarded
@@ -283,34 +289,43 @@ def floquet(
     if len(grid) > 2:
         raise refuse("--axis", ", ".join(grid), "one or two", "Leave an axis out.")
     model = read_second_order(source)
-    found = monodromy(model.system(), rtol)
+    multipliers = monodromy(model.system(), rtol)
     if as_json:
         print_json(
-            {"file": source.name, "verdict": found.verdict, "spectral_radius": found.spectral_radius}
-            | {"error": found.error, "certificate": found.certificate, "period": found.period}
-            | {"multipliers": [[z.real, z.imag] for z in found.multipliers.tolist()]}
-            | {"multiplier_errors": found.multiplier_errors.tolist()}
+            {
+                "file": source.name,
+                "verdict": multipliers.verdict,
+                "spectral_radius": multipliers.spectral_radius,
+            }
+            | {
+                "error": multipliers.error,
+                "certificate": multipliers.certificate,
+                "period": multipliers.period,
+            }
+            | {"multipliers": [[z.real, z.imag] for z in multipliers.multipliers.tolist()]}
+            | {"multiplier_errors": multipliers.multiplier_errors.tolist()}
         )
     else:
-        pairs = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
+        pairs = zip(multipliers.multipliers.tolist(), multipliers.multiplier_errors.tolist(), strict=True)
         rows = [(f"{abs(z):.12g}", f"{degrees(phase(z)):.4f}", number(error, 2)) for z, error in pairs]
         show(f"{source.name}: multipliers", ">modulus | >phase [deg] | >bound on the error", rows[:_SHOWN])
         if len(rows) > _SHOWN:
             stdout().print(f"and {len(rows) - _SHOWN} smaller ones")
         stdout().print(
-            f"{found.verdict}: largest multiplier {found.spectral_radius:.12g} +- {found.error:.1e}, "
-            f"which is {'a proven bound' if found.certificate == 'proven' else 'an estimate'}"
+            f"{multipliers.verdict}: largest multiplier {multipliers.spectral_radius:.12g} "
+            f"+- {multipliers.error:.1e}, "
+            f"which is {'a proven bound' if multipliers.certificate == 'proven' else 'an estimate'}"
         )
     if grid:
         labels = {name: (FILE_AXES[name].units, FILE_AXES[name].long_name) for name in grid}
         with progress_bar("chart") as tell:
-            chart = scan(lambda at: model.system(**at), grid, labels=labels, rtol=rtol, progress=tell)
+            chart = scan(lambda point: model.system(**point), grid, labels=labels, rtol=rtol, progress=tell)
         verdict = chart["verdict"].to_numpy()
-        counts = [int((verdict == k).sum()) for k in (1, 0, -1)]
+        stable, undecided, unstable = (int((verdict == k).sum()) for k in (1, 0, -1))
         stdout().print(
-            f"chart: {verdict.size} points, {counts[0]} stable, {counts[1]} undecided, {counts[2]} unstable; "
+            f"chart: {verdict.size} points, {stable} stable, {undecided} undecided, {unstable} unstable; "
             f"largest bound on an error {float(chart['error'].max()):.1e}"
         )
         files.write(chart)
-    if found.verdict != "stable":
+    if multipliers.verdict != "stable":
         raise typer.Exit(FAILED)

@@ -37,8 +37,8 @@ def sweep(
 ) -> None:
     """Compute every case of a study: a grid or samples of any parameters, one analysis per case.
 
-    What is computed is kept at once: after a kill or a full disk the same command with
-    --resume goes on and gives the same result. A failed case is recorded and the sweep goes on. The results
+    Every computed case is stored at once. After a kill or a full disk the same command with --resume
+    continues and gives the same result. A failed case is recorded and the sweep goes on. The results
     are results.nc in the output folder (NetCDF, over the axes of the study).
 
     The exit code is 1 when a case failed, 3 when the store or the workers failed, 130 when interrupted.
@@ -61,12 +61,12 @@ def sweep(
 
     # The folder's name never comes from inside the file.
     folder = output if output is not None else Path(f"{study.stem}-sweep")
-    wanted = load_study(study)
+    loaded_study = load_study(study)
     processes = cores() if workers is None else workers
-    what = f"{wanted.count} cases, {wanted.analysis}, on {processes} worker(s)"
-    stderr().print(f"{wanted.name}: {what} -> {folder}")
+    description = f"{loaded_study.count} cases, {loaded_study.analysis}, on {processes} worker(s)"
+    stderr().print(f"{loaded_study.name}: {description} -> {folder}")
     if dry_run:
-        _estimate(wanted, processes)
+        _estimate(loaded_study, processes)
         return
     with progress_bar("sweep") as tell:
 
@@ -75,7 +75,7 @@ def sweep(
 
         try:
             summary = run_sweep(
-                wanted,
+                loaded_study,
                 folder,
                 workers=processes,
                 resume=resume,
@@ -99,7 +99,10 @@ def sweep(
 
 
 def _estimate(study: Study, processes: int) -> None:
-    """Say how long a sweep takes, by three of its cases after one that may compile."""
+    """Print the estimated time of a sweep.
+
+    Three cases are timed. One case is computed before them, because the first case may compile.
+    """
     from validation.studies.cases import CaseList, StudyEvaluator
     from validation.studies.workers import evaluate_chunk
 

@@ -1,4 +1,4 @@
-"""How commands talk: errors in one message, progress on stderr, tables on stdout."""
+"""Output of commands: one message for an error, progress on stderr, tables on stdout."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from validation.files.formatting import number, quantity
 if TYPE_CHECKING:
     from lumped.typing import Progress
 
-#: Exit codes: a verdict that fails, an input that is refused, a computation or the writing of its result
-#: that fails, an interruption.
+#: Exit codes: a verdict that fails; an input that is refused; a computation or a file that fails; an
+#: interruption.
 FAILED = 1
 REFUSED = 2
 NUMERICAL = 3
 INTERRUPTED = 130
 
 
-#: Categories of characters that control a terminal or reorder a line; only the line end is let through.
+#: Unicode categories of characters that control a terminal or reorder a line. The line end is allowed.
 _UNSEEN = ("Cc", "Cf", "Cs")
 
 
 class PlainConsole(Console):
-    """Console on which text from files stays text: no markup unless asked for, no control characters."""
+    """Console that prints text from files as plain text, without markup and without control characters."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(markup=False, highlight=False, emoji=False, **options)
@@ -58,19 +58,19 @@ class PlainConsole(Console):
         return super().render_str(text, **options)
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print text in lines that are never broken, and tables as wide as the terminal."""
+        """Print text without line breaks, and tables as wide as the terminal."""
         unbroken = all(isinstance(one, str) for one in objects)
         super().print(*objects, **({"soft_wrap": unbroken} | options))
 
 
-#: What the parser says of an argument -> what it says to a user.
+#: Message of the parser (pattern) -> message for the user.
 _PARSER = (
     (r"^Input should be a valid integer.*", "Write a whole number, without point and exponent."),
     (r"^Input should be a valid number.*", "Write a number."),
     (r"^Value error, ", ""),
     (r"^(Got unexpected extra .*)", r"\1. Put a value that has blanks in quotes: '1450 rpm'."),
 )
-#: An entry of "Parameters" in a command's docstring: name, what stands for the value, help.
+#: An entry of "Parameters" in the docstring of a command: name, placeholder of the value, help text.
 _ENTRY = re.compile(r"^(\w+)(?: (\S+))? : (.*(?:\n +.*)*)", re.MULTILINE)
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 #: Option that every command has, see ``guarded``.
@@ -78,27 +78,27 @@ _QUIET = typer.Option("--quiet", "-q", help="Print errors only: no tables, notes
 
 
 def stdout() -> Console:
-    """Console for results; made anew so that a replaced stream is used."""
+    """Return the console for results. A new console follows a replaced standard stream."""
     return PlainConsole(quiet=_quiet.get())
 
 
 def stderr() -> Console:
-    """Console for everything that is not the result."""
+    """Return the console for notes, progress and errors."""
     return PlainConsole(stderr=True, quiet=_quiet.get())
 
 
 def print_json(data: Mapping[str, Any]) -> None:
-    """Print numbers and records for another program, as the only thing on stdout; not finite: null."""
+    """Print numbers and records as JSON on stdout. A number that is not finite becomes null."""
     from pydantic_core import to_json
 
     typer.echo(to_json(data, indent=1, inf_nan_mode="null"))
 
 
 class Once(TyperCommand):
-    """Command that refuses an option which is given twice where only the last value would count."""
+    """Command that refuses an option given twice, if only the last value would count."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse after a look at the order of the parameters, and say what is wrong in plain words."""
+        """Check for options given twice, then parse the line. Errors are reworded in plain language."""
         try:
             _, _, order = self.make_parser(ctx).parse_args(args=list(args))
             for parameter, count in Counter(order).items():
@@ -114,9 +114,12 @@ class Once(TyperCommand):
 
 
 class Group(NamedTuple):
-    """Marks the parameter of a command that several options make: ``guarded`` puts these in its place.
+    """Mark of a parameter that several options make. ``guarded`` replaces the parameter by the options.
 
-    ``options``: name -> type of each, all with the default None; ``make`` makes the parameter of them.
+    Attributes
+    ----------
+    options : name of the option -> type; the default of every option is None
+    make : function that makes the value of the parameter from the values of the options
     """
 
     options: Mapping[str, Any]
@@ -124,19 +127,21 @@ class Group(NamedTuple):
 
 
 def _by_options(action: str, options: Mapping[str, str]) -> str:
-    """What to do next, with each argument NAME="VALUE" of a function as the option that it comes from."""
+    """Rewrite each function argument NAME="VALUE" in an advice as the option that sets this argument."""
 
-    def option(found: re.Match[str]) -> str:
-        return f"{options[found[1]]} {found[2]}" if found[1] in options else found[0]
+    def option(match: re.Match[str]) -> str:
+        name, value = match.groups()
+        return f"{options[name]} {value}" if name in options else match[0]
 
     return re.sub(r'\b(\w+)="(\w+)"', option, action)
 
 
 def guarded(command: Callable[..., None]) -> Callable[..., None]:
-    """Turn errors into one message and an exit code, warnings into notes; add the option --quiet.
+    """Turn errors into one message and an exit code, and warnings into notes. Add the option --quiet.
 
-    A parameter marked by ``Group`` is made of its options, which take its place. "Parameters" of the
-    docstring describes the others: options, and arguments where they have no default.
+    The options of a ``Group`` replace the parameter that carries this mark. The section "Parameters" of the
+    docstring has the help of all other parameters. A parameter without a default is an argument; a parameter
+    with a default is an option.
     """
     text, _, entries = inspect.cleandoc(command.__doc__ or "").partition("\nParameters\n----------\n")
     helps = {
@@ -144,7 +149,7 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
     }
     annotated: Any = Annotated
     groups: dict[str, Group] = {}
-    #: Argument of a function that is called -> the option that it comes from.
+    #: Argument of a function of the packages -> option that sets this argument.
     options = {
         "samples_per_cycle": "--samples",
         "samples": "--samples",
@@ -177,13 +182,13 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 
         silent = _quiet.set(bool(kwargs.pop("quiet", False)))
-        told: set[str] = set()
+        noted_subjects: set[str] = set()
 
         def show(message: Warning | str, *_: object, **__: object) -> None:
             text = str(message)
             subject = getattr(message, "subject", text)  # a law outside its range at every speed of a sweep
-            if subject not in told:
-                told.add(subject)
+            if subject not in noted_subjects:
+                noted_subjects.add(subject)
                 note(text)
 
         try:
@@ -214,12 +219,12 @@ def guarded(command: Callable[..., None]) -> Callable[..., None]:
         except (typer.Exit, typer.Abort):
             raise
         except Exception as error:  # noqa: BLE001
-            # A fault of the program must not look like a verdict that failed, which is what Python's own exit
-            # code 1 means here.
+            # Python's own exit code for a fault is 1. Here 1 means a verdict that fails.
             place = traceback.extract_tb(error.__traceback__)[-1]
-            where = f"{Path(place.filename).name}:{place.lineno}"
+            file_and_line = f"{Path(place.filename).name}:{place.lineno}"
             fail(
-                f"a fault in spurcheck: {type(error).__name__} at {where}: {error}. Please report it.",
+                f"a fault in spurcheck: {type(error).__name__} at {file_and_line}: {error}. "
+                "Please report it.",
                 NUMERICAL,
             )
         finally:
@@ -238,11 +243,11 @@ def fail(text: str, code: int) -> NoReturn:
 
 
 def unprinted(error: OSError) -> str:
-    """Return the message for standard streams that take no more, and let the rest of them go nowhere."""
+    """Return the message for a standard stream that is closed, and redirect the stream to the null device."""
     for stream, descriptor in ((sys.stdout, 1), (sys.stderr, 2)):
         try:
             stream.flush()
-        except OSError:  # what is left in its buffer would fail again, and decide the exit code
+        except OSError:  # the text left in the buffer would fail again and change the exit code
             os.dup2(os.open(os.devnull, os.O_WRONLY), descriptor)
     return f"the result cannot be printed: {error.strerror or type(error).__name__}"
 
@@ -254,7 +259,7 @@ def note(text: str) -> None:
 
 @contextmanager
 def progress_bar(text: str) -> Iterator[Progress]:
-    """Progress bar on stderr while the block runs; without a terminal nothing is drawn."""
+    """Show a progress bar on stderr while the block runs. Without a terminal nothing is drawn."""
     from rich import progress as rich
 
     columns = (rich.TextColumn("{task.description}"), rich.BarColumn(), rich.TimeElapsedColumn())
@@ -269,9 +274,10 @@ def progress_bar(text: str) -> Iterator[Progress]:
 
 
 def show(title: str, columns: str, rows: Iterable[Sequence[Any]]) -> None:
-    """Print a table on stdout; headings stand between bars, and one that starts with '>' aligns right.
+    """Print a table on stdout.
 
-    Cells: text, a number, or a number with its unit: (value, "m").
+    ``columns``: headings, separated by " | ". A heading that starts with ">" marks a right-aligned column.
+    ``rows``: cells; a cell is a text, a number, or a number and a unit: (value, "m").
     """
     made = Table(title=title or None, title_justify="left", title_style="bold")
     for column in columns.split(" | "):

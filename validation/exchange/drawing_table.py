@@ -1,4 +1,4 @@
-"""The table of a pair beside its drawing: what gear programs print, and what of it is assumed."""
+"""Table of a pair for comparison with its drawing: the quantities that gear programs print."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ HEADINGS = ("quantity", "symbol", "unit", "pinion", "gear", "assumed")
 
 
 def drawing_rows(pair: GearPair) -> list[tuple[str, ...]]:
-    """Return the rows of a pair's table as text, in the order of a drawing.
+    """Return the table of a pair as rows of text, in the order of a drawing.
 
     Returns
     -------
-    rows of `HEADINGS`: quantity, symbol, unit, value of the pinion or of the pair, value of the gear or "",
-    and whose deciding field is assumed: "both", "pinion", "gear"; "yes" for a value of the pair; or ""
+    rows with the columns `HEADINGS`. Column "pinion": value of the pinion or of the pair. Column "gear":
+    value of the gear, "" for a value of the pair. Column "assumed": the gear whose deciding field is assumed
+    ("both", "pinion", "gear"); "yes" if a value of the pair is assumed; "" if nothing is assumed
     """
     return [
         (row.label, row.symbol, row.unit, *(*row.texts(), "")[:2], _assumed(pair, row))

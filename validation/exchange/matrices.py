@@ -14,7 +14,7 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.io
@@ -32,11 +32,12 @@ FILE_AXES: Mapping[str, ChartAxis] = {
     "variation": ChartAxis("1", "factor on the periodic terms", low=0.0),
     "damping": ChartAxis("1", "factor on C", low=0.0),
 }
-"""What a chart of a file can vary."""
+"""Axes of a chart of a file."""
 
 #: Most bytes that the arrays of a file may take: matrices of some thousand states.
 _MOST_BYTES = 500_000_000
-#: Reads a MATLAB file in a process of its own: one wrong byte can end it. Sparse matrices become full.
+#: Program that reads a MATLAB file. It runs in a second process, because one wrong byte can end the process.
+#: Sparse matrices become full.
 _READER = """
 import io, sys, numpy, scipy.io
 content = io.BytesIO()
@@ -50,16 +51,40 @@ _NAMES = ("M", "C", "G", "K", "period", "K_cos_1", "K_sin_1", "K_times", "K_valu
           "C_times", "C_values")  # fmt: skip
 
 
+class Harmonic(NamedTuple):
+    """Harmonic term of the matrix "C" or "K": ``amplitude`` times "cos" or "sin" of order ``order``."""
+
+    matrix: str
+    wave: str
+    order: int
+    amplitude: FloatArray
+
+
+class Steps(NamedTuple):
+    """Stepwise constant term of C or K, with mean zero over the period.
+
+    Attributes
+    ----------
+    matrix : "C" or "K"
+    ends : (P+1,) ends of the pieces over the period, from 0 to 1
+    values : (P, n, n) matrix of each piece
+    """
+
+    matrix: str
+    ends: FloatArray
+    values: FloatArray
+
+
 @dataclass(frozen=True, eq=False)
 class SecondOrderModel:
     """M x'' + (C(t) + Omega G) x' + K(t) x = 0, Omega = 2 pi/period, as read from a file.
 
     Attributes
     ----------
-    M, C, G, K : (n, n) constant parts, the means of steps included
+    M, C, G, K : (n, n) constant parts, including the means of the steps
     period : [s]
-    harmonics : (of "C" or "K", "cos" or "sin", order, matrix)
-    steps : (of "C" or "K", ends of the pieces as parts of the period (P+1,), matrices of mean zero (P, n, n))
+    harmonics : harmonic terms of C and K
+    steps : stepwise constant terms of C and K
     """
 
     M: FloatArray
@@ -67,28 +92,30 @@ class SecondOrderModel:
     G: FloatArray
     K: FloatArray
     period: float
-    harmonics: tuple[tuple[str, str, int, FloatArray], ...]
-    steps: tuple[tuple[str, FloatArray, FloatArray], ...]
+    harmonics: tuple[Harmonic, ...]
+    steps: tuple[Steps, ...]
 
     def system(
         self, *, frequency: float | None = None, variation: float = 1.0, damping: float = 1.0
     ) -> SecondOrderSystem:
-        """Return the periodic system, varied as ``FILE_AXES`` say; None: as in the file."""
+        """Return the periodic system with the values of ``FILE_AXES``. None: value of the file."""
         T = 1.0 / frequency if frequency else self.period
 
         def matrix(name: str, constant: FloatArray, factor: float) -> PeriodicMatrix:
             terms: list[tuple[Coefficient, FloatArray]] = []
-            for of, kind, order, B in self.harmonics:
-                if of == name:
-                    unit = [0.0] * (order - 1) + [1.0]
-                    wave = FourierSeries(T, 0.0, unit) if kind == "cos" else FourierSeries(T, 0.0, (), unit)
-                    terms.append((wave, variation * factor * B))
-            for of, ends, values in self.steps:
-                if of == name:
-                    each = np.eye(len(values))[:, :, None]
+            for harmonic in self.harmonics:
+                if harmonic.matrix == name:
+                    unit = [0.0] * (harmonic.order - 1) + [1.0]
+                    cosines, sines = (unit, ()) if harmonic.wave == "cos" else ((), unit)
+                    terms.append(
+                        (FourierSeries(T, 0.0, cosines, sines), variation * factor * harmonic.amplitude)
+                    )
+            for steps in self.steps:
+                if steps.matrix == name:
+                    indicators = np.eye(len(steps.values))[:, :, None]
                     terms += [
-                        (PiecewisePolynomial(ends * T, one), variation * factor * B)
-                        for one, B in zip(each, values, strict=True)
+                        (PiecewisePolynomial(steps.ends * T, indicator), variation * factor * value)
+                        for indicator, value in zip(indicators, steps.values, strict=True)
                     ]
             return PeriodicMatrix(constant, *terms)
 
@@ -103,8 +130,8 @@ def read_second_order(path: str | Path) -> SecondOrderModel:
     ----------
     path : .npz or .mat (up to MATLAB 7) with
 
-        - ``M``, ``K`` (n, n) and ``period`` [s]; if wanted ``C``, and ``G``, which times 2 pi/period is added
-          to C: the gyroscopic matrix where the period is one turn
+        - ``M``, ``K`` (n, n) and ``period`` [s]; optional ``C``; optional ``G``: G times 2 pi/period is added
+          to C. If the period is one turn, G is the gyroscopic matrix
         - ``K_cos_1``, ``K_sin_1``, ``K_cos_2``, ...: (n, n), times cos or sin(2 pi k t/period); also with C
         - ``K_times`` (P+1,) from 0 to the period and ``K_values`` (P, n, n), in MATLAB (n, n, P): constant
           between these times, added to K; the same with C
@@ -123,7 +150,7 @@ def read_second_order(path: str | Path) -> SecondOrderModel:
 
 
 def _fields(path: Path) -> dict[str, Any]:
-    """What the file holds, by name."""
+    """Return the arrays of the file by name. A file of another kind or a damaged file is refused."""
     if path.suffix.lower() not in MATRIX_SUFFIXES:
         allowed = "a name ending in " + ", ".join(MATRIX_SUFFIXES)
         raise refuse("path", path, allowed, "Save the matrices by numpy.savez or MATLAB's save.")
@@ -138,7 +165,7 @@ def _fields(path: Path) -> dict[str, Any]:
 
 
 def _arrays(path: Path) -> dict[str, Any]:
-    """The arrays of a file."""
+    """Read the arrays of a file."""
     if path.suffix.lower() == ".npz":
         with zipfile.ZipFile(path) as archive:
             _check_size(sum(member.file_size for member in archive.infolist()))
@@ -147,7 +174,8 @@ def _arrays(path: Path) -> dict[str, Any]:
     _check_size(sum(8 * math.prod(shape) for _, shape, _ in scipy.io.whosmat(path)))
     run = subprocess.run([sys.executable, "-P", "-c", _READER, path], capture_output=True, check=False)
     if run.returncode:
-        raise ValueError(run.stderr.decode(errors="replace").strip().rpartition("\n")[2] or "it is damaged")
+        *_, last_line = run.stderr.decode(errors="replace").strip().split("\n")
+        raise ValueError(last_line or "it is damaged")
     with np.load(io.BytesIO(run.stdout), allow_pickle=False) as file:
         return dict(file)
 
@@ -169,40 +197,47 @@ def _model(fields: dict[str, Any], *, matlab: bool) -> SecondOrderModel:
     n = len(M)
     period = real_number("period", np.squeeze(fields["period"]), 0.0, above=True, unit="s")
     parts = {name: square(name, fields.get(name, np.zeros((n, n))), n) for name in ("C", "G", "K")}
-    harmonics = [
-        (found[1], found[2], int(found[3]), square(name, value, n))
-        for name, value in fields.items()
-        if (found := _HARMONIC.fullmatch(name))
-    ]
-    steps: list[tuple[Literal["C", "K"], FloatArray, FloatArray]] = []
-    for of in ("C", "K"):
-        times = f"{of}_times"
-        values = f"{of}_values"
+    harmonics = []
+    for name, value in fields.items():
+        if match := _HARMONIC.fullmatch(name):
+            matrix, wave, order = match.groups()
+            harmonics.append(Harmonic(matrix, wave, int(order), square(name, value, n)))
+    steps = []
+    for matrix in ("C", "K"):
+        times = f"{matrix}_times"
+        values = f"{matrix}_values"
         if (times in fields) != (values in fields):
             missing = times if values in fields else values
             raise refuse(missing, "missing", f"{times} and {values}", "Save both, or neither.")
         if times in fields:
             ends, matrices = _steps(times, fields[times], values, fields[values], n, period, matlab=matlab)
             mean = np.tensordot(np.diff(ends), matrices, axes=1)
-            parts[of] = parts[of] + mean
-            steps.append((of, ends, matrices - mean))
+            parts[matrix] = parts[matrix] + mean
+            steps.append(Steps(matrix, ends, matrices - mean))
     return SecondOrderModel(M, **parts, period=period, harmonics=tuple(harmonics), steps=tuple(steps))
 
 
 def _steps(
     times: str, ends: Any, values: str, matrices: Any, n: int, period: float, *, matlab: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Ends of the pieces as parts of the period, and their matrices (P, n, n)."""
-    at = real_numbers(times, np.ravel(ends), increasing=True, unit="s")
-    if at.size < 2 or at[0] != 0.0 or abs(at[-1] - period) > 1e-12 * period:
-        raise refuse(times, shown(at), f"times from 0 to the period, {period:g} s", "Cover one period.")
-    found = real_array(values, matrices)
+    """Check a stepwise constant term. Returns the ends of the pieces over the period, and a matrix a piece.
+
+    ``times``, ``values``: names of the arrays in the file.
+    """
+    checked_times = real_numbers(times, np.ravel(ends), increasing=True, unit="s")
+    if checked_times.size < 2 or checked_times[0] != 0.0 or abs(checked_times[-1] - period) > 1e-12 * period:
+        raise refuse(
+            times, shown(checked_times), f"times from 0 to the period, {period:g} s", "Cover one period."
+        )
+    pieces = real_array(values, matrices)
     if matlab:
         # MATLAB drops a last dimension of one.
-        found = np.moveaxis(found.reshape(*found.shape[:2], -1), -1, 0) if found.ndim >= 2 else found
-    if found.shape != (at.size - 1, n, n):
-        wanted = f"({n}, {n}, {at.size - 1})" if matlab else f"({at.size - 1}, {n}, {n})"
+        pieces = np.moveaxis(pieces.reshape(*pieces.shape[:2], -1), -1, 0) if pieces.ndim >= 2 else pieces
+    if pieces.shape != (checked_times.size - 1, n, n):
+        wanted = (
+            f"({n}, {n}, {checked_times.size - 1})" if matlab else f"({checked_times.size - 1}, {n}, {n})"
+        )
         raise refuse(
             values, f"shape {np.shape(matrices)}", wanted, f"Give one matrix between times of {times}."
         )
-    return np.append(at[:-1] / period, 1.0), found
+    return np.append(checked_times[:-1] / period, 1.0), pieces

@@ -1,4 +1,4 @@
-"""Parameter files as text to edit: of any parameters, and of a new pair from what is on its drawing."""
+"""Parameter files as text to edit: from any parameters, or for a new pair from the values of a drawing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from lumped.schema.pair import GearPair, leaf_paths, stated_unit
 from lumped.stiffness.foundation import thin_rims
 
 GIVEN = "given by the user"
-#: End of a field's path -> why its assumed value was chosen; the first that fits.
+#: End of the path of a field -> reason for the assumed value. The first entry that fits is used.
 _WHY = {
     "_stiffness": "of rolling bearing, shaft and housing together; see the guide on bearings",
     **dict.fromkeys(("pinion.type", "gear.type"), "balls on shafts up to 50 mm, else rollers"),
@@ -83,7 +83,7 @@ def new_pair(
     name: str = "",
     **fields: Any,
 ) -> GearPair:
-    """Return a pair from what is on its drawing; what is not given is assumed, see ``pair.assumed``.
+    """Return a pair from the values on its drawing. Missing values are assumed, see ``pair.assumed``.
 
     Parameters
     ----------
@@ -92,10 +92,10 @@ def new_pair(
     face_width : of both gears [mm]
     speed : of the pinion [rpm]
     torque : on the pinion [N m]
-    changes : what else is known, by the names and paths of ``pair.with_``: ``{"oil": "vg220",
-        "pinion.profile_shift": 0.4}``. What is assumed of the basic rack follows what is known of it: the
-        fillet radius pressure angle and dedendum, the dedendum the addendum
-    name : of the pair; default from the numbers of teeth
+    changes : further known values, by the names and paths of ``pair.with_``: ``{"oil": "vg220",
+        "pinion.profile_shift": 0.4}``. Assumed values of the basic rack follow from known values: the fillet
+        radius from pressure angle and dedendum, the dedendum from the addendum
+    name : name of the pair; default from the numbers of teeth
     **fields : the same as ``changes``: ``oil="vg220"``, ``pinion__profile_shift=0.4``
 
     Raises
@@ -111,11 +111,11 @@ def new_pair(
         **(changes or {}),
         **{key.replace("__", "."): value for key, value in fields.items()},
     }
-    known = by_fields(request)
-    named = name or "pair_" + "_".join(str(known[path]) for path in fields_of("teeth"))
-    own = {path: known.pop(path) for path in list(known) if is_own(path, known[path])}
-    pair = load_gear_pair(tomllib.loads(new_pair_text(named, known)))
-    return pair.with_(own) if own else pair
+    stated = by_fields(request)
+    name_of_pair = name or "pair_" + "_".join(str(stated[path]) for path in fields_of("teeth"))
+    user_laws = {path: stated.pop(path) for path in list(stated) if is_own(path, stated[path])}
+    pair = load_gear_pair(tomllib.loads(new_pair_text(name_of_pair, stated)))
+    return pair.with_(user_laws) if user_laws else pair
 
 
 #: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened
@@ -149,19 +149,19 @@ _VISCOSITY = 10.0
 
 
 def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
-    """Return a complete parameter file; every assumed value says so, and why it is that one.
+    """Return a complete parameter file as text. A comment marks every assumed value and gives the reason.
 
-    ``request``: as the arguments of ``new_pair``, by the full paths of the fields.
+    ``request``: path of the field -> value, for the arguments of ``new_pair``.
     """
     values = _values(request)
     pair = _filled({"name": name}, values)
     by_user = [path for path in leaf_paths(pair) if any(within(path, one) for one in values)]
     pair = marked(pair, dict.fromkeys(by_user, GIVEN))
-    given = len(pair.sources)
-    assumed = len(pair.assumed)
+    stated_count = len(pair.sources)
+    assumed_count = len(pair.assumed)
     notes = [
         "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
-        f"{given} values are given, {assumed} assumed: replace what you know, first bearings.",
+        f"{stated_count} values are given, {assumed_count} assumed: replace what you know, first bearings.",
         "An assumed value stands in the table [assumed], too. It is known when you change it here, or, where "
         "it is right as it is, when you delete its line there.",
         *(f"{note[0].upper()}{note[1:]}." for note in pair.geometry.notes),
@@ -170,27 +170,30 @@ def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
 
 
 def marked(pair: GearPair, sources: Mapping[str, str]) -> GearPair:
-    """Return a pair whose fields with a source are known, and all others assumed."""
+    """Return the pair with these sources. Every field without a source is marked as assumed."""
     assumed = {path: v for path, v in leaf_paths(pair).items() if path not in (*WORDS, *sources)}
     return load_gear_pair(pair.to_mapping() | {"sources": dict(sources), "assumed": assumed})
 
 
 def reasons(pair: GearPair) -> dict[str, str]:
-    """Return assumed field -> why it has this value; those alone that `new_pair` would assume too."""
-    known = {name: part for name, part in pair.to_mapping().items() if name not in (*WORDS, *ABOUT)}
+    """Return assumed field -> reason for the value.
+
+    Only fields are listed whose value `new_pair` would assume, too.
+    """
+    stated = {name: part for name, part in pair.to_mapping().items() if name not in (*WORDS, *ABOUT)}
     for path in pair.assumed:
         *parents, leaf = path.split(".")
-        node: Any = known
+        node: Any = stated
         for part in parents:
             node = node[int(part) if isinstance(node, list) else part]
         node.pop(leaf, None)  # a default that follows from other fields is not written
     try:
-        filled = _filled({"name": pair.name}, _values(known))
+        filled = _filled({"name": pair.name}, _values(stated))
     except ParameterError:  # such as a kind of stiffness that the program would not assume
         return {}
-    own = filled.assumed.to_mapping() | leaf_paths(filled)
+    assumptions = filled.assumed.to_mapping() | leaf_paths(filled)
     values = pair.assumed.to_mapping()
-    return {path: _why(path, value) for path, value in values.items() if own.get(path) == value}
+    return {path: _why(path, value) for path, value in values.items() if assumptions.get(path) == value}
 
 
 def _why(path: str, value: object) -> str:
@@ -204,7 +207,7 @@ def _why(path: str, value: object) -> str:
 
 
 def _filled(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
-    """The pair of these values with everything else assumed."""
+    """Return the pair with these values and assumptions for all other fields."""
     pair = load_gear_pair(named | completed(values))
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
@@ -214,19 +217,19 @@ def _filled(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
 
 
 def stand_in_stiffness(pair: GearPair) -> str:
-    """Stiffness model of a pair that names none: finite elements, of thin rims the energy method.
+    """Return the stiffness model of a pair without a stated model: "finite_elements" or "energy" (thin rims).
 
-    A thin rim on its own becomes oval: k then depends on what holds the bore, which no drawing says. The
-    energy method takes the body as solid.
+    A free thin rim becomes oval, so that k depends on the support of the bore. A drawing does not state this
+    support. The energy method assumes a solid body.
     """
     return "energy" if thin_rims(pair) else "finite_elements"
 
 
 def _backlash(pair: GearPair) -> float:
-    """Least normal backlash of industrial gears [mm].
+    """Return the least normal backlash of industrial gears [mm].
 
     j = 2/3 (0.06 + 0.0005 a + 0.03 m) mm for centre distance a and module m from 1.5 mm on (ISO/TR 10064-2,
-    annex A); a tenth of the module where that is less, as with fine teeth.
+    annex A). For fine teeth a tenth of the module is less and is used instead.
     """
     module = 1e3 * pair.basic_rack.module
     centre = 1e3 * pair.geometry.centre_distance
@@ -234,7 +237,7 @@ def _backlash(pair: GearPair) -> float:
 
 
 def _values(request: Mapping[str, Any]) -> dict[str, Any]:
-    """Field path -> value, of what the user asks for; a section as a table gives its entries."""
+    """Return path of the field -> value of a request. A section given as a table is split into its fields."""
     values: dict[str, Any] = {}
     for path, value in by_fields(request).items():
         if isinstance(value, dict):  # mesh.stiffness = {model = "energy"}
@@ -259,22 +262,23 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
     pair = load_gear_pair(mapping)
     assumed = dict.fromkeys(pair.assumed, "assumed")
     assumed |= {path: f"assumed: {why}" for path, why in reasons(pair).items()}
-    # A default that follows from other fields would contradict them when they change: it is a comment.
+    # A default that follows from other fields is written as a comment: a value would hinder later changes.
     follows = {path: value for path, value in pair.assumed.items() if path not in leaf_paths(pair)}
     section = ""
-    entries: Counter[str] = Counter()  # of a list of tables, those above
+    entries: Counter[str] = Counter()  # section -> tables of its list that are written already
     lines = []
     for line in tomli_w.dumps({"format": FORMAT} | dict(mapping)).splitlines():
-        if found := _SECTION.match(line):
-            section = f"{found[2]}."
-            if found[1] == "[[":
+        if heading := _SECTION.match(line):
+            brackets, section_path = heading.groups()
+            section = f"{section_path}."
+            if brackets == "[[":
                 section += f"{entries[section]}."
-                entries[f"{found[2]}."] += 1
+                entries[f"{section_path}."] += 1
             lines.append(line)
             for path, value in follows.items():
-                if path.rpartition(".")[0] == found[2]:
-                    comment = f"# {path.rpartition('.')[2]} = {_short(value)}"
-                    lines.append(_commented(comment, path, assumed))
+                parent, _, field = path.rpartition(".")
+                if parent == section_path:
+                    lines.append(_commented(f"# {field} = {_short(value)}", path, assumed))
             continue
         elif entry := _ENTRY.match(line):  # the paths of [sources] and [assumed] have quotation marks
             line = _commented(line, f"{section}{entry[1]}", assumed)
@@ -312,7 +316,10 @@ def _commented(line: str, path: str, assumed: Mapping[str, str]) -> str:
 
 
 def completed(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a full parameter mapping, name and description apart, from known values: path -> file units."""
+    """Return a full parameter mapping without name and description.
+
+    ``values``: path of the field -> known value in file units. All other values are assumed.
+    """
     full = _STAND_INS | _assumed_dedendum(values) | dict(values)
     if any(path.startswith("lubricant.viscosity_law") for path in full):
         full.setdefault("lubricant.viscosity_law.temperature", _TEMPERATURE)
@@ -334,33 +341,39 @@ def completed(values: Mapping[str, Any]) -> dict[str, Any]:
     return root
 
 
-def _assumed_dedendum(known: Mapping[str, Any]) -> dict[str, Any]:
-    """The dedendum where the addendum alone is known: it leaves the clearance of the standard basic rack."""
+def _assumed_dedendum(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the dedendum for a known addendum, with the clearance of the standard basic rack."""
     try:
-        addendum = to_si(known["basic_rack.addendum_coefficient"], "1")
+        addendum = to_si(values["basic_rack.addendum_coefficient"], "1")
     except (ValueError, TypeError, KeyError):  # not known, or the pair refuses it
         return {}
     return {_DEDENDUM: round(addendum + _CLEARANCE, 9)}
 
 
-def _assumed_bearing(gear: str, known: Mapping[str, Any]) -> dict[str, Any]:
-    """What is not known of a gear's bearings: those of its shaft's torque, or the second of two springs."""
+def _assumed_bearing(gear: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the missing fields of the bearings of one gear.
+
+    If one of the two springs is known, the other spring follows from the ratio of a rolling bearing. If no
+    spring is known, the rolling bearings are chosen for the torque of the shaft.
+    """
     start = f"bearings.{gear}."
-    own = {path.removeprefix(start): value for path, value in known.items() if path.startswith(start)}
+    stated = {path.removeprefix(start): value for path, value in values.items() if path.startswith(start)}
     try:
         torque = (
-            to_si(known["operating.pinion_torque"], "N*m") * known[f"{gear}.teeth"] / known["pinion.teeth"]
+            to_si(values["operating.pinion_torque"], "N*m") * values[f"{gear}.teeth"] / values["pinion.teeth"]
         )
-        kind, number, size = assumed_bearing(torque, own.get("type"))
-        across = across_ratio(kind, number)
-        springs = {key: to_si(own[key], "N/m") for key in STIFFNESSES if key in own}
+        kind, number, size = assumed_bearing(torque, stated.get("type"))
+        ratio = across_ratio(kind, number)
+        springs = {key: to_si(stated[key], "N/m") for key in STIFFNESSES if key in stated}
     except (ValueError, TypeError, KeyError, ZeroDivisionError):  # the pair refuses it, in the user's words
-        (kind, number, size), across, springs = assumed_bearing(1.0), 1.0, {}
+        kind, number, size = assumed_bearing(1.0)
+        ratio = 1.0
+        springs = {}
     if springs:
-        along = springs.get(STIFFNESSES[0])
-        off = springs.get(STIFFNESSES[1])
-        other = {STIFFNESSES[0]: None if off is None else off / across}
-        other |= {STIFFNESSES[1]: None if along is None else along * across}
-        return {start + key: float(f"{other[key]:.3g}") for key in STIFFNESSES if key not in own}
+        along_line = springs.get(STIFFNESSES[0])
+        across_line = springs.get(STIFFNESSES[1])
+        missing_springs = {STIFFNESSES[0]: None if across_line is None else across_line / ratio}
+        missing_springs |= {STIFFNESSES[1]: None if along_line is None else along_line * ratio}
+        return {start + key: float(f"{missing_springs[key]:.3g}") for key in STIFFNESSES if key not in stated}
     rolling = {"type": kind, "number": number, "size": float(f"{min(max(1e3 * size, 0.01), 1e3):.3g}")}
-    return {start + key: value for key, value in rolling.items() if key not in own}
+    return {start + key: value for key, value in rolling.items() if key not in stated}

@@ -1,4 +1,4 @@
-"""Results and linear models for other programs: files of a labelled dataset, of a state space, and back."""
+"""Files for other programs: results as labelled datasets, linear models as state space."""
 
 from __future__ import annotations
 
@@ -63,21 +63,21 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
 
 
 def one_table(result: xr.Dataset) -> tuple[xr.Dataset, tuple[str, ...]]:
-    """Return what fits into one table, that over the axes with the most points, and the names of the rest.
+    """Return the part of a result that fits into one table, and the names of the other variables.
 
-    A sweep, for example, has outputs over its axes, and beside them error texts over its failures.
-    Coordinates that are no axes become columns.
+    The table is over the axes of the largest variable. A sweep, for example, has outputs over its axes, and
+    error texts over its failures. Coordinates that are not axes become columns.
     """
-    loose = result.reset_coords([name for name in result.coords if name not in result.sizes])
+    data = result.reset_coords([name for name in result.coords if name not in result.sizes])
 
     def axes(name: object) -> set[object]:
-        return set(loose[name].dims) - set(COLUMN_DIMENSIONS)
+        return set(data[name].dims) - set(COLUMN_DIMENSIONS)
 
-    largest = max(loose.data_vars, key=lambda name: loose[name].size, default=None)
-    kept = axes(largest) if largest is not None else set()
-    left_out = [name for name in loose.data_vars if not axes(name) <= kept]
-    table = loose.drop_vars(left_out)
-    return table.drop_dims(set(table.sizes) - kept - set(COLUMN_DIMENSIONS)), tuple(map(str, left_out))
+    largest = max(data.data_vars, key=lambda name: data[name].size, default=None)
+    table_axes = axes(largest) if largest is not None else set()
+    left_out = [name for name in data.data_vars if not axes(name) <= table_axes]
+    table = data.drop_vars(left_out)
+    return table.drop_dims(set(table.sizes) - table_axes - set(COLUMN_DIMENSIONS)), tuple(map(str, left_out))
 
 
 def read_netcdf(path: str | Path) -> xr.Dataset:
@@ -102,7 +102,7 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
         ) as opened:
             result = opened.load()
         for attributes in [result.attrs, *(variable.attrs for variable in result.variables.values())]:
-            "".join(map(str, attributes.values())).encode()  # or else a writer fails at them later
+            "".join(map(str, attributes.values())).encode()  # text that cannot be written is refused here
         return result
     except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
         if isinstance(error, ParameterError):
@@ -112,23 +112,23 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
 
 
 def _check_content(path: Path) -> None:
-    """Refuse what no result holds before anything is loaded.
+    """Refuse a file with content that no result has, before any data are loaded.
 
-    A small file may unfold to terabytes, or show bytes of other files as its own.
+    A small file may expand to terabytes, or may link to bytes of other files.
     """
-    most = min(_MOST_NUMBERS, _MOST_UNPACKED * path.stat().st_size)
-    points = 0
+    most_numbers = min(_MOST_NUMBERS, _MOST_UNPACKED * path.stat().st_size)
+    numbers = 0
     with h5py.File(path) as file:
         for name in file:
-            own = isinstance(file.get(name, getlink=True), h5py.HardLink)
-            item = file[name] if own else None
+            is_hard_link = isinstance(file.get(name, getlink=True), h5py.HardLink)
+            item = file[name] if is_hard_link else None
             if not isinstance(item, h5py.Dataset) or item.is_virtual or item.external:
                 raise refuse("result", path, _OURS, f"{shown(name)} is not a variable stored in this file.")
             if item.dtype.kind not in "biuf" and h5py.check_string_dtype(item.dtype) is None:
                 raise refuse("result", path, _OURS, f"{shown(name)} holds no numbers and no text.")
-            points += item.size or 0
-            if points > most:
-                raise refuse("result", path, _OURS, f"It claims to hold {points:.3g} numbers.")
+            numbers += item.size or 0
+            if numbers > most_numbers:
+                raise refuse("result", path, _OURS, f"It claims to hold {numbers:.3g} numbers.")
 
 
 def write_state_space(
@@ -150,7 +150,7 @@ def write_state_space(
     path : .mat (MATLAB 5) or .npz (NumPy, without pickled objects)
     form : "elastic" (10 states) or "mesh" (6 states)
     force : overwrite an existing file
-    supports : "springs", on which alone it is written; needed for a pair with shafts
+    supports : "springs", the only supports of this model; needed for a pair with shafts
 
     Returns
     -------

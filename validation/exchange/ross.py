@@ -1,4 +1,4 @@
-"""A gear mesh of ROSS, or matrices of one's own model, beside the same pair here: which numbers agree.
+"""Comparison of a gear mesh of ROSS, or of matrices of another model, with the same pair in spurcheck.
 
 Sources: attributes of ``Mesh`` and ``GearElementTVMS`` of ROSS 2.3 (github.com/petrobras/ross); its stiffness
 is the potential-energy method with a linear contact, as ``hertz = "linear"`` of docs/theory/mesh_physics.md.
@@ -7,7 +7,7 @@ Both begin a mesh cycle with a pair at A.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -25,13 +25,21 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import xarray as xr
 
-#: Relative differences up to which numbers agree: of exact geometry, of stiffness and what follows from it,
-#: where variants of the method differ by some per cent, and of frequencies, square roots of stiffness.
+#: Largest relative differences that agree. Geometry is exact. Variants of the method for the stiffness differ
+#: by some per cent. Frequencies are square roots of stiffness.
 _GEOMETRY = 1e-6
 _STIFFNESS = 0.05
 _FREQUENCY = 0.025
-#: Name, unit, their value, ours, limit.
-Row = tuple[str, str, float, float, float]
+
+
+class Row(NamedTuple):
+    """One compared quantity: values of the other model and of spurcheck, and the largest difference."""
+
+    name: str
+    unit: str
+    theirs: float
+    ours: float
+    limit: float
 
 
 def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Dataset:
@@ -45,11 +53,12 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
 
     Returns
     -------
-    xarray.Dataset over ``quantity``: ``ross`` and ``spurcheck`` in the unit ``units``, ``difference``, theirs
-    over ours less 1, ``limit`` and ``agrees``. Variation in step is the part of the stiffness over the cycle
-    that varies as ours does, over the mean: a shift or time that runs backwards makes it small. The
-    transmission error is that of the lumped model with stiffness from ROSS and with ours. The attribute
-    ``parameters`` is the pair as a parameter file.
+    xarray.Dataset over ``quantity``: ``ross`` and ``spurcheck`` in the unit ``units``; ``difference``, the
+    value of ROSS over the value of spurcheck, less 1; ``limit`` and ``agrees``. The variation in step is the
+    part of the stiffness variation of ROSS that is in phase with the variation of spurcheck, over the mean. A
+    shift, or time that runs backwards, makes the variation in step small. Both transmission errors are of the
+    lumped model, with the stiffness of ROSS and of spurcheck. The attribute ``parameters`` is the pair as a
+    parameter file.
 
     Raises
     ------
@@ -64,16 +73,17 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
     cycle = lumped.mesh_cycle(pair)
     ours = cycle.sample(phase * cycle.period).stiffness.sum(axis=0)
     with_theirs = pair.with_(stiffness={"phase": phase, "stiffness [N/m]": theirs})
-    motions = [lumped.steady_state(one)["dte"].to_numpy() for one in (with_theirs, pair)]
+    motions = [lumped.steady_state(one) for one in (with_theirs, pair)]
+    their_swing, our_swing = (np.ptp(motion["dte"].to_numpy()) for motion in motions)
     bodies = lumped.bodies(pair)
     rows: list[Row] = [
-        ("base radius, driving gear", "m", gears[0].base_radius, g.base_radius_pinion, _GEOMETRY),
-        ("base radius, driven gear", "m", gears[1].base_radius, g.base_radius_gear, _GEOMETRY),
-        ("contact ratio", "1", mesh.contact_ratio, g.contact_ratio, _GEOMETRY),
-        ("mass, driving gear", "kg", gears[0].m, bodies.mass_pinion, _STIFFNESS),
-        ("moment of inertia, driving gear", "kg m^2", gears[0].Ip, bodies.inertia_pinion, _STIFFNESS),
+        Row("base radius, driving gear", "m", gears[0].base_radius, g.base_radius_pinion, _GEOMETRY),
+        Row("base radius, driven gear", "m", gears[1].base_radius, g.base_radius_gear, _GEOMETRY),
+        Row("contact ratio", "1", mesh.contact_ratio, g.contact_ratio, _GEOMETRY),
+        Row("mass, driving gear", "kg", gears[0].m, bodies.mass_pinion, _STIFFNESS),
+        Row("moment of inertia, driving gear", "kg m^2", gears[0].Ip, bodies.inertia_pinion, _STIFFNESS),
         *_over_cycle("mesh stiffness", "N/m", theirs, ours),
-        ("transmission error, peak to peak", "m", *map(np.ptp, motions), _STIFFNESS),
+        Row("transmission error, peak to peak", "m", their_swing, our_swing, _STIFFNESS),
     ]
     return _compared("ross", rows, pair, "springs")
 
@@ -81,10 +91,11 @@ def compare_ross(mesh: Any, speed: float | str, torque: float | str) -> xr.Datas
 def compare_matrices(
     pair: AnyPair, M: npt.ArrayLike, K: npt.ArrayLike, *, supports: Supports | None = None
 ) -> xr.Dataset:
-    """Compare mass and stiffness matrices of one's own model of a gear pair with the model here.
+    """Compare mass and stiffness matrices of another model of a gear pair with the lumped model.
 
-    What is compared does not depend on the coordinates: the natural frequencies of the mean stiffness and,
-    over the mesh cycle, their sum of squares, the trace of M^-1 K. Both are without friction and damping.
+    The compared quantities do not depend on the coordinates: the natural frequencies of the mean stiffness
+    and, over the mesh cycle, the sum of squared frequencies, which is the trace of M^-1 K. Friction and
+    damping are left out of both models.
     Source: docs/theory/equations.md.
 
     Parameters
@@ -116,9 +127,9 @@ def compare_matrices(
     ours = -system.matrices(np.arange(count) * (system.period / count))[:, m:, :m]
     theirs = np.linalg.solve(mass, stiffness)
     modes = [_frequencies(one.mean(axis=0)) for one in (theirs, ours)]
-    rows: list[Row] = [("number of natural frequencies", "1", modes[0].size, modes[1].size, 0.0)]
+    rows = [Row("number of natural frequencies", "1", modes[0].size, modes[1].size, 0.0)]
     for number, (a, b) in enumerate(zip(*modes, strict=False), start=1):
-        rows.append((f"natural frequency {number}", "Hz", a, b, _FREQUENCY))
+        rows.append(Row(f"natural frequency {number}", "Hz", a, b, _FREQUENCY))
     if len(stiffness) > 1:
         traces = [np.trace(one, axis1=1, axis2=2) for one in (theirs, ours)]
         rows += _over_cycle("sum of squared frequencies", "rad^2/s^2", *traces)
@@ -126,46 +137,50 @@ def compare_matrices(
 
 
 def _frequencies(squares: FloatArray) -> FloatArray:
-    """Natural frequencies of M^-1 K, increasing, without rigid motions [Hz]."""
+    """Return the natural frequencies [Hz] of M^-1 K in increasing order, without rigid motions."""
     values = np.sort(np.linalg.eigvals(squares).real)
     return np.asarray(np.sqrt(values[values > 1e-9 * values[-1]]) / (2.0 * np.pi), dtype=np.float64)
 
 
 def _over_cycle(name: str, unit: str, theirs: FloatArray, ours: FloatArray) -> list[Row]:
-    """Rows of a quantity over a mesh cycle; the last one sees a shift, or time that runs backwards."""
+    """Return the rows of a quantity over a mesh cycle: mean, largest, smallest, variation in step.
+
+    The variation in step is small if the curves are shifted in time, or if time runs backwards in one model.
+    """
     rows = [
-        (f"{name}, {which}", unit, float(of(theirs)), float(of(ours)), _STIFFNESS)
-        for which, of in (("mean", np.mean), ("largest", np.max), ("smallest", np.min))
+        Row(f"{name}, {word}", unit, float(value(theirs)), float(value(ours)), _STIFFNESS)
+        for word, value in (("mean", np.mean), ("largest", np.max), ("smallest", np.min))
     ]
-    a, b = theirs / theirs.mean() - 1.0, ours / ours.mean() - 1.0
-    size = float(np.sqrt(np.mean(b**2)))
-    return [
-        *rows,
-        (f"{name}, variation in step, over the mean", "1", np.mean(a * b) / size, size, _STIFFNESS),
-    ]
+    their_variation = theirs / theirs.mean() - 1.0
+    our_variation = ours / ours.mean() - 1.0
+    size = float(np.sqrt(np.mean(our_variation**2)))
+    in_step = np.mean(their_variation * our_variation) / size
+    return [*rows, Row(f"{name}, variation in step, over the mean", "1", in_step, size, _STIFFNESS)]
 
 
 def _compared(theirs: str, rows: list[Row], pair: GearPair, supports: Supports) -> xr.Dataset:
-    """The rows as a dataset."""
-    names, units, a, b, limits = zip(*rows, strict=True)
-    difference = np.array(a, dtype=float) / np.array(b, dtype=float) - 1.0
+    """Return the rows as a dataset. ``theirs``: name of the variable for the values of the other model."""
+    their_values = np.array([row.theirs for row in rows], dtype=float)
+    our_values = np.array([row.ours for row in rows], dtype=float)
+    limits = np.array([row.limit for row in rows])
+    difference = their_values / our_values - 1.0
     columns = {
-        theirs: (np.array(a, dtype=float), "value of the other model"),
-        "spurcheck": (np.array(b, dtype=float), "value here"),
+        theirs: (their_values, "value of the other model"),
+        "spurcheck": (our_values, "value here"),
         "difference": (difference, "value of the other model over that here, less 1"),
-        "limit": (np.array(limits), "largest difference that agrees"),
-        "agrees": (np.abs(difference) <= np.array(limits), "whether it agrees"),
+        "limit": (limits, "largest difference that agrees"),
+        "agrees": (np.abs(difference) <= limits, "whether it agrees"),
     }
     result = labelled_dataset(
         {name: ("quantity", values, "1", words) for name, (values, words) in columns.items()},
-        {"quantity": (list(names), "1", "quantity")},
+        {"quantity": ([row.name for row in rows], "1", "quantity")},
         provenance(pair) | {"supports": supports},
     )
-    return result.assign_coords(units=("quantity", list(units)))
+    return result.assign_coords(units=("quantity", [row.unit for row in rows]))
 
 
 def _pair(mesh: Any, speed: float | str, torque: float | str) -> GearPair:
-    """The pair of a mesh, with stiffness by the method of ROSS."""
+    """Return the pair that equals a mesh of ROSS, with stiffness by the method of ROSS."""
     try:
         if mesh.helix_angle != 0.0:
             raise refuse("mesh", f"helix angle {mesh.helix_angle:g} rad", "spur gears", "Compare spur gears.")

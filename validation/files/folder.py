@@ -1,7 +1,7 @@
-"""The folder of a report is written whole or not at all, and replaces only an earlier report.
+"""Output folders. A folder is written completely or not at all, and replaces only an earlier report.
 
-Every folder that is written holds the list of its own files (``CONTENTS``). A folder with any other file
-in it is not replaced.
+Every output folder contains a list of the files written there (``CONTENTS``). A folder with any other file is
+not replaced.
 """
 
 from __future__ import annotations
@@ -17,38 +17,39 @@ from pathlib import Path
 from lumped.errors import StorageError, refuse
 from validation.files.output import not_writable
 
-#: Value of "format" in report.json, by which an earlier report is recognised.
+#: Value of "format" in report.json; marks an earlier report.
 FORMAT = "spurcheck-report"
-#: Version of the layout of report.json; a change that breaks readers raises it.
+#: Version of the layout of report.json. The number rises with every change that breaks programs that read it.
 FORMAT_VERSION = 3
 #: File in each folder that names the files written there.
 CONTENTS = "contents.json"
 
 
 def check_target(out: Path, *, force: bool) -> Path:
-    """Return the absolute output folder after refusing one that must not be written.
+    """Return the absolute path of the output folder. A folder that must not be written is refused.
 
-    It is new or empty; with ``force`` it may hold an earlier report and nothing else.
+    The folder must be new or empty. With ``force`` the folder may contain an earlier report and nothing else.
     """
     target = Path(os.path.abspath(out))
     if target.is_symlink():
         raise refuse("output", out, "a folder", "This is a link: name the folder itself.")
     if target.exists() and not target.is_dir():
         raise refuse("output", out, "a folder", "This is a file; choose another name.")
-    found = _files(target)
-    if found and not force:
+    present_files = _files(target)
+    if present_files and not force:
         action = "It is not empty: choose another folder, or give --force to replace an earlier report."
         raise refuse("output", out, "a new or empty folder", action)
-    if found and (others := sorted(found - _written(target))):
+    if present_files and (foreign_files := sorted(present_files - _written(target))):
         action = "This file is not of it: move it elsewhere, or choose another folder."
-        raise refuse("output", target / others[0], "nothing but an earlier report", action)
+        raise refuse("output", target / foreign_files[0], "nothing but an earlier report", action)
     return target
 
 
 @contextmanager
 def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
-    """Give an empty folder to write into, and put it in the place of ``out`` at the end.
-    On any failure, interruption included, nothing is left behind and earlier results stay as they were.
+    """Yield an empty folder to write into. At the end the folder is renamed to ``out``.
+
+    After a failure or an interruption no temporary files remain, and earlier results are unchanged.
     """
     target = check_target(out, force=force)
     missing = [parent for parent in target.parents if not parent.exists()]
@@ -83,17 +84,17 @@ def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
         if work is not None:
             shutil.rmtree(work, ignore_errors=True)
         for folder in missing:
-            with suppress(OSError):  # of another one, and of what holds the report
+            with suppress(OSError):  # a folder that is not empty stays
                 folder.rmdir()
 
 
 def _files(folder: Path) -> set[str]:
-    """Names of all files below a folder, none where there is no folder."""
+    """Return the names of all files below a folder. Empty if the folder does not exist."""
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir()}
 
 
 def _written(folder: Path) -> set[str]:
-    """Files that an earlier run wrote into a folder."""
+    """Return the files that an earlier run wrote into a folder. A folder without their list is refused."""
     with suppress(OSError, ValueError, RecursionError, TypeError, KeyError):
         data = json.loads((folder / CONTENTS).read_text(encoding="utf-8"))
         if data["format"] == FORMAT:

@@ -1,4 +1,4 @@
-"""Numbers for readers: significant digits, SI prefixes, powers of ten; words that stand in TOML files."""
+"""Numbers as text: significant digits, SI prefixes, powers of ten. Also: reading of texts in TOML files."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MINUS = "\u2212"
 #: A number and its unit stay on one line.
 _SPACE = "\u00a0"
-#: Mantissa and exponent of a number as a computer writes it.
+#: Mantissa and exponent of a number in computer notation, such as 9.43e-03.
 _EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e(-\d+|\+\d{2,})(?!\w)")
 _PREFIXED = frozenset({"m", "N", "Pa", "N/m", "N m", "W", "s", "Hz", "m/s", "N s/m"})
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
 
 
 def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
-    """A number with significant digits; powers of ten outside 0.001 to 99999.
+    """Return a number as text with significant digits, with a power of ten outside 0.001 to 99999.
 
-    Zeros at the end are left out, but where the number is good to that many digits (``measured``).
+    Zeros at the end are removed. With ``measured`` they stay, because the number is accurate to all digits.
     """
     if not math.isfinite(value):
         return "n/a"
@@ -42,11 +42,12 @@ def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
 def quantity(
     value: float, unit: str, digits: int = 4, *, measured: bool = False, exponent: int | None = None
 ) -> str:
-    """A number in SI with its unit, prefixed where that is usual.
+    """Return an SI number and its unit as text, with an SI prefix where a prefix is usual.
 
-    ``exponent`` of ten of the prefix, by default the number's own; other arguments as those of ``number``.
+    ``exponent``: exponent of ten of the prefix; by default the prefix follows from the number. ``digits`` and
+    ``measured``: as in ``number``.
     """
-    if unit == "1" or value == 0.0:  # nothing has no unit that a reader would miss
+    if unit == "1" or value == 0.0:  # zero is printed without a unit
         return number(value, digits, measured=measured)
     if unit in _PREFIXED and math.isfinite(value):
         exponent = prefix_exponent(value, digits) if exponent is None else exponent
@@ -56,7 +57,10 @@ def quantity(
 
 
 def span(low: float, high: float, unit: str, digits: int = 2) -> str:
-    """A range with one prefix and one unit, each end with its digits, more where they read alike."""
+    """Return a range as text, with a common prefix and a common unit.
+
+    ``digits``: significant digits of each end. Up to two digits are added if both ends read alike.
+    """
     largest = max(abs(low), abs(high))
     exponent = prefix_exponent(largest, digits) if largest else None
     for more in range(digits, digits + 3):
@@ -70,17 +74,17 @@ def span(low: float, high: float, unit: str, digits: int = 2) -> str:
 
 
 def prefix_exponent(value: float, digits: int = 4) -> int:
-    """Exponent of ten of the SI prefix with which a number other than 0 is printed from 1 to 999."""
+    """Return the exponent of ten of the SI prefix with which a nonzero number is printed as 1 to 999."""
     exponent = min(max(3 * math.floor(math.log10(abs(value)) / 3), -12), 9)
     rounded = abs(float(f"{value / 10.0**exponent:.{digits}g}"))
     return exponent + 3 if rounded >= 1000.0 and exponent < 9 else exponent  # 999.99 rounds to 1000
 
 
 def common_exponent(values: Sequence[float], digits: int = 4) -> int | None:
-    """Exponent of the one prefix of numbers that are read beside each other; None where all are 0.
+    """Return the exponent of one prefix for numbers that stand side by side. None: all numbers are 0.
 
-    It is the one with which most are printed without a power of ten and with at most four digits before the
-    point; of two alike that of the larger prefix.
+    With the chosen prefix most numbers are printed without a power of ten and with at most four digits before
+    the point. If two prefixes are equally good, the larger prefix is chosen.
     """
     sizes = [abs(one) for one in values if one and math.isfinite(one)]
     if not sizes:
@@ -96,10 +100,11 @@ def _plain_with(size: float, exponent: int) -> bool:
 def side_by_side(
     values: Iterable[float], unit: str, digits: int = 3, beside: Iterable[float] = ()
 ) -> tuple[list[str], str]:
-    """Numbers in SI in the unit of the largest, with decimals that tell them apart; and that unit.
+    """Return texts of several SI numbers in one unit, and the text of this unit.
 
-    ``digits`` of the largest, and at most three further ones; what is equal then reads the same.
-    ``beside``: other numbers of the same line of a table, whose largest chooses the unit.
+    The prefix is chosen by the largest number. ``digits``: significant digits of the largest number. Up to
+    three decimals are added until different numbers read differently. ``beside``: other numbers of the same
+    line of a table; if given, the largest of these numbers chooses the prefix.
     """
     values = [float(value) for value in values]
     largest = max(map(abs, list(beside) or values), default=0.0)
@@ -120,27 +125,28 @@ def side_by_side(
 
 
 def prose(text: str) -> str:
-    """Text in which numbers as a computer writes them (9.43e-03) are as people write them."""
+    """Rewrite numbers in computer notation (9.43e-03) within a text as decimals or with powers of ten."""
     return _EXPONENT.sub(_plain, text)
 
 
 def _plain(match: re.Match[str]) -> str:
-    mantissa = match[1]
-    exponent = int(match[2])
+    mantissa, exponent_text = match.groups()
+    exponent = int(exponent_text)
     if -3 <= exponent <= 4:
-        places = max(len(mantissa.partition(".")[2]) - exponent, 0)
+        _, _, decimals = mantissa.partition(".")
+        places = max(len(decimals) - exponent, 0)
         return f"{float(match[0]):.{places}f}"
     factor = "" if mantissa == "1" else f"{mantissa}{_SPACE}×{_SPACE}"
     return f"{factor}10{str(exponent).translate(_SUPERSCRIPT)}"
 
 
 def read_table(folder: str, file: str) -> dict[str, Any]:
-    """Read a TOML file of a package; the lines of every text in it are joined.
+    """Read a TOML file from a package. In every text of the file the lines are joined.
 
-    ``folder``: package that the file is in; ``file``: its name.
+    ``folder``: name of the package; ``file``: name of the file.
     """
-    found: dict[str, Any] = _joined(tomllib.loads((files(folder) / file).read_text(encoding="utf-8")))
-    return found
+    table: dict[str, Any] = _joined(tomllib.loads((files(folder) / file).read_text(encoding="utf-8")))
+    return table
 
 
 def _joined(value: Any) -> Any:

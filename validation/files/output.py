@@ -1,4 +1,4 @@
-"""Result files: NetCDF, CSV or MATLAB files of a dataset, each written whole or not at all."""
+"""Result files: NetCDF, CSV or MATLAB files of a dataset. A file is written completely or not at all."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import xarray as xr
 
 from lumped.errors import ParameterError, StorageError, refuse
 
-#: Name of the scale of a dimension without coordinate, as the specification has it.
+#: Name of the scale of a dimension without coordinate, as the NetCDF-4 specification requires.
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable. %9d"
 #: Longest name of a MATLAB variable.
 _LONGEST_NAME = 63
@@ -29,7 +29,7 @@ COLUMN_DIMENSIONS = ("pair", "multiplier", "law", "variant", "input")
 
 
 def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
-    """Return the path after refusing one that must not be written, before any work is done."""
+    """Return the path of an output file. A path that cannot or must not be written is refused."""
     if path.suffix.lower() not in suffixes:
         allowed = "a name ending in " + ", ".join(suffixes)
         raise refuse("output", path, allowed, "The suffix chooses the format.")
@@ -50,7 +50,7 @@ def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
 
 
 def not_writable(path: Path, error: OSError) -> ParameterError:
-    """Build the refusal of a place for results."""
+    """Return the refusal of a file or folder that cannot be written."""
     reason = error.strerror or type(error).__name__
     action = f"It cannot be written ({reason}): choose another."
     return refuse("output", path, "a place that can be written", action)
@@ -58,10 +58,10 @@ def not_writable(path: Path, error: OSError) -> ParameterError:
 
 @contextmanager
 def whole_file(path: Path, *, new: bool = False) -> Iterator[Path]:
-    """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
+    """Yield a temporary file to write, in the folder of ``path``. At the end the file is renamed to ``path``.
 
-    On any failure nothing is left behind and an existing file stays as it was; with ``new`` also one that has
-    appeared there meanwhile.
+    After a failure no temporary file remains, and an existing file is unchanged. With ``new``, a file that
+    has appeared at ``path`` in the meantime is not replaced: a StorageError is raised.
     """
     temporary: Path | None = None
     try:
@@ -85,13 +85,13 @@ def whole_file(path: Path, *, new: bool = False) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str, *, new: bool = False) -> None:
-    """Write a text file whole; ``new`` as for ``whole_file``."""
+    """Write a text file completely or not at all. ``new``: as in ``whole_file``."""
     with whole_file(path, new=new) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
 def write_dataset(result: xr.Dataset, path: Path, *, new: bool = False) -> None:
-    """Write a dataset as NetCDF, CSV or MATLAB file, by suffix, whole; ``new`` as for ``whole_file``."""
+    """Write a dataset as NetCDF, CSV or MATLAB file; the suffix decides. ``new``: as in ``whole_file``."""
     with whole_file(path, new=new) as temporary:
         if path.suffix.lower() == ".csv":
             _write_csv(result, temporary)
@@ -107,16 +107,16 @@ def _write_netcdf(result: xr.Dataset, path: Path) -> None:
     for name, variable in result.variables.items():
         if variable.dtype == bool:  # NetCDF has no booleans
             ready[name] = variable.astype(np.int8)
-    # HDF5 ends the process where a disk is full: it writes to memory, and only Python to the disk.
+    # HDF5 ends the process if the disk is full. So HDF5 writes to memory, and Python writes to the disk.
     content = io.BytesIO()
     _write_netcdf4(ready, content)
     path.write_bytes(content.getbuffer())
 
 
 def _write_netcdf4(result: xr.Dataset, content: IO[bytes]) -> None:
-    """Write by h5py: xarray's own writer takes four times as long for results of many small variables.
+    """Write a dataset by h5py. The writer of xarray takes four times as long for many small variables.
 
-    Dimension scales as the NetCDF-4 format specification has them; real numbers are compressed.
+    Dimension scales follow the NetCDF-4 format specification. Real numbers are compressed.
     """
     encoded, attributes = xr.conventions.encode_dataset_coordinates(result)
     with h5py.File(content, "w", track_order=True) as file:
@@ -130,9 +130,9 @@ def _write_netcdf4(result: xr.Dataset, content: IO[bytes]) -> None:
                 scale.make_scale(_NO_VARIABLE % size)
             scale.attrs["_Netcdf4Dimid"] = np.int32(number)
         for name, variable in encoded.items():
-            made = _dataset(file, str(name), variable)
+            stored_variable = _dataset(file, str(name), variable)
             for axis, dimension in enumerate(variable.dims):
-                made.dims[axis].attach_scale(file[str(dimension)])
+                stored_variable.dims[axis].attach_scale(file[str(dimension)])
 
 
 def _dataset(file: h5py.File, name: str, variable: xr.Variable) -> h5py.Dataset:
@@ -141,20 +141,20 @@ def _dataset(file: h5py.File, name: str, variable: xr.Variable) -> h5py.Dataset:
     if values.dtype.kind in "OU":
         values = values.astype(object)
         options["dtype"] = h5py.string_dtype()
-    real = values.dtype.kind == "f"
-    if real:
+    is_real = values.dtype.kind == "f"
+    if is_real:
         options["fillvalue"] = np.nan
         if values.ndim:
             options |= {"compression": "gzip", "compression_opts": 4, "shuffle": True}
-    made = file.create_dataset(name, data=values, track_order=True, **options)
-    made.attrs.update({str(key): value for key, value in variable.attrs.items()})
-    if real:
-        made.attrs["_FillValue"] = np.array([np.nan], dtype=values.dtype)
-    return made
+    stored_variable = file.create_dataset(name, data=values, track_order=True, **options)
+    stored_variable.attrs.update({str(key): value for key, value in variable.attrs.items()})
+    if is_real:
+        stored_variable.attrs["_FillValue"] = np.array([np.nan], dtype=values.dtype)
+    return stored_variable
 
 
 def _real(result: xr.Dataset) -> xr.Dataset:
-    """Split complex variables, which neither format has, into real and imaginary part."""
+    """Split complex variables into real and imaginary part: NetCDF and CSV have no complex numbers."""
     ready = result.copy()
     for name, variable in result.data_vars.items():
         if np.iscomplexobj(variable):
@@ -179,10 +179,10 @@ def _inert(texts: np.ndarray[Any, np.dtype[Any]]) -> np.ndarray[Any, np.dtype[An
 
 
 def _write_csv(result: xr.Dataset, path: Path) -> None:
-    """One row per point of the axes, one column per variable (and entry of ``COLUMN_DIMENSIONS``)."""
+    """Write one row per point of the axes, and one column per variable and entry of ``COLUMN_DIMENSIONS``."""
     import pandas as pd
 
-    # A file has one table: the regions of a chart are another one.
+    # A CSV file has one table. The regions of a chart would be a second table.
     ready = _real(result.drop_dims("region", errors="ignore"))
     axes = [str(d) for d in ready.sizes if d not in COLUMN_DIMENSIONS]
     grid = np.meshgrid(*(ready[d].to_numpy() for d in axes), indexing="ij")
@@ -192,14 +192,14 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
     for name, variable in ready.data_vars.items():
         unit = variable.attrs.get("units", "1")
         others = [str(d) for d in variable.dims if d in COLUMN_DIMENSIONS]
-        wide = variable.expand_dims({d: ready[d] for d in axes if d not in variable.dims}).transpose(
+        expanded = variable.expand_dims({d: ready[d] for d in axes if d not in variable.dims}).transpose(
             *others, *axes
         )
-        values = wide.to_numpy().reshape(-1, grid[0].size)
+        values = expanded.to_numpy().reshape(-1, grid[0].size)
         labels = [""]
         for d in others:
-            known = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
-            labels = [f"{label}_{d}{k}" for label in labels for k in known]
+            labels_of_axis = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
+            labels = [f"{label}_{d}{k}" for label in labels for k in labels_of_axis]
         columns += [(f"{name}{label} [{unit}]", row) for label, row in zip(labels, values, strict=True)]
     # A result file from elsewhere may name a variable like a formula.
     headings = _inert(np.array([heading for heading, _ in columns], dtype=object))

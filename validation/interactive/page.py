@@ -42,10 +42,10 @@ def write_interactive_page(
     ----------
     pair : gear pair, preset name or parameter file; all teeth of a gear are taken as alike
     path : the page, ``.html``
-    data : the data file, ``.nc``; default beside the page, with its name
-    new : whether files of these names that are there when all is computed stay; else they are replaced
-    sampling : how finely
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
+    data : the data file, ``.nc``; default: file with the name of the page, in the folder of the page
+    new : if true, existing files of these names are not replaced
+    sampling : numbers of points of charts and responses
+    supports : "springs", the only supports of this computation; needed for a pair with shafts
     progress : called with the finished fraction and what is being done
 
     Returns
@@ -70,9 +70,10 @@ def write_interactive_page(
 
 def render(results: PageResults, data_name: str) -> str:
     """Return the page as text.
-    Its security policy names the page's own scripts by their hashes: nothing else may run or be loaded.
 
-    ``data_name``: name of the data file, for the text.
+    The security policy of the page names the scripts of the page by hashes: no other script may run or load.
+
+    ``data_name``: name of the data file; the text mentions this name.
     """
     environment = Environment(
         loader=PackageLoader("validation.interactive", "templates"),
@@ -82,14 +83,14 @@ def render(results: PageResults, data_name: str) -> str:
         lstrip_blocks=True,
     )
     folder = files("validation.interactive") / "templates"
-    own = "\n".join((folder / name).read_text(encoding="utf-8") for name in _SCRIPTS)
-    scripts = [plotly(), f'(() => {{\n"use strict";\n{own}}})();']
+    page_script = "\n".join((folder / name).read_text(encoding="utf-8") for name in _SCRIPTS)
+    scripts = [plotly(), f'(() => {{\n"use strict";\n{page_script}}})();']
     pair = results.pair
     return environment.get_template("page.html").render(
         pair=pair,
         rpm=operating_rpm(pair),
         law=law_of(pair.friction).title,
-        found=results.found,
+        multipliers=results.multipliers,
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
         missing={law_of(pair.friction, law).title: reason for law, reason in results.missing.items()},
         data_name=data_name,
@@ -101,7 +102,7 @@ def render(results: PageResults, data_name: str) -> str:
 
 
 def plotly() -> str:
-    """Plotly's script, out of the installed package, which is an optional one."""
+    """Return the script of Plotly from the installed package. The package is optional."""
     try:
         package = files("plotly")
     except ModuleNotFoundError:
@@ -116,7 +117,7 @@ def _hash(script: str) -> str:
 
 
 def _safe(script: str) -> str:
-    """Return a script of ours or Plotly's after checking that nothing in it ends the script element."""
+    """Return the script after a check that no text in the script ends the script element."""
     lower = script.lower()
     if "</script" in lower or "<!--" in lower:
         raise ValueError("a script holds text that would end its element")

@@ -22,9 +22,9 @@ DIGITS = 6
 
 
 def payload(results: PageResults) -> dict[str, Any]:
-    """Return what the page's script reads.
+    """Return the data that the script of the page reads.
 
-    Numbers are rounded here, so that the page shows the digits of the data file; arrays of the charts are
+    Numbers are rounded here, so that the page shows the digits of the data file. Arrays of the charts are
     little-endian in base64: float32 for the largest multiplier, int8 for the verdict (1 stable, 0 undecided,
     -1 unstable).
     """
@@ -38,7 +38,7 @@ def payload(results: PageResults) -> dict[str, Any]:
 
 
 def script_json(data: Any) -> str:
-    """JSON that may stand inside a script element: no character of it can end the element or open another."""
+    """Return JSON for use inside a script element: no character can end the element or open another one."""
     text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return text.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e")
 
@@ -51,7 +51,7 @@ def _slices(slices: Slices) -> dict[str, Any]:
         "key": key,
         "name": chart[key].attrs["long_name"],
         "values": _numbers(chart[key]),
-        "own": slices.own,
+        "own": slices.index_of_pair,
         "speed": _numbers(chart["speed_rpm"]),
         "damping": _numbers(chart["damping_ratio"]),
         "radius": _base64(radius),
@@ -98,7 +98,7 @@ def _sweep(results: PageResults) -> dict[str, Any]:
 
 
 def _number(value: float) -> float | None:
-    """A number to ``DIGITS`` significant digits; None where it is not finite."""
+    """Return a number rounded to ``DIGITS`` significant digits. None: the number is not finite."""
     return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
 
 

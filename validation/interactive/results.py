@@ -1,4 +1,4 @@
-"""What the interactive page shows, computed once: stability slices, response of every friction law."""
+"""Content of the interactive page, computed once: stability slices and the response of every friction law."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ Grid = dict[str, FloatArray]
 
 #: Accuracy of the monodromy matrices; the page shows six decimals.
 _RTOL = 1e-7
-#: Factors on the bearing stiffness span what a change of bearing or housing does.
+#: Range of the factor on the bearing stiffness: possible effect of another bearing or housing.
 _FACTORS = (0.25, 4.0)
 _LEAST_FRICTION_RANGE = 0.1
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """How finely the page samples: nodes of its charts, and speeds of the response."""
+    """Numbers of points: nodes of the charts, and speeds of the response."""
 
     speeds: int = 101
     dampings: int = 17
@@ -51,12 +51,16 @@ FINE = Sampling()
 class Slices:
     """Stability charts over speed and damping at several values of a third parameter, ``key``.
 
-    ``own`` is the index of the pair's own value; ``chart`` has spectral_radius and verdict over (key,
-    damping_ratio, speed_rpm); ``tongues`` the unstable regions of each value, the largest first.
+    Attributes
+    ----------
+    key : name of the third parameter
+    index_of_pair : index of the value that the pair has
+    chart : spectral_radius and verdict over (key, damping_ratio, speed_rpm)
+    tongues : unstable regions at each value, the largest region first
     """
 
     key: str
-    own: int
+    index_of_pair: int
     chart: xr.Dataset
     tongues: tuple[tuple[LabelledRegion, ...], ...]
 
@@ -68,7 +72,7 @@ class PageResults:
     Attributes
     ----------
     pair : the gear pair
-    found : Floquet multipliers at the operating point
+    multipliers : Floquet multipliers at the operating point
     stability : third parameter -> its charts
     sweep : response over (law, speed): dte_peak_to_peak, y_p_peak_to_peak [m]; lowest_load over the static
         load; reversal over the base pitch; validity, index into ``validation.validity.flags.STATES``;
@@ -80,7 +84,7 @@ class PageResults:
     """
 
     pair: GearPair
-    found: GearPairMultipliers
+    multipliers: GearPairMultipliers
     stability: dict[str, Slices]
     sweep: xr.Dataset
     own_law: int
@@ -89,7 +93,7 @@ class PageResults:
     resonances: tuple[float, ...]
 
     def dataset(self) -> xr.Dataset:
-        """Every number of the page; the charts carry ``_over_`` and their third parameter in their names."""
+        """Return every number of the page. Names of chart variables end in ``_over_`` and the parameter."""
         parts = [
             slices.chart.rename({name: f"{name}_over_{key}" for name in slices.chart.data_vars})
             for key, slices in self.stability.items()
@@ -104,12 +108,12 @@ class PageResults:
 
 
 def compute(pair: GearPair, sampling: Sampling = FINE, progress: Progress | None = None) -> PageResults:
-    """Compute the content of the page, of a pair without shafts."""
+    """Compute the content of the page for a pair on springs."""
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
-        found = modes(pair)
+        natural_modes = modes(pair)
     except NumericalError:  # an overdamped mode has no natural frequency
-        found = ()
+        natural_modes = ()
     grid = chart_axes(pair, sampling.speeds, sampling.dampings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # the page says it beside the law
@@ -118,9 +122,14 @@ def compute(pair: GearPair, sampling: Sampling = FINE, progress: Progress | None
             tell(0.4 * done / len(SLICES), "stability over a third parameter")
             stability[key] = make(pair, grid, sampling.slices)
         tell(0.4, "response of every friction law")
-        # Friction hardly moves a resonance: the speeds that resolve the pair's own law resolve every law.
-        own = resolved_sweep(pair, speed_range(pair), most=sampling.sweep_speeds, samples_per_cycle=_SAMPLES)
-        sweeps, missing = _law_sweeps(pair, own, lambda f: tell(0.4 + 0.6 * f, "response over speed"))
+        # Friction hardly changes a resonance. Speeds that resolve the response with the law of the pair
+        # resolve the response with every law.
+        sweep_of_pair = resolved_sweep(
+            pair, speed_range(pair), most=sampling.sweep_speeds, samples_per_cycle=_SAMPLES
+        )
+        sweeps, missing = _law_sweeps(
+            pair, sweep_of_pair, lambda f: tell(0.4 + 0.6 * f, "response over speed")
+        )
         notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
         multipliers = gear_pair_multipliers(pair)
     laws = xr.DataArray(
@@ -128,48 +137,56 @@ def compute(pair: GearPair, sampling: Sampling = FINE, progress: Progress | None
     )
     return PageResults(
         pair=pair,
-        found=multipliers,
+        multipliers=multipliers,
         stability=stability,
         sweep=xr.concat(list(sweeps.values()), laws),
         own_law=list(sweeps).index(pair.friction.law),
         notes=notes,
         missing=missing,
-        resonances=tuple(mode.resonant_speed for mode in found),
+        resonances=tuple(mode.resonant_speed for mode in natural_modes),
     )
 
 
 def _law_sweeps(
-    pair: GearPair, own: xr.Dataset, tell: Callable[[float], None]
+    pair: GearPair, sweep_of_pair: xr.Dataset, tell: Callable[[float], None]
 ) -> tuple[dict[str, xr.Dataset], dict[str, str]]:
-    """Response of every law that this pair admits, at the speeds of its own; why others are missing."""
-    speeds = own["speed"].to_numpy()
-    sweeps = {pair.friction.law: _response(pair, own)}
+    """Compute the response with every friction law, at the speeds of ``sweep_of_pair``.
+
+    Returns
+    -------
+    friction law -> response, for every law that the pair admits
+    friction law -> reason why the law is missing
+    """
+    speeds = sweep_of_pair["speed"].to_numpy()
+    sweeps = {pair.friction.law: _response(pair, sweep_of_pair)}
     missing = {}
     laws = [*LAWS, *([TABLE] if pair.friction.table is not None else [])]
     for done, law in enumerate(laws):
         if law not in sweeps:
             try:
-                at = pair.with_({"friction.law": law})
-                sweeps[law] = _response(at, lumped.speed_sweep(at, speeds, samples_per_cycle=_SAMPLES))
+                pair_with_law = pair.with_({"friction.law": law})
+                sweeps[law] = _response(
+                    pair_with_law, lumped.speed_sweep(pair_with_law, speeds, samples_per_cycle=_SAMPLES)
+                )
             except (ParameterError, NumericalError) as error:
                 missing[law] = str(error)
         tell((done + 1) / len(laws))
     return {law: sweeps[law] for law in laws if law in sweeps}, missing
 
 
-def _response(pair: GearPair, found: xr.Dataset) -> xr.Dataset:
-    """What the page shows of a sweep of this pair."""
+def _response(pair: GearPair, sweep: xr.Dataset) -> xr.Dataset:
+    """Return the variables of a speed sweep that the page shows."""
     g = pair.geometry
     static = pair.operating.pinion_torque / g.base_radius_pinion
-    lowest = found["normal_load_min"].to_numpy()
-    reversal = found["sliding_reversal"].to_numpy()
+    lowest = sweep["normal_load_min"].to_numpy()
+    reversal = sweep["sliding_reversal"].to_numpy()
     lowest = lowest / static
     reversal = reversal / g.base_pitch
-    own = {"lowest_load": lowest, "reversal": reversal, "validity": validity_state(lowest, reversal)}
-    values = {name: own[name] if name in own else found[name].to_numpy() for name in _LABELS}
+    ratios = {"lowest_load": lowest, "reversal": reversal, "validity": validity_state(lowest, reversal)}
+    values = {name: ratios[name] if name in ratios else sweep[name].to_numpy() for name in _LABELS}
     return labelled_dataset(
         {name: ("speed", array, *_LABELS[name]) for name, array in values.items()},
-        {"speed": (found["speed"].to_numpy(), "rpm", "pinion speed")},
+        {"speed": (sweep["speed"].to_numpy(), "rpm", "pinion speed")},
     )
 
 
@@ -185,11 +202,13 @@ _LABELS = {
 
 
 def _bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
-    """Charts with the stiffness of all bearings multiplied by one factor; 1 is the pair itself."""
+    """Compute charts with all bearing stiffnesses multiplied by one factor. Factor 1: the pair itself."""
     values = with_point(np.geomspace(*_FACTORS, count), 1.0)
     ends = [(g, f"{line}_stiffness") for g in ("pinion", "gear") for line in ("loa", "oloa")]
-    own = {f"bearings.{g}.{key}": getattr(getattr(pair.bearings, g), key) for g, key in ends}
-    variants = [pair.with_({path: factor * k for path, k in own.items()}) for factor in values.tolist()]
+    stiffnesses = {f"bearings.{g}.{key}": getattr(getattr(pair.bearings, g), key) for g, key in ends}
+    variants = [
+        pair.with_({path: factor * k for path, k in stiffnesses.items()}) for factor in values.tolist()
+    ]
     charts = [stability_chart(variant, grid, rtol=_RTOL) for variant in variants]
     attrs = {"units": "1", "long_name": "bearing stiffness factor"}
     axis = xr.DataArray(values, dims="bearing_factor", name="bearing_factor", attrs=attrs)
@@ -199,14 +218,18 @@ def _bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
 
 
 def _friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
-    """Charts with the friction law scaled to a mean coefficient that is the same at every speed."""
+    """Compute charts with the friction law scaled to one mean coefficient at all speeds."""
     name = "friction_coefficient"
-    own = GEAR_AXES[name].own(pair)
-    values = with_point(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
+    value_of_pair = GEAR_AXES[name].own(pair)
+    values = with_point(
+        np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * value_of_pair), 1.0), count), value_of_pair
+    )
     chart = stability_chart(pair, {**grid, name: values}, rtol=_RTOL)
     tongues = [tuple(label_regions(pair, chart.isel({name: [i]}))) for i in range(count)]
     chart[name].attrs.update(units="1", long_name=GEAR_AXES[name].long_name)
-    return Slices(name, int(np.argmin(np.abs(values - own))), _ordered(chart[_VARIABLES]), tuple(tongues))
+    return Slices(
+        name, int(np.argmin(np.abs(values - value_of_pair))), _ordered(chart[_VARIABLES]), tuple(tongues)
+    )
 
 
 #: Third parameter -> how its charts are made; the first is shown first.

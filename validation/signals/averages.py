@@ -1,7 +1,8 @@
 """The time-synchronous average of a shaft, its residual and difference signals, and condition indicators.
 
-The average over all turns keeps the orders that are whole numbers. The residual signal is the average without
-the mesh harmonics m z, the difference signal without their first sidebands m z - 1 and m z + 1 too.
+The average over all turns contains only orders that are whole numbers. The residual signal is the average
+without the mesh harmonics m z. The difference signal is the residual signal without the first sidebands
+m z - 1 and m z + 1.
 
 Sources: McFadden, Mech. Syst. Signal Process. 1 (1987) 83-95 (average); Stewart, University of Southampton,
 MHM/R/10/77, 1977 (FM0, FM4); Martin 1989 (M6A); Zakrajsek, Townsend and Decker, NASA TM-105950, 1993 (NA4).
@@ -23,9 +24,9 @@ from validation.signals.orders import Harmonics, harmonics
 
 Gear = Literal["pinion", "gear"]
 GEARS: tuple[Gear, Gear] = ("pinion", "gear")
-#: Distance from a whole order that is rounding.
+#: An order closer than this to a whole number counts as whole: the distance is rounding.
 _WHOLE = 1e-6
-#: Share of the average's root mean square below which a signal is rounding: no indicator divides by it.
+#: A signal below this share of the root mean square of the average is rounding. Its moments are NaN.
 _NOTHING = 1e-9
 
 
@@ -38,8 +39,8 @@ def time_synchronous_average(
     ----------
     result : dataset of ``steady_state`` or ``synthetic_record``
     shaft : "pinion" or "gear"
-    variable : that depends on time alone
-    derivative : by time; 2 is what an accelerometer feels of a displacement
+    variable : name of a variable that depends on time alone
+    derivative : order of the time derivative; an accelerometer measures derivative 2 of a displacement
 
     Returns
     -------
@@ -51,58 +52,65 @@ def time_synchronous_average(
     ParameterError : as ``order_spectrum``
     """
     one_of("shaft", shaft, ("pinion", "gear"))
-    found = harmonics(result, variable, derivative)
+    components = harmonics(result, variable, derivative)
     return labelled_dataset(
-        {"average": ("turn", _average(found, shaft), found.unit, f"average over turns of: {found.words}")},
-        {"turn": (_turn(_count(found, shaft)), "1", f"turn of the {shaft}")},
-        result.attrs | {"shaft": shaft, "teeth": found.teeth(shaft)},
+        {
+            "average": (
+                "turn",
+                _average(components, shaft),
+                components.unit,
+                f"average over turns of: {components.words}",
+            )
+        },
+        {"turn": (_turn(_count(components, shaft)), "1", f"turn of the {shaft}")},
+        result.attrs | {"shaft": shaft, "teeth": components.teeth(shaft)},
     )
 
 
-def _count(found: Harmonics, shaft: Gear) -> int:
-    """Samples in a turn: as many a mesh cycle as the result has."""
-    return found.teeth(shaft) * max(2 * (found.values.size - 1) // found.cycles, 2)
+def _count(components: Harmonics, shaft: Gear) -> int:
+    """Return the number of samples in a turn, with the samples per mesh cycle of the result."""
+    return components.teeth(shaft) * max(2 * (components.values.size - 1) // components.cycles, 2)
 
 
 def _turn(count: int) -> FloatArray:
     return np.arange(count) / count
 
 
-def _average(found: Harmonics, shaft: Gear) -> FloatArray:
-    orders = found.orders(shaft)
-    count = _count(found, shaft)
-    whole = (np.abs(orders - np.round(orders)) < _WHOLE) & (orders < count / 2 - 0.5)
+def _average(components: Harmonics, shaft: Gear) -> FloatArray:
+    orders = components.orders(shaft)
+    count = _count(components, shaft)
+    is_whole = (np.abs(orders - np.round(orders)) < _WHOLE) & (orders < count / 2 - 0.5)
     spectrum = np.zeros(count // 2 + 1, dtype=np.complex128)
-    spectrum[np.round(orders[whole]).astype(int)] = 0.5 * count * found.values[whole]
+    spectrum[np.round(orders[is_whole]).astype(int)] = 0.5 * count * components.values[is_whole]
     spectrum[0] *= 2.0
     return np.fft.irfft(spectrum, count)
 
 
 def residual(average: xr.Dataset) -> xr.Dataset:
-    """Return a time-synchronous average without its mean and the mesh harmonics m z; the same units."""
+    """Return a time-synchronous average without mean and mesh harmonics m z, in the same unit."""
     return _without(average, 0)
 
 
 def difference(average: xr.Dataset) -> xr.Dataset:
-    """Return a time-synchronous average without its mean, m z and m z +- 1; the same units."""
+    """Return a time-synchronous average without mean and orders m z, m z - 1, m z + 1, in the same unit."""
     return _without(average, 1)
 
 
 def _without(average: xr.Dataset, sidebands: int) -> xr.Dataset:
     of_type("average", average, xr.Dataset, "a dataset of time_synchronous_average")
     if "average" not in average or "teeth" not in average.attrs:
-        known = "a dataset of time_synchronous_average"
-        raise refuse("average", ", ".join(map(str, average.data_vars)), known, "Compute it first.")
+        allowed = "a dataset of time_synchronous_average"
+        raise refuse("average", ", ".join(map(str, average.data_vars)), allowed, "Compute it first.")
     values = average["average"].to_numpy()
-    left = _filtered(values, int(average.attrs["teeth"]), sidebands)
-    return average.assign(average=average["average"].copy(data=left))
+    filtered = _filtered(values, int(average.attrs["teeth"]), sidebands)
+    return average.assign(average=average["average"].copy(data=filtered))
 
 
 def _mesh_orders(count: int, teeth: int, sidebands: int) -> BoolArray:
     orders = np.arange(count // 2 + 1)
     distance = np.abs(orders - teeth * np.round(orders / teeth))
-    found: BoolArray = np.where(orders < teeth / 2, orders == 0, distance <= sidebands)
-    return found
+    is_mesh_order: BoolArray = np.where(orders < teeth / 2, orders == 0, distance <= sidebands)
+    return is_mesh_order
 
 
 def _filtered(values: FloatArray, teeth: int, sidebands: int) -> FloatArray:
@@ -114,7 +122,7 @@ def _filtered(values: FloatArray, teeth: int, sidebands: int) -> FloatArray:
 def sidebands(
     result: xr.Dataset, shaft: Gear = "pinion", *, variable: str = "dte", derivative: int = 0, most: int = 5
 ) -> xr.Dataset:
-    """Return the amplitudes beside the mesh harmonics over that of the harmonic, a(m z + k)/a(m z).
+    """Return the amplitude of each sideband over the amplitude of its mesh harmonic, a(m z + k)/a(m z).
 
     Parameters
     ----------
@@ -130,18 +138,18 @@ def sidebands(
     ParameterError : as ``order_spectrum``
     """
     one_of("shaft", shaft, ("pinion", "gear"))
-    found = harmonics(result, variable, derivative)
-    teeth = found.teeth(shaft)
-    number = whole_number("most", most, 1, max(teeth // 2, 1))
-    size = np.abs(found.values)
-    k = np.arange(-number, number + 1)
+    components = harmonics(result, variable, derivative)
+    teeth = components.teeth(shaft)
+    most_sidebands = whole_number("most", most, 1, max(teeth // 2, 1))
+    amplitudes = np.abs(components.values)
+    k = np.arange(-most_sidebands, most_sidebands + 1)
     rows = []
     for m in (1, 2, 3):
-        place = (m * teeth + k) * found.cycles / teeth
-        index = np.minimum(np.round(place).astype(int), size.size - 1)
-        there = np.abs(place - index) < _WHOLE
-        centre = size[min(m * found.cycles, size.size - 1)]
-        rows.append(np.where(there, size[index], 0.0) / centre)
+        component_number = (m * teeth + k) * components.cycles / teeth
+        index = np.minimum(np.round(component_number).astype(int), amplitudes.size - 1)
+        is_component = np.abs(component_number - index) < _WHOLE
+        mesh_amplitude = amplitudes[min(m * components.cycles, amplitudes.size - 1)]
+        rows.append(np.where(is_component, amplitudes[index], 0.0) / mesh_amplitude)
     return labelled_dataset(
         {"ratio": (("mesh_order", "sideband"), np.stack(rows), "1", "amplitude over the mesh harmonic's")},
         {
@@ -174,10 +182,11 @@ def indicators(
     noise_floor: float = 0.0,
     seed: int = 1,
 ) -> xr.Dataset:
-    """Return condition indicators of the time-synchronous average, beside those of the twin with like teeth.
+    """Return condition indicators of the time-synchronous average, of the pair and the twin with like teeth.
 
-    An indicator alone says little: without noise the twin's residual is zero and its FM4, M6A and NA4 are
-    0/0, which is NaN here. So the noise floor is stated and the twin gets the same noise.
+    An indicator is judged by comparison with the twin. Without noise the residual signal of the twin is zero,
+    so that FM4, M6A and NA4 of the twin are 0/0 (NaN here). Therefore both signals get noise of the stated
+    level.
 
     Parameters
     ----------
@@ -199,46 +208,52 @@ def indicators(
     one_of("shaft", shaft, ("pinion", "gear"))
     floor = real_number("noise_floor", noise_floor, 0.0, action="Give a root mean square.")
     draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
-    found = harmonics(result, variable, derivative)
-    samples = max(2 * (found.values.size - 1) // found.cycles, 8)
+    components = harmonics(result, variable, derivative)
+    samples = max(2 * (components.values.size - 1) // components.cycles, 8)
     healthy = lumped.steady_state(
-        found.pair.healthy,
+        components.pair.healthy,
         contact=result.attrs.get("contact", "unilateral"),
         supports=result.attrs.get("supports"),
         samples_per_cycle=samples,
     )
     twin = harmonics(healthy, variable, derivative)
-    averages = [_average(found, shaft), _average(twin, shaft)]
-    averages = [one + floor * draw.standard_normal(one.size) for one in averages]
-    teeth = found.teeth(shaft)
-    spread = [float(np.var(_filtered(one, teeth, 0))) for one in averages]
-    table = [_numbers(one, teeth, 0.5 * (spread[1] + own)) for one, own in zip(averages, spread, strict=True)]
+    averages = [_average(components, shaft), _average(twin, shaft)]
+    averages = [average + floor * draw.standard_normal(average.size) for average in averages]
+    teeth = components.teeth(shaft)
+    spread = [float(np.var(_filtered(average, teeth, 0))) for average in averages]
+    table = [
+        _numbers(average, teeth, 0.5 * (spread[1] + variance))
+        for average, variance in zip(averages, spread, strict=True)
+    ]
     return labelled_dataset(
         {"value": (("indicator", "record"), np.array(table).T, "1", "condition indicator")},
         {"indicator": (list(_INDICATORS), "1", "name"), "record": (["pair", "healthy twin"], "1", "record")},
-        result.attrs | {"shaft": shaft, "teeth": teeth, "noise_floor": floor, "unit": found.unit},
+        result.attrs | {"shaft": shaft, "teeth": teeth, "noise_floor": floor, "unit": components.unit},
     )
 
 
 def _numbers(values: FloatArray, teeth: int, variance: float) -> list[float]:
-    """Values in the order of ``_INDICATORS``; ``variance`` is the mean of the residual's over the records."""
-    about = values - values.mean()
+    """Return the indicators in the order of ``_INDICATORS``.
+
+    ``variance``: mean of the variances of the residual signals of both records.
+    """
+    centred = values - values.mean()
     rms = float(np.sqrt(np.mean(values**2)))
-    size = 2.0 * np.abs(np.fft.rfft(values)) / values.size
-    mesh = float(size[teeth::teeth].sum())
-    left, apart = (_filtered(values, teeth, number) for number in (0, 1))
-    noise = _NOTHING * float(about.std())
+    amplitudes = 2.0 * np.abs(np.fft.rfft(values)) / values.size
+    mesh_sum = float(amplitudes[teeth::teeth].sum())
+    residual_signal, difference_signal = (_filtered(values, teeth, number) for number in (0, 1))
+    rounding = _NOTHING * float(centred.std())
 
     def moment(signal: FloatArray, power: int, over: float) -> float:
-        return float(np.mean(signal**power) / over) if np.sqrt(np.mean(signal**2)) > noise else np.nan
+        return float(np.mean(signal**power) / over) if np.sqrt(np.mean(signal**2)) > rounding else np.nan
 
     return [
         rms,
-        moment(about, 4, float(np.var(about)) ** 2),
+        moment(centred, 4, float(np.var(centred)) ** 2),
         float(np.abs(values).max()) / rms,
-        float(np.ptp(values)) / mesh,
-        float(left.std()),
-        moment(apart, 4, float(np.var(apart)) ** 2),
-        moment(apart, 6, float(np.var(apart)) ** 3),
-        moment(left, 4, variance**2),
+        float(np.ptp(values)) / mesh_sum,
+        float(residual_signal.std()),
+        moment(difference_signal, 4, float(np.var(difference_signal)) ** 2),
+        moment(difference_signal, 6, float(np.var(difference_signal)) ** 3),
+        moment(residual_signal, 4, variance**2),
     ]

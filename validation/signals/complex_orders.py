@@ -1,4 +1,4 @@
-"""Complex amplitudes of a signal at orders, the shift in time between two sets of signals, and their misfit.
+"""Complex amplitudes of a signal at orders; time shift and misfit between two sets of signals.
 
 A signal over u, in cycles, is written as mean + SUM Re(V_m exp(2 pi i m u)), m the order. |V_m| is an
 amplitude, peak. The same signal s cycles later in its period has V_m exp(2 pi i m s).
@@ -19,15 +19,15 @@ from scipy.optimize import minimize_scalar
 from lumped.errors import refuse
 from lumped.typing import BoolArray, ComplexArray, FloatArray, IntArray
 
-#: Samples whose waves are held at once.
+#: Number of samples whose waves are in memory at the same time.
 _CHUNK = 20_000
-#: Cycles from which on their scatter says how noise is correlated; fewer leave it white.
+#: From this number of cycles on, the scatter between cycles gives the correlation of the noise. With fewer
+#: cycles the noise is assumed to be white.
 _FEWEST_CYCLES = 8
 #: Phases of a cycle at which a waveform is read, and trial shifts in the period of the highest order.
 _PHASES = 2048
 _TRIALS = 16
-#: Share of the static value below which an amplitude is no scale: the difference of two such amplitudes is
-#: nothing that loads a tooth or a bearing.
+#: Least scale of a misfit over the static value. A smaller amplitude does not load a tooth or a bearing.
 LEAST = 1e-3
 
 
@@ -61,30 +61,33 @@ class ComplexOrders:
         return float(np.linalg.norm(self.values))
 
     def shifted(self, shift: float) -> ComplexOrders:
-        """The signal ``shift`` cycles later in its period; the covariance turns with it."""
+        """Return the signal ``shift`` cycles later in its period, with the covariance of the new parts."""
         turn = np.exp(2j * np.pi * self.orders * shift)
-        c, s = np.diag(turn.real), np.diag(turn.imag)
-        turning = np.block([[c, -s], [s, c]])
+        cosines = np.diag(turn.real)
+        sines = np.diag(turn.imag)
+        turning = np.block([[cosines, -sines], [sines, cosines]])
         return replace(self, values=self.values * turn, covariance=turning @ self.covariance @ turning.T)
 
-    def only(self, kept: BoolArray) -> ComplexOrders:
-        """The signal of these orders (k,) alone."""
-        both = np.concatenate([kept, kept])
-        covariance = self.covariance[np.ix_(both, both)]
-        return replace(self, orders=self.orders[kept], values=self.values[kept], covariance=covariance)
+    def only(self, selected: BoolArray) -> ComplexOrders:
+        """Return the signal with the selected orders alone; ``selected`` (k,) is a mask."""
+        selected_parts = np.concatenate([selected, selected])
+        covariance = self.covariance[np.ix_(selected_parts, selected_parts)]
+        return replace(
+            self, orders=self.orders[selected], values=self.values[selected], covariance=covariance
+        )
 
     def block(self, number: int) -> FloatArray:
-        """(2, 2) covariance of the real and imaginary part of the order with this place in ``orders``."""
-        at = [number, number + self.orders.size]
-        return self.covariance[np.ix_(at, at)]
+        """Return the covariance (2, 2) of the real and imaginary part of ``orders[number]``."""
+        parts = [number, number + self.orders.size]
+        return self.covariance[np.ix_(parts, parts)]
 
     def at(self, cycles: ArrayLike) -> FloatArray:
-        """The signal about its mean at these cycles."""
+        """Return the signal without its mean, at places in cycles."""
         return np.asarray(_waves(np.asarray(cycles, dtype=float), self.orders) @ self._parts)
 
     @property
     def phases(self) -> FloatArray:
-        """Cycles over a period at which ``at`` shows every extreme of the signal."""
+        """Places [cycles] over a period, dense enough to show every extreme of the signal."""
         return np.arange(_PHASES * self.period) / _PHASES
 
     @property
@@ -124,8 +127,8 @@ def complex_orders(
     orders : (k,) to fit, above 0
     period : cycles after which a signal of these orders repeats
     blocks : (n,) number of the cycle, or of the engagement, of each sample, between which noise is
-        independent; default ``floor(cycles)``. Of 8 blocks or more the noise within one may be correlated in
-        any way; of fewer it is taken as white
+        independent; default ``floor(cycles)``. With 8 blocks or more, noise within a block may be correlated
+        in any way. With fewer blocks the noise is assumed to be white
 
     Returns
     -------
@@ -136,64 +139,66 @@ def complex_orders(
     ParameterError : fewer than twice as many samples as numbers to fit, or samples that do not tell the
         orders apart
     """
-    u, y, m = (np.asarray(one, dtype=np.float64) for one in (cycles, values, orders))
+    u, y, m = (np.asarray(array, dtype=np.float64) for array in (cycles, values, orders))
     count = 2 * m.size + 1
     if y.size < 2 * count:
         raise refuse("data", f"{y.size} samples", f"at least {2 * count}", "Sample faster, or longer.")
-    parts = [slice(first, first + _CHUNK) for first in range(0, y.size, _CHUNK)]
+    chunks = [slice(first, first + _CHUNK) for first in range(0, y.size, _CHUNK)]
     normal = np.zeros((count, count))
     moment = np.zeros(count)
-    for part in parts:
-        columns = _columns(u[part], m)
+    for chunk in chunks:
+        columns = _columns(u[chunk], m)
         normal += columns.T @ columns
-        moment += columns.T @ y[part]
+        moment += columns.T @ y[chunk]
     if not np.linalg.cond(normal) < 1e10:
         action = "Sample faster, or at another rate than a whole number a cycle."
         raise refuse("data", f"samples at few phases for {m.size} orders", "more phases", action)
     inverse = np.linalg.inv(normal)
-    found = inverse @ moment
+    coefficients = inverse @ moment
     number = np.unique(np.floor(u) if blocks is None else blocks, return_inverse=True)[1]
     scores = np.zeros((int(number.max()) + 1, count))
-    square = 0.0
-    for part in parts:
-        columns = _columns(u[part], m)
-        rest = y[part] - columns @ found
-        square += float(rest @ rest)
-        np.add.at(scores, number[part], columns * rest[:, None])
-    covariance = square / (y.size - count) * inverse
+    sum_of_squares = 0.0
+    for chunk in chunks:
+        columns = _columns(u[chunk], m)
+        residuals = y[chunk] - columns @ coefficients
+        sum_of_squares += float(residuals @ residuals)
+        np.add.at(scores, number[chunk], columns * residuals[:, None])
+    covariance = sum_of_squares / (y.size - count) * inverse
     if len(scores) >= _FEWEST_CYCLES:
-        inner = scores.T @ scores * (len(scores) / (len(scores) - 1) * y.size / (y.size - count))
-        covariance = inverse @ inner @ inverse
-    real = found[1 : m.size + 1]
-    imaginary = found[m.size + 1 :]
-    spread = np.asarray(covariance[1:, 1:], dtype=np.float64)
-    return ComplexOrders(m, real + 1j * imaginary, float(found[0]), spread, period)
+        cluster_sum = scores.T @ scores * (len(scores) / (len(scores) - 1) * y.size / (y.size - count))
+        covariance = inverse @ cluster_sum @ inverse
+    real = coefficients[1 : m.size + 1]
+    imaginary = coefficients[m.size + 1 :]
+    covariance_of_orders = np.asarray(covariance[1:, 1:], dtype=np.float64)
+    return ComplexOrders(m, real + 1j * imaginary, float(coefficients[0]), covariance_of_orders, period)
 
 
 def orders_of_period(values: ArrayLike, orders: int, period: int = 1) -> ComplexOrders:
-    """Return the first complex orders of a signal at even times over ``period`` cycles, by Fourier's sums.
+    """Return the first complex orders of a signal, by Fourier's sums.
 
-    The orders are 1, 2, ... over ``period``, at most ``orders`` and as many as the times show. They are
-    exact up to aliasing, so their covariance is zero.
+    The samples are at even times over ``period`` cycles. The orders are 1, 2, ... over ``period``, up to
+    ``orders`` or up to half the number of samples. The amplitudes are exact but for aliasing, so that the
+    covariance is zero.
     """
     y = np.asarray(values, dtype=np.float64)
-    found = np.fft.rfft(y) / y.size
+    spectrum = np.fft.rfft(y) / y.size
     most = min(orders * period, (y.size - 1) // 2)
     number = np.arange(1, most + 1)
     return ComplexOrders(
         np.asarray(number / period, dtype=np.float64),
-        2.0 * found[number],
-        float(found[0].real),
+        2.0 * spectrum[number],
+        float(spectrum[0].real),
         np.zeros((2 * most, 2 * most)),
         period,
     )
 
 
 def channel_scale(one: float, other: float, static: float) -> float:
-    """Return the amplitude that a channel's misfit is over: never zero.
+    """Return the amplitude by which the misfit of a channel is divided. The amplitude is never zero.
 
-    It is that of the first signal; of the second where the first is zero; at least a share ``LEAST`` of the
-    static value (the static mesh force, or the mean deflection), so that rounding is no scale.
+    The scale is the amplitude of the first signal, ``one``. If the first signal is too small, the scale is
+    the amplitude of the second signal, ``other``. If both are too small, the scale is the share ``LEAST`` of
+    the static value (static mesh force or mean deflection).
     """
     least = LEAST * static
     return next((size for size in (one, other) if size > least), least)
@@ -208,8 +213,9 @@ def common_shift(
 ) -> float:
     """Return the one shift [cycles] of all ``others`` with which the misfit to ``signals`` is smallest.
 
-    The misfit falls as the correlation SUM Re(conj(U_m) V_m exp(2 pi i m s))/scale^2 over channels and orders
-    rises; its largest value over all shifts of a period is taken, or over ``near`` (centre, reach).
+    The misfit is smallest where the correlation SUM Re(conj(U_m) V_m exp(2 pi i m s))/scale^2 over channels
+    and orders is largest. All shifts of a period are searched, or with ``near`` = (centre, reach) the shifts
+    from centre - reach to centre + reach.
     """
     pairs = list(zip(signals, others, scales, strict=True))
     order = np.concatenate([one.orders for one, _, _ in pairs])
@@ -233,8 +239,8 @@ def misfit(
 ) -> float:
     """Return the root of the mean over channels of SUM |U_m - V_m|^2/scale^2, for signals in phase.
 
-    0 is the same motion; 1 is what no motion at all would give; the wrong sign gives 2. The means of the
-    signals take no part: sensors of motion have no zero.
+    The misfit is 0 for equal motions, 1 if the second motion is zero, and 2 if the second motion has the
+    wrong sign. Means of the signals are not compared, because sensors of motion have no zero.
     """
     rows = zip(signals, others, scales, strict=True)
     squares = [(np.linalg.norm(one.values - other.values) / scale) ** 2 for one, other, scale in rows]
@@ -242,7 +248,7 @@ def misfit(
 
 
 def _waves(cycles: FloatArray, orders: FloatArray) -> FloatArray:
-    """(n, 2k) factors of the real, then of the imaginary parts, in the signal at cycles."""
+    """Return the waves (n, 2k) that multiply the real parts, then the imaginary parts, of the amplitudes."""
     angle = 2.0 * np.pi * np.multiply.outer(cycles, orders)
     return np.hstack([np.cos(angle), -np.sin(angle)])
 

@@ -1,4 +1,4 @@
-"""What teeth that differ do to a pair, beside its twin with like teeth: one dataset for report and command.
+"""Effects of teeth that differ, compared with the twin with like teeth. Report and command use these results.
 
 Sources: docs/theory/teeth.md, "Motion", "Signals".
 """
@@ -23,18 +23,18 @@ from lumped.typing import FloatArray
 from validation.signals.averages import Gear, indicators, sidebands
 from validation.signals.orders import order_spectrum
 
-#: White noise of a sensor in a time-synchronous average, over the root mean square of the healthy twin's.
+#: White noise of a sensor in an average signal, over the root mean square of the average of the healthy twin.
 NOISE = 0.01
-#: Share of the mesh harmonic's amplitude from which a sideband counts as audible or measurable.
+#: A sideband from this share of the amplitude of the mesh harmonic on counts as audible or measurable.
 _SEEN = 0.01
 GEARS: tuple[Gear, Gear] = ("pinion", "gear")
 
 
 class TeethFindings:
-    """Motion of a pair whose teeth differ, and of its twin with like teeth; refused where teeth are alike.
+    """Motion of a pair whose teeth differ, and motion of the twin with like teeth.
 
-    ``supports``: of both, by default the shafts of a pair that has them; ``motion``: that of the pair, if it
-    is known.
+    A pair with like teeth is refused. ``supports``: supports of both motions, by default the shafts of a pair
+    with shafts. ``motion``: motion of the pair, if it is computed already.
     """
 
     def __init__(
@@ -77,33 +77,33 @@ class TeethFindings:
     def contact_lost(self) -> tuple[tuple[int, int], ...]:
         """Teeth (pinion, gear) at which the total mesh force is zero; empty where contact is kept."""
         total = self.motion["normal_load"].sum("pair").to_numpy()
-        at = np.flatnonzero(total <= 0.0)
-        teeth = (self.motion[f"{gear}_tooth"].isel(pair=0).to_numpy()[at] for gear in GEARS)
+        samples_without_load = np.flatnonzero(total <= 0.0)
+        teeth = (self.motion[f"{gear}_tooth"].isel(pair=0).to_numpy()[samples_without_load] for gear in GEARS)
         return tuple(sorted({(int(p), int(g)) for p, g in zip(*teeth, strict=True)}))
 
     @cached_property
     def largest_loads(self) -> FloatArray:
         """(z1, z2) largest load of each meeting pair [N]; NaN for teeth that never meet."""
-        found = np.full((self.pair.pinion.teeth, self.pair.gear.teeth), np.nan)
+        loads = np.full((self.pair.pinion.teeth, self.pair.gear.teeth), np.nan)
         teeth = (self.motion[f"{gear}_tooth"].to_numpy().ravel() - 1 for gear in GEARS)
-        np.fmax.at(found, tuple(teeth), self.motion["normal_load"].to_numpy().ravel())
-        return np.where(found > 0.0, found, np.nan)
+        np.fmax.at(loads, tuple(teeth), self.motion["normal_load"].to_numpy().ravel())
+        return np.where(loads > 0.0, loads, np.nan)
 
     @cached_property
     def rates(self) -> tuple[float, float]:
-        """Growth of a perturbation in one mesh cycle, |multiplier|^(1/cycles), of the pair and its twin."""
-        found = floquet.revolution_multipliers(self.pair, supports=self.supports)
-        return found.rate, found.healthy_rate
+        """Growth of a perturbation in one mesh cycle, |multiplier|^(1/cycles): the pair, then the twin."""
+        multipliers = floquet.revolution_multipliers(self.pair, supports=self.supports)
+        return multipliers.rate, multipliers.healthy_rate
 
     def spectrum(self, gear: Gear, variable: str = "dte") -> xr.Dataset:
         """Amplitudes over the orders of a shaft, of the pair and of its twin."""
-        found = order_spectrum(self.motion, gear, variable=variable)
+        amplitudes = order_spectrum(self.motion, gear, variable=variable)
         twin = order_spectrum(self.twin, gear, variable=variable)
-        healthy = np.zeros(found.sizes["order"])
+        healthy = np.zeros(amplitudes.sizes["order"])
         healthy[:: self.period] = twin["amplitude"].to_numpy()[: healthy[:: self.period].size]
         words = "amplitude of the twin with like teeth"
-        attributes = {"units": found["amplitude"].attrs["units"], "long_name": words}
-        return found.assign(healthy=("order", healthy, attributes))
+        attributes = {"units": amplitudes["amplitude"].attrs["units"], "long_name": words}
+        return amplitudes.assign(healthy=("order", healthy, attributes))
 
     def indicators(self, gear: Gear) -> xr.Dataset:
         """Condition indicators of the pinion's acceleration, with the noise of ``NOISE``."""
@@ -113,7 +113,7 @@ class TeethFindings:
 
     @cached_property
     def sentence(self) -> str:
-        """What a listener or a sensor finds."""
+        """Effects of the teeth that a listener or a sensor notices, in one sentence."""
         parts = []
         for gear in GEARS:
             if not self._turns(gear):
@@ -121,10 +121,14 @@ class TeethFindings:
             z = {"pinion": self.pair.pinion.teeth, "gear": self.pair.gear.teeth}[gear]
             ratio = sidebands(self.motion, gear)["ratio"].sel(mesh_order=1)
             ratio = ratio.where(ratio["sideband"] != 0, 0.0)
-            at = int(ratio["sideband"][int(np.argmax(ratio.to_numpy()))])
+            largest_sideband = int(ratio["sideband"][int(np.argmax(ratio.to_numpy()))])
             share = float(ratio.max())
             hertz = self.pair.geometry.mesh_frequency / z
-            size = f"{100 * share:.2g} % of it at order {z + at}" if share >= _SEEN else "below 1 % of it"
+            size = (
+                f"{100 * share:.2g} % of it at order {z + largest_sideband}"
+                if share >= _SEEN
+                else "below 1 % of it"
+            )
             rms = self.indicators(gear)["value"].sel(indicator="RMS_residual")
             times = float(rms.sel(record="pair") / rms.sel(record="healthy twin"))
             parts.append(
@@ -132,8 +136,8 @@ class TeethFindings:
                 f"and an accelerometer shows {times:.2g} times the residual signal of like teeth"
             )
         lost = self.contact_lost
-        where = f"; contact is lost at {len(lost)} meeting teeth" if lost else "; contact is kept"
-        text = f"{'; '.join(parts) or 'only the torque differs'}{where}."
+        contact_words = f"; contact is lost at {len(lost)} meeting teeth" if lost else "; contact is kept"
+        text = f"{'; '.join(parts) or 'only the torque differs'}{contact_words}."
         return text[0].upper() + text[1:]
 
     def _turns(self, gear: Gear) -> bool:
@@ -141,7 +145,7 @@ class TeethFindings:
 
 
 def deviations_table(pair: GearPair) -> xr.Dataset:
-    """Index deviations of both gears beside the tolerances of ISO 1328-1:2013.
+    """Index deviations of both gears, and the tolerance class of ISO 1328-1:2013.
 
     Returns
     -------
@@ -152,15 +156,15 @@ def deviations_table(pair: GearPair) -> xr.Dataset:
     for teeth in tooth_errors(pair):
         cumulative = float(np.ptp(teeth.index))
         pitch = float(np.abs(np.diff(teeth.index, prepend=teeth.index[-1])).max())
-        # A drawn gear meets one of its tolerances to rounding.
-        size = (1.0 - 1e-9) * np.array([pitch, cumulative])
-        held = 1
-        while held < 12:
-            limit = flank_tolerances(teeth.index.size, pair.basic_rack.module, held)
-            if (size <= [limit["f_p"], limit["F_p"]]).all():
+        # A gear that was drawn from a class has one deviation equal to the tolerance, but for rounding.
+        sizes = (1.0 - 1e-9) * np.array([pitch, cumulative])
+        tolerance_class = 1
+        while tolerance_class < 12:
+            limit = flank_tolerances(teeth.index.size, pair.basic_rack.module, tolerance_class)
+            if (sizes <= [limit["f_p"], limit["F_p"]]).all():
                 break
-            held += 1
-        rows.append((cumulative, pitch, teeth.eccentricity, held))
+            tolerance_class += 1
+        rows.append((cumulative, pitch, teeth.eccentricity, tolerance_class))
     ranges, steps, eccentricities, classes = map(list, zip(*rows, strict=True))
     return labelled_dataset(
         {
@@ -173,11 +177,11 @@ def deviations_table(pair: GearPair) -> xr.Dataset:
     )
 
 
-def rpm_and_period(found: TeethFindings) -> str:
+def rpm_and_period(findings: TeethFindings) -> str:
     """Speed and period of the motion, in words."""
-    pair = found.pair
+    pair = findings.pair
     turns = " and ".join(
-        f"{found.period / getattr(pair, gear).teeth:g} turns of the {gear}" for gear in GEARS
+        f"{findings.period / getattr(pair, gear).teeth:g} turns of the {gear}" for gear in GEARS
     )
     rpm = to_stated(pair.operating.pinion_speed, "rpm")
-    return f"{rpm:.5g} rpm the motion repeats after {found.period} mesh cycles, {turns}"
+    return f"{rpm:.5g} rpm the motion repeats after {findings.period} mesh cycles, {turns}"

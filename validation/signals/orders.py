@@ -1,7 +1,7 @@
-"""Amplitudes of a motion over the orders of a shaft: the mesh harmonics, and the sidebands beside them.
+"""Amplitudes of a motion over the orders of a shaft: mesh harmonics and sidebands.
 
-A motion over N mesh cycles has the frequencies j f_m/N. That is the order j z/N of a shaft whose gear has z
-teeth, and j/N of the mesh. Sources: docs/theory/teeth.md, "Signals"; ISO 13373-2:2016, 5.4.
+A motion over N mesh cycles has the frequencies j f_m/N. The frequency j f_m/N is order j z/N of a shaft whose
+gear has z teeth, and order j/N of the mesh. Sources: docs/theory/teeth.md, "Signals"; ISO 13373-2:2016, 5.4.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Harmonics:
         return np.arange(self.values.size, dtype=np.float64) * (self.teeth(shaft) / self.cycles)
 
     def at(self, count: int) -> FloatArray:
-        """The signal at ``count`` even times of the period, at most those of the result."""
+        """Return the signal at ``count`` even times of the period, at most as many as the result has."""
         spectrum = 0.5 * count * self.values[: count // 2 + 1]
         spectrum[0] *= 2.0
         if count % 2 == 0:
@@ -55,7 +55,10 @@ class Harmonics:
 
 
 def harmonics(result: xr.Dataset, variable: str, derivative: int) -> Harmonics:
-    """Components of a variable over whole cycles of time, or of its derivative; refuse others."""
+    """Return the harmonics of a variable or of a time derivative of the variable.
+
+    The result must cover whole mesh cycles at even times; other results are refused.
+    """
     of_type("result", result, xr.Dataset, "a dataset, as steady_state returns it")
     scalars = [str(name) for name, one in result.data_vars.items() if one.dims == ("time",)]
     one_of("variable", variable, scalars, "Choose a variable that depends on time alone.")
@@ -101,8 +104,8 @@ def order_spectrum(
     result : dataset of ``steady_state``, over one mesh cycle, or over the period of teeth that differ; or of
         ``synthetic_record``
     shaft : "pinion" or "gear", whose order 1 is once a turn; "mesh", whose order 1 is the mesh frequency
-    variable : that depends on time alone
-    derivative : by time: 2 gives the acceleration of a displacement
+    variable : name of a variable that depends on time alone
+    derivative : order of the time derivative; 2 gives the acceleration of a displacement
 
     Returns
     -------
@@ -114,14 +117,21 @@ def order_spectrum(
     ParameterError : a variable that is not there, or a result that does not cover whole mesh cycles
     """
     one_of("shaft", shaft, get_args(Shaft))
-    found = harmonics(result, variable, derivative)
-    frequency = np.arange(found.values.size) * (found.pair.geometry.mesh_frequency / found.cycles)
+    components = harmonics(result, variable, derivative)
+    frequency = np.arange(components.values.size) * (
+        components.pair.geometry.mesh_frequency / components.cycles
+    )
     return labelled_dataset(
         {
-            "amplitude": ("order", np.abs(found.values), found.unit, f"amplitude of: {found.words}"),
+            "amplitude": (
+                "order",
+                np.abs(components.values),
+                components.unit,
+                f"amplitude of: {components.words}",
+            ),
             "frequency": ("order", frequency, "Hz", "frequency"),
         },
-        {"order": (found.orders(shaft), "1", f"order of the {shaft}")},
+        {"order": (components.orders(shaft), "1", f"order of the {shaft}")},
         result.attrs | {"shaft": shaft},
     )
 
@@ -131,16 +141,16 @@ def waterfall(
 ) -> xr.Dataset:
     """Return the amplitudes of a run-up over speed and order.
 
-    The record is even over the angle, so that an order stays in its place while the speed changes. Blocks of
-    whole turns, half of each in the next, are weighted by Hann's window; an amplitude is exact for an order
-    of the pinion that is whole over ``turns``.
+    The record has even steps of the angle, so that an order stays constant while the speed changes. The
+    record is cut into blocks of whole turns; each block overlaps the next block by half. Each block is
+    weighted by Hann's window. Amplitudes are exact for orders k/``turns`` of the pinion, k a whole number.
 
     Parameters
     ----------
     result : dataset of ``lumped.run_up``
-    shaft : whose orders they are
-    variable : that depends on time alone
-    turns : of the pinion in a block: more resolve orders better and speeds worse
+    shaft : shaft to which the orders refer
+    variable : name of a variable that depends on time alone
+    turns : turns of the pinion in a block; more turns resolve orders better and speeds worse
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Records as a sensor would make them: a periodic motion over many turns, with noise and a changing speed.
+"""Synthetic sensor records: a periodic motion over many turns, with noise and a changing speed.
 
-The motion is that of the constant nominal speed, read over the angle: a changing speed stretches the time and
-does not excite anything. So a record tests a user's own signal processing, not the pair's run-up.
+The motion at constant nominal speed is read over the angle. A changing speed stretches the time and excites
+no vibration. A record is a test of signal processing, not a simulation of a run-up.
 
 Source: docs/theory/teeth.md, "Signals".
 """
@@ -51,31 +51,33 @@ def synthetic_record(
     ------
     ParameterError : as ``order_spectrum``; a record of more than 20 million samples
     """
-    found = harmonics(result, variable, derivative)
+    components = harmonics(result, variable, derivative)
     count = whole_number("turns", turns, 1, 1_000_000)
     change = real_number("speed_change", speed_change, -0.9, 9.0, action="0.02 is 2 % faster at the end.")
-    level = real_number("noise", noise, 0.0, action="Give a root mean square.")
-    draw = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
+    noise_level = real_number("noise", noise, 0.0, action="Give a root mean square.")
+    generator = np.random.default_rng(whole_number("seed", seed, 0, 2**31))
     samples = result.sizes["time"]
-    teeth = found.pair.pinion.teeth
-    rate = found.pair.operating.pinion_speed / (2.0 * np.pi)
-    repeats = max(count * teeth // found.cycles, 1)
+    teeth = components.pair.pinion.teeth
+    rate = components.pair.operating.pinion_speed / (2.0 * np.pi)
+    repeats = max(count * teeth // components.cycles, 1)
     if repeats * samples > _MOST:
         raise refuse("turns", turns, f"records of at most {_MOST} samples", "Ask for fewer turns.")
-    whole = repeats * found.cycles / teeth
+    turns_of_record = repeats * components.cycles / teeth
     # The speed rate (1 + change t/T) makes rate T (1 + change/2) turns in the time T.
-    duration = whole / (rate * (1.0 + 0.5 * change))
+    duration = turns_of_record / (rate * (1.0 + 0.5 * change))
     time = np.arange(repeats * samples) * (duration / (repeats * samples))
     angle = rate * time * (1.0 + 0.5 * change * time / duration)
-    period = found.at(samples)
-    place = np.arange(samples + 1) * (whole / repeats / samples)
-    curve = CubicSpline(place, np.append(period, period[0]), bc_type="periodic")
-    signal = curve(np.mod(angle, whole / repeats)) + level * draw.standard_normal(time.size)
+    period = components.at(samples)
+    places = np.arange(samples + 1) * (turns_of_record / repeats / samples)
+    curve = CubicSpline(places, np.append(period, period[0]), bc_type="periodic")
+    signal = curve(np.mod(angle, turns_of_record / repeats)) + noise_level * generator.standard_normal(
+        time.size
+    )
     return labelled_dataset(
         {
-            "signal": ("time", signal, found.unit, found.words),
+            "signal": ("time", signal, components.unit, components.words),
             "pinion_turns": ("time", angle, "1", "turns of the pinion"),
         },
         {"time": (time, "s", "time")},
-        result.attrs | {"noise": level, "speed_change": change, "seed": seed, "turns": whole},
+        result.attrs | {"noise": noise_level, "speed_change": change, "seed": seed, "turns": turns_of_record},
     )

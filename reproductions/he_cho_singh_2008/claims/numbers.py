@@ -52,38 +52,41 @@ def measure(pair: GearPair) -> dict[str, float]:
 def mean_ratio(pair: GearPair) -> float:
     """Mean |mu| of II over that of III at Fig. 2a's point, the smaller of the two gear pairs."""
     points = (FIGURE_2A.of(gears) for gears in (pair, second_pair(pair)))
-    return min(mean_of_law(at, "benedict_kelley") / mean_of_law(at, "xu_kahraman") for at in points)
+    return min(
+        mean_of_law(pair_at_point, "benedict_kelley") / mean_of_law(pair_at_point, "xu_kahraman")
+        for pair_at_point in points
+    )
 
 
 def at_pitch_point(pair: GearPair) -> dict[str, float]:
-    """Largest |mu| within ``AT_PITCH`` of P: of III over its mean, of II over its largest elsewhere."""
-    at = FIGURE_2A.of(pair)
-    g = at.geometry
+    """Largest |mu| within ``AT_PITCH`` of P: law III over its mean, law II over its maximum elsewhere."""
+    pair_at_point = FIGURE_2A.of(pair)
+    g = pair_at_point.geometry
     near = g.L_XP + AT_PITCH * g.base_pitch * np.linspace(-1.0, 1.0, 401)
     path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 2001)
-    away = path[np.abs(path - g.L_XP) > AT_PITCH * g.base_pitch]
-    ii, iii = (friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman"))
+    outside = path[np.abs(path - g.L_XP) > AT_PITCH * g.base_pitch]
+    ii, iii = (friction_path_function(pair_at_point, law=law) for law in ("benedict_kelley", "xu_kahraman"))
     return {
         "iii_at_pitch": float(np.abs(iii(near)).max()) / mean_coefficient(iii),
-        "ii_at_pitch": float(np.abs(ii(near)).max()) / max(float(np.abs(ii(away)).max()), 1e-12),
+        "ii_at_pitch": float(np.abs(ii(near)).max()) / max(float(np.abs(ii(outside)).max()), 1e-12),
     }
 
 
 def regime_change(pair: GearPair) -> dict[str, float]:
     """Speed [rpm], relative width and drop of mean |mu| of the change from law II to III at Fig. 2b's torque.
 
-    Lambda grows with v_e^0.69 at every place, so each place changes its law at a speed of its own. Speed:
-    where half of the path has changed; width: from 10 % to 90 % of the path, over that speed; drop: mean of
-    II over mean of III.
+    Lambda grows with v_e^0.69 at every place of the path, so that the law changes at a different speed at
+    each place. Speed: half of the path has changed. Width: from 10 % to 90 % of the path, over the speed.
+    Drop: mean of II over mean of III.
     """
     reference = pair.with_({"operating.pinion_torque": TORQUE_2B, "operating.pinion_speed": 1000.0})
     path = contact_path(reference)
     xi = np.linspace(path.L_XA, path.L_XD, 2001)
-    level = pair.friction.thresholds[1]
-    speeds = 1000.0 * (level / path.film_parameter(xi)) ** (1.0 / _FILM_POWER)
+    threshold = pair.friction.thresholds[1]
+    speeds = 1000.0 * (threshold / path.film_parameter(xi)) ** (1.0 / _FILM_POWER)
     low, middle, high = (float(np.percentile(speeds, p)) for p in (10, 50, 90))
-    at = reference.with_({"operating.pinion_speed": min(max(middle, 1.0), 1.9e5)})
-    drop = mean_of_law(at, "benedict_kelley") / mean_of_law(at, "xu_kahraman")
+    pair_at_change = reference.with_({"operating.pinion_speed": min(max(middle, 1.0), 1.9e5)})
+    drop = mean_of_law(pair_at_change, "benedict_kelley") / mean_of_law(pair_at_change, "xu_kahraman")
     return {"switch_speed": middle, "switch_width": (high - low) / middle, "switch_drop": drop}
 
 
@@ -92,13 +95,13 @@ def pitch_jumps(pair: GearPair) -> dict[str, float]:
     g = pair.geometry
     path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 4001)
     sides = g.L_XP + _ONE_SIDED * np.array([-1.0, 1.0])
-    found = {}
+    jumps = {}
     for law in LAWS:
         mu: PathFunction = friction_path_function(pair, law=law)
         before, after = mu(sides)
         span = float(np.ptp(np.concatenate([mu(path), [before, after]])))
-        found[law] = float(after - before) / span
-    return found
+        jumps[law] = float(after - before) / span
+    return jumps
 
 
 def law_cycles(pair: GearPair) -> xr.Dataset:
@@ -111,12 +114,12 @@ def law_cycles(pair: GearPair) -> xr.Dataset:
     """
     runs = [periodic_cycle(pair.with_({"friction.law": law}), _SAMPLES) for law in LAWS]
     dims = {1: ("law", "phase"), 2: ("law", "pair", "phase")}
-    found = {}
+    variables = {}
     for name in ("dte", "x_p", "y_p", "normal_load", "friction_force", "contact"):
         values = np.array([run.values[name] for run in runs])
-        found[name] = (dims[values.ndim - 1], values)
-    found["spectral_radius"] = (("law",), np.array([run.spectral_radius for run in runs]))
-    return xr.Dataset(found, coords={"law": list(LAWS), "phase": np.arange(_SAMPLES) / _SAMPLES})
+        variables[name] = (dims[values.ndim - 1], values)
+    variables["spectral_radius"] = (("law",), np.array([run.spectral_radius for run in runs]))
+    return xr.Dataset(variables, coords={"law": list(LAWS), "phase": np.arange(_SAMPLES) / _SAMPLES})
 
 
 def load_spread(cycles: xr.Dataset) -> tuple[float, float]:
@@ -130,7 +133,8 @@ def load_spread(cycles: xr.Dataset) -> tuple[float, float]:
 def motion_differences(cycles: xr.Dataset, name: str) -> tuple[float, float]:
     """Largest rms difference and mean absolute difference between two laws, over the mean peak to peak.
 
-    The former is the worst of the six pairs of laws, the latter the mean over them.
+    The rms difference is of the worst of the six pairs of laws. The absolute difference is the mean over the
+    six pairs.
     """
     values = cycles[name].transpose("law", "phase").to_numpy()
     span = float(np.ptp(values, axis=1).mean())
@@ -140,9 +144,9 @@ def motion_differences(cycles: xr.Dataset, name: str) -> tuple[float, float]:
 
 
 def spread_by_order(cycles: xr.Dataset, name: str) -> tuple[FloatArray, FloatArray]:
-    """Spread of the amplitudes between the laws by mesh order 1 to 10: absolute [m], and over their mean.
+    """Spread of the amplitudes between the laws at mesh orders 1 to 10: absolute [m] and over the mean.
 
-    Orders whose mean amplitude is below 2 % of the largest have relative spread 0: they carry no motion.
+    An order with a mean amplitude below 2 % of the largest carries no motion: the relative spread is 0.
     """
     amplitude = mesh_orders(cycles[name], _ORDERS).transpose("law", "order").to_numpy()
     spread = np.ptp(amplitude, axis=0)
@@ -157,23 +161,23 @@ def largest_order(cycles: xr.Dataset, name: str, *, relative: bool = False) -> i
 
 
 def fig4_motions(pair: GearPair) -> dict[str, float]:
-    """How laws I to IV differ in the motions of Figs. 4 to 6, and whether these motions count.
+    """Differences between laws I to IV in the motions of Figs. 4 to 6, and numbers that judge these motions.
 
     radius_4: largest multiplier; min_load_4: smallest load of a pair in contact over the static load.
     """
-    at = FIGURE_4.of(pair)
-    cycles = law_cycles(at)
-    static = at.operating.pinion_torque / at.geometry.base_radius_pinion
-    found = {
+    pair_at_point = FIGURE_4.of(pair)
+    cycles = law_cycles(pair_at_point)
+    static = pair_at_point.operating.pinion_torque / pair_at_point.geometry.base_radius_pinion
+    numbers = {
         "radius_4": float(cycles["spectral_radius"].max()),
         "min_load_4": float(cycles["normal_load"].where(cycles["contact"] > 0).min()) / static,
     }
-    found["load_spread"], found["load_spread_rms"] = load_spread(cycles)
+    numbers["load_spread"], numbers["load_spread_rms"] = load_spread(cycles)
     for name in ("x_p", "y_p", "dte"):
-        found[f"rms_{name}"], found[f"mean_absolute_{name}"] = motion_differences(cycles, name)
-        found[f"order_{name}"] = float(largest_order(cycles, name))
-        found[f"relative_order_{name}"] = float(largest_order(cycles, name, relative=True))
-    return found
+        numbers[f"rms_{name}"], numbers[f"mean_absolute_{name}"] = motion_differences(cycles, name)
+        numbers[f"order_{name}"] = float(largest_order(cycles, name))
+        numbers[f"relative_order_{name}"] = float(largest_order(cycles, name, relative=True))
+    return numbers
 
 
 def fig7_motion(pair: GearPair) -> dict[str, float]:
@@ -183,11 +187,11 @@ def fig7_motion(pair: GearPair) -> dict[str, float]:
     ``fig4_motions``.
     """
     slow, fast = (mean_of_law(point.of(pair), "xu_kahraman") for point in FIGURE_7)
-    at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
-    run = periodic_cycle(at, _SAMPLES)
+    pair_at_point = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
+    run = periodic_cycle(pair_at_point, _SAMPLES)
     normal = run.values["normal_load"]
     friction = run.values["friction_force"]
-    static = at.operating.pinion_torque / at.geometry.base_radius_pinion
+    static = pair_at_point.operating.pinion_torque / pair_at_point.geometry.base_radius_pinion
     return {
         "mean_iii_slow": slow,
         "mean_iii_fast": fast,

@@ -25,19 +25,21 @@ _TESTS = {"at_least": operator.ge, "above": operator.gt, "at_most": operator.le}
 
 @dataclass(frozen=True, kw_only=True)
 class ClaimRule(Statement):
-    """One statement of the paper, how its number is computed and when it holds.
+    """One statement of the paper, with the computation of its number and the criterion.
 
     Attributes
     ----------
-    numbers : names among the claim numbers of ``numbers.measure``
-    combine : "min", "max" or "mean", where there are several
+    numbers : names of claim numbers of ``numbers.measure``
+    combine : "min", "max" or "mean"; combines several numbers
     factor : value of the claim over the number
-    limits : name of a claim number, or "value" -> the tests that it must pass, "at_least", "above", "at_most"
+    limits : name of a claim number, or "value" -> tests to pass: "at_least", "above", "at_most"
     details : further numbers, name -> (claim number, factor, unit)
-    remark, otherwise : on the outcome where the criterion is met, and why where it is not
-    figure : "4" or "7" where the number is of the motion in that figure, which must then be stable and in
-        contact; "" where it is of the laws alone
-    unpublished : why the claim cannot be judged from what was published; "" where it can
+    remark : text on the outcome if the criterion is met
+    otherwise : reason if the criterion is not met
+    figure : "4" or "7" if the number is of the motion in this figure; the motion must be stable and in
+        contact. "" if the number is of the laws alone
+    unpublished : reason why the paper has too little information to judge the claim; "" if the claim can be
+        judged
     """
 
     numbers: Sequence[str]
@@ -56,9 +58,9 @@ class ClaimRule(Statement):
 
     def holds(self, stated: Numbers) -> bool:
         """Whether the criterion is met."""
-        known = {**stated, "value": self.value(stated)}
+        numbers = {**stated, "value": self.value(stated)}
         return all(
-            _TESTS[test](known[name], limit)
+            _TESTS[test](numbers[name], limit)
             for name, tests in self.limits.items()
             for test, limit in tests.items()
         )
@@ -70,7 +72,7 @@ class ClaimRule(Statement):
         }
 
     def unusable(self, stated: Numbers) -> str:
-        """Why the motion that the number is of does not count; "" where it does or none is needed."""
+        """Reason why the motion behind the number is not usable. "": usable, or no motion is needed."""
         if not self.figure:
             return ""
         radius = stated[f"radius_{self.figure}"]

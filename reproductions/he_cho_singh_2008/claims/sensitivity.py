@@ -72,16 +72,16 @@ ASSUMPTIONS = (
 
 
 def vary(pair: GearPair, values: FloatArray) -> GearPair:
-    """The pair with the assumptions replaced, values (len(ASSUMPTIONS),) in their order and units."""
+    """Return the pair with other assumptions. ``values``: in the order and units of ``ASSUMPTIONS``."""
     inertia, mass, k_loa, ratio, zeta_b, zeta_m, roughness, viscosity, bound, sharpness, form = map(
         float, values
     )
-    own = bodies(pair)
+    nominal = bodies(pair)
     changes: dict[str, object] = {
-        "pinion.inertia": inertia * own.inertia_pinion,
-        "gear.inertia": inertia * own.inertia_gear,
-        "pinion.mass": mass * own.mass_pinion,
-        "gear.mass": mass * own.mass_gear,
+        "pinion.inertia": inertia * nominal.inertia_pinion,
+        "gear.inertia": inertia * nominal.inertia_gear,
+        "pinion.mass": mass * nominal.mass_pinion,
+        "gear.mass": mass * nominal.mass_gear,
         "mesh.damping_ratio": zeta_m,
         "pinion.roughness": roughness,
         "gear.roughness": roughness,

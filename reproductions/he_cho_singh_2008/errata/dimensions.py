@@ -57,7 +57,8 @@ def equation_8(printed: bool) -> str:
 def equation_14(printed: bool) -> str:
     """Logarithm's argument in law II: its constant carries units, so any velocity cubed passes."""
     u = _registry()
-    v_s, v_e = 2.0 * u.m / u.s, 10.0 * u.m / u.s
+    v_s = 2.0 * u.m / u.s
+    v_e = 10.0 * u.m / u.s
     velocities = v_s * v_s**2 if printed else v_s * v_e**2
     constant = 29700.0 * u.mPa * u.s * (u.m / u.s) ** 3 / (u.N / u.mm)
     argument = constant * (100.0 * u.N / u.mm) / (10.0 * u.mPa * u.s * velocities)

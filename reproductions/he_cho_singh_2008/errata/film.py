@@ -92,16 +92,16 @@ def _erratum_21(pair: GearPair) -> Erratum:
 
 
 def _film_effects(pair: GearPair, factor: float) -> list[Evidence]:
-    """Effects of the printed film on law V at the pair's own operating point.
+    """Effects of the printed film on law V at the operating point of the pair.
 
-    Both printed powers multiply Lambda by one factor everywhere: the law as printed is the right one with its
-    thresholds divided by that factor.
+    Both printed powers multiply Lambda by a constant factor. So the law as printed is the right law with all
+    thresholds divided by this factor.
 
     Parameters
     ----------
     pair : the gear pair
     factor : printed film over the right one
     """
-    moved = [threshold / factor for threshold in pair.friction.thresholds]
-    printed = friction_path_function(pair.with_({"friction.thresholds": moved}), law="composite")
+    scaled_thresholds = [threshold / factor for threshold in pair.friction.thresholds]
+    printed = friction_path_function(pair.with_({"friction.thresholds": scaled_thresholds}), law="composite")
     return law_effects(pair, printed, "composite")

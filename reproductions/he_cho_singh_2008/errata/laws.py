@@ -30,9 +30,9 @@ def law_errata(pair: GearPair) -> tuple[Erratum, ...]:
 
 def law_effects(pair: GearPair, printed: PathFunction, law: str) -> list[Evidence]:
     """Mean coefficient, motions, efficiency and multipliers with a law as printed and as repaired."""
-    own = pair.with_({"friction.law": law})
-    right = response(own)
-    wrong = response(own, friction=printed)
+    pair_with_law = pair.with_({"friction.law": law})
+    right = response(pair_with_law)
+    wrong = response(pair_with_law, friction=printed)
     mean = "mean of |mu| over the path of contact"
     return [
         Evidence(mean, "1", mean_coefficient(printed), mean_of_law(pair, law)),
@@ -107,11 +107,11 @@ def derivative_residual(pair: GearPair, function: PathFunction, mu: float) -> fl
 
 
 def _erratum_19(pair: GearPair) -> Erratum:
-    own = pair.with_({"friction.law": "smoothed_coulomb"})
-    mu = average_coefficient(own)
-    printed = law_iv_printed(own)
-    right = friction_path_function(own)
-    effects = law_effects(own, printed, "smoothed_coulomb")
-    residual = [derivative_residual(own, f, mu) for f in (printed, right)]
+    pair_with_law = pair.with_({"friction.law": "smoothed_coulomb"})
+    mu = average_coefficient(pair_with_law)
+    printed = law_iv_printed(pair_with_law)
+    right = friction_path_function(pair_with_law)
+    effects = law_effects(pair_with_law, printed, "smoothed_coulomb")
+    residual = [derivative_residual(pair_with_law, f, mu) for f in (printed, right)]
     numbers = {"residual": 100 * residual[0], "residual_repaired": 100 * residual[1]}
     return stated("19", numbers | dimensions.verdicts(dimensions.equation_19), effects)

@@ -25,9 +25,9 @@ PRINTED_SPEED_EXPONENT = -16
 
 
 def average_coefficient(pair: GearPair) -> float:
-    """mu_avg of laws I and IV: the pair's own coefficient, else the mean of law II over the path."""
-    own = pair.friction.coefficient
-    return mean_of_law(pair, "benedict_kelley") if own is None else own
+    """mu_avg of laws I and IV: the coefficient of the pair, or else the mean of law II over the path."""
+    coefficient = pair.friction.coefficient
+    return mean_of_law(pair, "benedict_kelley") if coefficient is None else coefficient
 
 
 def law_ii_level(path: ContactPath, xi: FloatArray) -> FloatArray:

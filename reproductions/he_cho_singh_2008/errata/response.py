@@ -88,7 +88,8 @@ def response(
         ),
         rtol=1e-9,
     )
-    g, s = cycle.geometry, absolute.structure
+    g = cycle.geometry
+    s = absolute.structure
     normal = data["normal_load"].to_numpy()
     sliding = data["friction_force"].to_numpy()
     driving = solution.pinion_torque * g.omega_pinion

@@ -13,13 +13,13 @@ _WORDS = {row["equation"]: row for row in _TABLE["erratum"]}
 
 
 def stated(equation: str, numbers: Mapping[str, Any], further: Iterable[Evidence] = ()) -> Erratum:
-    """The erratum of an equation.
+    """Return the erratum of an equation.
 
     Parameters
     ----------
-    equation : its number, as in ``errata.toml``
-    numbers : those that its text has in braces, and its evidence by name
-    further : evidence after that of the file
+    equation : number of the equation, as in ``errata.toml``
+    numbers : name -> number; the text has these names in braces, the evidence has them as entries
+    further : evidence to add after the evidence of the file
     """
     words = _WORDS[equation]
 
@@ -29,6 +29,6 @@ def stated(equation: str, numbers: Mapping[str, Any], further: Iterable[Evidence
             quantity, unit, numbers.get(printed, printed), numbers.get(repaired, repaired), requirement
         )
 
-    found = (evidence(*row) for row in words.get("evidence", ()))
+    rows_of_evidence = (evidence(*row) for row in words.get("evidence", ()))
     text = words["text"].format(**numbers)
-    return Erratum(**words | {"text": text, "evidence": (*found, *further)})
+    return Erratum(**words | {"text": text, "evidence": (*rows_of_evidence, *further)})

@@ -40,7 +40,8 @@ def pinion_arms(g: Geometry, phase: FloatArray) -> FloatArray:
 
 def erratum_5b(pair: GearPair) -> Erratum:
     """Equation 5b: right for contact ratios below 2 only."""
-    low, high = pair.geometry, high_contact_ratio().geometry
+    low = pair.geometry
+    high = high_contact_ratio().geometry
     phase = np.linspace(0.0, 1.0, 64, endpoint=False)
 
     def residual(g: Geometry, printed: bool) -> float:

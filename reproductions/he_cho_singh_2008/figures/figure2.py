@@ -41,12 +41,12 @@ def friction_in_time(pair: GearPair) -> xr.Dataset:
     """
     rows = []
     both = (pair, second_pair(pair))
-    for at in map(FIGURE_2A.of, both):
-        g = at.geometry
+    for pair_at_point in map(FIGURE_2A.of, both):
+        g = pair_at_point.geometry
         near = np.geomspace(5e-9, 1e-3, 80)
         xi = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), _POINTS)  # a path function is zero from D on
         xi = np.sort(np.concatenate([xi, g.L_XP - near, g.L_XP + near]))
-        laws = [friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman")]
+        laws = [friction_path_function(pair_at_point, law=law) for law in ("benedict_kelley", "xu_kahraman")]
         cycles = (xi - g.L_XA) / g.base_pitch
         means = [mean_coefficient(law) for law in laws]
         to_pitch = (g.L_XP - g.L_XA) / g.base_pitch
@@ -92,9 +92,9 @@ def mean_over_speed(pair: GearPair) -> xr.Dataset:
             }
         )
         for k, speed in enumerate(_SPEEDS):
-            at = oil.with_({"operating.pinion_speed": float(speed)})
+            pair_at_speed = oil.with_({"operating.pinion_speed": float(speed)})
             for j, law in enumerate(laws.values()):
-                table[i, j, k] = mean_of_law(at, law)
+                table[i, j, k] = mean_of_law(pair_at_speed, law)
     return labelled_dataset(
         {
             "mean_mu": (("calibration", "law", "speed"), table, "1", "mean of |mu| over the path of contact"),
@@ -136,7 +136,8 @@ def regime_switch(mean: xr.DataArray, ii: xr.DataArray, iii: xr.DataArray) -> tu
 
 def figure2(pair: GearPair) -> FigureRecord:
     """Figure 2 with its data and numbers."""
-    a, b = friction_in_time(pair), mean_over_speed(pair)
+    a = friction_in_time(pair)
+    b = mean_over_speed(pair)
     numbers: dict[str, Number] = {}
     for gears in a["gears"].to_numpy():
         means = a["mean_mu"].sel(gears=gears)

@@ -38,17 +38,17 @@ def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool =
     Dataset over model, label and cycles (mesh cycles since pair A was at A): normal_load, friction_force [N];
     roll_angle [deg] over cycles; attributes with the agreement of the twins
     """
-    at = point.of(pair).with_({"friction.law": LAW})
-    runs = twins({"III": at}, with_multibody=with_multibody)
+    pair_at_point = point.of(pair).with_({"friction.law": LAW})
+    runs = twins({"III": pair_at_point}, with_multibody=with_multibody)
     samples = runs.sizes["phase"]
     cycles = np.arange(_CYCLES * samples) / samples
-    found: dict[str, Variable] = {
-        "roll_angle": ("cycles", roll_angle(at, cycles), "deg", "pinion roll angle of pair A")
+    variables: dict[str, Variable] = {
+        "roll_angle": ("cycles", roll_angle(pair_at_point, cycles), "deg", "pinion roll angle of pair A")
     }
     for name, text in _FORCES.items():
         one = runs[name].isel(variant=0).transpose("model", "pair", "phase").to_numpy()
         labelled = np.array([continuous_labels(model, _CYCLES) for model in one])
-        found[name] = (("model", "label", "cycles"), labelled, "N", f"{text} of a tooth pair")
+        variables[name] = (("model", "label", "cycles"), labelled, "N", f"{text} of a tooth pair")
     attrs: dict[str, float] = {"speed_rpm": point.speed, "torque": point.torque}
     attrs["spectral_radius"] = float(runs["spectral_radius"].max())
     if with_multibody:
@@ -56,10 +56,10 @@ def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool =
             attrs[f"rms_difference_{name}"] = value
         attrs["unsettled"] = float(runs["unsettled"].max())
     return labelled_dataset(
-        found,
+        variables,
         {
             "model": (runs["model"].to_numpy(), "1", "model"),
-            "label": (list(PAIR_LABELS[: at.geometry.pairs]), "1", "tooth pair"),
+            "label": (list(PAIR_LABELS[: pair_at_point.geometry.pairs]), "1", "tooth pair"),
             "cycles": (cycles, "1", "mesh cycles since pair A was at A"),
         },
         attrs,

@@ -20,8 +20,8 @@ def law_runs(pair: AnyPair, *, with_multibody: bool = True) -> xr.Dataset:
     with_multibody : whether the multibody twin is computed too
     """
     pair = papers_pair(pair)
-    at = FIGURE_4.of(pair)
-    variants = {law: at.with_({"friction.law": law}) for law in LAWS}
+    pair_at_point = FIGURE_4.of(pair)
+    variants = {law: pair_at_point.with_({"friction.law": law}) for law in LAWS}
     return twins(variants, with_multibody=with_multibody).rename(variant="law")
 
 
@@ -106,9 +106,9 @@ def _twin_numbers(runs: xr.Dataset, names: tuple[str, ...]) -> dict[str, Number]
     """Agreement of the models in each quantity; empty without the multibody twin."""
     if "multibody" not in runs["model"]:
         return {}
-    found = agreement(runs.rename(law="variant"), names)
+    differences = agreement(runs.rename(law="variant"), names)
     words = {"normal_load": "normal load", "friction_force": "friction force"}
     return {
         f"multibody twin, {words.get(name, name)}: rms difference, worst law": Number(100 * value, SPAN)
-        for name, value in found.items()
+        for name, value in differences.items()
     }

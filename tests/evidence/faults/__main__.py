@@ -25,27 +25,32 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--report", action="store_true", help="faults in what the report shows instead")
     parser.add_argument("-o", "--output", type=Path, help="rows as .json; those of other faults stay")
-    given = parser.parse_args(arguments)
-    if given.sound is not None:
-        return sound_pairs(given.sound, given.seed, given.output, relief=given.relief, loaded=given.loaded)
-    if given.report:
-        return report_faults(given.keys, given.output)
-    if unknown := [key for key in given.keys if key not in FAULTS]:
+    options = parser.parse_args(arguments)
+    if options.sound is not None:
+        return sound_pairs(
+            options.sound, options.seed, options.output, relief=options.relief, loaded=options.loaded
+        )
+    if options.report:
+        return report_faults(options.keys, options.output)
+    if unknown := [key for key in options.keys if key not in FAULTS]:
         parser.error(f"no such fault: {', '.join(unknown)}")
-    chosen = [FAULTS[key] for key in given.keys] or list(FAULTS.values())
-    if given.sample is not None:
-        chosen = list(sample(given.sample, given.seed))
-    rows = stored(given.output)
+    chosen = [FAULTS[key] for key in options.keys] or list(FAULTS.values())
+    if options.sample is not None:
+        chosen = list(sample(options.sample, options.seed))
+    rows = stored(options.output)
     for fault in chosen:
-        outcome = judge(fault, thorough=given.thorough)
+        outcome = judge(fault, thorough=options.thorough)
         rows[fault.key] = row(fault, outcome)
-        said = outcome.first or verdict(fault, outcome)
-        print(f"{fault.key:24} {100.0 * outcome.size:9.3g} % {outcome.quantity:32.32} {said}", flush=True)
-        if given.output is not None:
-            save(rows, given.output)
-    found = counts(rows[fault.key] for fault in chosen)
-    print(", ".join(f"{number} {name}" for name, number in found.items()))
-    return int(found.get("missed", 0) > 0)
+        verdict_text = outcome.first or verdict(fault, outcome)
+        print(
+            f"{fault.key:24} {100.0 * outcome.size:9.3g} % {outcome.quantity:32.32} {verdict_text}",
+            flush=True,
+        )
+        if options.output is not None:
+            save(rows, options.output)
+    numbers_by_verdict = counts(rows[fault.key] for fault in chosen)
+    print(", ".join(f"{number} {name}" for name, number in numbers_by_verdict.items()))
+    return int(numbers_by_verdict.get("missed", 0) > 0)
 
 
 if __name__ == "__main__":

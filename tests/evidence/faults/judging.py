@@ -41,17 +41,17 @@ class Outcome:
 
     @property
     def felt(self) -> bool:
-        """Whether it changes anything by more than ``FELT``."""
+        """Whether the fault changes a quantity by more than ``FELT``."""
         return not self.size <= FELT
 
     @property
     def first(self) -> str:
-        """The first check that fails; empty where the fault is missed."""
+        """The first check that fails. Empty: no check sees the fault."""
         return next((f"{part}: {checks[0]}" for part, checks in self.caught.items() if checks), "")
 
 
 def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
-    """Put a fault in, ask every part of the verdicts, take it out."""
+    """Insert a fault, run every part of the checks, and remove the fault."""
     with warnings.catch_warnings():
         for kind in (LawRangeWarning, RuntimeWarning):
             warnings.simplefilter("ignore", kind)
@@ -73,11 +73,11 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
                 if not thorough and any(caught.values()):
                     break
                 names: list[str] = []
-                for (_, known), pair in zip(sound, made, strict=False):
+                for (_, differences_without_fault), pair in zip(sound, made, strict=False):
                     if thorough or not names:
                         failing_here = _failing(checks, pair)
                         stopped += [(checks, pair) for name in failing_here if isinstance(name, Stop)]
-                        names += [name for name in failing_here if name not in known]
+                        names += [name for name in failing_here if name not in differences_without_fault]
                 caught[part] = tuple(dict.fromkeys(names))
             if fault.test and not any(caught.values()) and _fails(fault.test):
                 file, _, name = fault.test.partition("::test_")
@@ -92,13 +92,13 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
 
 @lru_cache(maxsize=64)
 def _sound(texts: tuple[str, ...]) -> tuple[tuple[Mapping[str, FloatArray], list[str]], ...]:
-    """Quantities of the sound program for pairs given as text, and in what its two models differ."""
+    """Quantities of the sound program, and differences between both models, for pairs given as text."""
     made = [load_gear_pair(tomllib.loads(text)) for text in texts]
     return tuple((quantities(pair), _failing(_crossed, pair)) for pair in made)
 
 
 def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair]:
-    """The pairs of a program with the fault; one that it refuses is caught."""
+    """Yield the pairs of the program with the fault. A refused pair counts as a caught fault."""
     try:
         yield from pairs(fault, wrong=True)
     except Exception as error:  # noqa: BLE001  (whatever stops a program with a fault is seen)
@@ -146,8 +146,8 @@ def _refined(pair: GearPair) -> list[str]:
 
 def _evidence(pair: GearPair) -> list[str]:
     """Checks of the evidence, which the tests make, of pairs on springs."""
-    held = without_shafts(pair)
-    return [check.subject for _, compute in OF_PAIRS.values() for check in failing(compute(held))]
+    pair_on_springs = without_shafts(pair)
+    return [check.subject for _, compute in OF_PAIRS.values() for check in failing(compute(pair_on_springs))]
 
 
 #: Part of the program or of its tests -> names of the checks that fail.

@@ -49,7 +49,10 @@ def quantities(pair: GearPair) -> dict[str, FloatArray]:
 
 
 def change(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> tuple[float, str]:
-    """Largest change of a quantity over its largest value, and which; infinite where one is missing."""
+    """Return the largest relative change and the name of the quantity. Infinite if a quantity is missing.
+
+    The change of a quantity is divided by the largest value of the quantity.
+    """
     worst = (0.0, "")
     for name, old in before.items():
         new = after.get(name)
@@ -89,26 +92,29 @@ def _on_shafts(pair: GearPair) -> dict[str, FloatArray]:
 
 def _path(pair: GearPair) -> dict[str, FloatArray]:
     """Geometry, bodies, element laws, every friction law, film."""
-    found: dict[str, FloatArray] = {}
+    quantities: dict[str, FloatArray] = {}
     for record in (pair.geometry, lumped.bodies(pair)):
-        found |= {name: np.array([value]) for name, value in dataclasses.asdict(record).items()}
+        quantities |= {name: np.array([value]) for name, value in dataclasses.asdict(record).items()}
     elements = mesh_elements(pair)
     g = pair.geometry
     places = np.linspace(g.L_XA, g.L_XD, 201)[1:-1]
     for name in ("stiffness", "damping", "friction", "error"):
-        found[f"tooth pair {name}"] = getattr(elements, name)(places)
+        quantities[f"tooth pair {name}"] = getattr(elements, name)(places)
     profile = friction_profile(pair, points=101)
     grid = np.linspace(0.0, 1.0, 101)
-    low, high = float(profile["xi"][0]), float(profile["xi"][-1])
+    low = float(profile["xi"][0])
+    high = float(profile["xi"][-1])
     for quantity, values in profile.data_vars.items():
         if "xi" in values.dims and values.dtype.kind == "f":
             rows = np.atleast_2d(values.to_numpy())
-            at = (profile["xi"].to_numpy() - low) / (high - low)
-            found[f"path {quantity}"] = np.array([np.interp(grid, at, row) for row in rows])
-    found |= _numbers(friction_profile(pair, points=101)[["mean_mu"]], "path")
+            relative_place = (profile["xi"].to_numpy() - low) / (high - low)
+            quantities[f"path {quantity}"] = np.array([np.interp(grid, relative_place, row) for row in rows])
+    quantities |= _numbers(friction_profile(pair, points=101)[["mean_mu"]], "path")
     for hertz in ("weber_banaschek", "linear"):
-        found[f"path energy stiffness, {hertz}"] = energy_curve(pair, hertz)(np.linspace(low, high, 51)[1:-1])
-    return found | {"ISO 6336": np.array([iso6336.single_of(pair), iso6336.mean_of(pair)])}
+        quantities[f"path energy stiffness, {hertz}"] = energy_curve(pair, hertz)(
+            np.linspace(low, high, 51)[1:-1]
+        )
+    return quantities | {"ISO 6336": np.array([iso6336.single_of(pair), iso6336.mean_of(pair)])}
 
 
 def _motion(pair: GearPair) -> dict[str, FloatArray]:

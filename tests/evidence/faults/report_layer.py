@@ -43,7 +43,10 @@ def checks() -> dict[str, Callable[[Written], None]]:
 
 
 def seen_by(fault: Fault | None, pairs: Iterable[str] = PAIRS) -> tuple[str, ...]:
-    """Return the checks that fail on the first report that shows a fault; without one none must."""
+    """Return the failing checks of the first report in which a check fails.
+
+    Without a fault no check may fail.
+    """
     for name in pairs:
         sound(name)
         with contextlib.nullcontext() if fault is None else applied(fault):
@@ -53,7 +56,10 @@ def seen_by(fault: Fault | None, pairs: Iterable[str] = PAIRS) -> tuple[str, ...
 
 
 def report_faults(keys: Sequence[str], output: Path | None) -> int:
-    """Judge faults, print and store what sees them; 1 where one is missed. Rows of other faults stay."""
+    """Judge faults; print and store the checks that see each fault. Returns 1 if a fault is missed.
+
+    Rows of other faults in ``output`` are unchanged.
+    """
     rows: dict[str, list[str]] = {}
     if output is not None and output.exists():
         rows = json.loads(output.read_text(encoding="utf-8"))

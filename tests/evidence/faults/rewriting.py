@@ -97,15 +97,15 @@ def _place(fault: Fault) -> tuple[Any, str]:
     return owner, name
 
 
-def _function(held: Any) -> Callable[..., Any]:
+def _function(member: Any) -> Callable[..., Any]:
     """The plain function inside a property, a cached function or a compiled one."""
     for attribute in ("fget", "func", "__wrapped__", "__func__", "py_func"):
-        inner = getattr(held, attribute, None)
+        inner = getattr(member, attribute, None)
         if isinstance(inner, types.FunctionType):
             return inner
-    if isinstance(held, types.FunctionType):
-        return held
-    raise FaultError(f"{held!r} is no function")
+    if isinstance(member, types.FunctionType):
+        return member
+    raise FaultError(f"{member!r} is no function")
 
 
 def _rewritten(fault: Fault, owner: Any, name: str, original: Any) -> Any:
@@ -133,8 +133,8 @@ def _compiled(function: Callable[..., Any], original: Dispatcher) -> Any:
 
 
 def _with_callers(replaced: dict[int, tuple[Any, Any]]) -> None:
-    """Add the compiled functions that call a replaced one, and those that call them."""
-    held = {
+    """Add all compiled functions that call a replaced function, directly or through other functions."""
+    dispatchers = {
         id(value): value
         for module in _modules()
         for value in vars(module).values()
@@ -143,7 +143,7 @@ def _with_callers(replaced: dict[int, tuple[Any, Any]]) -> None:
     grown = True
     while grown:
         grown = False
-        for key, value in held.items():
+        for key, value in dispatchers.items():
             function = value.py_func
             called = _named(function)
             if key not in replaced and any(id(one) in replaced for one in called):
@@ -153,7 +153,7 @@ def _with_callers(replaced: dict[int, tuple[Any, Any]]) -> None:
 
 
 def _named(function: types.FunctionType) -> Iterator[Any]:
-    """Everything that a function calls by a name of its module, or of a module that is named there."""
+    """Yield all objects that a function may call: globals of the module, and members of imported modules."""
     names = function.__code__.co_names
     for name in names:
         value = function.__globals__.get(name)
@@ -163,7 +163,7 @@ def _named(function: types.FunctionType) -> Iterator[Any]:
 
 
 def _exchange(original: Any, changed: Any, owner: Any) -> list[Callable[[], None]]:
-    """Put the changed one wherever the original is; returns what puts each back."""
+    """Replace the original by the changed object everywhere. Returns functions that undo each replacement."""
     undo: list[Callable[[], None]] = []
     holders: list[Any] = [*_modules(), owner]
     records = {
@@ -175,9 +175,9 @@ def _exchange(original: Any, changed: Any, owner: Any) -> list[Callable[[], None
     for holder in {id(one): one for one in [*holders, *records.values()]}.values():
         for name, value in list(vars(holder).items()):
             if value is original:
-                put = _frozen if id(holder) in records else setattr
-                put(holder, name, changed)
-                undo.append(lambda h=holder, n=name, p=put: p(h, n, original))  # type: ignore[misc]
+                set_attribute = _frozen if id(holder) in records else setattr
+                set_attribute(holder, name, changed)
+                undo.append(lambda h=holder, n=name, p=set_attribute: p(h, n, original))  # type: ignore[misc]
     return undo
 
 

@@ -79,7 +79,8 @@ def propagate_fixed(system: PeriodicSystem, method: Propagator, substeps: int) -
     """Monodromy matrix with so many equal steps in each smooth segment, without error control."""
     product = np.eye(system.dimension)
     for a, b in pairwise(system.edges):
-        h, s = (b - a) / substeps, method.nodes.size
+        h = (b - a) / substeps
+        s = method.nodes.size
         start = (a + h * np.arange(substeps))[:, None]
         times = system.inside(start + h * method.nodes, start, start + h).ravel()
         A = system.evaluate(times).reshape(substeps, s, system.dimension, system.dimension)

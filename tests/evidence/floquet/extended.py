@@ -38,7 +38,8 @@ def as_periodic_system(system: RankOneSystem) -> PeriodicSystem:
     def A(t: FloatArray) -> FloatArray:
         phase = t / system.period
         piece = np.clip(np.searchsorted(system.phases, phase, side="right") - 1, 0, system.phases.size - 2)
-        low, high = system.phases[piece], system.phases[piece + 1]
+        low = system.phases[piece]
+        high = system.phases[piece + 1]
         u = ((2.0 * phase - low - high) / (high - low))[:, None]
         w, wd = (
             np.einsum("tmj,tj->tm", poly[piece], u ** np.arange(poly.shape[2]))
@@ -105,7 +106,8 @@ def extended_matrix(system: RankOneSystem) -> LongArray:
     G = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
     D = system.damping.astype(_LD) + G.astype(_LD) / T
     M = np.eye(2 * m, dtype=_LD)
-    L, v = system.stiffness.astype(_LD), system.v.astype(_LD)
+    L = system.stiffness.astype(_LD)
+    v = system.v.astype(_LD)
     for flow in extended_transitions(np.array(lengths), w, wd, L, D, v, rate):
         M = flow @ M
     S = state_matrix(form).astype(_LD)

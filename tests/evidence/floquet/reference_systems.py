@@ -17,7 +17,7 @@ from lumped.typing import BoolArray, FloatArray
 
 
 def meissner(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> PeriodicSystem:
-    """Return x'' + (delta + epsilon sgn) x = 0, + in the first half of the period and - in the second.
+    """Return x'' + (delta + epsilon s) x = 0 with s = 1 in the first half of the period and -1 in the second.
 
     At the switches A is not a number, so that a propagator that asks for it there is found out.
     """
@@ -35,8 +35,10 @@ def meissner_trace(delta: float, epsilon: float, period: float = 2.0 * np.pi) ->
 
     Two harmonic motions w1, w2 of half a period each: 2 cos cos - (w1/w2 + w2/w1) sin sin (Meissner 1918).
     """
-    w1, w2 = np.sqrt(delta + epsilon), np.sqrt(delta - epsilon)
-    p1, p2 = 0.5 * w1 * period, 0.5 * w2 * period
+    w1 = np.sqrt(delta + epsilon)
+    w2 = np.sqrt(delta - epsilon)
+    p1 = 0.5 * w1 * period
+    p2 = 0.5 * w2 * period
     return float(2 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2))
 
 
@@ -50,12 +52,14 @@ def mathieu(a: float, q: float, c: float = 0.0) -> PeriodicSystem:
 
 
 def mathieu_many(a: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Multipliers (k, 2) of many undamped Mathieu equations, a > 0, and bounds on their errors, at once.
+    """Multipliers (k, 2) of many undamped Mathieu equations with a > 0, and bounds on the errors.
 
     With time in units of 1/sqrt(a) it is z'' + (1 - 2 (q/a) cos) z = 0 with the period pi sqrt(a): one fit.
     """
-    found = fast_multipliers(mathieu_system(), np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13)
-    return found.multipliers, found.errors
+    multipliers = fast_multipliers(
+        mathieu_system(), np.pi * np.sqrt(a), 1.0, (q / a)[:, None], tolerance=1e-13
+    )
+    return multipliers.multipliers, multipliers.errors
 
 
 def mathieu_system(depth: float | None = None, damping: float = 0.0) -> RankOneSystem:
@@ -72,10 +76,12 @@ def mathieu_system(depth: float | None = None, damping: float = 0.0) -> RankOneS
     none = np.zeros((pieces, 1, 1))
     one[:, :, 0] = 1.0
     errors = np.tile([1e-12, 0.0], (pieces, 1))  # (2 pi/48)^9 2^-7/9! and rounding
-    calm = Gains(one + (0.0 if depth is None else depth * waves), damping * one, (depth or 0.0) * errors)
+    constant_gains = Gains(
+        one + (0.0 if depth is None else depth * waves), damping * one, (depth or 0.0) * errors
+    )
     varied = (Gains(waves, none, errors),) if depth is None else ()
     return RankOneSystem(
-        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, calm, np.pi, np.ones(1), varied
+        np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), phases, constant_gains, np.pi, np.ones(1), varied
     )  # fmt: skip
 
 
@@ -98,7 +104,8 @@ class HsuSystem:
 
     def at(self, excitation: float, epsilon: float) -> PeriodicSystem:
         """Return the system at excitation frequency Omega and strength epsilon."""
-        K, C = np.diag(self.omega**2), np.diag(2.0 * self.damping)
+        K = np.diag(self.omega**2)
+        C = np.diag(2.0 * self.damping)
 
         def A(t: FloatArray) -> FloatArray:
             return second_order(K + epsilon * np.cos(excitation * t)[:, None, None] * self.coupling, C)
@@ -118,7 +125,8 @@ class HsuSystem:
         """
         d = self.coupling
         G = sign * epsilon**2 * d[i, j] * d[j, i] / (16.0 * self.omega[i] * self.omega[j])
-        ci, cj = self.damping[i], self.damping[j]
+        ci = self.damping[i]
+        cj = self.damping[j]
         if ci * cj >= G:
             return None
         half = 2.0 * np.sqrt(G) if ci == cj == 0.0 else (ci + cj) * np.sqrt(G / (ci * cj) - 1.0)

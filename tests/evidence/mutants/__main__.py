@@ -24,7 +24,7 @@ from tests.evidence.mutants.table import Row, Stored, argued, counts, library_di
 ROOT = Path(__file__).parents[3]
 
 
-def main(given: list[str] | None = None) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Judge mutants and print what became of each; 1 where one survives without an argument."""
     parser = argparse.ArgumentParser(prog="python -m tests.evidence.mutants", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="draws the lines and their changes")
@@ -40,7 +40,7 @@ def main(given: list[str] | None = None) -> int:
     parser.add_argument(
         "-o", "--output", type=Path, help="rows as .json; a run that was stopped goes on from .json.part"
     )
-    options = parser.parse_args(given)
+    options = parser.parse_args(arguments)
     tree = options.tree.resolve()
     limits = Limits()
     mutants = draw(tree, options.count, options.seed, options.only)
@@ -50,9 +50,9 @@ def main(given: list[str] | None = None) -> int:
         return 0
     head = {"seed": options.seed, "count": options.count, "only": options.only, "limits": asdict(limits)}
     stored = Stored(options.output, head | {"library": library_digest(tree)})
-    for known in _killed(options.again):
-        if known["key"] not in stored.rows and any(_same(known, one) for one in mutants):
-            stored.add(known)
+    for earlier in _killed(options.again):
+        if earlier["key"] not in stored.rows and any(_same(earlier, one) for one in mutants):
+            stored.add(earlier)
     judge_all(mutants, tree, stored, limits)
     stored.finish()
     rows = argued(stored.rows.values())
@@ -63,10 +63,10 @@ def main(given: list[str] | None = None) -> int:
 
 def judge_all(mutants: list[Mutant], tree: Path, stored: Stored, limits: Limits) -> None:
     """Judge the mutants that are not stored yet."""
-    left = [one for one in mutants if one.key not in stored.rows]
+    remaining = [one for one in mutants if one.key not in stored.rows]
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         court = Court(tree, Path(folder), limits)
-        for one in left:
+        for one in remaining:
             verdict = court.judge(one)
             stored.add(row(one, verdict))
             place = f"[{len(stored.rows)}/{len(mutants)}] {one.file}:{one.line} {one.operator}"

@@ -43,7 +43,7 @@ class Mutant:
 
 
 def files(root: Path) -> list[str]:
-    """Files of a tree whose lines can be drawn, by their paths from its root."""
+    """Return path from the root -> file, for all files of a tree from which lines may be drawn."""
     found = (path.relative_to(root).as_posix() for name in WEIGHTS for path in (root / name).rglob("*.py"))
     return sorted(file for file in found if not file.startswith(LEFT_OUT))
 
@@ -95,7 +95,7 @@ def _lines(file: str, source: str) -> Iterator[tuple[str, int, list[Mutation]]]:
 
 
 def _mutant(key: str, file: str, line: int, changes: list[Mutation], source: str, seed: int) -> list[Mutant]:
-    """One mutant of a line, or none. Its operator is drawn first, so that rare ones are not crowded out."""
+    """Draw one mutant of a line, or None. The operator is drawn first, so rare operators are drawn, too."""
     begin = len("\n".join(source.split("\n")[: line - 1]).encode())
 
     def rank(change: Mutation) -> tuple[str, str]:

@@ -99,20 +99,20 @@ class Court:
         self._sound: dict[str, tuple[bool, float]] = {}
 
     def judge(self, mutant: Mutant) -> Verdict:
-        """Run tests on a mutant until one fails: those of its folder, then others in the time left."""
+        """Run tests on a mutant until one fails: tests of the folder, then others until the time is up."""
         before = _spent()
-        own, others = self.nearest.files(mutant.file)
+        tests_of_folder, others = self.nearest.files(mutant.file)
         verdict = "survived"
         by = ""
         tests = 0
-        for files in (own, others[: self.limits.others]):
-            left = self.limits.total - (_spent() - before)
-            if files and verdict == "survived" and left > 0.0:
-                run = self._run_changed(mutant, files, left)
+        for files in (tests_of_folder, others[: self.limits.others]):
+            remaining = self.limits.total - (_spent() - before)
+            if files and verdict == "survived" and remaining > 0.0:
+                run = self._run_changed(mutant, files, remaining)
                 verdict, by = self._verdict(run, files)
                 tests += len(run.of("start"))
                 unrun = len(run.items) - len(run.of("start"))
-                if verdict == "survived" and files is own and unrun:
+                if verdict == "survived" and files is tests_of_folder and unrun:
                     verdict = "undecided"
                     by = f"{unrun} tests of the folder left out"
         return Verdict(verdict, by, tests, round(_spent() - before, 1))
@@ -190,7 +190,7 @@ class Court:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and what it has started; workers outlive a parent that a limit has ended."""
+    """End a process and all processes that it has started. Workers would outlive a parent that was ended."""
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()

@@ -51,7 +51,7 @@ class Nearest:
         return own, sorted(others, key=rank)
 
     def _folder(self, file: Path) -> list[str]:
-        """Tests of the folder; of a file that stands loose in a package: those beside its folders."""
+        """Tests of the folder of a file. For a file directly in a package: tests beside the folders."""
         folder = Path("tests") / file.parent
         if len(file.parts) == 2:
             return [test for test in self.tests if Path(test).parent == folder]
@@ -67,7 +67,7 @@ def _module(file: Path) -> str:
 
 
 def _imports(path: Path, root: Path) -> set[str]:
-    """Modules that a file imports, also those of which it imports a name, inside functions too."""
+    """Modules that a file imports, at the top or inside functions, completely or by name."""
     found = set()
     package = path.relative_to(root).parent.parts
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

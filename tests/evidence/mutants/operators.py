@@ -231,7 +231,8 @@ class _Finder(ast.NodeVisitor):
             self.add("abs dropped", self.start(node.func), self.end(node.func), "")
         if name not in _ANY_ORDER:
             for first, second in self._alike(node.args):
-                a, b = self.text(first), self.text(second)
+                a = self.text(first)
+                b = self.text(second)
                 between = self.source[self.end(first) : self.start(second)].decode()
                 self.add("arguments exchanged", self.start(first), self.end(second), b + between + a)
         self.generic_visit(node)
@@ -239,7 +240,8 @@ class _Finder(ast.NodeVisitor):
     def _alike(self, arguments: list[ast.expr]) -> Iterator[tuple[ast.expr, ast.expr]]:
         """Neighbours whose names are alike: any test sees it where a pair stands in the place of a length."""
         for first, second in pairwise(arguments):
-            a, b = self.text(first), self.text(second)
+            a = self.text(first)
+            b = self.text(second)
             if isinstance(first, ast.Attribute) and isinstance(second, ast.Attribute):
                 alike = self.text(first.value) == self.text(second.value) or first.attr == second.attr
             else:

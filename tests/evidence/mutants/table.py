@@ -55,7 +55,7 @@ def share_killed(rows: Iterable[Row]) -> float:
 
 
 class Stored:
-    """Rows of one run. Until it is complete they stand in ``<name>.part``; a second start goes on from it.
+    """Rows of one run. An incomplete run is stored in ``<name>.part``; a second start continues the run.
 
     A part of another seed, number or state of the library is begun anew.
     """

@@ -118,7 +118,7 @@ def test_count():
 
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
-    """A small program: a line whose sign a test sees, one that no test runs, and a loop."""
+    """A small program with a line that a test checks, a line without a test, and a loop."""
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")  # it needs none, and they take most of the time
     contents = {
         "pyproject.toml": "[tool.pytest.ini_options]\naddopts = '--import-mode=importlib'\n",

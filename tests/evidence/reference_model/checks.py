@@ -106,11 +106,11 @@ def blanks(pair: GearPair) -> tuple[Blank, Blank]:
     return result[0], result[1]
 
 
-def half_tooth(pair: GearPair, which: int, base: float, tip: float, points: int) -> FloatArray:
+def half_tooth(pair: GearPair, gear_name: int, base: float, tip: float, points: int) -> FloatArray:
     """Outline of half a tooth and half a space from the gear's centre, closed, (k, 2) [m]."""
-    gear = (pair.pinion, pair.gear)[which]
-    profile = pair.wheels[which].tooth
-    half = 0.5 * base_tooth_angle(pair, which, base)
+    gear = (pair.pinion, pair.gear)[gear_name]
+    profile = pair.wheels[gear_name].tooth
+    half = 0.5 * base_tooth_angle(pair, gear_name, base)
     thinned = profile.base_half_angle - half
     length = np.linspace(math.sqrt(tip**2 - base**2), profile.form_length, points)
     flank_angle = half - length / base + np.arctan(length / base)
@@ -131,7 +131,8 @@ def half_tooth(pair: GearPair, which: int, base: float, tip: float, points: int)
 
 def _integrals(polygon: FloatArray) -> FloatArray:
     """Area and polar second moment of a closed polygon about the origin, (2,) [m^2], [m^4]."""
-    a, b = polygon[:-1], polygon[1:]
+    a = polygon[:-1]
+    b = polygon[1:]
     cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     spread = np.sum(a * a + a * b + b * b, axis=1)
     return np.array([0.5 * cross.sum(), cross @ spread / 12.0])
@@ -248,14 +249,14 @@ def frozen_modes(pair: GearPair, phase: float = 0.3) -> dict[str, FloatArray]:
     load = float(contacts[0, : counts[0]]["load"].sum())
     system = periodic_system(pair, "elastic")
     matrix = system.A(time)
-    turned = matrix.copy()
+    on_turned_line = matrix.copy()
     spring = load / float(exact.machine.record.geometry.L_XY) * np.array([[1.0, -1.0], [-1.0, 1.0]])
-    turned[8:, 3:5] += spring / exact.machine.mass[:, None]
+    on_turned_line[8:, 3:5] += spring / exact.machine.mass[:, None]
     return {
         "exudyn linear": modes_of(linearised(straight, np.zeros(6))),
         "exudyn exact": modes_of(linearised(moving, q)),
         "lumped frozen": modes_of(np.linalg.eigvals(matrix).astype(np.complex128)),
-        "lumped turned line": modes_of(np.linalg.eigvals(turned).astype(np.complex128)),
+        "lumped turned line": modes_of(np.linalg.eigvals(on_turned_line).astype(np.complex128)),
     }
 
 

@@ -108,7 +108,8 @@ def test_a_range_of_one_variant_alone_is_noted(files):
 
 
 def test_what_is_no_set_of_variants_is_refused(files):
-    one, other = files["light"], files["heavy"]
+    one = files["light"]
+    other = files["heavy"]
     assert "two pairs or more" in refused("compare", one)
     assert "one pair, which it changes" in refused("compare", one, other, "--variant", "torque=60")
     assert "--variant torque" in refused("compare", one, "--variant", "torque=-3")

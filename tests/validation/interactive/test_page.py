@@ -83,9 +83,9 @@ def test_the_charts_are_those_of_the_general_engine(data, pair):
 def test_the_pair_itself_is_on_every_chart(data, pair, results):
     axes = {"speed_rpm": [4875.0], "damping_ratio": [0.016]}
     expected = float(stability_chart(pair, axes)["spectral_radius"].squeeze())
-    assert results.found.spectral_radius == pytest.approx(expected, abs=1e-9)
+    assert results.multipliers.spectral_radius == pytest.approx(expected, abs=1e-9)
     for key, slices in results.stability.items():
-        here = slices.chart.isel({key: slices.own}).sel(speed_rpm=4875.0, damping_ratio=0.016)
+        here = slices.chart.isel({key: slices.index_of_pair}).sel(speed_rpm=4875.0, damping_ratio=0.016)
         assert float(here["spectral_radius"]) == pytest.approx(expected, abs=1e-6), key
 
 

@@ -1,4 +1,4 @@
-"""The draft of a pair while a REXS file is read: values, the places they come from, and what is assumed."""
+"""Draft of a pair while a REXS file is read: values, sources of the values, notes and problems."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from lumped.schema.pair import stated_unit
 from validation.exchange.new_pair_file import GIVEN
 from validation.exchange.rexs.model import ATTRIBUTES, Component, RexsModel, si_from_rexs
 
-#: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
+#: Range of sensible numbers. Numbers outside are no measure of a gear in any unit; products would overflow.
 _SMALLEST = 1e-30
 _LARGEST = 1e30
 
 
 class Reading(NamedTuple):
-    """One number of the file in SI, and where it stands."""
+    """One number of the file in SI, and the place of the number in the file."""
 
     si: float
     where: str
@@ -27,9 +27,16 @@ class Reading(NamedTuple):
 
 @dataclass
 class Draft:
-    """Collector of one import: values in file units and their places in the file by path of the field.
+    """Collector of one import.
 
-    ``given``: values of the user by path of the field; they stand in place of what the file has.
+    Attributes
+    ----------
+    model : the REXS model
+    given : path of the field -> value of the user; replaces the value of the file
+    values : path of the field -> value in file units
+    sources : path of the field -> place in the REXS file
+    notes : notes for the user
+    problems : problems for which the import is refused later
     """
 
     model: RexsModel
@@ -44,11 +51,11 @@ class Draft:
         self.sources |= dict.fromkeys(self.given, GIVEN)
 
     def where(self, component: Component, attribute: str) -> str:
-        """Name a place in the file as a source: "REXS gearbox.rexs cylindrical_gear 5/face_width"."""
+        """Return the name of a place in the file: "REXS gearbox.rexs cylindrical_gear 5/face_width"."""
         return f"REXS {self.model.file} {component.label}/{attribute}"
 
     def number(self, component: Component, attribute: str) -> Reading | None:
-        """Read a number; what is no finite number becomes a problem."""
+        """Read a number. Any other value, or a number that is not finite, becomes a problem."""
         where = self.where(component, attribute)
         request = component.attributes.get(attribute)
         if request is None or request.value is None:
@@ -63,15 +70,15 @@ class Draft:
         return Reading(si_from_rexs(value, request.unit, ATTRIBUTES[attribute], where), where)
 
     def first(self, places: Sequence[Component], attribute: str) -> Reading | None:
-        """Read the first number that some components have, or else have in the first load case."""
+        """Read the first number that one of the components has, or else has in the first load case."""
         for component in places:
             if (result := self.number(component, attribute)) is not None:
                 return result
         for number, parts in self.model.load_cases[:1]:
             of_case = {c.id: c.attributes for c in parts}
             for c in places:  # the JSON form leaves types out of load cases
-                own = Component(c.id, c.type, c.name, of_case.get(c.id, {}))
-                if (result := self.number(own, attribute)) is not None:
+                component_in_case = Component(c.id, c.type, c.name, of_case.get(c.id, {}))
+                if (result := self.number(component_in_case, attribute)) is not None:
                     return Reading(result.si, f"{result.where} (load case {number})")
         return None
 
@@ -91,7 +98,10 @@ class Draft:
             self.take(f"{section}.{key}", self.number(component, attribute))
 
     def take_first(self, path: str, readings: Iterable[Reading | None]) -> None:
-        """Take what spurcheck has once for both gears; where they differ that of the pinion, with a note."""
+        """Take a value that both gears share in spurcheck.
+
+        If the values of both gears differ, the first value (of the pinion) is used and a note says so.
+        """
         present = [r for r in readings if r is not None]
         self.take(path, present[0] if present else None)
         if any(not math.isclose(r.si, present[0].si, rel_tol=1e-9) for r in present[1:]):
@@ -99,23 +109,23 @@ class Draft:
             self.note(f"{path}: the first value is used for both gears, the file also has {values}")
 
     def put(self, path: str, value: Any, where: str) -> None:
-        """Make anything the value of a field, unless the user gives another one."""
+        """Set the value of a field, unless the user has given a value."""
         if path not in self.given:
             self.values[path] = value
             self.sources[path] = where
 
     def si(self, path: str) -> float | None:
-        """Return the value of a field in SI; None where it has none, or none that is a number."""
+        """Return the value of a field in SI. None: the field has no value, or the value is not a number."""
         try:
             return None if path not in self.values else to_si(self.values[path], stated_unit(path) or "1")
         except ValueError:  # refused with the whole pair
             return None
 
     def problem(self, where: str, value: str, allowed: str, action: str = "Correct the file.") -> None:
-        """Add a problem, of which the import is refused later, once."""
-        found = FieldProblem(where, value, allowed, action)
-        if found not in self.problems:
-            self.problems.append(found)
+        """Add a problem once. The import is refused later with all problems."""
+        new_problem = FieldProblem(where, value, allowed, action)
+        if new_problem not in self.problems:
+            self.problems.append(new_problem)
 
     def note(self, text: str) -> None:
         """Add a note, once."""
@@ -123,7 +133,10 @@ class Draft:
             self.notes.append(text)
 
     def agreed(self, readings: Iterable[Reading | None], why: str) -> Reading | None:
-        """Return the one value of all places that have one; a disagreement is a problem."""
+        """Return the common value of several readings. Different values are a problem.
+
+        ``why``: reason why the values must be equal, for the message.
+        """
         present = [r for r in readings if r is not None]
         for other in present[1:]:
             first = present[0]

@@ -1,4 +1,4 @@
-"""The encodings of REXS, one tree for all: XML and JSON, read and written; one in an archive is read."""
+"""Encodings of REXS. XML and JSON are read and written, both as the same tree. ZIP archives are read."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from lumped.errors import ParameterError, shown
 from lumped.fields.text_file import read_bytes
 from validation.exchange.rexs.model import Document, RexsModel, broken, model_of
 
-#: Largest file, and largest model in an archive [bytes]: models of whole gear units with tables of results
+#: Largest file, and largest model in an archive [bytes]. Models of complete gear units with tables of results
 #: have a few megabytes.
 MAX_BYTES = 32_000_000
-#: The schema of XML nests ten elements; more is no REXS.
+#: Largest depth of XML elements. The schema of REXS has ten levels.
 _MAX_DEPTH = 32
 _MAX_ELEMENTS = 1_000_000
 _BLOCK = 65536
 _SKIPPED = ET.Element("skipped")
 _MARK = b"\xef\xbb\xbf"
-#: What zipfile raises of a damaged archive: it trusts the offsets of the directory, so a seek may fail.
+#: Errors of zipfile for a damaged archive. A seek may fail, because zipfile trusts the stored offsets.
 _DAMAGED = (zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, ValueError, RuntimeError)
 #: Suffix of a file to write -> its form.
 FORMS = {".rexs": "xml", ".rexsj": "json"}
 
 
 def read_rexs(path: str | Path) -> RexsModel:
-    """Read a REXS file, which its content tells and not its name; refuse what is hostile or broken."""
+    """Read a REXS file. The content decides the encoding, not the name. A broken file is refused."""
     path = file_path("path", path)
     data = read_bytes(path, MAX_BYTES, field="REXS file")
     if data[:2] == b"PK":
@@ -48,7 +48,7 @@ def read_rexs(path: str | Path) -> RexsModel:
 
 
 def _unzipped(data: bytes, file: str) -> bytes:
-    """Return the one model of an archive; nothing is ever written to disk."""
+    """Return the one model of an archive. Nothing is written to disk."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             members = [m for m in archive.infolist() if not PurePosixPath(m.filename).name.startswith("._")]
@@ -86,18 +86,18 @@ def from_json(data: bytes, file: str) -> Document:
 def from_xml(data: bytes, file: str) -> Document:
     """Read XML in one bounded pass that knows no entities.
 
-    A document type declaration, which every entity needs, is refused before anything in it is read, so
-    nothing is fetched and nothing expands; arrays and matrices are skipped, so memory is bounded by the
-    scalar attributes.
+    Every entity needs a document type declaration. Such a declaration is refused before its content is read,
+    so that nothing is fetched or expanded. Arrays and matrices are skipped, so that scalar attributes alone
+    need memory.
     """
     parser = ET.XMLParser(target=_Elements(file))
     try:
-        for start in range(0, len(data), _BLOCK):  # in one piece expat would keep a copy of it
+        for start in range(0, len(data), _BLOCK):  # expat would copy a single large block
             parser.feed(data[start : start + _BLOCK])
         root: ET.Element = parser.close()
     except ParameterError:
         raise
-    except (ET.ParseError, ValueError, LookupError) as error:  # also an encoding that is not known
+    except (ET.ParseError, ValueError, LookupError) as error:  # LookupError: an unknown encoding
         raise broken(file, f"the XML is malformed: {error}") from None
     if root.tag != "model":
         raise broken(file, f"its root element is {root.tag[:40]!r} instead of 'model'")
@@ -130,7 +130,7 @@ def from_xml(data: bytes, file: str) -> Document:
 
 
 class _Elements(ET.TreeBuilder):
-    """Target of the parser: a tree without namespaces and without what stands inside attributes."""
+    """Target of the parser: builds a tree without namespaces and without elements inside attributes."""
 
     def __init__(self, file: str) -> None:
         super().__init__()
@@ -143,13 +143,14 @@ class _Elements(ET.TreeBuilder):
 
     def start(self, tag: str, attributes: dict[Any, Any]) -> ET.Element:
         inside = "attribute" in self.path
-        self.path.append(tag.rpartition("}")[2])
+        _, _, name = tag.rpartition("}")
+        self.path.append(name)
         self.count += not inside
         if len(self.path) > _MAX_DEPTH:
             raise broken(self.file, f"elements are nested deeper than {_MAX_DEPTH}")
         if self.count > _MAX_ELEMENTS:
             raise broken(self.file, f"it has more than {_MAX_ELEMENTS} elements")
-        return _SKIPPED if inside else super().start(self.path[-1], attributes)
+        return _SKIPPED if inside else super().start(name, attributes)
 
     def end(self, _: str) -> ET.Element:
         name = self.path.pop()
@@ -161,7 +162,7 @@ class _Elements(ET.TreeBuilder):
 
 
 def encoded(document: Document, form: str) -> bytes:
-    """Bytes of a tree: UTF-8 with a byte-order mark, as the specification asks."""
+    """Return the bytes of a tree in "xml" or "json": UTF-8 with a byte-order mark, as REXS specifies."""
     if form == "json":
         return _MARK + json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False).encode() + b"\n"
     return _MARK + b'<?xml version="1.0" encoding="UTF-8"?>\n' + _xml(document["model"]).encode() + b"\n"

@@ -23,10 +23,11 @@ from validation.exchange.rexs.remarks import note_what_is_assumed
 from validation.exchange.rexs.tooth_system import read_tooth_system
 
 _GEARS_OF_PAIR = ("pinion", "gear")
-#: Starts of the fields that file and user give together; others of the user replace those of the pair.
+#: Starts of the paths of fields that the file has, too. Values of the user for these fields are used while
+#: the file is read. Other values of the user are set afterwards.
 _READ_WITH = ("basic_rack.", "centre_distance", "pinion.", "gear.", "lubricant.")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
-#: Helix angles below this are what a program leaves of a zero [deg].
+#: A smaller helix angle is zero but for rounding [deg].
 _NO_HELIX = 1e-9
 #: Field of the viscosity law -> attribute of the oil.
 _VISCOSITY_LAW = {
@@ -37,7 +38,10 @@ _VISCOSITY_LAW = {
 
 
 class _Stage(NamedTuple):
-    """A stage; the reason why it cannot be modelled: what it is instead, and after "; " why that matters."""
+    """A stage of the file.
+
+    ``reason``: why the stage cannot be modelled: kind of the stage, "; ", explanation. Empty: no reason.
+    """
 
     number: int
     component: Component
@@ -58,16 +62,16 @@ def gear_pair_from_rexs(
     Parameters
     ----------
     path : XML (.rexs), JSON (.rexsj) or ZIP (.rexsz, .zip)
-    stage : number of the stage in the order of the file, 1 the first; may be left out where only one can be
-        modelled: otherwise the refusal lists them
-    changes : values that the file does not have, or has otherwise, by the names and paths of ``pair.with_``:
-        ``{"pinion.tip_diameter": 63.4, "speed": 1450}``
+    stage : number of the stage in the order of the file, from 1; may be left out if only one stage can be
+        modelled. If several can be modelled, the refusal lists the stages
+    changes : values that the file does not have, or values to replace, by the names and paths of
+        ``pair.with_``: ``{"pinion.tip_diameter": 63.4, "speed": 1450}``
 
     Returns
     -------
-    mapping : nested parameters in file units, valid for ``load_gear_pair``; under ``sources`` every value of
-        the file has its component and attribute, under ``assumed`` is every other value
-    notes : what was chosen, left out or assumed, in words
+    mapping : nested parameters in file units, valid for ``load_gear_pair``. ``sources`` names component and
+        attribute for every value of the file. ``assumed`` lists all other values
+    notes : choices, omissions and assumptions, in words
 
     Raises
     ------
@@ -86,36 +90,36 @@ def gear_pair_from_rexs(
     16
     """
     model = read_rexs(path)
-    picked, notes = _chosen(model, stage)
-    given = by_fields(changes or {})
-    with_file = {path: value for path, value in given.items() if path.startswith(_READ_WITH)}
+    chosen, notes = _chosen(model, stage)
+    values_of_user = by_fields(changes or {})
+    with_file = {path: value for path, value in values_of_user.items() if path.startswith(_READ_WITH)}
     draft = Draft(model, with_file, notes=notes)
-    component = picked.component
-    gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, picked.gears), strict=True))
+    component = chosen.component
+    gears = dict(zip(_GEARS_OF_PAIR, _driving_first(draft, component, chosen.gears), strict=True))
     read_gears(draft, gears)
     read_tooth_system(draft, component, gears)
     _read_lubricant(draft, component)
     _read_operating_point(draft, component, *gears.values())
-    _read_backlash(draft, component, _validated(draft, picked))
-    read_reliefs(draft, component, gears, _validated(draft, picked).geometry)
-    pair = _validated(draft, picked)
+    _read_backlash(draft, component, _validated(draft, chosen))
+    read_reliefs(draft, component, gears, _validated(draft, chosen).geometry)
+    pair = _validated(draft, chosen)
     pair = pair.with_({"mesh.stiffness": {"model": stand_in_stiffness(pair)}})
     values = leaf_paths(pair)
     pair = marked(pair, {path: source for path, source in draft.sources.items() if path in values})
-    if later := {path: value for path, value in given.items() if path not in with_file}:
-        pair = pair.with_(later)
-        sources = dict(pair.sources) | dict.fromkeys(later, GIVEN)
+    if set_afterwards := {path: value for path, value in values_of_user.items() if path not in with_file}:
+        pair = pair.with_(set_afterwards)
+        sources = dict(pair.sources) | dict.fromkeys(set_afterwards, GIVEN)
         pair = load_gear_pair(pair.to_mapping() | {"sources": sources})
     note_what_is_assumed(draft, pair, gears)
     if model.version not in VERSIONS:
-        known = f"versions {', '.join(VERSIONS)} were checked"
-        draft.note(f"the file is of REXS version {shown(model.version) or '(not given)'}; {known}")
+        checked_versions = f"versions {', '.join(VERSIONS)} were checked"
+        draft.note(f"the file is of REXS version {shown(model.version) or '(not given)'}; {checked_versions}")
     return pair.to_mapping(), tuple(draft.notes)
 
 
 def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
     """Return the stage to import, and notes about the choice."""
-    # A planetary stage counts only where its parts are not in the file.
+    # A planetary stage is listed only if the file does not have its cylindrical stages.
     components = [
         c
         for c in model.components.values()
@@ -147,7 +151,7 @@ def _chosen(model: RexsModel, number: int | None) -> tuple[_Stage, list[str]]:
 
 
 def _teeth(gear: Component) -> int:
-    """Number of teeth; 0 where the file has none."""
+    """Return the number of teeth. 0: the file has no number."""
     try:
         return int(str(gear.attributes["number_of_teeth"].value))
     except (KeyError, ValueError):
@@ -155,7 +159,7 @@ def _teeth(gear: Component) -> int:
 
 
 def _reason(model: RexsModel, stage: Component, gears: list[Component]) -> str:
-    """Why a stage cannot be modelled."""
+    """Return the reason why a stage cannot be modelled. Empty: the stage can be modelled."""
     if stage.type != "cylindrical_stage":
         return f"a {shown(stage.type.replace('_', ' '))}; only cylindrical spur stages can be modelled"
     if model.related(stage, "assembly", "part", "assembly", "planetary_stage"):
@@ -177,7 +181,7 @@ def _reason(model: RexsModel, stage: Component, gears: list[Component]) -> str:
 
 
 def _validated(draft: Draft, stage: _Stage) -> GearPair:
-    """Validate; a refused value is reported with its place in the file."""
+    """Return the validated pair of the draft. A refused value is reported with its place in the file."""
     model = draft.model
     if draft.problems:
         raise ParameterError(draft.problems, model.file)
@@ -193,7 +197,7 @@ def _validated(draft: Draft, stage: _Stage) -> GearPair:
 
 
 def _driving_first(draft: Draft, stage: Component, gears: list[Component]) -> tuple[Component, Component]:
-    """Return the driving and the driven gear; where the file does not say, gear_1 drives."""
+    """Return the driving and the driven gear. If the file does not state which gear drives, gear_1 drives."""
     flags = [
         [(draft.text(d, "is_driving_gear") or "").lower() for d in draft.model.gear_data(stage, g)]
         for g in gears
@@ -207,9 +211,9 @@ def _driving_first(draft: Draft, stage: Component, gears: list[Component]) -> tu
 
 
 def _read_backlash(draft: Draft, stage: Component, pair: GearPair) -> None:
-    """Take from the normal backlash what the centre distance does not give already.
+    """Read the normal backlash, without the share that the centre distance causes.
 
-    ``pair`` has the centre distance of the file, and teeth of full thickness.
+    ``pair``: pair with the centre distance of the file and with teeth of full thickness.
     """
     low, high = (draft.number(stage, f"{end}_normal_backlash") for end in ("minimum", "maximum"))
     if low is None or high is None:
@@ -222,7 +226,7 @@ def _read_backlash(draft: Draft, stage: Component, pair: GearPair) -> None:
 
 
 def _read_lubricant(draft: Draft, stage: Component) -> None:
-    """Read the oil of the stage, of the casing, or the only one of the file."""
+    """Read the oil of the stage or of the casing. If both have no oil, a single oil of the file is read."""
     model = draft.model
     places = [stage, *model.of_type("gear_casing")]
     oils = [oil for place in places for oil in model.referenced(place, "lubricant")]
@@ -245,12 +249,12 @@ def _read_lubricant(draft: Draft, stage: Component) -> None:
 
 
 def _read_operating_point(draft: Draft, stage: Component, *gears: Component) -> None:
-    """Read speed and torque of the first gear, which drives; else those of the first load case."""
+    """Read speed and torque of the driving gear (the first gear), or else of the first load case."""
     (pinion, shafts), (gear, others) = ((g, draft.model.neighbours(g, "shaft")) for g in gears)
     speed = draft.first((pinion, *shafts), "rotational_speed")
     if speed is None:
         other = draft.first((gear, *others), "rotational_speed")
-        teeth = [draft.values.get(f"{which}.teeth", 0) for which in _GEARS_OF_PAIR]
+        teeth = [draft.values.get(f"{gear_name}.teeth", 0) for gear_name in _GEARS_OF_PAIR]
         if other is not None and teeth[0] > 0:
             speed = Reading(other.si * teeth[1] / teeth[0], f"{other.where}, times the gear ratio")
     torque = draft.first(draft.model.gear_data(stage, pinion), "torque") or _external(draft, shafts, speed)
@@ -262,7 +266,10 @@ def _read_operating_point(draft: Draft, stage: Component, *gears: Component) -> 
 
 
 def _external(draft: Draft, shafts: list[Component], speed: Reading | None) -> Reading | None:
-    """Torque of the one external load; a shaft with further gears passes torque on."""
+    """Return the torque of the single external load on the shafts of a gear.
+
+    None: the shafts carry several gears, so that the torque of the load is not the torque of the gear.
+    """
     model = draft.model
     if len({g.id for s in shafts for g in model.neighbours(s, "cylindrical_gear")}) != 1:
         return None

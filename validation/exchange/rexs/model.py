@@ -1,9 +1,9 @@
 """A REXS model: components with attributes, and relations between them.
 
-One tree serves both encodings: the JSON document of the specification, as nested mappings and lists.
-``model_of`` checks such a tree and gives the records that the import asks. Each name of the vocabulary was
-checked against the published REXS database of the versions that have it; it has one unit and one value type
-in all components. Nothing outside of it is read or written.
+Both encodings are read as one tree: the JSON document of the specification, as nested mappings and lists.
+``model_of`` checks a tree and returns the records for the import. Each name of the vocabulary was checked
+against the published REXS databases. Each name has one unit and one value type in all components. Names
+outside of the vocabulary are neither read nor written.
 """
 
 from __future__ import annotations
@@ -77,7 +77,13 @@ NOT_TAKEN = (
 
 
 class Attribute(NamedTuple):
-    """One attribute: its value as the file has it, None for a table; its unit, "" where it is left out."""
+    """One attribute of a component.
+
+    Attributes
+    ----------
+    value : value as in the file; None for a table
+    unit : unit as in the file; "" if the file states no unit
+    """
 
     value: str | int | float | bool | None
     unit: str = ""
@@ -85,7 +91,7 @@ class Attribute(NamedTuple):
 
 @dataclass(frozen=True)
 class Component:
-    """One component: a machine element or a part of one."""
+    """One component: a machine element or a part of a machine element."""
 
     id: int
     type: str
@@ -94,7 +100,7 @@ class Component:
 
     @property
     def label(self) -> str:
-        """What messages and sources call it."""
+        """Name of the component in messages and sources."""
         return f"{self.type} {self.id}"
 
 
@@ -119,26 +125,31 @@ class RexsModel:
     load_cases: tuple[tuple[int, tuple[Component, ...]], ...] = ()
 
     def of_type(self, *types: str) -> list[Component]:
-        """Components of some types, in the order of the file."""
+        """Return all components of the types, in the order of the file."""
         return [c for c in self.components.values() if c.type in types]
 
-    def related(self, component: Component, kind: str, own: str, role: str, *types: str) -> list[Component]:
-        """Components that a relation of some kind puts into ``role`` where this one has the role ``own``."""
+    def related(
+        self, component: Component, kind: str, own_role: str, role: str, *types: str
+    ) -> list[Component]:
+        """Return the components with the role ``role`` in relations in which ``component`` has ``own_role``.
+
+        ``kind``: type of the relations. ``types``: types of the components; none: all types.
+        """
         partners = [
             self.components[number]
             for relation, refs in self.relations
-            if relation == kind and (own, component.id) in refs
+            if relation == kind and (own_role, component.id) in refs
             for name, number in refs
             if name == role
         ]
         return [c for c in partners if not types or c.type in types]
 
     def referenced(self, component: Component, *types: str) -> list[Component]:
-        """Components of some types that this one refers to."""
+        """Return the components of the types to which ``component`` refers."""
         return self.related(component, "reference", "origin", "referenced", *types)
 
     def flanks(self, gear: Component) -> dict[str, Component]:
-        """Return "left" and "right" -> flank of a cylindrical gear, as far as the file has them."""
+        """Return "left" and "right" -> flank of a cylindrical gear, without flanks that the file lacks."""
         return {
             side: flank
             for side in ("left", "right")
@@ -146,27 +157,27 @@ class RexsModel:
         }
 
     def gear_data(self, stage: Component, gear: Component) -> list[Component]:
-        """Components that hold what a gear does in a stage."""
+        """Return the components with the data of a gear in a stage."""
         kind = "stage_gear_data"
         of_stage = self.related(stage, kind, "stage", kind, *GEAR_DATA)
         return [data for data in self.related(gear, kind, "gear", kind) if data in of_stage]
 
     def tools(self, gear: Component) -> list[Component]:
-        """Rack-shaped tools that cut a gear: of its flanks from 1.3 on, of the gear up to 1.2."""
+        """Return the rack-shaped tools of a gear: tools of the flanks (from REXS 1.3), tools of the gear."""
         step = ("manufacturing_step", "workpiece", "tool", "rack_shaped_tool")
         of_flanks = [tool for flank in self.flanks(gear).values() for tool in self.related(flank, *step)]
         of_gear = self.related(gear, "ordered_reference", "origin", "referenced", "rack_shaped_tool")
         return of_flanks + of_gear
 
     def neighbours(self, component: Component, *types: str) -> list[Component]:
-        """Components of some types that share any relation with this one, each once."""
-        shared = [refs for _, refs in self.relations if any(own == component.id for _, own in refs)]
+        """Return the components of the types that share a relation with ``component``, each once."""
+        shared = [refs for _, refs in self.relations if any(member == component.id for _, member in refs)]
         numbers = dict.fromkeys(number for refs in shared for _, number in refs)
         return [self.components[i] for i in numbers if self.components[i].type in types]
 
 
 def model_of(document: Document, file: str) -> RexsModel:
-    """Build the model of a tree; refuse one that is not of the form of REXS, its ids and its references."""
+    """Return the model of a tree. A tree with wrong form, ids or references is refused."""
     try:
         model = document["model"]
         components = [_component(c) for c in model["components"]]
@@ -208,7 +219,7 @@ def _attribute(node: dict[str, Any]) -> Attribute:
 
 
 def _id(value: object) -> int:
-    """Whole number; XML has it as text."""
+    """Return an id as a whole number. In XML an id is text."""
     text = str(value)
     if isinstance(value, (str, int)) and re.fullmatch(r"-?[0-9]{1,19}", text):
         return int(text)
@@ -222,14 +233,19 @@ def _text(value: object) -> str:
 
 
 def broken(file: str, reason: str) -> ParameterError:
-    """Build the refusal of a file that is no REXS model."""
+    """Return the refusal of a file that is not a REXS model."""
     return refuse("REXS file", shown(file), "a REXS model", f"The file is refused: {reason}.")
 
 
 def si_from_rexs(value: float, unit: str, expected: str, where: str) -> float:
-    """Convert a number of a file to SI; refuse a unit that is unknown or of another dimension.
+    """Convert a number of a file to SI. A unit that is unknown or has another dimension is refused.
 
-    ``unit`` is that of the file, "" for that of the database, ``expected``; ``where`` is for the message.
+    Parameters
+    ----------
+    value : number in the file
+    unit : unit in the file; "" stands for ``expected``
+    expected : unit in the REXS database
+    where : place in the file, for the message
     """
     if expected == "kW":  # power has no unit among the parameters
         return 1e3 * value
@@ -250,5 +266,8 @@ def rexs_from_si(si: float, unit: str) -> float:
 
 
 def derived_number(si: float, stated: str) -> float:
-    """Write an SI number that was computed from numbers of fifteen digits: twelve, in the field's unit."""
+    """Convert a computed SI number to the unit ``stated``, rounded to twelve digits.
+
+    The number was computed from numbers of fifteen digits, so that the last digits are rounding.
+    """
     return float(f"{to_stated(si, stated):.12g}")

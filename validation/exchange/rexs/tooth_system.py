@@ -1,7 +1,7 @@
-"""What decides the geometry of a REXS stage: teeth, module, angles, profile shifts, tips and the tool.
+"""Tooth system of a REXS stage: teeth, module, angles, profile shifts, tips and the tool.
 
-None of it is assumed where the file has it in any version's place: ``PLACES`` is that table, of the published
-databases of REXS 1.0 to 2.0.0. The import reads by it, and a refusal prints it.
+``PLACES`` lists the places of every quantity in the published databases of REXS 1.0 to 2.0.0. The import
+reads a quantity from these places, and a refusal prints them. A quantity in the file is never assumed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _FLANK, _OLD_FLANK = FLANKS
 
 
 class Place(NamedTuple):
-    """One place of a quantity: the type of the component, its attribute, and the versions that have it."""
+    """One place of a quantity: type of the component, attribute, and REXS versions with this attribute."""
 
     component: str
     attribute: str
@@ -25,7 +25,7 @@ class Place(NamedTuple):
 
 
 def _of_flanks(attribute: str, old: str) -> tuple[Place, Place]:
-    """Places of an attribute of the flanks, which changed their name; ``old``: versions before 1.3."""
+    """Return the places of a flank attribute. REXS 1.3 renamed the flank. ``old``: versions before 1.3."""
     return Place(_OLD_FLANK, attribute, old), Place(_FLANK, attribute, "1.3 to 2.0.0")
 
 
@@ -74,12 +74,12 @@ _MESH = "Flanks that mesh have one pressure angle, and only symmetric teeth can 
 
 
 def read_tooth_system(draft: Draft, stage: Component, gears: dict[str, Component]) -> None:
-    """Read what decides the geometry of "pinion" and "gear"; what is nowhere in the file is a problem."""
+    """Read the tooth system of "pinion" and "gear". A quantity that the file does not have is a problem."""
     both = tuple(gears.values())
-    for which, gear in gears.items():
-        _read_teeth(draft, which, gear)
-        draft.take(f"{which}.face_width", _read(draft, "face_width", gear))
-        _need(draft, f"{which}.face_width", "face_width", gear)
+    for gear_name, gear in gears.items():
+        _read_teeth(draft, gear_name, gear)
+        draft.take(f"{gear_name}.face_width", _read(draft, "face_width", gear))
+        _need(draft, f"{gear_name}.face_width", "face_width", gear)
     module = _common(draft, "module", both, "Gears that mesh have one module.")
     angle = _common(draft, "pressure_angle", both, _MESH)
     for quantity, reading in (("module", module), ("pressure_angle", angle)):
@@ -98,7 +98,7 @@ def _candidates(draft: Draft, component: Component) -> list[Component]:
 
 
 def _read(draft: Draft, quantity: str, component: Component, why: str = _SYMMETRIC) -> Reading | None:
-    """Read a quantity of a gear or a stage from the first of its places; its flanks have to agree."""
+    """Read a quantity of a gear or stage from the first place that has a value. Both flanks must agree."""
     parts = _candidates(draft, component)
     for attribute in dict.fromkeys(place.attribute for place in PLACES[quantity]):
         types = [place.component for place in PLACES[quantity] if place.attribute == attribute]
@@ -110,21 +110,24 @@ def _read(draft: Draft, quantity: str, component: Component, why: str = _SYMMETR
 
 
 def _common(draft: Draft, quantity: str, gears: tuple[Component, ...], why: str) -> Reading | None:
-    """Read what both gears have in common; a gear that does not say it has that of the other one."""
+    """Read a quantity that is equal for both gears. One gear may lack the value."""
     return draft.agreed((_read(draft, quantity, gear, why) for gear in gears), why)
 
 
 def _over_module(draft: Draft, length: Reading | None, component: Component) -> Reading | None:
-    """Divide a length by the module: that of the component, else that of the pair."""
-    own = draft.number(component, "normal_module")
-    module = draft.si("basic_rack.module") if own is None else own.si
+    """Divide a length by the module of the component, or else by the module of the pair."""
+    module_of_component = draft.number(component, "normal_module")
+    module = draft.si("basic_rack.module") if module_of_component is None else module_of_component.si
     if length is None or not module or module < 0.0:
         return None
     return Reading(length.si / module, f"{length.where} over the module")
 
 
 def _need(draft: Draft, path: str, quantity: str, *components: Component, instead: str = "") -> None:
-    """Make a quantity that is nowhere in the file a problem that names its places."""
+    """Add a problem if a quantity is missing. The problem names all places of the quantity.
+
+    ``instead``: further places, in words.
+    """
     if path in draft.values or _refused(draft, quantity, *components):
         return
     version = shown(draft.model.version) or "version not given"
@@ -138,7 +141,7 @@ def _need(draft: Draft, path: str, quantity: str, *components: Component, instea
 
 
 def _refused(draft: Draft, quantity: str, *components: Component) -> bool:
-    """Whether the file has a quantity, with a value that is a problem already."""
+    """Whether the value of a quantity in the file is a problem already."""
     attributes = [place.attribute for place in PLACES[quantity]]
     parts = [part for component in components for part in _candidates(draft, component)]
     wheres = {draft.where(part, attribute) for part in parts for attribute in attributes}
@@ -146,7 +149,7 @@ def _refused(draft: Draft, quantity: str, *components: Component) -> bool:
 
 
 def places(*quantities: str) -> str:
-    """Where REXS has some quantities: attributes, components and versions, for a person."""
+    """Return the places of some quantities as text: attributes, components and REXS versions."""
     table = [place for quantity in quantities for place in PLACES[quantity]]
     return ", or ".join(
         f"{attribute} of "
@@ -155,13 +158,13 @@ def places(*quantities: str) -> str:
     )
 
 
-def _read_teeth(draft: Draft, which: str, gear: Component) -> None:
+def _read_teeth(draft: Draft, gear_name: str, gear: Component) -> None:
     teeth = _read(draft, "teeth", gear)
     if teeth is not None and teeth.si != int(teeth.si):
         draft.problem(teeth.where, f"{teeth.si:g}", "a whole number")
     elif teeth is not None:
-        draft.put(f"{which}.teeth", int(teeth.si), teeth.where)
-    _need(draft, f"{which}.teeth", "teeth", gear)
+        draft.put(f"{gear_name}.teeth", int(teeth.si), teeth.where)
+    _need(draft, f"{gear_name}.teeth", "teeth", gear)
 
 
 def _refuse_helix(draft: Draft, gears: tuple[Component, ...]) -> None:
@@ -176,13 +179,14 @@ def _refuse_helix(draft: Draft, gears: tuple[Component, ...]) -> None:
 
 
 def _read_shifts(draft: Draft, stage: Component, gears: dict[str, Component]) -> None:
-    """Read the profile shifts; one that the file does not have follows from the sum or the centre distance.
+    """Read the profile shifts.
 
-    Left to the pair is what the centre distance asks for (DIN 3960). Neither is a problem.
+    A missing shift follows from the sum of the shifts. Without a sum, the pair computes the missing shift
+    from the centre distance (DIN 3960). Without both, a missing shift is a problem.
     """
-    for which, gear in gears.items():
-        draft.take(f"{which}.profile_shift", _read(draft, "profile_shift", gear))
-    paths = [f"{which}.profile_shift" for which in gears]
+    for gear_name, gear in gears.items():
+        draft.take(f"{gear_name}.profile_shift", _read(draft, "profile_shift", gear))
+    paths = [f"{gear_name}.profile_shift" for gear_name in gears]
     missing = [path for path in paths if path not in draft.values]
     total = _read(draft, "profile_shift_sum", stage)
     if not missing or "basic_rack.module" not in draft.values:  # a length has no coefficient without it
@@ -196,11 +200,11 @@ def _read_shifts(draft: Draft, stage: Component, gears: dict[str, Component]) ->
 
 
 def _from_sum(draft: Draft, total: Reading, paths: list[str], missing: list[str]) -> None:
-    """Take what is missing from the sum of the coefficients: the rest of it, or both by a rule."""
+    """Take missing shifts from the sum of the coefficients. Two missing shifts share the sum by a rule."""
     if len(missing) == 1:
         (other,) = set(paths) - set(missing)
-        if (known := draft.si(other)) is not None:
-            draft.take(missing[0], Reading(total.si - known, f"{total.where}, less {other}"))
+        if (known_shift := draft.si(other)) is not None:
+            draft.take(missing[0], Reading(total.si - known_shift, f"{total.where}, less {other}"))
         return
     if (teeth := _teeth(draft)) is not None:
         values = shared(total.si, teeth)
@@ -213,8 +217,8 @@ def _from_sum(draft: Draft, total: Reading, paths: list[str], missing: list[str]
 
 
 def _teeth(draft: Draft) -> tuple[int, int] | None:
-    """Numbers of teeth of pinion and gear, where they are numbers of teeth."""
-    first, second = (draft.values.get(f"{which}.teeth") for which in ("pinion", "gear"))
+    """Return the numbers of teeth of pinion and gear. None: a value is missing or not a positive integer."""
+    first, second = (draft.values.get(f"{gear_name}.teeth") for gear_name in ("pinion", "gear"))
     if isinstance(first, int) and isinstance(second, int) and min(first, second) > 0:
         return first, second
     return None
@@ -222,28 +226,30 @@ def _teeth(draft: Draft) -> tuple[int, int] | None:
 
 def _read_tips(draft: Draft, gears: dict[str, Component]) -> None:
     """Read tip diameters, else the mean of their limits, else addenda, else the addendum coefficient."""
-    coefficients = {which: _read(draft, "addendum_coefficient", gear) for which, gear in gears.items()}
-    for which, gear in gears.items():
-        if any(f"{which}.{name}" in draft.given for name in _TIPS):
+    coefficients = {
+        gear_name: _read(draft, "addendum_coefficient", gear) for gear_name, gear in gears.items()
+    }
+    for gear_name, gear in gears.items():
+        if any(f"{gear_name}.{name}" in draft.given for name in _TIPS):
             continue
         limits = [draft.number(gear, place.attribute) for place in PLACES["tip_limits"]]
         if (tip := _read(draft, "tip_diameter", gear)) is not None:
-            draft.take(f"{which}.tip_diameter", tip)
+            draft.take(f"{gear_name}.tip_diameter", tip)
         elif (mean := _mean(limits)) is not None:
-            draft.take(f"{which}.tip_diameter", mean)
+            draft.take(f"{gear_name}.tip_diameter", mean)
         else:
-            draft.take(f"{which}.addendum", _read(draft, "addendum", gear))
-    without = [w for w in gears if not any(f"{w}.{name}" in draft.values for name in _TIPS)]
+            draft.take(f"{gear_name}.addendum", _read(draft, "addendum", gear))
+    gears_without_tip = [w for w in gears if not any(f"{w}.{name}" in draft.values for name in _TIPS)]
     present = [one for one in coefficients.values() if one is not None]
-    used = [one for which in without if (one := coefficients[which]) is not None] or present
-    if len(without) == len(gears) and len({one.si for one in used}) > 1:
+    used = [one for gear_name in gears_without_tip if (one := coefficients[gear_name]) is not None] or present
+    if len(gears_without_tip) == len(gears) and len({one.si for one in used}) > 1:
         draft.agreed(used, "Give a tip diameter: --set pinion.tip_diameter=VALUE, and of the gear.")
     elif used:
         draft.take("basic_rack.addendum_coefficient", used[0])
 
 
 def _mean(limits: list[Reading | None]) -> Reading | None:
-    """Mean of the least and the largest value, where the file has both."""
+    """Return the mean of the least and the largest value. None: the file lacks one of both."""
     ends = [one for one in limits if one is not None]
     if len(ends) != 2:
         return None
@@ -251,31 +257,35 @@ def _mean(limits: list[Reading | None]) -> Reading | None:
 
 
 def _read_tool(draft: Draft, gears: dict[str, Component]) -> None:
-    """Read the tool, whose tip makes the root; without one the dedendum follows from the root diameters."""
+    """Read the tool, whose tip cuts the root. Without a tool, the dedendum follows from root diameters."""
     for name, attributes in _TOOL.items():
         readings = []
         for gear in gears.values():
             for tool in draft.model.tools(gear):
-                found = ((a, draft.number(tool, a)) for a in attributes)
-                reading = next(((a, one) for a, one in found if one is not None), None)
+                readings_by_attribute = ((a, draft.number(tool, a)) for a in attributes)
+                reading = next(((a, one) for a, one in readings_by_attribute if one is not None), None)
                 if reading is not None:
-                    over = reading[0] in _LENGTHS
-                    readings.append(_over_module(draft, reading[1], tool) if over else reading[1])
+                    attribute, length = reading
+                    is_length = attribute in _LENGTHS
+                    readings.append(_over_module(draft, length, tool) if is_length else length)
         if name == "dedendum" and not readings:
             readings = _dedenda(draft, gears)
         draft.take_first(f"basic_rack.{name}_coefficient", readings)
 
 
 def _dedenda(draft: Draft, gears: dict[str, Component]) -> list[Reading | None]:
-    """h_fP* from root diameters: d_f = m (z + 2 x - 2 h_fP*); a shift may be that of the centre distance."""
+    """Return h_fP* of both gears from the root diameters, by d_f = m (z + 2 x - 2 h_fP*).
+
+    A missing profile shift x follows from the centre distance.
+    """
     module = draft.si("basic_rack.module")
     angle = draft.si("basic_rack.pressure_angle")
     teeth = _teeth(draft)
     if not module or not angle or teeth is None:
         return []
-    given = draft.si("pinion.profile_shift"), draft.si("gear.profile_shift")
+    stated_shifts = draft.si("pinion.profile_shift"), draft.si("gear.profile_shift")
     try:
-        shifts = resolved_shifts(given, teeth, module, angle, draft.si("centre_distance"))
+        shifts = resolved_shifts(stated_shifts, teeth, module, angle, draft.si("centre_distance"))
     except ParameterError:  # the pair refuses them, with their places
         return []
     readings = []
