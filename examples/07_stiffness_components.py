@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 
 import lumped
 from lumped.stiffness import iso6336
-from lumped.stiffness.energy import Contact, energy_curve
+from lumped.stiffness.energy import HertzLaw, energy_curve
 
 
-def over_iso(pair: lumped.GearPair, contact: Contact = "weber_banaschek") -> tuple[float, float, float]:
+def over_iso(pair: lumped.GearPair, contact: HertzLaw = "weber_banaschek") -> tuple[float, float, float]:
     """Energy stiffness over ISO 6336-1's: mean of the mesh, and its factors by size and by shape."""
     g = pair.geometry
     curve = energy_curve(pair, contact)

@@ -420,7 +420,7 @@ class OwnGains:
             normal = force["normal"]
             state = form.states
             by = [normal, normal * state["moment_pinion"], normal * state["moment_gear"]]
-            by += [force["friction"], force["friction_moment"], force["separating"]]
+            by += [force["friction_force"], force["friction_moment"], force["separating"]]
             gains.append(-np.stack(by, axis=-1) @ self.forces)
         nothing = np.zeros((2, centre.size))
         return GainValues(np.stack(gains), nothing, nothing)

@@ -154,7 +154,9 @@ def coupled_loads(
 def eliminate(matrix: FloatArray, contacts: Records) -> None:
     """Solve the equations for both right sides ``residual`` and ``tangent``, in place.
 
-    Gauss elimination without pivots, because the matrix is positive definite.
+    Each field has a right side on entry and the solution on return: ``residual`` then is the change of the
+    load. Gauss elimination needs no pivots: the matrix of the pairs in contact is positive definite, and
+    every other row is one of the unit matrix.
     """
     count = contacts.size
     for i in range(count):
@@ -189,7 +191,7 @@ def spring_load(pair: Record, approach: float, contact: Record) -> None:
 
 
 @inlined
-def share_load(
+def write_elastic_loads(
     approach: float,
     pairs: Records,
     line: Record,
@@ -198,7 +200,10 @@ def share_load(
     matrix: FloatArray,
     contacts: Records,
 ) -> None:
-    """Write gap and elastic load of every pair at an approach of the gears.
+    """Write the elastic load of every pair at an approach of the gears.
+
+    The gap is written where a pair may touch, see ``write_gap_unless_apart``. Elsewhere gap and slopes in
+    ``contacts`` are those of an earlier approach, and no force reads them.
 
     Parameters
     ----------
@@ -266,7 +271,7 @@ def static_approach(
     # Length of the next step outwards. It doubles: under a light load it is far smaller than the gaps.
     reach = 2.0 * scale
     for _ in range(_MOST_STEPS):
-        share_load(approach, pairs, line, law, coupling, matrix, contacts)
+        write_elastic_loads(approach, pairs, line, law, coupling, matrix, contacts)
         excess = -force
         slope = 0.0
         for i in range(pairs.size):

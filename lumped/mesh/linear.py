@@ -19,7 +19,7 @@ import numpy as np
 
 from lumped.compiler import compiled
 from lumped.mesh.damper import acting_damping
-from lumped.mesh.element import in_contact, rolling_rate, share_load, static_approach
+from lumped.mesh.element import in_contact, rolling_rate, static_approach, write_elastic_loads
 from lumped.mesh.records import (
     AT_REST,
     BY_APPROACH,
@@ -84,7 +84,7 @@ class LinearForm(NamedTuple):
 @compiled
 def add_forces(
     position: FloatArray,
-    friction: FloatArray,
+    mu: FloatArray,
     tilt: FloatArray,
     by_approach: FloatArray,
     by_rate: FloatArray,
@@ -96,7 +96,7 @@ def add_forces(
     for time in range(position.shape[1]):
         for i in range(position.shape[0]):
             pair[0].position = position[i, time]
-            pair[0].friction = friction[i, time]
+            pair[0].mu = mu[i, time]
             add_force(forces[time, BY_APPROACH], by_approach[i, time], pair[0], tilt[i, time])
             add_force(forces[time, BY_RATE], by_rate[i, time], pair[0], tilt[i, time])
             add_force(forces[time, AT_REST], at_rest[i, time], pair[0], tilt[i, time])
@@ -104,7 +104,7 @@ def add_forces(
 
 def forces_of_laws(
     position: FloatArray,
-    friction: FloatArray,
+    mu: FloatArray,
     tilt: FloatArray | None,
     by_approach: FloatArray,
     by_rate: FloatArray,
@@ -114,7 +114,7 @@ def forces_of_laws(
 
     Parameters
     ----------
-    position, friction : xi [m] and mu of each pair
+    position, mu : xi [m] and friction coefficient of each pair
     tilt : of the normal at a tip corner; None is 0
     by_approach, by_rate, at_rest : loads as in PAIR_LOAD
     """
@@ -122,7 +122,7 @@ def forces_of_laws(
     tilts = np.zeros(position.shape) if tilt is None else tilt
     add_forces(
         np.ascontiguousarray(position),
-        np.ascontiguousarray(friction),
+        np.ascontiguousarray(mu),
         np.ascontiguousarray(tilts),
         np.ascontiguousarray(by_approach),
         np.ascontiguousarray(by_rate),
@@ -140,7 +140,7 @@ class Instant(NamedTuple):
     ----------
     pairs, line, coupling : (pairs,) PAIR, (1,) LINE and (pairs, pairs) interpolated between the nodes
     node_shares : (nodes,) share of each node in the interpolation
-    contacts, matrix : (pairs,) CONTACT, and (pairs, pairs) memory, of ``share_load``
+    contacts, matrix : (pairs,) CONTACT, and (pairs, pairs) memory, of ``write_elastic_loads``
     static : (1,) static approach; on entry the guess from which it is sought [m]
     forces, state : (3,) FORCE and (1,) STATE of the linear form
     loads : (pairs,) PAIR_LOAD
@@ -221,7 +221,7 @@ def interpolate_pair(i: int, step: int, tables: MeshTables, mesh: CyclePairs, in
     position = 0.0
     pair.stiffness = 0.0
     pair.damping = 0.0
-    pair.friction = 0.0
+    pair.mu = 0.0
     pair.gap = 0.0
     pair.gap_slope = 0.0
     for n in range(count):
@@ -232,7 +232,7 @@ def interpolate_pair(i: int, step: int, tables: MeshTables, mesh: CyclePairs, in
         position += share * node_pair.position
         pair.stiffness += share * node_pair.stiffness
         pair.damping += share * node_pair.damping
-        pair.friction += share * node_pair.friction
+        pair.mu += share * node_pair.mu
         pair.gap += share * node_pair.gap
         pair.gap_slope += share * node_pair.gap_slope
         coupling = tables.coupling[step, j]
@@ -268,7 +268,7 @@ def copy_form(to_forces: Records, to_state: Record, forces: Records, state: Reco
     """Copy a linear form."""
     for part in range(3):
         to_forces[part].normal = forces[part].normal
-        to_forces[part].friction = forces[part].friction
+        to_forces[part].friction_force = forces[part].friction_force
         to_forces[part].friction_moment = forces[part].friction_moment
         to_forces[part].separating = forces[part].separating
     to_state.approach = state.approach
@@ -284,7 +284,7 @@ def add_form(factor: float, to_forces: Records, to_state: Record, forces: Record
     """Add a factor times a linear form to another one."""
     for part in range(3):
         to_forces[part].normal += factor * forces[part].normal
-        to_forces[part].friction += factor * forces[part].friction
+        to_forces[part].friction_force += factor * forces[part].friction_force
         to_forces[part].friction_moment += factor * forces[part].friction_moment
         to_forces[part].separating += factor * forces[part].separating
     to_state.approach += factor * state.approach
@@ -342,7 +342,7 @@ def linearise(
     Parameters
     ----------
     static : static approach [m]; with prescribed contact, which is linear everywhere, 0
-    contacts : of ``share_load`` at the static approach
+    contacts : of ``write_elastic_loads`` at the static approach
     forces, state, loads : written: (3,) FORCE, STATE, (pairs,) PAIR_LOAD
     """
     clear_form(forces, state)
@@ -403,7 +403,7 @@ def linear_of_mesh(
     """Write the linear form, the loads and the switches of given pairs into ``instant``."""
     if law.prescribed:  # linear already, about any state
         static = 0.0
-        share_load(static, pairs, line, law, coupling, instant.matrix, instant.contacts)
+        write_elastic_loads(static, pairs, line, law, coupling, instant.matrix, instant.contacts)
     else:
         guess = 0.0 if math.isnan(instant.static[0]) else instant.static[0]
         static = static_approach(

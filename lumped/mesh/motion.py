@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.compiler import compiled
-from lumped.mesh.element import share_load
+from lumped.mesh.element import write_elastic_loads
 from lumped.mesh.records import Record, Records, inlined, record
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.mesh.unilateral_force import MeshForce, unilateral_force
@@ -45,8 +45,8 @@ class Body(NamedTuple):
     constant : (m, 2m)
     torque : (m,) acceleration by the mean torques
     deflection : (m,) u, with delta = u . z
-    per_normal, per_friction, per_friction_moment, per_separating : (m,) acceleration per unit of each field
-        of FORCE
+    per_normal, per_friction_force, per_friction_moment, per_separating : (m,) acceleration per unit of each
+        field of FORCE
     per_moment, per_torque : (2, m) acceleration per unit moment on, and torque of, pinion and gear
     bearings, shafts : (m, m) matrices whose quadratic form of the rates z' is the power of the bearings, and
         of shafts with couplings; (0, m) without shafts
@@ -60,7 +60,7 @@ class Body(NamedTuple):
     torque: FloatArray
     deflection: FloatArray
     per_normal: FloatArray
-    per_friction: FloatArray
+    per_friction_force: FloatArray
     per_friction_moment: FloatArray
     per_separating: FloatArray
     per_moment: FloatArray
@@ -109,7 +109,7 @@ def accelerate(state: FloatArray, force: MeshForce, line: Record, body: Body, ra
             + body.per_moment[1, j] * line.moment_gear
         )
         acceleration = body.torque[j] + force.normal * per_normal
-        acceleration += force.friction * body.per_friction[j]
+        acceleration += force.friction_force * body.per_friction_force[j]
         acceleration += force.friction_moment * body.per_friction_moment[j]
         acceleration += force.separating * body.per_separating[j]
         for i in range(2 * m):
@@ -164,7 +164,7 @@ def sliding_power(
     line : L [m]
     """
     power: float = force.friction_moment * (speed_pinion + speed_gear)
-    power -= force.friction * (speed_gear * line + off_line)
+    power -= force.friction_force * (speed_gear * line + off_line)
     return power
 
 
@@ -278,7 +278,7 @@ def run_cycles(
                 pairs = mesh.pairs[step, node]
                 line = mesh.lines[step, node]
                 coupling = tables.coupling[step, node]
-                share_load(approach, pairs, line, tables.law, coupling, mesh.matrix, mesh.contacts)
+                write_elastic_loads(approach, pairs, line, tables.law, coupling, mesh.matrix, mesh.contacts)
                 force = unilateral_force(approach_rate, pairs, line, tables.law, mesh.contacts, normal)
                 accelerate(stage_state, force, line, body, rates[stage])
                 add_ripples(cycle, edges[step] + 0.5 * node * length, ripples, body, rates[stage])

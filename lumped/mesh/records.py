@@ -38,7 +38,7 @@ PAIR = record(
     position="xi, from the pinion's tangent point to the contact",
     stiffness="k at the mean load [N/m]; 0 where the pair is too far from its path to be computed",
     damping="c of a pair that carries its full load [N s/m]",
-    friction="friction coefficient mu, with the sign of the sliding",
+    mu="friction coefficient mu, with the sign of the sliding",
     gap="gap between the flanks, without tip corners",
     gap_slope="slope of that gap over xi",
     before_start="distance of the contact beyond the gear's tip corner, before the start; negative inside",
@@ -61,7 +61,7 @@ CONTACT = record(
     compression="approach less gap [m]",
     load="elastic load N_el [N]",
     tangent="slope of the load over a compression that all pairs share [N/m]",
-    residual="residual of the load's equation in the iteration",
+    residual="residual of the load's equation; after ``element.eliminate`` the change of the load [N]",
     damper_share="share of the damper that acts; only ``statics.middle_contacts`` writes it",
 )
 #: Where the flanks of a tooth pair end: positions xi on the line of action without load [m].
@@ -86,7 +86,7 @@ LINE = record(
 #: The force of all pairs on the gears, or one row of the linear form, see ``linear.linearise``.
 FORCE = record(
     normal="sum of N [N]",
-    friction="sum of mu N [N]",
+    friction_force="sum of mu N [N]",
     friction_moment="sum of mu N xi [N m]",
     separating="force of tip corners that pushes the gears apart [N]",
 )
@@ -134,8 +134,8 @@ class ContactLaw(NamedTuple):
 def add_force(force: Record, normal: float, pair: Record, tilt: float) -> None:
     """Add the force of one pair with a normal load N to the force on the gears."""
     force.normal += normal
-    force.friction += pair.friction * normal
-    force.friction_moment += pair.friction * normal * pair.position
+    force.friction_force += pair.mu * normal
+    force.friction_moment += pair.mu * normal * pair.position
     force.separating += tilt * normal
 
 
@@ -143,6 +143,6 @@ def add_force(force: Record, normal: float, pair: Record, tilt: float) -> None:
 def clear_force(force: Record) -> None:
     """Set all fields of a force to zero."""
     force.normal = 0.0
-    force.friction = 0.0
+    force.friction_force = 0.0
     force.friction_moment = 0.0
     force.separating = 0.0

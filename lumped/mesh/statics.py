@@ -13,7 +13,7 @@ import numpy as np
 
 from lumped.compiler import compiled
 from lumped.mesh.damper import damper_share
-from lumped.mesh.element import share_load, static_approach, write_gap
+from lumped.mesh.element import static_approach, write_elastic_loads, write_gap
 from lumped.mesh.records import CONTACT, LINE, PAIR, ContactLaw, Record, Records, inlined
 from lumped.mesh.tip_corners import FlankEnd, flank_end_gap, place_pair, tip_minus_edge
 from lumped.typing import FloatArray
@@ -136,7 +136,7 @@ def middle_contacts(
         line = lines[0]
         coupling = phases.coupling[phase if law.coupled else 0]
         write_pairs(phases, phase, flanks[0], law, pairs, line)
-        share_load(approach[phase], pairs, line, law, coupling, matrix, contacts)
+        write_elastic_loads(approach[phase], pairs, line, law, coupling, matrix, contacts)
         contact = middle_contact[phase]
         write_gap(pairs[middle], approach[phase], line, law, contact)
         contact.load = contacts[middle].load

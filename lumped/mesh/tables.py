@@ -2,9 +2,9 @@
 
 Everything of a tooth pair repeats with the mesh cycle, except what the two teeth of the pair bring: three
 numbers of each tooth, and the kind of the pair, which the faults of both teeth decide. The numbers of a tooth
-are gaps: a tooth of a quality class has an error of ``lumped.schema.meeting_teeth``; ``TOOTH`` has this error
-as ``gap``, and ``fill_pair`` adds ``tooth_gap`` of both teeth to the gap of the pair. Like teeth have one
-kind and numbers that are zero.
+are gaps: a tooth of a tolerance class has an error of ``lumped.schema.tooth_errors``; ``TOOTH`` has this
+error as ``gap``, and ``fill_pair`` adds ``tooth_gap`` of both teeth to the gap of the pair. Like teeth have
+one kind and numbers that are zero.
 
 Eccentric gears turn the line of action. Eccentric gears and ripples of the torques also swing the common
 rotation of both gears, and the contacts follow this swing.
@@ -27,7 +27,7 @@ from lumped.typing import FloatArray, IntArray
 LAWS = record(
     stiffness="k [N/m]; 0 where the pair is too far from its path to be computed",
     damping="c of the full damper [N s/m]",
-    friction="friction coefficient mu [-]",
+    mu="friction coefficient mu [-]",
     gap="gap without tip corners and without the numbers of single teeth [m]",
 )
 #: The numbers of one tooth; or, in ``MeshTables.shape``, the gap of a pair per unit of each number.
@@ -111,7 +111,7 @@ class CyclePairs(NamedTuple):
     pairs : (steps, nodes, pairs) PAIR
     lines : (steps, nodes) LINE
     kind, pinion_tooth, gear_tooth : (pairs,) kind of each pair, and its teeth, counted from 0
-    contacts, matrix : (pairs,) CONTACT and (pairs, pairs), memory of ``share_load``
+    contacts, matrix : (pairs,) CONTACT and (pairs, pairs), memory of ``write_elastic_loads``
     starts : (2 + ripples, 2) amplitude of each TURNING, times cosine and sine of its angle at the start of
         the cycle
     """
@@ -276,7 +276,7 @@ def fill_pair(
     gear = tables.gear[mesh.gear_tooth[i]]
     pair.stiffness = laws.stiffness + slopes.stiffness * place.distance
     pair.damping = laws.damping + slopes.damping * place.distance
-    pair.friction = laws.friction + slopes.friction * place.distance
+    pair.mu = laws.mu + slopes.mu * place.distance
     pair.gap_slope = slopes.gap + tooth_gap(shape_slope[0], pinion) + tooth_gap(shape_slope[1], gear)
     gap = laws.gap + tooth_gap(shape[0], pinion) + tooth_gap(shape[1], gear)
     pair.gap = gap + pair.gap_slope * place.distance

@@ -22,7 +22,7 @@ class MeshForce(NamedTuple):
     """Force of all pairs on the gears, with the fields of FORCE, and the power of their dampers [W]."""
 
     normal: float
-    friction: float
+    friction_force: float
     friction_moment: float
     separating: float
     damper_power: float
@@ -50,7 +50,7 @@ def unilateral_force(
     contacts: Records,
     normal: FloatArray,
 ) -> MeshForce:
-    """Force of all pairs at a rate of the approach, from elastic loads that ``share_load`` has written.
+    """Force of all pairs at a rate of the approach, from elastic loads of ``write_elastic_loads``.
 
     The damper force of a pair is N - N_el also where the load is cut to 0. The power (N - N_el) p' of the
     damper is then exactly what the energy of the pairs loses.
@@ -73,11 +73,13 @@ def unilateral_force(
             continue
         rate = compression_rate(approach_rate, contact, line, law)
         load = pushing_load(contact.load, acting_damping(pair, contact, law), rate)
+        # A pair that neither touches elastically nor pushes has no damper: with prescribed contact its
+        # spring is stretched, and nothing holds it.
         if load > 0.0 or contact.load > 0.0:
             power += damper_power(load - contact.load, rate)
         normal[i] = load
         total += load
-        friction += pair.friction * load
-        moment += pair.friction * load * pair.position
+        friction += pair.mu * load
+        moment += pair.mu * load * pair.position
         separating += contact.tilt * load
     return MeshForce(total, friction, moment, separating, power)

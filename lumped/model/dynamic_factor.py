@@ -18,7 +18,7 @@ from lumped.schema.pair import GearPair
 from lumped.stiffness.iso6336 import mean_mesh_stiffness, pair_single_stiffness
 
 #: Default class of ISO 1328-1: ground industrial gears.
-TOLERANCE_CLASS = 6
+ASSUMED_TOLERANCE_CLASS = 6
 _RUN_IN = 0.075
 _SUBCRITICAL = 0.85
 _MAIN = 1.15
@@ -43,7 +43,7 @@ class IsoDynamicFactor:
     tolerance_class: int
 
 
-def iso_dynamic_factor(pair: GearPair, tolerance_class: int = TOLERANCE_CLASS) -> IsoDynamicFactor:
+def iso_dynamic_factor(pair: GearPair, tolerance_class: int = ASSUMED_TOLERANCE_CLASS) -> IsoDynamicFactor:
     """Return K_v by ISO 6336-1 method B, for a tolerance class of ISO 1328-1, 1 to 11.
 
     The stiffness is that of the standard: neither the pair's stiffness model nor ``mesh.stiffness_factor``

@@ -1,4 +1,4 @@
-"""Who decides whether a motion is linear or unilateral: the argument ``contact``, and nothing else.
+"""Who decides whether a motion of the lumped model is linear or unilateral: the argument ``contact`` alone.
 
 ``lumped.steady_state``, ``simulate``, ``speed_sweep`` and ``run_up`` all ask ``motion_form``. Whether teeth
 are alike decides only how a linear motion is computed.
@@ -9,7 +9,8 @@ are alike decides only how a linear motion is computed.
 | "unilateral" | has no load | ``lumped.mesh.unilateral_force`` |
 
 ``spurcheck.predict`` asks for "unilateral". Charts, boundaries and margins are linear. Branches and jumps of
-``floquet`` are unilateral. See decision 6 in docs/contributing/decisions.md.
+``floquet`` are unilateral. The multibody model has the effect "contact_loss" in place of the argument
+(``multibody.run.effects``). See decision 6 in docs/contributing/decisions.md.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from lumped.arguments import one_of
 from lumped.schema.pair import GearPair
 
 #: The argument ``contact``: teeth that may pull, or teeth that only push.
-Contact = Literal["linear", "unilateral"]
+ContactArgument = Literal["linear", "unilateral"]
 
 
 class MotionForm(Enum):
@@ -32,9 +33,9 @@ class MotionForm(Enum):
     UNILATERAL = auto()  # by momentary load, like teeth or own teeth
 
 
-def motion_form(pair: GearPair, contact: Contact) -> MotionForm:
+def motion_form(pair: GearPair, contact: ContactArgument) -> MotionForm:
     """Return how the motion of a pair is computed; refuse a ``contact`` that does not exist."""
-    one_of("contact", contact, get_args(Contact))
+    one_of("contact", contact, get_args(ContactArgument))
     if contact == "unilateral":
         return MotionForm.UNILATERAL
     return MotionForm.LINEAR_LIKE_TEETH if pair.healthy is pair else MotionForm.LINEAR_OWN_TEETH

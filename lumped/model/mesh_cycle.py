@@ -112,7 +112,7 @@ class PairState:
         """FORCE (k, 3) of all pairs in the linear form, see ``lumped.mesh.linear``."""
         return forces_of_laws(
             position=self.position,
-            friction=self.friction,
+            mu=self.friction,
             tilt=self.tilt,
             by_approach=self.stiffness,
             by_rate=self.damping,

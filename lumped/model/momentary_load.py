@@ -116,13 +116,13 @@ def body_of(system: LTVSystem, torques: FloatArray) -> Body:
     g = system.pair.geometry
     m = len(system.coordinates)
     rates = system.gears
-    per_normal, per_friction, per_friction_moment = np.ascontiguousarray(system.per_load)
+    per_normal, per_friction_force, per_friction_moment = np.ascontiguousarray(system.per_load)
     return Body(
         constant=np.ascontiguousarray(system.constant[m:]),
         torque=np.ascontiguousarray(torques[m:]),
         deflection=np.ascontiguousarray(system.deflection),
         per_normal=per_normal,
-        per_friction=per_friction,
+        per_friction_force=per_friction_force,
         per_friction_moment=per_friction_moment,
         per_separating=np.ascontiguousarray(system.per_apart),
         per_moment=np.ascontiguousarray(moments(system)),

@@ -9,6 +9,10 @@ The lumped model closes a period at three places:
 - ``settled_motion`` in ``lumped.model.unilateral_motion`` does not solve for the start: teeth that differ run
   until their start has faded.
 
+The other packages close periods of their own: ``close_orbit`` in ``floquet.orbits.closing``,
+``floquet.orbits.branch`` and ``floquet.orbits.folds`` by Newton's method, ``multibody.run.linear_motion`` by
+one linear solve. The table of all of them is in docs/contributing/decisions.md, decision 4.
+
 Source: C. G. Broyden, A class of methods for solving nonlinear simultaneous equations, Math. Comp. 19 (1965)
 577-593.
 """

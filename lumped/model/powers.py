@@ -48,7 +48,7 @@ class MeanPowers:
     ----------
     driving : of the pinion's torque
     sliding, tooth_dampers, bearings, shafts : losses; the loss of couplings belongs to the shafts
-    energy_residual : losses less driving and braking power of the equations of motion
+    energy_residual : losses and work at tip corners less driving and braking power of the equations of motion
     """
 
     driving: float
@@ -65,7 +65,10 @@ class MeanPowers:
 
     @property
     def by_place(self) -> dict[str, float]:
-        """Losses by place and the energy residual, under the names of ``RevolutionMotion.powers``."""
+        """Losses by place and the energy residual, under the names of ``RevolutionMotion.powers``.
+
+        "rolling" is the energy residual: work on the teeth as the contact rolls on, which is no loss.
+        """
         places = ("sliding", "tooth_dampers", "bearings", "shafts")
         return {place: getattr(self, place) for place in places} | {"rolling": self.energy_residual}
 

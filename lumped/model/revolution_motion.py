@@ -15,7 +15,7 @@ import numpy as np
 
 from lumped.labelling import Variable
 from lumped.mesh.tables import MeshTables
-from lumped.model.linear_or_unilateral import Contact
+from lumped.model.linear_or_unilateral import ContactArgument
 from lumped.model.mesh_cycle import PairState
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.results import labelled, peak_to_peak, response
@@ -43,7 +43,7 @@ class Touch(Enum):
     LINEAR = "linear about the own static state of every pair"
 
     @property
-    def contact(self) -> Contact:
+    def contact(self) -> ContactArgument:
         """The argument ``contact`` that gives this."""
         return "linear" if self in (Touch.TIED, Touch.LINEAR) else "unilateral"
 
@@ -177,7 +177,7 @@ class RevolutionMotion:
             values[touches] = laws[name] + slopes[name] * distance
             return values
 
-        k, c, mu, gap = (of_pairs(name) for name in ("stiffness", "damping", "friction", "gap"))
+        k, c, mu, gap = (of_pairs(name) for name in ("stiffness", "damping", "mu", "gap"))
         return PairState(tables.position[step, 0].T + swung, touches, k, c, mu, gap, np.zeros(gap.shape))
 
 

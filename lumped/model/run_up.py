@@ -16,7 +16,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
 from lumped.mesh.tables import MeshTables
 from lumped.model.cycle_maps import CycleSteps, linear_steps, loads_of, stepped_run
-from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
+from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.period_closure import balanced_start
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
@@ -48,7 +48,7 @@ def run_up(
     speeds_rpm: tuple[float, float],
     seconds: float,
     *,
-    contact: Contact = "linear",
+    contact: ContactArgument = "linear",
     supports: Supports | None = None,
     samples_per_cycle: int = 32,
     progress: Progress | None = None,

@@ -13,7 +13,7 @@ from lumped.errors import refuse
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import linear_motion
 from lumped.model.equations import PRINTED_EQUATIONS
-from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
+from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
 from lumped.model.periodic_system import Supports, supports_of
 from lumped.model.revolution_motion import default_samples, labelled_motion
 from lumped.model.solution import steady_cycle
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def steady_state(
     pair: AnyPair,
     *,
-    contact: Contact = "linear",
+    contact: ContactArgument = "linear",
     supports: Supports | None = None,
     samples_per_cycle: int | None = None,
     as_printed: Collection[int] = (),
@@ -92,7 +92,7 @@ def steady_state(
     return labelled_motion(motion, provenance(pair, samples_per_cycle=count, contact=contact))
 
 
-def check_printed(pair: AnyPair, contact: Contact, as_printed: Collection[int]) -> None:
+def check_printed(pair: AnyPair, contact: ContactArgument, as_printed: Collection[int]) -> None:
     """Refuse printed signs where the equations are not those of the publication."""
     pair = load_gear_pair(pair)
     printed = motion_form(pair, contact) is MotionForm.LINEAR_LIKE_TEETH

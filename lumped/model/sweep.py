@@ -15,7 +15,7 @@ from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
-from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
+from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
@@ -52,7 +52,7 @@ def speed_sweep(
     pair: AnyPair,
     speeds_rpm: Iterable[float],
     *,
-    contact: Contact = "linear",
+    contact: ContactArgument = "linear",
     supports: Supports | None = None,
     samples_per_cycle: int = 128,
     progress: Progress | None = None,
@@ -149,7 +149,7 @@ def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int)
 
 
 def _motions(
-    pairs: Iterable[GearPair], contact: Contact, supports: Supports, samples: int
+    pairs: Iterable[GearPair], contact: ContactArgument, supports: Supports, samples: int
 ) -> Iterator[_Motion | None]:
     """Yield the motions of `lumped.steady_state`; None at a speed without periodic motion."""
     for pair in pairs:

@@ -154,7 +154,7 @@ class ToothLaws:
         laws["stiffness"] = k
         laws["damping"] = c
         laws["gap"] = gap
-        laws["friction"] = self.friction(np.clip(xi, first + near, last - near))
+        laws["mu"] = self.friction(np.clip(xi, first + near, last - near))
         return laws
 
     def shapes(self, xi: FloatArray) -> Records:
@@ -337,7 +337,7 @@ def mesh_tables(
     if not laws.loaded:  # fixed windows stay at their places
         slopes["stiffness"] = 0.0
         slopes["damping"] = 0.0
-        slopes["friction"] = 0.0
+        slopes["mu"] = 0.0
     turning = laws.turning()
     angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
     pinion, gear = tooth_errors(laws.pair)

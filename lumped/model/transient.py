@@ -16,7 +16,7 @@ from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
-from lumped.model.linear_or_unilateral import Contact, MotionForm, motion_form
+from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
@@ -41,7 +41,7 @@ def simulate(
     pair: AnyPair,
     cycles: int = 20,
     *,
-    contact: Contact = "linear",
+    contact: ContactArgument = "linear",
     supports: Supports | None = None,
     samples_per_cycle: int = 256,
     initial: Initial | ArrayLike = "static",

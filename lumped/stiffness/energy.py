@@ -184,7 +184,7 @@ def _integrals(profile: ToothProfile, length: FloatArray, nodes: int) -> tuple[F
     return bending(u_1, h_1, w_1) + bending(u_2, h_2, w_2), np.asarray(area, dtype=np.float64)
 
 
-Contact = Literal["linear", "weber_banaschek"]
+HertzLaw = Literal["linear", "weber_banaschek"]
 
 
 @dataclass(frozen=True)
@@ -215,7 +215,7 @@ class PairCompliance:
 
 
 def pair_compliance(
-    pair: MeshingPair, xi: ArrayLike, *, hertz: Contact = "weber_banaschek"
+    pair: MeshingPair, xi: ArrayLike, *, hertz: HertzLaw = "weber_banaschek"
 ) -> PairCompliance:
     """Compliances of a tooth pair in contact at positions xi from X, (n,) [m].
 
@@ -247,7 +247,7 @@ def weber_banaschek_softening(pair: MeshingPair) -> float:
     return softening(*_elastic(pair)) / pair.geometry.face_width
 
 
-def _contact(pair: MeshingPair, xi: FloatArray, hertz: Contact) -> FloatArray:
+def _contact(pair: MeshingPair, xi: FloatArray, hertz: HertzLaw) -> FloatArray:
     g = pair.geometry
     width = g.face_width
     moduli, ratios = _elastic(pair)
@@ -281,7 +281,7 @@ def _tooth(wheel: Wheel, material: Material, length: FloatArray, width: float) -
     )
 
 
-def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathFunction:
+def energy_curve(pair: MeshingPair, hertz: HertzLaw = "weber_banaschek") -> PathFunction:
     """Stiffness of a tooth pair alone from A to D by the potential-energy method, as it comes [N/m]."""
     ends = pair.geometry.L_XA, pair.geometry.L_XD
     return fitted_series(lambda xi: pair_compliance(pair, xi, hertz=hertz).stiffness, ends)

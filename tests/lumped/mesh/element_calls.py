@@ -32,14 +32,14 @@ def line_at(step, node, mesh_tables, starts, line):
 def loads_at(approach, pairs, line, law, coupling, contacts):
     """Gaps and elastic loads at an approach."""
     matrix = np.empty((pairs.size, pairs.size))
-    element.share_load(approach, pairs, line[0], law, coupling, matrix, contacts)
+    element.write_elastic_loads(approach, pairs, line[0], law, coupling, matrix, contacts)
 
 
 @compiled
 def force_at(approach, approach_rate, pairs, line, law, coupling, contacts, normal):
     """Force of the mesh at an approach and its rate."""
     matrix = np.empty((pairs.size, pairs.size))
-    element.share_load(approach, pairs, line[0], law, coupling, matrix, contacts)
+    element.write_elastic_loads(approach, pairs, line[0], law, coupling, matrix, contacts)
     return unilateral_force.unilateral_force(approach_rate, pairs, line[0], law, contacts, normal)
 
 

@@ -220,10 +220,10 @@ class TestDampers:
 
 def test_friction_is_mu_times_each_load_at_its_own_arm():
     mu = np.array([-0.05, 0.02, 0.07])
-    mesh = coupled(friction=mu, damping=4e3)
+    mesh = coupled(mu=mu, damping=4e3)
     found = mesh.force(1.5e-5, 0.2)
     assert found.normal == pytest.approx(mesh.normal.sum())
-    assert found.friction == pytest.approx(mu @ mesh.normal)
+    assert found.friction_force == pytest.approx(mu @ mesh.normal)
     assert found.friction_moment == pytest.approx((mu * WITH_CORNERS) @ mesh.normal)
     assert found.separating == pytest.approx(mesh.contacts["tilt"] @ mesh.normal)
     assert mesh.contacts["tilt"][[0, 2]].min() > 0.0  # both corners push the gears apart
