@@ -17,6 +17,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped import GearPair, bodies
+from lumped.compiler import compiled
 from lumped.errors import ParameterError
 from lumped.friction.registry import FRICTIONAL
 from lumped.gear_geometry.geometry import Wheel
@@ -32,7 +33,7 @@ from multibody.contact.friction import nominal_friction
 from multibody.contact.kernels import set_couplings
 from multibody.contact.kinematics import DRIVE, Line, add_gradient, corners_at
 from multibody.contact.machine import Machine, machine, masses
-from multibody.contact.records import PAIR
+from multibody.contact.records import MAX_PAIRS, PAIR, Records, machine_of
 from multibody.gears.circles import circles
 from multibody.run.effects import effect_flags
 from tests.evidence.check import Check, rows
@@ -161,6 +162,14 @@ def _loaded(pair: GearPair) -> Iterator[Check]:
             yield _neighbours(pair)
 
 
+@compiled
+def _set_loads(count: int, pairs: Records, packed: FloatArray) -> None:
+    """Write the couplings and the loads of pairs of the multibody model, PAIR records."""
+    machine_record = machine_of(packed)[0]
+    set_couplings(count, pairs, machine_record)
+    shared_loads(count, pairs, contact_law(machine_record, kn.CONTACT_LAW))
+
+
 @dataclass(frozen=True)
 class _Equilibrium:
     """A pair in the static mesh: approach [m], load [N], tangent [N/m], damping [N s/m], compression [m].
@@ -217,8 +226,7 @@ class _Mesh:
         pairs["position"] = places
         pairs["compression"] = pressed
         pairs["stiffness"] = stiffness
-        set_couplings(places.size, pairs, self.machine.record)
-        shared_loads(places.size, pairs, contact_law(self.machine.record, kn.CONTACT_LAW))
+        _set_loads(places.size, pairs, self.machine.packed)
         loads = pairs["elastic_load"].copy()
         return loads, pressed - pairs["couplings"][:, : places.size] @ loads
 
@@ -228,6 +236,9 @@ class _Mesh:
         reach = 0.4 * self.machine.record.geometry.pitch
         places = xi + p.geometry.pitch * np.arange(-4, 5)
         near = (places > p.geometry.L_XA - reach) & (places < p.geometry.L_XD + reach)
+        # Records of pairs have room for MAX_PAIRS: of more, those furthest outside the path carry nothing.
+        outside = np.maximum(p.geometry.L_XA - places, places - p.geometry.L_XD)
+        near &= np.argsort(np.argsort(outside)) < MAX_PAIRS
         index_of_pair = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0])
         places = places[near]
 
