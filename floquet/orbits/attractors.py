@@ -251,7 +251,10 @@ class Survey:
         return True
 
     def _settle_replicas(self, states: FloatArray, rate: float, motion: Motion) -> tuple[Settled, BoolArray]:
-        """Let runs settle at a speed. Returns the settled runs, and whether each has departed from a motion."""
+        """Let runs settle at a speed.
+
+        Returns the settled runs, and whether each has departed from a motion.
+        """
         result, grows = self._settle(
             [Motion(rate, state, motion.parameter, motion.size) for state in states],
             np.full(len(states), rate),

@@ -1,4 +1,4 @@
-"""Bifurcations: changes of stability, of the number of periodic motions and of the contact events on a branch.
+"""Bifurcations: places on a branch at which stability, the number of motions or contact events change.
 
 Sources: docs/theory/orbits.md, "Bifurcations"; Kuznetsov, Elements of applied bifurcation theory, 2004, ch.
 10.
@@ -26,8 +26,8 @@ Kind = Literal["fold", "period doubling", "Neimark-Sacker", "grazing"]
 _Test = Callable[[Orbit, FloatArray], float]
 #: A test function below this part of the neighbouring values vanishes. Otherwise it jumps: a corner.
 _ZERO = 1e-5
-#: Tolerance of a place as part of a step. Grazing has a wider tolerance: the test function of grazing is a step,
-#: so that bisection finds the place, and no other result depends on this place.
+#: Tolerance of a place as part of a step. Grazing has a wider tolerance: the test function of grazing is a
+#: step, so that bisection finds the place, and no other result depends on this place.
 _REFINED = 1e-13
 _GRAZES = 1e-7
 #: Rounding of a test function. Inside a tongue the linear system has motions of any amplitude at one speed: a

@@ -68,8 +68,8 @@ class FoldCurve:
     Attributes
     ----------
     points : folds in order along the curve
-    end : reason of the end. "value", "speed": an end of the range of values or speeds; "turn": the value turns,
-        because two folds meet; "lost": a corner; "points": the largest number of points
+    end : reason of the end. "value", "speed": an end of the range of values or speeds; "turn": the value
+        turns, because two folds meet; "lost": a corner; "points": the largest number of points
     """
 
     points: tuple[Fold, ...]
@@ -98,7 +98,8 @@ class FoldContinuation:
     """Follows folds of n cycles in (x, p, 1/T, second parameter), for values between low and high.
 
     The unknowns at a value are scaled by the sizes of the system at this value. A system that only changes
-    scale then moves along the parameter alone. ``continuation_at`` gives the continuation of orbits at a value.
+    scale then moves along the parameter alone. ``continuation_at`` gives the continuation of orbits at a
+    value.
     """
 
     def __init__(self, continuation_at: Callable[[float], Continuation], low: float, high: float) -> None:

@@ -26,10 +26,11 @@ _NEAR = 0.3
 _TURNS = 4
 #: Number of blocks of cycles over which an exponent is measured. The first block is not counted.
 BLOCKS = 8
-#: Cycles over which a run is compared with itself, over ``most_cycles``: locked beats repeat after many cycles.
+#: Cycles over which a run is compared with itself, over ``most_cycles``: locked beats repeat after many
+#: cycles.
 _LOOKED = 8
-#: Largest exponent per cycle that counts as zero. The measured exponent of a quasi-periodic motion falls as the
-#: inverse of the number of cycles.
+#: Largest exponent per cycle that counts as zero. The measured exponent of a quasi-periodic motion falls as
+#: the inverse of the number of cycles.
 _ZERO_EXPONENT = 5e-3
 #: Cycles between two checks of a deadline.
 _PART = 32

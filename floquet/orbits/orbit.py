@@ -18,8 +18,9 @@ from lumped.typing import ComplexArray, FloatArray
 
 #: Residual of a motion that counts as periodic, over the largest displacement or phase rate.
 CLOSED_TO = 1e-11
-#: Rounding of the accumulated row over the part that the parameter alone accumulates. At low speeds, where the
-#: cycle is long, this part is far larger than a state, and no value of the parameter closes the row better.
+#: Rounding of the accumulated row over the part that the parameter alone accumulates. At low speeds, where
+#: the cycle is long, this part is far larger than a state, and no value of the parameter closes the row
+#: better.
 _BALANCED_TO = 16.0 * float(np.finfo(np.float64).eps)
 _LOWER_ORDER = 14
 

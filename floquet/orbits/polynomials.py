@@ -79,7 +79,7 @@ def bounds(c: FloatArray, h: float) -> tuple[float, float]:
 
 @compiled(nogil=True)
 def crossing(c: FloatArray, h: float, sign: float) -> float:
-    """First s in (0, h] at which a polynomial loses its sign; 2 h where the polynomial keeps the sign.
+    """First s in (0, h] at which a polynomial loses the sign; 2 h where the polynomial keeps the sign.
 
     ``sign`` is the sign at 0. A polynomial that vanishes at 0 counts as having this sign there.
     """

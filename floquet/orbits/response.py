@@ -29,7 +29,8 @@ _SAME = 1e-6
 #: Runs start apart from the motion while all contacts hold: by displacements in lengths, and by phase rates
 #: in lengths times those of the fastest natural motion, in this rectangle.
 _SPREAD = np.array([[-8.0, 5.0], [-6.5, 6.5]])
-#: Distance of a settled run from a stable motion, over the size of the motion, within which both are one motion.
+#: Distance of a settled run from a stable motion, over the size of the motion, within which both are one
+#: motion.
 _CLOSE = 0.03
 #: Cycles for which a settled run settles once more, cycles for which a run is observed, and most cycles of a
 #: motion that Newton's method looks for near a run.
@@ -38,8 +39,8 @@ _OBSERVE = 400
 _MOST_CYCLES = 4
 #: Cycles in which a run leaves a motion that has lost stability, before the run is compared with itself.
 _AWAY = 100
-#: Largest modulus of the multipliers of a stable motion. A bifurcation, whose modulus is one but for rounding,
-#: counts as stable.
+#: Largest modulus of the multipliers of a stable motion. A bifurcation, whose modulus is one but for
+#: rounding, counts as stable.
 MARGINAL = 1.0 + 1e-6
 #: Part of the speed behind a bifurcation where a run shows what happens there.
 _BEYOND = 1e-3
@@ -168,7 +169,10 @@ class Member:
     start: Start
 
     def grid(self, count: int) -> FloatArray:
-        """Speeds 1/T of the range, ``count`` in an octave. The fastest natural frequency is a speed of the grid."""
+        """Speeds 1/T of the range, ``count`` in an octave.
+
+        The fastest natural frequency is a speed of the grid.
+        """
         limits = self.limits
         low, high = (count * np.log2(rate / limits.frequency) for rate in (limits.slowest, limits.fastest))
         steps = np.arange(np.ceil(low - _SAME), np.floor(high + _SAME) + 1.0)
