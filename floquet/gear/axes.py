@@ -36,7 +36,7 @@ _SAME = 1e-12
 
 @dataclass(frozen=True)
 class GearVariation:
-    """A gear pair as a chart varies it.
+    """A gear pair with the variations of a chart.
 
     Attributes
     ----------
@@ -53,9 +53,9 @@ class GearVariation:
 
     @classmethod
     def of(cls, source: AnyPair | GearVariation, supports: Supports | None = None) -> GearVariation:
-        """Return a variation as it is, or make one of a pair without any change.
+        """Return the variation of a pair without any change. A variation is returned unchanged.
 
-        The default supports of a pair are its shafts, if the pair has shafts. A variation already has
+        The default supports of a pair are the shafts, if the pair has shafts. A variation already has
         supports; other supports are refused.
         """
         if not isinstance(source, GearVariation):
@@ -68,7 +68,7 @@ class GearVariation:
 
     @property
     def friction_scale(self) -> float:
-        """Factor on the friction law of the pair, by which it has the mean ``friction_mean``."""
+        """Factor on the friction law of the pair for the mean coefficient ``friction_mean``."""
         if self.friction_mean is None:
             return 1.0
         mean = mean_coefficient(MeshCycle.of(self.pair).elements.friction)
@@ -106,13 +106,13 @@ def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
 
 
 def _bearings(variation: GearVariation, value: float) -> GearVariation:
-    """One stiffness of all four springs, which must hold the gears."""
+    """One stiffness of all four springs. The springs must hold the gears."""
     _check_springs(variation.supports)
     return _SPRINGS(variation, value)
 
 
 def _friction(variation: GearVariation, value: float) -> GearVariation:
-    """Mean coefficient: a parameter of some laws; the others are scaled, keeping their shape."""
+    """Mean coefficient: a parameter of some laws, a scale of all other laws."""
     law = variation.pair.friction.law
     if law == "none":
         law = "coulomb"
@@ -187,7 +187,7 @@ GEAR_AXES: Mapping[str, GearAxis] = {
         lambda pair: pair.bearings.pinion.loa_stiffness, low=0.0, open_low=True,
     ),
 }  # fmt: skip
-"""Axis name -> what it varies."""
+"""Axis name -> axis."""
 
 
 def gear_grid(axes: Axes, supports: Supports) -> dict[str, FloatArray]:
@@ -232,7 +232,7 @@ def speed_range(pair: GearPair) -> tuple[float, float]:
 
 
 def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float]:
-    """Slowest and fastest speed [rpm] that an argument gives, or its refusal."""
+    """Slowest and fastest speed [rpm] of an argument; anything else is refused."""
     request = np.atleast_1d(real_array(field, speeds))
     if request.shape != (2,) or not 0.0 < request[0] < request[1] <= LARGEST_SPEED:
         allowed = f"slowest and fastest speed, 0 < low < high <= {LARGEST_SPEED:g} rpm"
@@ -250,7 +250,7 @@ def chart_axes(pair: GearPair, speeds: int = 801, dampings: int = 201) -> dict[s
 
 
 def with_point(values: FloatArray, point: float) -> FloatArray:
-    """Axis values with the node nearest to a point moved onto it, where the point is within the axis."""
+    """Axis values with the node nearest to a point moved onto this point, if the point is within the axis."""
     nodes = values.copy()
     if nodes.min() <= point <= nodes.max():
         nodes[np.argmin(np.abs(nodes - point))] = point
@@ -319,7 +319,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
 
 
 class _Law:
-    """The friction law of a pair at other speeds than its own."""
+    """The friction law of a pair at other speeds than the operating speed."""
 
     def __init__(self, variation: GearVariation) -> None:
         self.path = contact_path(variation.pair)
@@ -336,7 +336,7 @@ class _Law:
     def in_force(self, rpm: float) -> FrictionLaw | None:
         """The law in force on the whole path; None: several laws are in force.
 
-        A law that consists of other laws has the one that is in force. Any other law is in force itself.
+        A law may consist of several laws for parts of the path: then one of the parts is in force.
         """
         if self.law.parts is None:
             return self.law
