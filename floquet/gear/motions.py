@@ -383,7 +383,7 @@ def label(unit: str, text: str) -> dict[str, str]:
 class AttractorPoint:
     """A motion that does not repeat, at one speed.
 
-    The kind is "beats", "chaos", or "periodic": a motion that repeats after more cycles than the search
+    The kind is "beats", "chaos" or "periodic". A periodic motion repeats here after more cycles than the search
     covers.
     """
 

@@ -304,7 +304,7 @@ class OffLineOfAction:
 
     @classmethod
     def of(cls, feedback: Feedback) -> OffLineOfAction:
-        """Multipliers of the motions that the mesh does not couple."""
+        """Exponents of the motions that the mesh does not couple."""
         decay, square = feedback.separate
         r = decay**2 - square
         root = np.sqrt(r.astype(complex))

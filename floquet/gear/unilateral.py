@@ -213,7 +213,7 @@ def unilateral_family(
 
 
 class _Parts:
-    """The system of a family of speeds: the sum of a system without friction and parts of the friction law."""
+    """The system of a family of speeds: a system without friction plus parts of the friction law."""
 
     def __init__(self, pair: GearPair, family: FrictionFamily, form: ContactForm) -> None:
         self.family = family
