@@ -383,8 +383,8 @@ def label(unit: str, text: str) -> dict[str, str]:
 class AttractorPoint:
     """A motion that does not repeat, at one speed.
 
-    The kind is "beats", "chaos" or "periodic". A periodic motion repeats here after more cycles than the search
-    covers.
+    The kind is "beats", "chaos" or "periodic". A periodic motion here repeats after more cycles than the
+    search covers.
     """
 
     speed_rpm: float = field(metadata=label("rpm", "pinion speed"))

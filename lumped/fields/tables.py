@@ -76,7 +76,8 @@ def table_of(
     for name, match, values in zip(names, matches, columns.values(), strict=True):
         assert match is not None  # it has a name
         axis, stated = AXES.get(name, quantity)
-        factor = _factor(match[2] or "", stated, name, field, where)
+        _, unit = match.groups()
+        factor = _factor(unit or "", stated, name, field, where)
         scaled = tuple((np.asarray(values, dtype=float) * factor).tolist())
         table |= {axis: scaled} if name == quantity[0] else {"axis": axis, "points": scaled}
     return table
@@ -85,9 +86,9 @@ def table_of(
 def check_points(
     points: Sequence[float], values: Sequence[float], quantity: tuple[str, str], largest: float, action: str
 ) -> None:
-    """Refuse unequal lengths, points that do not increase, and values outside 0 to the largest.
+    """Refuse unequal lengths, points that do not increase, and values outside 0 to ``largest``.
 
-    Those of a quantity with a unit must be above 0; ``action`` is what to do with a value.
+    Values of a quantity with a unit must be above 0. ``action`` is the advice on a refused value.
     """
     field, unit = quantity
     if len(points) != len(values):
@@ -104,7 +105,7 @@ def check_points(
 
 
 def uncovered(x: FloatArray, low: float, high: float, field: str) -> FieldProblem | None:
-    """A table over xi (n,) [m] that does not reach from A to D; None where it does."""
+    """Problem of a table over xi (n,) [m] that does not reach from A to D; None: the table does."""
     gap = _END_GAP * (high - low)
     if x[0] <= low + gap and x[-1] >= high - gap:
         return None

@@ -49,9 +49,9 @@ def read_text(
     A CSV file may be in UTF-16 with a mark, as spreadsheets and measuring machines write it.
     """
     data = read_bytes(path, limit, field=field, kind=kind, **words)
-    wide = kind == "CSV file" and data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    is_utf_16 = kind == "CSV file" and data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return data.decode("utf-16" if wide else "utf-8-sig")
+        return data.decode("utf-16" if is_utf_16 else "utf-8-sig")
     except UnicodeDecodeError as error:
         why = f"It cannot be read: byte {error.start} is no {error.encoding.upper()}. Save it as UTF-8 text."
         raise refuse(field, Path(path), f"a {kind} in UTF-8", why) from None

@@ -112,13 +112,13 @@ def as_made(tooth: ToothProfile, thinning: float) -> ToothProfile:
 
 
 def _as(label: str, symbol: str, unit: str, decided_by: str = "") -> dict[str, str]:
-    """How a field of a record is shown, and the field of the parameter file that decides it."""
+    """Label, symbol and unit of a measure, and the field of the parameter file that decides the measure."""
     return {"label": label, "symbol": symbol, "unit": unit, "decided_by": decided_by}
 
 
 @dataclass(frozen=True)
 class GearMeasures:
-    """One gear of a pair as its drawing states it, SI.
+    """The measures of one gear of a pair on a drawing, SI.
 
     Attributes
     ----------
@@ -291,7 +291,8 @@ def gear_table(
     Each gear has half of ``pair.mesh.backlash``; thickness, span and dimension over balls are of teeth as
     made. With unequal thinning use `as_made` with `span` and `over_balls`.
     """
-    g, (first, second) = pair.geometry, pair.wheels
+    g = pair.geometry
+    first, second = pair.wheels
     thinning = 0.5 * pair.mesh.backlash
     addendum = pair.basic_rack.addendum_coefficient
     spans = teeth_spanned or (None, None)

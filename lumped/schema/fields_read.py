@@ -105,11 +105,11 @@ def _of_bodies(pair: GearPair) -> set[str]:
 
 
 def _of_contact(pair: GearPair) -> set[str]:
-    """Where pairs touch, and the profile of the flanks; a stiffness of the whole mesh has both in it."""
+    """Fields of contact and of the flanks' profile. A stiffness of the whole mesh already includes both."""
     if pair.mesh.stiffness.whole_mesh:
-        # What the tips of single teeth have beyond the relief acts, with its start and shape.
-        own = ("gears.tip_relief.start_roll_angle", "gears.tip_relief.shape")
-        return set() if pair.healthy is pair else set(own)
+        # Differences of single tips from the relief act, with the start and the shape of the relief.
+        of_single_tips = ("gears.tip_relief.start_roll_angle", "gears.tip_relief.shape")
+        return set() if pair.healthy is pair else set(of_single_tips)
     gears = (pair.pinion, pair.gear)
     relieved = any(one.tip_relief is not None or one.root_relief is not None for one in gears)
     return {"mesh.contact", *(_PROFILE if relieved else ())}

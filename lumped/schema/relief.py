@@ -50,9 +50,9 @@ class ProfileRelief(Section):
 
     @model_validator(mode="after")
     def _one_start(self) -> Self:
-        given = [name for name in STARTS if getattr(self, name) is not None]
-        if len(given) != 1:
-            value = " and ".join(given) or "missing"
+        stated = [name for name in STARTS if getattr(self, name) is not None]
+        if len(stated) != 1:
+            value = " and ".join(stated) or "missing"
             raise refuse("start_roll_angle", value, f"exactly one of {_TO}", "Give one of them.")
         return self
 
@@ -62,10 +62,10 @@ class ProfileRelief(Section):
         return self.start_diameter is None and self.length is None
 
     def on(self, flank: Flank, kind: str) -> Self:
-        """The relief with the roll angle of its start on a flank.
+        """The relief with the roll angle phi of the start on a flank.
 
-        phi = sqrt(d^2 - d_b^2)/d_b of a diameter d; phi = (L_end -+ length)/r_b of a length, minus from the
-        tip and plus from the start of the active flank.
+        From a diameter d: phi = sqrt(d^2 - d_b^2)/d_b. From a length: phi = (L_end -+ length)/r_b, minus for
+        a length from the tip, plus for a length from the start of the active flank.
 
         Parameters
         ----------
