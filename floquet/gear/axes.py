@@ -123,10 +123,10 @@ def _friction(variation: GearVariation, value: float) -> GearVariation:
 
 
 def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
-    """Set the contact ratio by both tip diameters; approach and recess keep their shares of the path.
+    """Set the contact ratio by both tip diameters. Approach and recess keep the same shares of the path.
 
     The path of contact ends where the tip circles cut the line of action: r_ap^2 = r_bp^2 + L_XD^2 and
-    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2. A relief moves with the end of the active flank and keeps its length.
+    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2. A relief moves with the end of the active flank and keeps the length.
     """
     pair = variation.pair
     g = pair.geometry
@@ -287,16 +287,17 @@ class FrictionFamily:
 
 
 def depends_on_speed(pair: GearPair) -> bool:
-    """Say whether mu(xi) changes with speed: true but for a constant law whose coefficient is a parameter."""
+    """Whether mu(xi) changes with speed. Only a constant law with a given coefficient does not change."""
     return not law_of(pair.friction).is_constant(pair.friction)
 
 
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
-    """Group speeds (k,), all different, over which friction needs but one fit.
+    """Group different speeds (k,) into families. Friction needs only one fit for a family.
 
-    Speed scales law III, and laws I and IV by their mean coefficient. Law II, a logarithm, rises and falls as
-    a whole as long as its bounds do not move. Law V is one of these laws where one regime has the whole path.
-    Laws II and V are also evaluated along the path at every speed, and their switches are compared.
+    Speed scales law III, and laws I and IV through the mean coefficient. Speed adds a constant to law II, a
+    logarithm, as long as the bounds of this law do not move. Law V is one of these laws where one regime
+    covers the whole path. Laws II and V are also evaluated along the path at every speed, and the switches
+    are compared.
     """
     pair = variation.pair
     rest = np.arange(speeds_rpm.size)
@@ -345,7 +346,7 @@ class _Law:
         return used[0] if len(used) == 1 else None
 
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
-        """Mu at the positions, and the positions of its switches, at a speed."""
+        """Mu at the positions, and the positions of the switches of mu, at a speed."""
         there, settings = self._where_friction_acts(rpm)
         mu = self.law.signed(self.positions, there, settings)
         return mu, np.sort(self.law.switches(there, settings))
@@ -355,7 +356,7 @@ class _Law:
         return longer_path(self.at(rpm), self.ends, self.law, self.settings), self.settings
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
-        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and their weights a, b (k, 2)."""
+        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and the weights a, b (k, 2)."""
         law = self.in_force(reference)
         members = []
         result = []

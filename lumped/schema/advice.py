@@ -44,7 +44,7 @@ _MOST_TEETH = 1000
 
 
 def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
-    """The problems of a pair; a problem of teeth says what would solve it, unless the teeth also wedge."""
+    """The problems of a pair. A problem of teeth names a solution, unless the teeth also wedge."""
     if any(one.field == "centre_distance" for one in problems):
         return problems
     return [
@@ -145,7 +145,7 @@ def _first(pair: Tried, changes: Callable[[int], Changes], most: int, stride: in
 
 
 def _meshes(pair: Tried, changes: Changes) -> bool:
-    """Whether the pair meshes with changes, which a file may have."""
+    """Whether the gears mesh with changes, and the changes are values that a file may have."""
     for fields in changes.values():
         if abs(fields.get("profile_shift", 0.0)) > _LARGEST_SHIFT or fields.get("teeth", 0) > _MOST_TEETH:
             return False

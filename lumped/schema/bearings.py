@@ -46,9 +46,9 @@ class Bearing(Section):
 
 
 class RollingBearing(Section):
-    """Rolling bearings that hold one gear; their stiffness is estimated at the mesh force of the pair.
+    """Rolling bearings of one gear. The stiffness is estimated at the mesh force of the pair.
 
-    The mesh force lies along the line of action, so the bearings are loaded along it and unloaded across it.
+    The mesh force lies along the line of action. The bearings are therefore loaded in this direction alone.
     ``lumped.bearings.rolling`` has the formulas.
     """
 
@@ -89,14 +89,14 @@ class RollingBearing(Section):
         return data
 
     def under(self, load: float) -> Self:
-        """These bearings under a mesh force [N], at which the stiffnesses are read."""
+        """The bearings under a mesh force [N]. The force decides the stiffnesses."""
         loaded = self.model_copy()
         loaded._load = load
         return loaded
 
     @property
     def loa_stiffness(self) -> float:
-        """Stiffness along the LOA of all bearings together, under their load [N/m]; NaN without a pair."""
+        """Stiffness along the LOA of all bearings together, under the mesh force [N/m]; NaN: no pair."""
         load = self._load / self.bearings
         each = stiffness_along(self.type, self.number, self.size, load, self.contact_angle)
         return float(self.bearings * self.stiffness_factor * each)
