@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limit:
-    """One thing that is not computed.
+    """A feature of gears that spurcheck does not compute.
 
     Attributes
     ----------
-    subject : what it is called
-    names : keys under which gear programs keep it
-    stems : starts of words of a key that mean it in any key: "helix" in ``pinion.helix_angle``
+    subject : name of the feature
+    names : keys of gear programs for the feature
+    stems : words that mean the feature in any key: "helix" in ``pinion.helix_angle``
     sentence : what spurcheck models instead, and what to do
     """
 

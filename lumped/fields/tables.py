@@ -27,7 +27,7 @@ _MAX_BYTES = 10_000_000
 
 
 def read_columns(file: object, folder: object, quantity: tuple[str, str]) -> dict[str, object]:
-    """Read a table from a CSV file: ``axis``, ``points`` and the quantity as the schema takes them.
+    """Read a table from a CSV file: ``axis``, ``points`` and the quantity, as fields of the schema.
 
     The file has a header with a column ``position``, ``roll_angle`` or ``phase`` and a column of the
     quantity, each with its unit in brackets (none for ratios), in any order; lines that start with # are
@@ -51,7 +51,10 @@ def read_columns(file: object, folder: object, quantity: tuple[str, str]) -> dic
 
 
 def with_file(data: Any, info: ValidationInfo, quantity: tuple[str, str]) -> Any:
-    """Replace ``file`` in a section by what it holds; a relative path is beside the parameter file."""
+    """Replace ``file`` in a section by the content of the file.
+
+    A relative path starts at the parameter file.
+    """
     if not isinstance(data, dict) or "file" not in data:
         return data
     folder = (info.context or {}).get("folder", ".")

@@ -20,7 +20,7 @@ from lumped.gear_geometry.tooth_profile import ToothProfile, tooth_half_angle
 
 @dataclass(frozen=True)
 class Wheel:
-    """One gear as it is cut, SI.
+    """One gear as cut, SI.
 
     Attributes
     ----------
@@ -41,8 +41,8 @@ class Geometry:
 
     X and Y are the tangent points of the line of action on the pinion's and the gear's base circle; A, B, P,
     C, D are start of contact, lowest point of single contact, pitch point, highest point of single contact
-    and end of contact. Contact starts and ends at the mate's tip circle, or before it at the edge that an
-    undercut leaves. B and C are the pitch-spaced counterparts of D and A also when the contact ratio is 2 or
+    and end of contact. Contact starts and ends at the mate's tip circle; on an undercut flank contact starts
+    or ends at the edge of the undercut. B and C are one pitch from D and A, also at a contact ratio of 2 or
     more.
 
     Attributes
@@ -277,7 +277,7 @@ class ToothProblem(FieldProblem):
     Attributes
     ----------
     gear : "pinion" or "gear"
-    sense : of the change of its profile shift, 1 to raise it
+    sense : direction of the change of the profile shift, 1: larger
     """
 
     gear: Name = "pinion"
@@ -287,7 +287,7 @@ class ToothProblem(FieldProblem):
 def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> list[FieldProblem]:
     """Return the reasons why a pair cannot exist, each with the field of the schema to change.
 
-    ``backlash`` is how much the teeth are thinner than the rack leaves them [m].
+    ``backlash`` is the backlash by thinning of the teeth [m].
     """
     problems = list(_of_the_pair(g))
     problems += _of_one_gear("gear", gear, pinion, g)

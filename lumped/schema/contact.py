@@ -106,7 +106,7 @@ class Mesh(Section):
 
     @model_validator(mode="after")
     def _follows_the_stiffness(self) -> Self:
-        """Contact and relief, where they are not given, are what the stiffness leaves: the only place."""
+        """Set the defaults of contact and relief from the stiffness. No other place sets these defaults."""
         for name, value in self.by_stiffness.items():
             if name not in self.model_fields_set:
                 self.__dict__[name] = value  # nobody has the section yet
@@ -216,7 +216,7 @@ class Lubricant(Section):
 
     @property
     def dynamic_viscosity(self) -> float:
-        """Dynamic viscosity at the contact inlet [Pa s]: as given, or by its law at the oil temperature."""
+        """Dynamic viscosity at the contact inlet [Pa s]: the input, or the law at the oil temperature."""
         if self.viscosity_law is not None:
             return self.viscosity_law.dynamic_viscosity
         assert self.viscosity is not None  # the section has exactly one of them

@@ -48,7 +48,7 @@ def is_own(path: str, value: object) -> bool:
 
 
 def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
-    """Fields of a pair with a friction law of the user, sampled at the operating point of its contact."""
+    """Fields of a pair for a friction law of the user, sampled at the operating point."""
     name = "table"
     field = "friction.law"
     if isinstance(law, (int, float)):

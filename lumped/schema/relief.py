@@ -24,9 +24,9 @@ _NOT_STATED: Any = None
 class ProfileRelief(Section):
     """Deviation of a flank from the involute by design, growing from its start to the flank's end.
 
-    The end of tip relief is the tip circle, that of root relief the start of the active flank, where the
-    mate's tip touches last. Exactly one of ``start_roll_angle``, ``start_diameter`` and ``length`` says where
-    it starts. In a pair ``start_roll_angle`` has a value in each case; a file keeps what was written.
+    Tip relief ends at the tip circle. Root relief ends at the start of the active flank, where the mate's tip
+    touches last. Exactly one of ``start_roll_angle``, ``start_diameter`` and ``length`` gives the start. In a
+    pair ``start_roll_angle`` always has a value. A written file keeps the field of the user.
     """
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [name]} for name in STARTS]})
@@ -108,7 +108,7 @@ class ProfileRelief(Section):
         return refuse(f"{kind}.start_roll_angle", value, allowed, _ON_IT)
 
     def to_mapping(self) -> dict[str, Any]:
-        """Return plain data in file units, with the start as it was stated."""
+        """Return plain data in file units, with the user's field for the start."""
         data = super().to_mapping()
         if not self.by_angle:
             data.pop("start_roll_angle", None)

@@ -94,8 +94,8 @@ def drawn_index(teeth: int, module: float, tolerance_class: int, seed: int) -> F
     """Index deviations (teeth,) of a random gear of a class [m], the same for each seed.
 
     Pitch deviations are white, of zero sum; a first harmonic of as large a range as the tolerance F_p is
-    added to their sum. The whole is scaled until the largest pitch deviation or the range meets its
-    tolerance.
+    added to the sum of the pitch deviations. All deviations are scaled until the largest pitch deviation or
+    the range reaches the tolerance.
     """
     tolerance = flank_tolerances(teeth, module, tolerance_class)
     draw = random.Random(seed).random
