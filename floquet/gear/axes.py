@@ -36,7 +36,7 @@ _SAME = 1e-12
 
 @dataclass(frozen=True)
 class GearVariation:
-    """A gear pair as a chart varies it.
+    """A gear pair with the variations of a chart.
 
     Attributes
     ----------
@@ -53,9 +53,9 @@ class GearVariation:
 
     @classmethod
     def of(cls, source: AnyPair | GearVariation, supports: Supports | None = None) -> GearVariation:
-        """Return a variation as it is, or make one of a pair without any change.
+        """Return the variation of a pair without any change. A variation is returned unchanged.
 
-        The default supports of a pair are its shafts, if the pair has shafts. A variation already has
+        The default supports of a pair are the shafts, if the pair has shafts. A variation already has
         supports; other supports are refused.
         """
         if not isinstance(source, GearVariation):
@@ -68,7 +68,7 @@ class GearVariation:
 
     @property
     def friction_scale(self) -> float:
-        """Factor on the friction law of the pair, by which it has the mean ``friction_mean``."""
+        """Factor on the friction law of the pair for the mean coefficient ``friction_mean``."""
         if self.friction_mean is None:
             return 1.0
         mean = mean_coefficient(MeshCycle.of(self.pair).elements.friction)
@@ -106,13 +106,13 @@ def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
 
 
 def _bearings(variation: GearVariation, value: float) -> GearVariation:
-    """One stiffness of all four springs, which must hold the gears."""
+    """One stiffness of all four springs. The springs must hold the gears."""
     _check_springs(variation.supports)
     return _SPRINGS(variation, value)
 
 
 def _friction(variation: GearVariation, value: float) -> GearVariation:
-    """Mean coefficient: a parameter of some laws; the others are scaled, keeping their shape."""
+    """Mean coefficient: a parameter of some laws, a scale of all other laws."""
     law = variation.pair.friction.law
     if law == "none":
         law = "coulomb"
@@ -123,10 +123,10 @@ def _friction(variation: GearVariation, value: float) -> GearVariation:
 
 
 def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
-    """Set the contact ratio by both tip diameters; approach and recess keep their shares of the path.
+    """Set the contact ratio by both tip diameters. Approach and recess keep the same shares of the path.
 
     The path of contact ends where the tip circles cut the line of action: r_ap^2 = r_bp^2 + L_XD^2 and
-    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2. A relief moves with the end of the active flank and keeps its length.
+    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2. A relief moves with the end of the active flank and keeps the length.
     """
     pair = variation.pair
     g = pair.geometry
@@ -187,7 +187,7 @@ GEAR_AXES: Mapping[str, GearAxis] = {
         lambda pair: pair.bearings.pinion.loa_stiffness, low=0.0, open_low=True,
     ),
 }  # fmt: skip
-"""Axis name -> what it varies."""
+"""Axis name -> axis."""
 
 
 def gear_grid(axes: Axes, supports: Supports) -> dict[str, FloatArray]:
@@ -232,7 +232,7 @@ def speed_range(pair: GearPair) -> tuple[float, float]:
 
 
 def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float]:
-    """Slowest and fastest speed [rpm] that an argument gives, or its refusal."""
+    """Slowest and fastest speed [rpm] of an argument; anything else is refused."""
     request = np.atleast_1d(real_array(field, speeds))
     if request.shape != (2,) or not 0.0 < request[0] < request[1] <= LARGEST_SPEED:
         allowed = f"slowest and fastest speed, 0 < low < high <= {LARGEST_SPEED:g} rpm"
@@ -250,7 +250,7 @@ def chart_axes(pair: GearPair, speeds: int = 801, dampings: int = 201) -> dict[s
 
 
 def with_point(values: FloatArray, point: float) -> FloatArray:
-    """Axis values with the node nearest to a point moved onto it, where the point is within the axis."""
+    """Axis values with the node nearest to a point moved onto this point, if the point is within the axis."""
     nodes = values.copy()
     if nodes.min() <= point <= nodes.max():
         nodes[np.argmin(np.abs(nodes - point))] = point
@@ -287,16 +287,17 @@ class FrictionFamily:
 
 
 def depends_on_speed(pair: GearPair) -> bool:
-    """Say whether mu(xi) changes with speed: true but for a constant law whose coefficient is a parameter."""
+    """Whether mu(xi) changes with speed. Only a constant law with a given coefficient does not change."""
     return not law_of(pair.friction).is_constant(pair.friction)
 
 
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
-    """Group speeds (k,), all different, over which friction needs but one fit.
+    """Group different speeds (k,) into families. Friction needs only one fit for a family.
 
-    Speed scales law III, and laws I and IV by their mean coefficient. Law II, a logarithm, rises and falls as
-    a whole as long as its bounds do not move. Law V is one of these laws where one regime has the whole path.
-    Laws II and V are also evaluated along the path at every speed, and their switches are compared.
+    Speed scales law III, and laws I and IV through the mean coefficient. Speed adds a constant to law II, a
+    logarithm, as long as the bounds of this law do not move. Law V is one of these laws where one regime
+    covers the whole path. Laws II and V are also evaluated along the path at every speed, and the switches
+    are compared.
     """
     pair = variation.pair
     rest = np.arange(speeds_rpm.size)
@@ -319,7 +320,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
 
 
 class _Law:
-    """The friction law of a pair at other speeds than its own."""
+    """The friction law of a pair at other speeds than the operating speed."""
 
     def __init__(self, variation: GearVariation) -> None:
         self.path = contact_path(variation.pair)
@@ -336,7 +337,7 @@ class _Law:
     def in_force(self, rpm: float) -> FrictionLaw | None:
         """The law in force on the whole path; None: several laws are in force.
 
-        A law that consists of other laws has the one that is in force. Any other law is in force itself.
+        A law may consist of several laws for parts of the path: then one of the parts is in force.
         """
         if self.law.parts is None:
             return self.law
@@ -345,7 +346,7 @@ class _Law:
         return used[0] if len(used) == 1 else None
 
     def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
-        """Mu at the positions, and the positions of its switches, at a speed."""
+        """Mu at the positions, and the positions of the switches of mu, at a speed."""
         there, settings = self._where_friction_acts(rpm)
         mu = self.law.signed(self.positions, there, settings)
         return mu, np.sort(self.law.switches(there, settings))
@@ -355,7 +356,7 @@ class _Law:
         return longer_path(self.at(rpm), self.ends, self.law, self.settings), self.settings
 
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
-        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and their weights a, b (k, 2)."""
+        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and the weights a, b (k, 2)."""
         law = self.in_force(reference)
         members = []
         result = []

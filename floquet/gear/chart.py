@@ -65,12 +65,12 @@ def stability_chart(
 ) -> xr.Dataset:
     """Stability chart of a gear pair, of its linear form with like teeth.
 
-    The motion of ``spurcheck.predict``, whose contact follows the momentary load, has a stability of its own.
+    The motion of ``spurcheck.predict``, whose contact follows the momentary load, has another stability.
 
-    Over two axes the chart refines itself: nodes near edges of instability are evaluated, the others
-    interpolated. Both sides of every edge are evaluated. An unstable region can only be missed if it lies
-    between evaluated nodes and does not reach the lowest damping; over other axes curves on which two
-    multipliers meet, where thin tongues lie, are evaluated too.
+    Over two axes the chart refines itself: nodes near edges of instability are evaluated, all other nodes are
+    interpolated. Both sides of every edge are evaluated. Only an unstable region that lies between evaluated
+    nodes and does not reach the lowest damping can be missed. Over axes without damping, curves on which two
+    multipliers meet are evaluated too, because thin tongues lie on these curves.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def stability_chart(
 
 
 def _check_cells(grid: Mapping[str, FloatArray]) -> None:
-    """Refuse a chart between whose nodes nothing can be proven."""
+    """Refuse a chart for which no proof between the nodes is possible."""
     if set(grid) != set(_CELLS) or min(values.size for values in grid.values()) < 2:
         action = "Give two or more values of both, or leave prove out."
         raise refuse("prove", "True", "over the axes speed_rpm and damping_ratio, no others", action)
@@ -278,7 +278,7 @@ class _Points:
         return self._slices[0].cells(self.rtol, progress)
 
     def unproven(self, cells: IntArray) -> IntArray:
-        """Nodes not evaluated yet at cells that are not proven to have their verdict."""
+        """Nodes without evaluation at cells whose verdict is not proven."""
         speed, damping = (np.argsort(self.grid[name]) for name in _CELLS)
         places = np.arange(self.points.known.size).reshape(self.shape)
         if self.inner[0] != _CELLS[0]:
@@ -292,7 +292,7 @@ class _Points:
 
 
 class _FamilyBlock(NamedTuple):
-    """What all speeds of one friction family share.
+    """Common data of all speeds of one friction family.
 
     Attributes
     ----------
@@ -312,8 +312,8 @@ class ChartSlice:
     """Points of a chart that differ in speed, mesh damping and mean friction only.
 
     Damping only scales wd. The mean friction coefficient only scales the part of w by friction. Speed only
-    changes the period; with many friction laws speed scales friction too. So one fit of the feedback block
-    serves all points of the slice.
+    changes the period; with many friction laws speed scales friction too. Therefore one fit of the feedback
+    block serves all points of the slice.
 
     Parameters
     ----------
@@ -346,12 +346,12 @@ class ChartSlice:
 
     @cached_property
     def families(self) -> list[FrictionFamily]:
-        """Speeds over which friction needs but one fit."""
+        """Families of speeds. Friction needs only one fit for a family."""
         return friction_families(self.reference, self.speeds)
 
     @cached_property
     def _rows(self) -> tuple[IntArray, IntArray]:
-        """Number of the family of each speed, and the row of the speed in its family."""
+        """Number of the family of each speed, and the row of the speed in this family."""
         family = np.empty(self.speeds.size, dtype=np.intp)
         row = np.empty(self.speeds.size, dtype=np.intp)
         for k, one in enumerate(self.families):

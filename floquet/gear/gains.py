@@ -119,7 +119,7 @@ class _Law:
 
 
 class _RowBounds(NamedTuple):
-    """Bounds on what one unit of load adds to a gain, norms of the coordinates.
+    """Bounds on the contribution of one unit of load to a gain, as norms over the coordinates.
 
     Attributes
     ----------
@@ -136,7 +136,7 @@ class _RowBounds(NamedTuple):
 
 
 class _Factors(NamedTuple):
-    """Polynomials in place of the factor f on stiffnesses and of its root, on k pieces.
+    """Polynomials q and s in place of the factor f on stiffnesses and of the root of f, on k pieces.
 
     Attributes
     ----------
@@ -319,10 +319,10 @@ class MeshGains:
     def _factors(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
     ) -> _Factors:
-        """The factor f = (mean + factor (k - mean))/k on stiffnesses and its root, by polynomials q and s.
+        """Polynomials q and s for the factor f = (mean + factor (k - mean))/k on stiffnesses and for sqrt f.
 
         The bounds on the errors follow from |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
-        |s^2 - f|/(s + sqrt f). The sum of its Chebyshev coefficients bounds each residual.
+        |s^2 - f|/(s + sqrt f). The sum of the Chebyshev coefficients of each residual bounds the residual.
         """
         fit_nodes, to_fit_series = to_series(_FACTOR_DEGREE + 1)
         check_nodes, to_check_series = to_series(2 * _FACTOR_DEGREE + 1 + self.k.degree)
@@ -383,16 +383,17 @@ class MeshGains:
 
 
 def own_tables(laws: ToothLaws) -> MeshTables:
-    """Tables of laws with every break that give each law to rounding between their nodes."""
+    """Tables of laws with every break. Between the nodes of a table each law is exact to rounding."""
     return mesh_tables(laws, _LARGEST_STEP, 1, 0.5 - 0.5 * to_series(_NODES)[0])
 
 
 class OwnGains:
     """Gains of ``cycles`` mesh cycles from ``first`` on, as `fit_pieces` asks for them.
 
-    They are feedback of deflection and of its rate. A phase counts mesh cycles from ``first``; ``edges`` are
-    where a law ends and where in its own cycle a pair touches or leaves, its damper is full, or its tip
-    leaves the line of action. Between them the polynomials through ``count`` values stand for the gains.
+    The gains are feedback of the deflection and of the rate of the deflection. A phase counts mesh cycles
+    from ``first``. ``edges`` are the phases at which a law ends, a pair begins or ends contact, the damper of
+    a pair acts fully, or the tip of a pair leaves the line of action. Between two edges the polynomials
+    through ``count`` values stand for the gains.
     """
 
     count = 12
@@ -427,7 +428,7 @@ class OwnGains:
 
 
 def _slips(breaks: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:
-    """How far (S+1,) each edge may be from the breaks that it stands for, in parts of the period."""
+    """Largest distance (S+1,) of each edge from the breaks that the edge replaces, in parts of the period."""
     breaks = np.concatenate([breaks, breaks[breaks < 1e-6] + 1.0, breaks[breaks > 1.0 - 1e-6] - 1.0])
     edge_after = np.clip(np.searchsorted(edges, breaks), 1, edges.size - 1)
     nearest = np.where(

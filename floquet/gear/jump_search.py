@@ -32,28 +32,30 @@ if TYPE_CHECKING:
 
 Range = tuple[float, float]
 
-#: Large motions of a resonance reach down to this part of its speed at most: the lowest fold of eight unlike
-#: pairs is at 0.24 (docs/theory/orbits.md).
+#: Large motions of a resonance reach down to this part of the speed of the resonance at most. The lowest fold
+#: of eight pairs that differ is at 0.24 (docs/theory/orbits.md).
 _REACH = 0.2
 #: Speed, over that at which the mesh frequency is the fastest natural one, beyond which the motion of the
 #: linear model starts no large motion of one cycle.
 _BEYOND_RESONANCE = 1.5
-#: Distance from the motion of the linear model, over its size, within which a motion is taken as that.
+#: Distance from the motion of the linear model, over the size of that motion, within which both are one
+#: motion.
 _LINEAR = 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class JumpSearch:
-    """What a search for jumps, beats and chaos has found.
+    """Results of a search for jumps, beats and chaos.
 
     Attributes
     ----------
     pair : the gear pair, without shafts
     speeds_rpm : slowest and fastest speed of interest [rpm]
-    windows : speeds that were searched, (low, high) [rpm]: those asked for, and those to which branches led
-    branches : for each window with motions what was found in it, by speed
-    open : speeds at which the processor time did not suffice, or to which what was not followed may lead
-        [rpm]: what was found there is right, but there may be more
+    windows : speeds that were searched, (low, high) [rpm]: requested windows, and speeds to which branches
+        led
+    branches : motions of each window with motions, by speed
+    open : speeds [rpm] at which the processor time did not suffice, or to which a branch that was not
+        followed may lead: the motions found there are right, but there may be more
     seconds : processor time that was used [s]
     """
 
@@ -71,25 +73,26 @@ class JumpSearch:
 
     @cached_property
     def losses(self) -> tuple[Jump, ...]:
-        """Losses of stability of all windows by speed, also those behind which beats or chaos begin smoothly.
+        """Losses of stability of all windows by speed, see ``ResponseBranches.losses``.
 
-        See ``ResponseBranches.losses``.
+        Losses beyond which beats or chaos begin smoothly are included.
         """
         return tuple(sorted((j for one in self.branches for j in one.losses), key=lambda j: j.speed_rpm))
 
     @cached_property
     def attractors(self) -> tuple[GearAttractor, ...]:
-        """Beats and chaos to which runs from other starts came, by speed; empty without ``seeds``.
+        """Beats and chaos by speed, to which runs from other starts settled; empty without ``seeds``.
 
-        See ``ResponseBranches.attractors``. What begins where a branch loses stability is in ``losses``.
+        See ``ResponseBranches.attractors``. ``losses`` has the beats and chaos after a loss of stability.
         """
-        found = (attractor for one in self.branches for attractor in one.attractors)
-        return tuple(sorted(found, key=lambda attractor: attractor.low_rpm))
+        attractors = (attractor for one in self.branches for attractor in one.attractors)
+        return tuple(sorted(attractors, key=lambda attractor: attractor.low_rpm))
 
     def at(self, speed_rpm: float) -> list[GearOrbit]:
         """All periodic motions that were found at a pinion speed [rpm], stable or not.
 
-        None outside the windows, where the motion of the linear model keeps contact and no other was found.
+        The list is empty outside the windows: there the motion of the linear model keeps contact, and no
+        other motion was found.
         """
         low, high = self.speeds_rpm
         if not low <= speed_rpm <= high:
@@ -103,12 +106,13 @@ class JumpSearch:
 def contact_loss_windows(sweep: xr.Dataset, speeds: Range) -> tuple[Range, ...]:
     """Speeds at which the motion of the linear model loses contact or is unstable, (low, high) [rpm].
 
-    A window ends at the next speed of the sweep at which contact is kept. Between two such speeds the curve
-    of the least load may dip below zero: there it is taken on along its slopes before and behind.
+    A window ends at the next speed of the sweep at which contact is kept. Between two speeds with contact the
+    curve of the least load may still dip below zero. The slopes before and after the two speeds, extended
+    between the speeds, show such a dip.
 
     Parameters
     ----------
-    sweep : motion of the linear model over speed, of ``lumped.speed_sweep``
+    sweep : motion of the linear model over speed, from ``lumped.speed_sweep``
     speeds : slowest and fastest pinion speed [rpm], both covered by the sweep
 
     Raises
@@ -152,15 +156,22 @@ def search_jumps(
 ) -> JumpSearch:
     """Search for jumps, beats and chaos where contact can be lost, within a limit of processor time.
 
-    The most useful comes first: the window with ``first``, or next to it, its branch through the motion of
-    the linear model, and what runs do where that branch loses stability; then the other windows, and large
-    motions of a resonance above the range, which reach down into it; period doublings; motions of n cycles
-    near large ones at 1/n of the speed; then runs from other starts. A branch is followed out of its window
-    until it is stable, keeps contact and is the linear motion again; the window grows by that.
+    The most useful step comes first. The order is:
 
-    What is found is as right as that of ``response_branches``. Outside the windows no motions are looked for
-    but those to which branches lead, and those of n cycles. A motion that attracts no run, or an isolated one
-    at speeds at which the linear motion keeps contact, is not found: "none found" is the claim.
+    - the window with ``first``, or the nearest window: the branch through the motion of the linear model, and
+      runs from the places at which this branch loses stability
+    - the other windows, and large motions of a resonance above the range, which reach down into the range
+    - period doublings
+    - motions of n cycles near large motions at 1/n of the speed
+    - runs from other starts
+
+    A branch that leads out of a window is followed until the motion is stable, keeps contact and is the
+    linear motion again. The window grows by these speeds.
+
+    The motions are as right as the motions of ``response_branches``. Outside the windows the search finds
+    only motions of n cycles and motions to which branches lead. Two kinds of motions are not found: motions
+    that attract no run, and isolated motions at speeds at which the linear motion keeps contact. The claim is
+    "none found".
 
     Parameters
     ----------
@@ -171,7 +182,7 @@ def search_jumps(
     periods : mesh cycles after which motions repeat
     speeds : slowest and fastest pinion speed of interest [rpm]; None: ``operating.speed_range``
     first : the pinion speed of most interest [rpm]; None: the operating speed
-    supports : "springs", on which alone they are computed; needed for a pair with shafts
+    supports : "springs": jumps are computed on springs alone; needed for a pair with shafts
     progress : called with the finished fraction
 
     Raises
@@ -180,31 +191,33 @@ def search_jumps(
     """
     pair = on_springs(load_gear_pair(pair), supports, "search_jumps")
     low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
-    asked = [checked_range(f"windows[{j}]", window) for j, window in enumerate(windows)]
-    wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
+    requested = [checked_range(f"windows[{j}]", window) for j, window in enumerate(windows)]
+    cycles = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
     seconds = real_number("seconds", seconds, 0.0, above=True, unit="s")
-    here = operating_rpm(pair) if first is None else real_number("first", first, 0.0, above=True, unit="rpm")
+    first_rpm = (
+        operating_rpm(pair) if first is None else real_number("first", first, 0.0, above=True, unit="rpm")
+    )
     cycle = pair.geometry.mesh_period * operating_rpm(pair)
     one = member(pair, low, high)
     above = min(high / _REACH, _BEYOND_RESONANCE * cycle * one.limits.frequency, LARGEST_SPEED)
     if above > high:
         one = member(pair, low, above)
-    inside = tuple((max(a, low) / cycle, min(b, high) / cycle) for a, b in asked if a < high and b > low)
+    inside = tuple((max(a, low) / cycle, min(b, high) / cycle) for a, b in requested if a < high and b > low)
     one = replace(one, limits=replace(one.limits, calm=_as_linear(one, inside)))
     compile_kernels(one)
     deadline = Deadline(seconds)
     response = find_branches(
         one,
-        periods=wanted,
+        periods=cycles,
         seeds=seeds,
         progress=progress,
-        agenda=Agenda((low / cycle, high / cycle), inside, above / cycle, _REACH, here / cycle),
+        agenda=Agenda((low / cycle, high / cycle), inside, above / cycle, _REACH, first_rpm / cycle),
         deadline=deadline,
     )
     used = deadline.used
     range_rpm = (low, high)
-    found = (
+    by_window = (
         ResponseBranches(pair, (a * cycle, b * cycle), False, _part(response, (a, b)), one)
         for a, b in response.windows
     )
@@ -212,18 +225,19 @@ def search_jumps(
         pair=pair,
         speeds_rpm=range_rpm,
         windows=within(response.windows, cycle, range_rpm),
-        branches=tuple(one for one in found if one.branches),
+        branches=tuple(one for one in by_window if one.branches),
         open=within(response.open, cycle, range_rpm),
         seconds=used,
     )
 
 
 def _as_linear(one: Member, windows: tuple[Range, ...]) -> Callable[[Orbit], bool]:
-    """Whether a motion outside windows of 1/T is stable, always carries load, and is the linear one.
+    """Return the test whether a motion outside windows of 1/T is stable, always carries load, and is linear.
 
-    Where both begin and end their contact gradually single pairs may part, so they differ a little.
+    A linear motion may differ a little from the motion of the linear model: a single tooth pair may lose
+    contact while its load begins or ends gradually.
     """
-    known = dict[Orbit, bool]()
+    linear_orbits = dict[Orbit, bool]()
 
     def is_linear(orbit: Orbit) -> bool:
         start = one.start(orbit.period)[0]
@@ -233,15 +247,15 @@ def _as_linear(one: Member, windows: tuple[Range, ...]) -> Callable[[Orbit], boo
         rate = 1.0 / orbit.period
         if any(a <= rate <= b for a, b in windows) or orbit.run.least_load <= 0.0 or not orbit.stable:
             return False
-        if orbit not in known:
-            known[orbit] = is_linear(orbit)
-        return known[orbit]
+        if orbit not in linear_orbits:
+            linear_orbits[orbit] = is_linear(orbit)
+        return linear_orbits[orbit]
 
     return calm
 
 
 def _part(response: Response, window: Range) -> Response:
-    """What was found in a window of 1/T."""
+    """The part of a response within a window of 1/T."""
     low, high = window
     return replace(
         response,

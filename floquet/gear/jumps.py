@@ -40,18 +40,20 @@ if TYPE_CHECKING:
 
 #: Points between two motions of a branch, by the monotone cubic through all.
 _BETWEEN = 6
-#: Cycles for which a run settles and is looked at where no stable motion is found.
+#: Cycles for which a run settles, and cycles for which it is observed, where no stable motion is found.
 _SETTLE = 40
 _OBSERVE = 60
-#: Cycles for which a run settles behind a place where a motion loses its stability.
+#: Cycles for which a run settles beyond a place at which a motion loses stability.
 _BEHIND = 300
 _LARGEST = 1_000_000
-#: Of the largest load: rounding.
+#: Rounding of a load, over the largest load.
 _NO_LOAD = 1e-9
-#: Part of the range by which the value is passed before all branches are looked at again, doubled each time.
+#: Part of the range by which the last fold is passed before all branches are followed again; doubled each
+#: time.
 _BEYOND = 1e-3
 _MOST_ROUNDS = 10
-#: The range is left by steps and differences, the axis is not: least value over the lower end.
+#: Least value of an axis, over the lower end of the range. Steps and differences may leave the range, but not
+#: the axis.
 _LEAST = 1e-3
 
 #: Variable of the map, field of a row, unit, name.
@@ -79,7 +81,7 @@ def _with_relief(variation: GearVariation, micrometres: float) -> GearVariation:
 
 
 def _relieved(pair: GearPair) -> list[str]:
-    """Gears with tip relief that acts, or the refusal of a pair that has none."""
+    """Gears whose tip relief acts. A pair without such a gear is refused."""
     result = [name for name in ("pinion", "gear") if getattr(pair, name).tip_relief is not None]
     if pair.mesh.relief == "ignored" or not result:
         value = "a pair whose relief is ignored" if result else "a pair without tip relief"
@@ -92,7 +94,7 @@ def _own_relief(pair: GearPair) -> float:
     return to_stated(max(getattr(pair, name).tip_relief.amount for name in _relieved(pair)), "um")
 
 
-#: What a jump map varies beside the speed. Tip relief is the amount, of all gears of the pair that have it.
+#: Second axes of a jump map, beside the speed. Tip relief is the amount on all gears with tip relief.
 JUMP_AXES: Mapping[str, GearAxis] = {
     "torque": GEAR_AXES["torque"],
     "damping_ratio": GEAR_AXES["damping_ratio"],
@@ -114,32 +116,34 @@ def jump_map(
     supports: Supports | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Map of the motions with unilateral contact, and of the jumps between them, over speed and another axis.
+    """Map of motions with unilateral contact, and of jumps between motions, over speed and a second axis.
 
-    Motions are those of ``periodic_orbit``: like teeth, and the tangents of the static load.
+    The motions are the motions of ``periodic_orbit``: teeth are alike, and loaded contact has the tangents of
+    the static load.
 
     For each value of the second axis all branches over speed are followed, from the motions of the linear
-    model and from those of neighbouring values. Between the motions on a branch the numbers are interpolated
-    (monotone cubics along the branch); folds and other bifurcations are among these motions.
+    model and from the motions at neighbouring values. Between the motions on a branch the results are
+    interpolated (monotone cubics along the branch). Folds and other bifurcations are among these motions.
 
     Parameters
     ----------
     pair : the gear pair
     axes : name -> values, "speed_rpm" and one of `JUMP_AXES`: torque [N m], damping_ratio (mesh) or
-        tip_relief, the amount [um], of all gears that have it; at most a million points
+        tip_relief, the amount [um] on all gears with tip relief; at most a million points
     periods : mesh cycles after which motions repeat
     seeds : speeds at which runs settle for each value, to find isolated branches
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
-    progress : told the finished fraction
+    supports : "springs": the map is computed on springs alone; needed for a pair with shafts
+    progress : called with the finished fraction
 
     Returns
     -------
     xarray.Dataset over the second axis and speed_rpm: ``motions``, the number of stable periodic motions;
-    ``contact_kept``, whether in all of them some tooth pair carries load at every moment;
-    ``dte_rms_smallest``, ``dte_rms_largest`` of them and ``largest_load``.
-    Where ``motions`` is 0, at beats, chaos or motions of more cycles, they are those of a run; NaN where it
-    grows beyond twice the backlash and 30 static deflections. Over ``jump``: the places where a stable motion
-    ends and the root mean square changes at once by a tenth or more, as `ResponseBranches.jumps`.
+    ``contact_kept``, whether in all these motions some tooth pair carries load at every moment;
+    ``dte_rms_smallest``, ``dte_rms_largest`` and ``largest_load`` of these motions.
+    Where ``motions`` is 0, at beats, chaos or motions of more cycles, the values are the values of a run; NaN
+    where the run grows beyond twice the backlash and 30 static deflections. Over ``jump``: the places at
+    which a stable motion ends and the root mean square changes at once by a tenth or more, as
+    `ResponseBranches.jumps`.
 
     Raises
     ------
@@ -211,7 +215,7 @@ def checked_axis(pair: GearPair, name: str, field: str = "axis") -> None:
 
 
 class _Row:
-    """What the map has over the speeds (k,), for one value of the second axis."""
+    """Results of the map at k speeds, for one value of the second axis."""
 
     def __init__(self, one: Member, response: Response, speeds: FloatArray, cycle: float) -> None:
         self.motions = np.zeros(speeds.size, dtype=int)
@@ -242,29 +246,33 @@ def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
     radius = np.array([orbit.spectral_radius for orbit in distinct])
     stable = np.repeat(np.maximum(radius[:-1], radius[1:]) < MARGINAL, _BETWEEN)
     lost = np.repeat(_contact_lost(branch, distinct), _BETWEEN)
-    way = np.where(stable, np.sign(np.diff(speed)), 0.0)
-    for piece in np.split(np.arange(way.size), np.flatnonzero(np.diff(way)) + 1):
-        if way[piece[0]] == 0.0:
+    direction = np.where(stable, np.sign(np.diff(speed)), 0.0)
+    for piece in np.split(np.arange(direction.size), np.flatnonzero(np.diff(direction)) + 1):
+        if direction[piece[0]] == 0.0:
             continue
         points = np.arange(piece[0], piece[-1] + 2)
-        if way[piece[0]] < 0.0:
+        if direction[piece[0]] < 0.0:
             points = points[::-1]
             piece = piece[::-1]
         low, high = np.searchsorted(speeds, speed[points[[0, -1]]])
-        here = slice(low, high)
+        covered = slice(low, high)
         if low == high:
             continue
-        row.motions[here] += 1
-        values = np.interp(speeds[here], speed[points], rms[points])
-        row.smallest[here] = np.minimum(row.smallest[here], values)
-        row.largest[here] = np.maximum(row.largest[here], values)
-        row.load[here] = np.maximum(row.load[here], np.interp(speeds[here], speed[points], load[points]))
-        between = np.searchsorted(speed[points], speeds[here], side="right") - 1
-        row.contact[here] &= ~lost[piece][np.clip(between, 0, piece.size - 1)]
+        row.motions[covered] += 1
+        values = np.interp(speeds[covered], speed[points], rms[points])
+        loads = np.interp(speeds[covered], speed[points], load[points])
+        row.smallest[covered] = np.minimum(row.smallest[covered], values)
+        row.largest[covered] = np.maximum(row.largest[covered], values)
+        row.load[covered] = np.maximum(row.load[covered], loads)
+        between = np.searchsorted(speed[points], speeds[covered], side="right") - 1
+        row.contact[covered] &= ~lost[piece][np.clip(between, 0, piece.size - 1)]
 
 
 def _contact_lost(branch: Branch, orbits: list[Orbit]) -> BoolArray:
-    """Whether contact is lost between each motion and the next; at grazing itself rounding decides."""
+    """Whether contact is lost between each motion and the next motion.
+
+    A motion at grazing does not count, because rounding decides there.
+    """
     grazing = {id(b.orbit) for b in branch.bifurcations if b.kind == "grazing"}
     lost = np.array([_without_load(orbit.run) and id(orbit) not in grazing for orbit in orbits])
     return np.asarray(lost[:-1] | lost[1:])
@@ -278,11 +286,11 @@ def _without_load(run: Run) -> bool:
 def _run_through(
     row: _Row, group: IntArray, one: Member, response: Response, speeds: FloatArray, cycle: float
 ) -> None:
-    """Where no stable motion is found, enter what a run does that goes on from speed to speed."""
+    """Enter the results of a run that continues from speed to speed, where no stable motion is found."""
     first = cycle / float(speeds[group[0]])
-    calm = [o for b in response.branches for o in b.orbits if o.spectral_radius < MARGINAL]
-    if calm:
-        nearest = min(calm, key=lambda orbit: abs(orbit.period - first))
+    stable = [o for b in response.branches for o in b.orbits if o.spectral_radius < MARGINAL]
+    if stable:
+        nearest = min(stable, key=lambda orbit: abs(orbit.period - first))
         state = nearest.start
         parameter = nearest.parameter
     else:
@@ -349,17 +357,17 @@ def _dataset(
 
 @dataclass(frozen=True)
 class JumpRemoval:
-    """The value of a parameter nearest to the pair's own at which no fold of a stable motion is left.
+    """The value of a parameter, nearest to the pair's value, at which stable motions have no folds.
 
     Attributes
     ----------
     axis : name out of `JUMP_AXES`
-    direction : "larger" or "smaller" values than the pair's own
+    direction : "larger" or "smaller" values than the pair's value
     own : value of the pair, in the units of the axis
     limit : end of the range that was searched
-    value : the value; NaN where folds are left up to the limit
-    error : half the width of the interval that has folds at its one end and none at its other
-    speed_rpm : where the last folds meet or leave the range of speeds [rpm]; NaN where there is none
+    value : the value; NaN: there are folds up to the limit
+    error : half the width of an interval with folds at one end and without folds at the other end
+    speed_rpm : speed at which the last folds meet or leave the range of speeds [rpm]; NaN where ``value`` is
     """
 
     axis: str
@@ -379,59 +387,65 @@ class JumpRemoval:
 def jumps_removed_by(
     branches: ResponseBranches, axis: str, within: tuple[float, float] | None = None
 ) -> tuple[JumpRemoval, ...]:
-    """Values of a parameter, on either side of the pair's own, beyond which stable motions have no folds.
+    """Values of a parameter above and below the pair's value, beyond which stable motions have no folds.
 
     The curve of each fold over the parameter is followed until two folds meet (a cusp, or an island that
-    shrinks to a point) or leave the range of speeds. Behind the last one all branches are followed again;
-    folds that are found there are followed in their turn.
+    shrinks to a point) or leave the range of speeds. Beyond the last fold all branches are followed again,
+    and so are the folds on these branches.
 
     Parameters
     ----------
     branches : motions of the pair over a range of speeds
     axis : name out of `JUMP_AXES`
-    within : range to search, with the pair's own value; None: a quarter to four times it for torque, from
-        it to four times it, at least 0.2, for damping, zero to three times it for tip relief
+    within : range to search, with the pair's value v; None: v/4 to 4 v for torque, v to 4 v, at least to 0.2,
+        for damping, 0 to 3 v for tip relief
 
     Returns
     -------
-    For larger values and for smaller ones, where the range goes there; empty where the pair has no folds.
+    One result for larger values and one for smaller values, if the range has such values; empty where the
+    pair has no folds.
 
     Raises
     ------
-    ParameterError : unknown axis, a pair without tip relief, or a range without the pair's own value
+    ParameterError : unknown axis, a pair without tip relief, or a range without the pair's value
     """
     checked_axis(branches.pair, axis)
-    own = float(JUMP_AXES[axis].own(branches.pair))
-    low, high = search_range(axis, own, within)
+    pair_value = float(JUMP_AXES[axis].own(branches.pair))
+    low, high = search_range(axis, pair_value, within)
     if not _folds(branches.response):
         return ()
     search = _Removal(branches, axis, low, high)
-    ways: list[tuple[Literal["larger", "smaller"], float]] = [("larger", high), ("smaller", low)]
+    limits: list[tuple[Literal["larger", "smaller"], float]] = [("larger", high), ("smaller", low)]
     return tuple(
-        JumpRemoval(axis, way, own, limit, *search.beyond(own, limit)) for way, limit in ways if limit != own
+        JumpRemoval(axis, direction, pair_value, limit, *search.beyond(pair_value, limit))
+        for direction, limit in limits
+        if limit != pair_value
     )
 
 
-def search_range(axis: str, own: float, within: tuple[float, float] | None = None) -> tuple[float, float]:
+def search_range(
+    axis: str, pair_value: float, within: tuple[float, float] | None = None
+) -> tuple[float, float]:
     """Default range of an axis for searches and maps, in units of the axis.
 
     ``within`` replaces the default.
     """
     if within is None:
         return {
-            "torque": (0.25 * own, 4.0 * own),
-            "damping_ratio": (own, min(1.0, max(0.2, 4.0 * own))),
-            "tip_relief": (0.0, 3.0 * own),
+            "torque": (0.25 * pair_value, 4.0 * pair_value),
+            "damping_ratio": (pair_value, min(1.0, max(0.2, 4.0 * pair_value))),
+            "tip_relief": (0.0, 3.0 * pair_value),
         }[axis]
     request = np.atleast_1d(real_array("within", within))
-    if request.size != 2 or not request[0] <= own <= request[1] or request[0] == request[1]:
-        raise refuse("within", within, f"a range around the pair's own value, {own:g}", "Give (low, high).")
+    if request.size != 2 or not request[0] <= pair_value <= request[1] or request[0] == request[1]:
+        allowed = f"a range around the pair's own value, {pair_value:g}"
+        raise refuse("within", within, allowed, "Give (low, high).")
     JUMP_AXES[axis].check(axis, request)
     return float(request[0]), float(request[1])
 
 
 def _folds(response: Response) -> list[tuple[int, Orbit]]:
-    """Cycles and motion of the folds at which a stable motion ends."""
+    """Number of cycles and motion of each fold at which a stable motion ends."""
     ends = [(branch.n, b) for branch in response.branches for b, _ in lost_stability(branch)]
     return [(n, b.orbit) for n, b in ends if b.kind == "fold"]
 
@@ -456,35 +470,35 @@ class _Removal:
         return pair_at(self.branches.pair, self.axis, inside)
 
     def _at(self, value: float) -> tuple[Family, Limits]:
-        there = self.varied(value)
-        here = self.limits
-        ratio = there.operating.pinion_torque / self.branches.pair.operating.pinion_torque
-        sizes = replace(here, length=here.length * ratio, parameter=here.parameter * ratio)
-        return unilateral_family(there, *self.branches.speeds_rpm), sizes
+        varied = self.varied(value)
+        limits = self.limits
+        ratio = varied.operating.pinion_torque / self.branches.pair.operating.pinion_torque
+        scaled = replace(limits, length=limits.length * ratio, parameter=limits.parameter * ratio)
+        return unilateral_family(varied, *self.branches.speeds_rpm), scaled
 
-    def beyond(self, own: float, limit: float) -> tuple[float, float, float]:
-        """Value, error and speed [rpm] on the way from the pair's own value to a limit."""
-        sign = float(np.sign(limit - own))
+    def beyond(self, pair_value: float, limit: float) -> tuple[float, float, float]:
+        """Value, error and speed [rpm] of a `JumpRemoval` between the pair's value and a limit."""
+        sign = float(np.sign(limit - pair_value))
         margin = _BEYOND * (self.high - self.low)
-        value = own
+        value = pair_value
         folds = _folds(self.branches.response)
         for _ in range(_MOST_ROUNDS):
             last, speed = max((self._end(*fold, value, sign) for fold in folds), key=lambda x: x[0] * sign)
             value = last + sign * margin
             if (limit - value) * sign <= 0.0:
                 break
-            here = member(self.varied(value), *self.branches.speeds_rpm)
-            folds = _folds(find_branches(here, periods=self.periods, seeds=0))
+            varied = member(self.varied(value), *self.branches.speeds_rpm)
+            folds = _folds(find_branches(varied, periods=self.periods, seeds=0))
             if not folds:
                 return value - 0.5 * sign * margin, 0.5 * margin, speed
             margin *= 2.0
         return float("nan"), float("nan"), float("nan")
 
     def _end(self, n: int, orbit: Orbit, value: float, sign: float) -> tuple[float, float]:
-        """Where a fold ends: the value, and the speed [rpm]."""
+        """Value and speed [rpm] at the end of a fold's curve."""
 
-        def along(at: float) -> Continuation:
-            family, limits = self.at(at)
+        def along(value: float) -> Continuation:
+            family, limits = self.at(value)
             return Continuation(family, n, limits)
 
         try:

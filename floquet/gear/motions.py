@@ -1,4 +1,4 @@
-"""Motions of a gear pair with unilateral contact: periodic ones, those that do not repeat, start states.
+"""Motions of a gear pair with unilateral contact: periodic motions, motions that do not repeat, start states.
 
 Sources: docs/theory/orbits.md, "Gear pair", "Motions that do not repeat".
 """
@@ -25,7 +25,7 @@ from floquet.orbits.system import Run
 from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable, provenance
-from lumped.model.equations import COORDINATES
+from lumped.model.equations import COORDINATES, X_P
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, Supports, on_springs
 from lumped.model.results import labelled, response
@@ -42,7 +42,7 @@ MOST_CYCLES = 64
 _SAMPLES = 256
 #: Coordinates with y_p and y_g.
 _WHOLE = 5
-#: Motions are followed to this many static deflections beyond twice the backlash, where back sides strike.
+#: Largest motion, in static deflections beyond twice the backlash. Back sides strike before.
 _LARGEST = 30.0
 #: Change of the root mean square that is a jump.
 JUMP = 0.1
@@ -56,7 +56,7 @@ class GearOrbit:
     Attributes
     ----------
     pair : the gear pair at this speed, without shafts
-    orbit : the motion in (q, x_p, x_g) and their phase rates; with y_p, y_g where the back sides may strike
+    orbit : the motion in (q, x_p, x_g) and phase rates; with y_p, y_g where the back sides may strike
     """
 
     pair: GearPair
@@ -69,12 +69,12 @@ class GearOrbit:
 
     @property
     def n(self) -> int:
-        """Mesh cycles after which it repeats."""
+        """Mesh cycles after which the motion repeats."""
         return self.orbit.n
 
     @property
     def dte_rms(self) -> float:
-        """Root mean square of the dynamic transmission error about its mean, exact over time [m]."""
+        """Root mean square of the dynamic transmission error about the mean, exact over time [m]."""
         return self.orbit.run.rms
 
     @property
@@ -89,7 +89,7 @@ class GearOrbit:
 
     @property
     def peak_to_peak(self) -> float:
-        """Of the transmission error [m]."""
+        """Peak to peak value of the transmission error [m]."""
         low, high = self.dte_range
         return high - low
 
@@ -100,12 +100,12 @@ class GearOrbit:
 
     @property
     def brake_torque(self) -> float:
-        """T_g, found or given [N m]."""
+        """T_g [N m]: the solution of the search, or the input of the pair."""
         return _torques(self.pair, self.orbit.parameter)[1]
 
     @property
     def pinion_torque(self) -> float:
-        """T_p, given or found [N m]."""
+        """T_p [N m]: the input of the pair, or the solution of the search."""
         return _torques(self.pair, self.orbit.parameter)[0]
 
     @property
@@ -130,12 +130,15 @@ class GearOrbit:
 
     @property
     def contact_lost(self) -> bool:
-        """Whether a tooth pair loses contact that the linear model takes for granted."""
+        """Whether a tooth pair loses contact within the contact that the linear model prescribes."""
         return self.orbit.contact_lost
 
     @property
     def reaches_back_side(self) -> bool:
-        """Whether the back sides of the teeth strike, which the motion has only with ``back_side``."""
+        """Whether the back sides of the teeth would touch.
+
+        The motion has this contact only with ``back_side``.
+        """
         return self.orbit.run.least < -self.pair.geometry.normal_backlash
 
     @property
@@ -146,12 +149,12 @@ class GearOrbit:
 
     @cached_property
     def whole(self) -> Orbit:
-        """The motion with y_p and y_g, which friction alone drives where no back sides strike."""
+        """The motion with y_p and y_g. Friction alone drives y_p and y_g, where no back sides touch."""
         o = self.orbit
         if o.start.size == 2 * _WHOLE:
             return o
         system = unilateral_system(self.pair, form="elastic")
-        return close_orbit(system, _wide(o.start), o.period, o.n, o.parameter)
+        return close_orbit(system, _in_five_coordinates(o.start), o.period, o.n, o.parameter)
 
     @cached_property
     def motion(self) -> xr.Dataset:
@@ -165,7 +168,7 @@ class GearOrbit:
         return np.stack([self.motion[name].to_numpy() for name in names], axis=1)
 
     def sampled(self, samples_per_cycle: int) -> xr.Dataset:
-        """The motion at even times, with the variables of ``lumped.steady_state``, and in addition
+        """The motion at even times, with the variables of ``lumped.steady_state`` and one more:
 
         normal_load_back : normal load on the back sides of the teeth, of all pairs [N]
         """
@@ -195,17 +198,17 @@ class GearOrbit:
 
 
 def _torques(pair: GearPair, parameter: float) -> tuple[float, float]:
-    """T_p and T_g [N m], one of them the free parameter."""
+    """T_p and T_g [N m]. One of the torques is the free parameter."""
     if pair.operating.brake_torque == "balanced":
         return pair.operating.pinion_torque, parameter
     return parameter, float(pair.operating.brake_torque)
 
 
 def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -> FloatArray:
-    """(k, 12) states of the lumped model at the samples of a run of a whole orbit, the first at phase 0.
+    """(k, 12) states of the lumped model at the samples of a run of ``GearOrbit.whole``, from phase 0 on.
 
-    The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
-    friction by the trapezoidal rule.
+    The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg has no effect on the other coordinates. The
+    rotation follows from torques and friction by the trapezoidal rule.
     """
     g = pair.geometry
     support = LTVSystem.of(pair, "elastic", cycle=cycle, supports="springs").supports
@@ -214,13 +217,13 @@ def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -
     steps = np.diff(time, append=orbit.n * orbit.period)
 
     def integral(values: FloatArray) -> FloatArray:
-        """From the first time on, of a history that repeats less its mean."""
+        """Integral, from the first time on, of a periodic history less the mean of the history."""
         both = 0.5 * (values + np.roll(values, -1))
         return np.concatenate([[0.0], np.cumsum(steps * (both - steps @ both / steps.sum()))[:-1]])
 
-    at = cycle.sample(time)
-    friction = at.friction * run.loads[:, : cycle.offsets.size].T
-    lever = (g.L_XY - at.position) / g.base_radius_gear - at.position / g.base_radius_pinion
+    mesh = cycle.sample(time)
+    friction = mesh.friction * run.loads[:, : cycle.offsets.size].T
+    lever = (g.L_XY - mesh.position) / g.base_radius_gear - mesh.position / g.base_radius_pinion
     push = (
         (friction * lever).sum(axis=0) + torques[0] / g.base_radius_pinion - torques[1] / g.base_radius_gear
     )
@@ -244,10 +247,10 @@ def periodic_orbit(
 ) -> GearOrbit:
     """One periodic motion of the gear pair with unilateral contact.
 
-    Teeth are alike, and loaded contact has the tangents and dampers of the static load: branches and jumps
-    are of such motions, the prediction is not. Where contact holds it is that of ``lumped.steady_state`` with
-    linear contact. With contact loss several motions may exist at one speed: which one is found depends on
-    the start.
+    Teeth are alike, and loaded contact has the tangents and dampers of the static load. Branches and jumps
+    consist of these motions; the prediction is another motion. Where contact holds, the motion is the motion
+    of ``lumped.steady_state`` with linear contact. With contact loss several motions may exist at one speed:
+    the start decides which motion is found.
 
     Parameters
     ----------
@@ -256,7 +259,7 @@ def periodic_orbit(
     start : 12 states at t = 0 as ``lumped.simulate`` takes them, or another motion, from which Newton's
         method starts; None: the motion of the linear model
     back_side : whether the back sides of the teeth touch after the backlash
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
+    supports : "springs": the motion is computed on springs alone; needed for a pair with shafts
 
     Raises
     ------
@@ -280,7 +283,7 @@ def long_run(
     back_side: bool = False,
     supports: Supports | None = None,
 ) -> runs.LongRun:
-    """Say what a run of the unilateral gear pair settles to: a periodic motion, beats or chaos.
+    """The motion to which a run of the unilateral gear pair settles: a periodic motion, beats or chaos.
 
     Parameters
     ----------
@@ -289,7 +292,7 @@ def long_run(
     settle_cycles : mesh cycles before the observation
     cycles : mesh cycles of the observation, over which the Lyapunov exponent is a mean
     back_side : whether the back sides of the teeth touch after the backlash
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
+    supports : "springs": the run is computed on springs alone; needed for a pair with shafts
 
     Raises
     ------
@@ -310,7 +313,7 @@ def long_run(
 
 
 def form_with(*, back_side: bool) -> ContactForm:
-    """The fewest coordinates that hold the motion."""
+    """The form with the fewest coordinates for a motion with or without contact of the back sides."""
     return "back_side" if back_side else "mesh"
 
 
@@ -320,7 +323,7 @@ def static_deflection(pair: GearPair) -> float:
 
 
 def largest_motion(pair: GearPair) -> float:
-    """Motion of the transmission error about its mean that is followed [m]."""
+    """Largest motion of the transmission error about the mean [m]; a larger motion is not followed."""
     return 2.0 * pair.geometry.normal_backlash + _LARGEST * static_deflection(pair)
 
 
@@ -330,13 +333,13 @@ def start_of(
     form: ContactForm = "mesh",
     elements: MeshElements | None = None,
 ) -> tuple[FloatArray, float]:
-    """Coordinates of the form with phase rates, and the balanced torque, to start from.
+    """Start of Newton's method: coordinates of the form with phase rates, and the balanced torque.
 
-    ``elements`` are those of the linear model, where they are known already.
+    ``elements`` are the elements of the linear model; None: the elements are computed here.
     """
     if isinstance(start, GearOrbit):
-        # Displacements and phase rates of a neighbouring speed are nearer than its rates.
-        return _of_form(_wide(start.orbit.start), form), start.orbit.parameter
+        # Phase rates of a neighbouring speed are nearer to the solution than rates in m/s.
+        return _of_form(_in_five_coordinates(start.orbit.start), form), start.orbit.parameter
     g = pair.geometry
     operating = pair.operating
     states = np.zeros(12)
@@ -355,19 +358,19 @@ def start_of(
             states = linear.states[0]
             torque = linear.brake_torque if balanced else linear.pinion_torque
         except NumericalError:
-            states[2] = static_deflection(pair)
+            states[X_P] = static_deflection(pair)
     relative = absolute.supports.relative
-    wide = np.concatenate([relative @ states[:6], relative @ states[6:] * g.mesh_period])
-    return _of_form(wide, form), torque
+    start_state = np.concatenate([relative @ states[:6], relative @ states[6:] * g.mesh_period])
+    return _of_form(start_state, form), torque
 
 
-def _of_form(wide: FloatArray, form: ContactForm) -> FloatArray:
-    """A start in five coordinates, those of the form kept."""
-    return wide[[0, 1, 2, 5, 6, 7]] if form == "mesh" else wide
+def _of_form(start: FloatArray, form: ContactForm) -> FloatArray:
+    """The coordinates of the form, from a start in five coordinates."""
+    return start[[0, 1, 2, 5, 6, 7]] if form == "mesh" else start
 
 
-def _wide(start: FloatArray) -> FloatArray:
-    """(10,) a start in five coordinates; y_p and y_g at rest where it has none."""
+def _in_five_coordinates(start: FloatArray) -> FloatArray:
+    """(10,) a start in five coordinates; a start without y_p and y_g has both at rest."""
     return np.pad(start.reshape(2, -1), ((0, 0), (0, _WHOLE - start.size // 2))).ravel()
 
 
@@ -380,7 +383,8 @@ def label(unit: str, text: str) -> dict[str, str]:
 class AttractorPoint:
     """A motion that does not repeat, at one speed.
 
-    It is "beats", "chaos", or "periodic" where it repeats after more cycles than were looked for.
+    The kind is "beats", "chaos" or "periodic". A periodic motion here repeats after more cycles than the
+    search covers.
     """
 
     speed_rpm: float = field(metadata=label("rpm", "pinion speed"))
@@ -394,19 +398,19 @@ class AttractorPoint:
 
 @dataclass(frozen=True)
 class GearAttractor:
-    """A motion that does not repeat, over speed: runs come to it and stay on it.
+    """A motion over speed that does not repeat. Runs settle to this motion and stay there.
 
     Attributes
     ----------
-    low_rpm, high_rpm : speeds between which it was found [rpm]
-    kind : "chaos" where the exponent is positive at some speed, else "beats", or "periodic" where it repeats
-        everywhere, after more cycles than were looked for
-    rms : smallest and largest root mean square of the transmission error about its mean [m]
+    low_rpm, high_rpm : lowest and highest speed of the motion [rpm]
+    kind : "chaos": the exponent is positive at some speed; "periodic": the motion repeats at all speeds,
+        after more cycles than the search covers; otherwise "beats"
+    rms : smallest and largest root mean square of the transmission error about the mean [m]
     dte_largest : largest transmission error, of either sign [m]
-    exponent : largest Lyapunov exponent per mesh cycle, of all speeds; NaN where it repeats everywhere
-    exponent_interval : its interval of 95 %, from blocks of cycles
-    reaches_back_side : whether it exceeds the backlash at some speed
-    points : what it is at each speed that was looked at
+    exponent : largest Lyapunov exponent per mesh cycle, of all speeds; NaN: the motion repeats at all speeds
+    exponent_interval : interval of 95 % of the exponent, from blocks of cycles
+    reaches_back_side : whether the motion exceeds the backlash at some speed
+    points : the motion at each speed of the search
     """
 
     low_rpm: float
@@ -436,17 +440,17 @@ class GearAttractor:
 
 @dataclass(frozen=True)
 class Basin:
-    """A motion at one speed, and the share of start states that lead to it.
+    """A motion at one speed, and the share of the start states that lead to this motion.
 
     Attributes
     ----------
-    kind : "periodic", "beats", "chaos", or "grows" beyond what is followed, where numbers are NaN
-    n : mesh cycles after which it repeats, 0 where it does not
-    dte_rms, dte_peak_to_peak : of the transmission error [m]
+    kind : "periodic", "beats", "chaos" or "grows"; a motion that grows is not followed: the results are NaN
+    n : mesh cycles after which the motion repeats; 0: the motion does not repeat
+    dte_rms, dte_peak_to_peak : root mean square and peak to peak value of the transmission error [m]
     largest_load : largest normal load [N]
-    starts : how many start states lead to it
-    share : their share of all
-    share_interval : interval of 95 % of that share (Clopper and Pearson)
+    starts : number of start states that lead to the motion
+    share : this number over the number of all start states
+    share_interval : interval of 95 % of the share (Clopper and Pearson)
     """
 
     kind: Settled
@@ -460,10 +464,11 @@ class Basin:
 
 
 def end_rate(one: Attractor, side: int, losses: list[tuple[float, float]]) -> float:
-    """1/T at which an attractor ends at low (side 0) or high speed (1); without limit where the range ends.
+    """1/T of the end of an attractor at low (side 0) or high speed (side 1).
 
-    Where its size does not jump it goes over into a motion that repeats: ``losses`` are the places, 1/T and
-    root mean square, at which one of these loses its stability.
+    An attractor that continues to the end of the range ends at 0 or infinity. An attractor whose size does
+    not jump becomes a motion that repeats: ``losses`` are the 1/T and the root mean square at which such
+    motions lose stability.
     """
     end = one.ends[side]
     if end is None:
@@ -477,14 +482,14 @@ def end_rate(one: Attractor, side: int, losses: list[tuple[float, float]]) -> fl
 
 
 def jumps(end: AttractorEnd) -> bool:
-    """Whether the root mean square changes at once at an end, or grows without bound."""
+    """Whether the root mean square changes at once at the end of an attractor, or grows without bound."""
     return not abs(end.after.rms - end.size[0]) < JUMP * end.size[0]
 
 
 def gear_attractor(
     one: Attractor, cycle: float, backlash: float, low_rpm: float, high_rpm: float
 ) -> GearAttractor:
-    """An attractor in speeds [rpm], which are ``cycle`` times 1/T."""
+    """An attractor over pinion speeds [rpm]. A pinion speed is ``cycle`` times 1/T."""
     inside = [
         (float(rate) * cycle, run)
         for rate, run in zip(one.rates, one.runs, strict=True)
@@ -526,13 +531,14 @@ def basins(response: Response, member: Member, rate: float, starts: int, seed: i
     return tuple(result)
 
 
-def binomial_interval(count: int, of: int) -> tuple[float, float]:
+def binomial_interval(count: int, trials: int) -> tuple[float, float]:
     """Interval of 95 % of a share (Clopper and Pearson, Biometrika 26 (1934) 404)."""
     tail = 0.5 * (1.0 - _SURE)
-    low = 0.0 if count == 0 else float(betaincinv(count, of - count + 1, tail))
-    return low, 1.0 if count == of else float(betaincinv(count + 1, of - count, 1.0 - tail))
+    low = 0.0 if count == 0 else float(betaincinv(count, trials - count + 1, tail))
+    high = 1.0 if count == trials else float(betaincinv(count + 1, trials - count, 1.0 - tail))
+    return low, high
 
 
 def peak_to_peak(run: LongRun) -> float:
-    """Of the output; NaN where the motion grows."""
+    """Peak to peak value of the output; NaN where the motion grows."""
     return float("nan") if run.run is None else run.run.most - run.run.least

@@ -88,7 +88,7 @@ def _leading_modes(system: LTVSystem, misfit: FloatArray) -> Feedback:
 
 
 def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
-    """The system in the coordinates whose unit vectors are the columns of ``modes`` (m, k), orthonormal."""
+    """The system in new coordinates. The orthonormal columns of ``modes`` (m, k) are the unit vectors."""
     both = block_diag(modes, modes)
     return replace(
         system,
@@ -111,7 +111,10 @@ def _squares(system: LTVSystem) -> FloatArray:
 
 
 def _turn(system: LTVSystem) -> FloatArray:
-    """Combinations (m, m) of modes of equal frequency: one has all deflection, one all gyroscopic moments."""
+    """Combinations (m, m) of modes of equal frequency.
+
+    One combination has all deflection, another combination all gyroscopic moments.
+    """
     squares = _squares(system)
     combinations = np.eye(squares.size)
     for group in np.split(
@@ -129,7 +132,7 @@ def importance(system: LTVSystem) -> FloatArray:
     """Importance (m,) of each mode on shafts for the deflection of the mesh.
 
     The share of the mode in the static deflection by the mesh, plus the shares of other modes that damping
-    and gyroscopic moments couple to the mode. The coupling is that at the speed at which the mesh frequency
+    and gyroscopic moments couple to the mode. The coupling is taken at the speed at which the mesh frequency
     is the frequency of the mode.
     """
     v = system.deflection
@@ -209,8 +212,8 @@ class GearPairMultipliers(Spectrum):
     ----------
     feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable; on shafts
         of the modes of largest importance
-    oloa : (4,) of y_p and y_g, two each. Friction drives these motions and they do not act back, so their
-        multipliers are those of the bearings. On shafts of the other modes, each for itself
+    oloa : (4,) of y_p and y_g, two each. Friction drives these motions, and they have no effect on the other
+        coordinates: the bearings alone decide the multipliers. On shafts of each of the other modes
     variation : the pair with the changes of the chart point
     """
 
@@ -222,8 +225,9 @@ class GearPairMultipliers(Spectrum):
     def liouville_residual(self) -> float:
         """Product of ``feedback`` less exp of the integral of tr A(t) over the period (Liouville's formula).
 
-        The integral takes A(t) of the lumped model, which the compiled kernel does not see. Where damping
-        leaves little of a motion in one period, both are next to 0 and the residual says little.
+        The integral takes A(t) of the lumped model, independently of the compiled kernel. Where damping
+        leaves little of a motion in one period, product and integral are close to 0 and the residual says
+        little.
         """
         system = gear_pair_system(self.variation, "mesh")
         edges = np.array([0.0, *system.breakpoints, system.period])
@@ -255,10 +259,10 @@ def gear_pair_system(
 
 @dataclass(frozen=True, eq=False)
 class _Coefficients:
-    """A(t) strictly inside the smooth segments, the total mesh stiffness k being mean + factor (k - mean).
+    """A(t) strictly inside the smooth segments, with the total mesh stiffness mean + factor (k - mean).
 
-    Every pair keeps its share of k, so k_i is multiplied by f = (mean + factor (k - mean))/k and c_i, which
-    goes with sqrt(k_i), by sqrt(f).
+    Every pair keeps the share of the stiffness: k_i is multiplied by f = (mean + factor (k - mean))/k. The
+    damping c_i is proportional to sqrt(k_i) and is multiplied by sqrt(f).
     """
 
     system: LTVSystem
@@ -304,7 +308,7 @@ class OffLineOfAction:
 
     @classmethod
     def of(cls, feedback: Feedback) -> OffLineOfAction:
-        """Of what the mesh does not couple."""
+        """Exponents of the motions that the mesh does not couple."""
         decay, square = feedback.separate
         r = decay**2 - square
         root = np.sqrt(r.astype(complex))
@@ -333,10 +337,11 @@ def gear_pair_multipliers(
 ) -> GearPairMultipliers:
     """Floquet multipliers of a gear pair over one mesh cycle, of its linear form with like teeth.
 
-    The equations of y_p and y_g contain q, x_p, x_g but not the other way round, so the 10 x 10 matrix is
-    block triangular: its multipliers are those of the 6 x 6 feedback block and of the bearings of y. On
-    shafts gyroscopic moments close this circle. The feedback block then has the 12 modes that count most in
-    the motion of the mesh, and the bounds are those of a system in which the others move each by itself.
+    The equations of y_p and y_g contain q, x_p, x_g, but the equations of q, x_p, x_g do not contain y_p and
+    y_g. The 10 x 10 matrix is therefore block triangular: the multipliers are the multipliers of the 6 x 6
+    feedback block and of the bearings of y. On shafts gyroscopic moments couple both ways. The feedback block
+    then has the 12 modes of largest importance for the motion of the mesh. The bounds are valid for a system
+    in which each other mode moves independently.
 
     Parameters
     ----------
@@ -413,7 +418,7 @@ class RevolutionMultipliers:
 
     @property
     def stable(self) -> bool:
-        """Whether the rate is below 1 by more than its error: perturbations fade."""
+        """Whether the rate is below 1 by more than the error of the rate: perturbations fade."""
         return self.rate + self.error < 1.0
 
 
@@ -425,8 +430,8 @@ def revolution_multipliers(
     Each tooth pair has its own static state, and perturbations see the tangent of the contact about this
     state. The maps of the mesh cycles are multiplied one after the other and scaled, so that a hunting period
     of thousands of cycles neither overflows nor underflows. Motions that the mesh does not couple have
-    multipliers of their own: y_p and y_g off the line of action, or on shafts all but the 12 modes of
-    `gear_pair_multipliers` that count most.
+    separate multipliers: y_p and y_g off the line of action, or on shafts all modes but the 12 most important
+    modes of `gear_pair_multipliers`.
 
     Parameters
     ----------

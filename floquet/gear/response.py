@@ -57,7 +57,8 @@ if TYPE_CHECKING:
 
     from floquet.orbits.orbit import Orbit
 
-#: Difference of speed and size within which two ends of motions are one; so many neighbours by speed.
+#: Relative difference of speed and size within which two ends of motions are one end, and number of
+#: neighbours by speed that are compared.
 _SAME_END = 1e-7
 _NEAR = 8
 #: Part of the range that counts as a gap between stable motions.
@@ -74,7 +75,8 @@ class GearBifurcation:
     speed_rpm : pinion speed [rpm]
     dte_rms : root mean square of the transmission error about its mean [m]
     n : mesh cycles of the motion
-    sharp : whether the condition holds exactly there; False at a corner, where a contact begins to strike
+    sharp : whether the condition holds exactly at the point; False: a corner, where a contact begins to
+        strike
     """
 
     kind: Kind
@@ -86,10 +88,10 @@ class GearBifurcation:
 
 @dataclass(frozen=True)
 class Jump:
-    """A motion that ends as the speed rises or falls, and what the pair does right behind.
+    """A motion that ends as the speed rises or falls, and the motion just beyond the end.
 
-    Motions of 0 mesh cycles do not repeat. What it does is "periodic", "beats", "chaos" or "grows" beyond
-    what is followed, where numbers are NaN.
+    A motion of 0 mesh cycles does not repeat. The motion after is "periodic", "beats", "chaos" or "grows". A
+    motion that grows is not followed: the results are NaN.
     """
 
     speed_rpm: float = field(metadata=label("rpm", "where a motion ends"))
@@ -116,8 +118,8 @@ class ResponseBranches:
     pair : the gear pair, without shafts
     speeds_rpm : slowest and fastest speed [rpm]
     back_side : whether the back sides of the teeth touch
-    response : what the search found, over the period
-    member : what was searched
+    response : motions that the search has found, over the period
+    member : system, limits and starts of the search
     """
 
     pair: GearPair
@@ -133,7 +135,7 @@ class ResponseBranches:
 
     @property
     def contact_kept(self) -> bool:
-        """Whether all motions found, and all that runs came to, are stable and always carry some load."""
+        """Whether all motions, of branches and of runs, are stable and always carry some load."""
         orbits = [orbit for branch in self.branches for orbit in branch.orbits]
         ends = [run.orbit for _, run in self.response.settled]
         return bool(orbits) and all(
@@ -154,12 +156,12 @@ class ResponseBranches:
         return self._cycle / orbit.period
 
     def _inside(self, rpm: float) -> bool:
-        """Whether a speed was asked for: the search goes a little beyond."""
+        """Whether a speed is in the requested range. The search goes a little beyond this range."""
         return self.speeds_rpm[0] <= rpm <= self.speeds_rpm[1]
 
     @property
     def bifurcations(self) -> tuple[GearBifurcation, ...]:
-        """Folds, period doublings, Neimark-Sacker points and grazing of all branches, in their order."""
+        """Folds, period doublings, Neimark-Sacker points and grazing, in the order of the branches."""
         return tuple(
             GearBifurcation(b.kind, self._rpm(b.orbit), b.orbit.run.rms, branch.n, b.sharp)
             for branch in self.branches
@@ -174,18 +176,19 @@ class ResponseBranches:
 
     @property
     def jumps(self) -> tuple[Jump, ...]:
-        """Where the root mean square changes at once by a tenth or more, on running up and down."""
+        """Losses of stability at which the root mean square changes at once by a tenth or more."""
         return tuple(
             one for one in self.losses if not abs(one.dte_rms_after - one.dte_rms) < JUMP * one.dte_rms
         )
 
     @cached_property
     def losses(self) -> tuple[Jump, ...]:
-        """Where a motion loses its stability or ends, and what comes behind, with and without a jump.
+        """Losses of stability and ends of motions, each with the motion beyond, with and without a jump.
 
-        At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
-        speed further on. Where a motion that does not repeat ends is found within 0.1 %. Of a search within
-        a time those are left out whose run had no time; their speeds are ``open``.
+        At every place at which a branch loses stability a run is started from the last motion, at a speed
+        0.1 % beyond. The end of a motion that does not repeat is found within 0.1 % of the speed. A search
+        with a limit of time leaves out the losses for which there was no time for a run. The speeds of these
+        losses are in ``open``.
         """
         result = []
         for branch in self.branches:
@@ -219,16 +222,18 @@ class ResponseBranches:
 
     @cached_property
     def attractors(self) -> tuple[GearAttractor, ...]:
-        """Motions that do not repeat, beats and chaos, each over the speeds at which it was found.
+        """Motions that do not repeat, beats and chaos, each over a range of speeds.
 
-        Runs come to them from the starts at the speeds of the search, or from the speed before.
+        Runs settle to these motions from the starts at the speeds of the search, or from a neighbouring
+        speed.
         """
         losses = [
             (1.0 / b.orbit.period, b.orbit.run.rms)
             for branch in self.branches
             for b, _ in lost_stability(branch)
         ]
-        result, (slowest, fastest) = list[GearAttractor](), self.speeds_rpm
+        result = list[GearAttractor]()
+        slowest, fastest = self.speeds_rpm
         for one in self.response.attractors:
             low, high = (self._cycle * end_rate(one, side, losses) for side in (0, 1))
             if low < fastest and high > slowest:
@@ -237,17 +242,18 @@ class ResponseBranches:
         return tuple(result)
 
     def basins(self, speed_rpm: float | None = None, starts: int = 256, seed: int = 1) -> tuple[Basin, ...]:
-        """To which motions start states lead at a pinion speed [rpm], the operating speed by default.
+        """Motions to which start states lead at a pinion speed [rpm], and the share of each motion.
 
-        The start states are those of the linear motion at t = 0 with another transmission error, evenly from
-        -8 to 5 static deflections beside it, and another rate, up to 6.5 times that of a vibration of one
-        static deflection at the fastest natural frequency.
+        The start states differ from the linear motion at t = 0 in the transmission error and in the rate of
+        the transmission error. Both differences are random and evenly distributed: the first from -8 to 5
+        static deflections; the second up to 6.5 times the rate of a vibration of one static deflection at the
+        fastest natural frequency.
 
         Parameters
         ----------
-        speed_rpm : pinion speed [rpm]
-        starts : how many start states, 1 to 100,000
-        seed : of their random choice
+        speed_rpm : pinion speed [rpm]; None: the operating speed
+        starts : number of start states, 1 to 100,000
+        seed : seed of the random choice
         """
         rpm = operating_rpm(self.pair) if speed_rpm is None else speed_rpm
         self.pair.with_({"operating.pinion_speed": rpm})  # refuses what is no speed
@@ -258,9 +264,9 @@ class ResponseBranches:
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
-        """Speeds without a stable periodic motion among those that were found, (low, high) [rpm]."""
+        """Speeds for which no stable periodic motion was found, (low, high) [rpm]."""
         low, high = self.speeds_rpm
-        calm = sorted(
+        stable = sorted(
             tuple(sorted(map(self._rpm, two)))
             for branch in self.branches
             for two in pairwise(branch.orbits)
@@ -268,7 +274,7 @@ class ResponseBranches:
         )
         result = list[tuple[float, float]]()
         reached = low
-        for start, end in [*calm, (high, high)]:
+        for start, end in [*stable, (high, high)]:
             if min(start, high) - reached > _GAP * (high - low):
                 result.append((reached, min(start, high)))
             reached = max(reached, end)
@@ -276,7 +282,7 @@ class ResponseBranches:
 
     @cached_property
     def dataset(self) -> xr.Dataset:
-        """All orbits in a row, ``branch`` saying which belong together; jumps; points of attractors."""
+        """All orbits along ``point``, with the number of the branch; all jumps; all points of attractors."""
         rows = [(j, o) for j, branch in enumerate(self.branches) for o in branch.orbits]
         orbits = [o for _, o in rows]
         radius = np.array([o.spectral_radius for o in orbits])
@@ -338,12 +344,12 @@ def response_branches(
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
 
-    Teeth are alike, and loaded contact has the tangents of the static load, as of ``periodic_orbit``; the
-    prediction, whose contact follows the momentary load, is another motion.
+    Teeth are alike, and loaded contact has the tangents of the static load, as in ``periodic_orbit``. The
+    prediction is another motion, because the contact of the prediction follows the momentary load.
 
-    The search finds the branches through the motion of the linear model, those that double their period,
-    those to which runs settle, and motions that do not repeat. A motion that attracts no run is not found.
-    The speeds of the search depend on the pair's natural frequency, not on the range.
+    The search finds branches through the motion of the linear model, branches of period doublings, branches
+    to which runs settle, and motions that do not repeat. An isolated motion that attracts no run is not
+    found. The speeds of the search depend on the pair's natural frequency, not on the range.
 
     Parameters
     ----------
@@ -352,11 +358,11 @@ def response_branches(
     periods : mesh cycles after which motions repeat
     seeds : speeds an octave at which 32 runs settle, to find isolated branches and motions that do not
         repeat; 0: none
-    back_side : whether the back sides of the teeth touch after the backlash; motions that need it say so
-        without it (``GearOrbit.reaches_back_side``)
-    supports : "springs", on which alone they are computed; needed for a pair with shafts
-    seconds : processor time that the search may use [s]; what it leaves open is ``ResponseBranches.open``;
-        None: no limit
+    back_side : whether the back sides of the teeth touch after the backlash; False:
+        ``GearOrbit.reaches_back_side`` says for which motions the back sides would touch
+    supports : "springs": branches are computed on springs alone; needed for a pair with shafts
+    seconds : processor time that the search may use [s]; ``ResponseBranches.open`` has the speeds for which
+        the time did not suffice; None: no limit
     progress : called with the finished fraction
 
     Raises
@@ -376,13 +382,25 @@ def response_branches(
 
 
 def _jump(rpm: float, rising: bool, size: FloatArray, load: float, n: int, after: LongRun) -> Jump:
-    before = float(size[0]), float(size[2] - size[1]), load, n
-    behind = after.rms, peak_to_peak(after), after.largest_load, after.kind
-    return Jump(rpm, rising, *before, *behind, after.orbit.n if after.orbit else 0)
+    """A jump from a motion of a size (root mean square, least, most) to the motion ``after``."""
+    rms, least, most = map(float, size)
+    return Jump(
+        speed_rpm=rpm,
+        rising=rising,
+        dte_rms=rms,
+        dte_peak_to_peak=most - least,
+        largest_load=load,
+        n=n,
+        dte_rms_after=after.rms,
+        dte_peak_to_peak_after=peak_to_peak(after),
+        largest_load_after=after.largest_load,
+        after=after.kind,
+        n_after=after.orbit.n if after.orbit else 0,
+    )
 
 
 def _same_end(one: Jump, other: Jump) -> bool:
-    """Whether two losses of stability are one."""
+    """Whether two losses of stability are the same loss."""
     pairs = (one.speed_rpm, other.speed_rpm), (one.dte_rms, other.dte_rms)
     return (one.rising, one.n) == (other.rising, other.n) and all(
         abs(a - b) <= _SAME_END * a for a, b in pairs
@@ -392,14 +410,14 @@ def _same_end(one: Jump, other: Jump) -> bool:
 def within(
     rates: tuple[tuple[float, float], ...], cycle: float, speeds_rpm: tuple[float, float]
 ) -> tuple[tuple[float, float], ...]:
-    """Ranges of 1/T as ranges of the pinion speed [rpm], cut to those asked for."""
+    """Ranges of 1/T as ranges of the pinion speed [rpm], cut to the requested speeds."""
     low, high = speeds_rpm
     ranges = [(max(cycle * one, low), min(cycle * two, high)) for one, two in rates]
     return tuple((one, two) for one, two in ranges if one < two)
 
 
 def compile_kernels(one: Member) -> None:
-    """Compile all kernels by calling them once: compilation shall not count as time of a search."""
+    """Compile all kernels by one call of each. Compilation then does not count as time of a search."""
     rate = one.limits.fastest
     state, parameter = one.start(1.0 / rate)
     with contextlib.suppress(NumericalError):
@@ -433,6 +451,6 @@ def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") 
 
 
 def _natural_frequency(pair: GearPair) -> float:
-    """The fastest one of the averaged pair while contact holds [Hz]."""
+    """The fastest natural frequency of the averaged pair while contact holds [Hz]."""
     matrix = averaged_matrix(LTVSystem.of(pair, "mesh", supports="springs"))
     return float(np.abs(np.linalg.eigvals(matrix)).max() / (2.0 * np.pi))

@@ -169,8 +169,8 @@ def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArr
     modes. The larger exponent is then above the exponents of all other modes at least over |d| < b. Steps of
     b/omega_max put two speeds into this window.
 
-    Returns the speeds, and whether the steps are so small. They are larger where more than 20000 speeds would
-    be needed.
+    Returns the speeds, and whether the steps are as small as b/omega_max. The steps are larger where more
+    than 20000 speeds would be needed.
     """
     needed = -float(block.mean_exponents().real.max()) / float(block.modal().omega.max())
     span = math.log(high / low)
@@ -329,7 +329,7 @@ def campbell(
 
 
 def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> ComplexArray:
-    """Exponent (m,) [1/s] of the solution that belongs to each mode, on the branch near its frequency."""
+    """Exponent (m,) [1/s] of the solution for each mode, on the branch near the frequency of the mode."""
     values, vectors = np.linalg.eig(matrix)
     forward = np.stack([mode_shares(x, omega)[0] for x in vectors.T])
     # Each mode gets a solution of its own. In a tongue a growing and a decaying one share the mode equally:
@@ -516,8 +516,8 @@ def _radius(pair: GearPair) -> Radius:
 def _windows(intervals: list[UnstableInterval], low: float, high: float) -> list[tuple[float, float]]:
     """Speeds around each interval in which damping closes the tongue.
 
-    A window is wider than its interval by a quarter of the width on either side, because damping shifts a
-    tongue a little. A window ends half the way to the next interval at the latest.
+    A window is wider than the interval by a quarter of the width on either side, because damping shifts a
+    tongue a little. A window ends at the latest in the middle between two intervals.
     """
     ends = [low, *(0.5 * (a.upper + b.lower) for a, b in itertools.pairwise(intervals)), high]
     windows = []
@@ -559,7 +559,8 @@ def _edges(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Damping ratios from zero to the tip, and the edges of the tongue there [rpm].
 
-    The width of a tongue goes with the root of the distance to its tip, so ratios are spaced by squares.
+    The width of a tongue is proportional to the root of the distance to the tip. Ratios are therefore spaced
+    by squares.
     """
     u = np.linspace(1.0, 0.0, _EDGE_ROWS)[1:-1]
     dampings = tip.damping * (1.0 - u**2)

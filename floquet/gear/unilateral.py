@@ -33,7 +33,7 @@ from lumped.typing import FloatArray
 ContactForm = Literal["mesh", "elastic", "back_side"]
 
 _SPEEDS = 33
-#: Pieces shorter than this part of a cycle are none.
+#: Shortest piece of a law, as part of a cycle.
 _SAME = 1e-13
 
 
@@ -42,18 +42,19 @@ def unilateral_system(
 ) -> ContactSystem:
     """Return a gear pair on springs with one unilateral contact for each tooth pair.
 
-    A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and that is positive. Relief is
-    clearance e. Friction acts with its nominal sign. With loaded contact the contact is the tangent at the
-    static load, where that reaches. The rigid rotation, r_bg theta_g, is the accumulated row; the parameter
-    is the torque that holds the mean speed [N m]: T_g, or T_p where the brake torque is given.
+    A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and this force is positive.
+    Relief is clearance e. Friction acts with the nominal sign. Loaded contact has the tangent at the static
+    load, within the reach of this tangent. The rigid rotation, r_bg theta_g, is the accumulated row. The
+    parameter is the torque that holds the mean speed [N m]: T_g, or T_p where the brake torque is given.
 
-    ``form`` is "mesh", (q, x_p, x_g), whose motion decides that of y; "elastic", (q, x_p, x_g, y_p, y_g); or
-    "back_side", where back sides touch after the backlash, with the laws of the driving flanks. ``cycle`` has
-    other element laws than ``contact_cycle``.
+    ``form`` is "mesh", (q, x_p, x_g), whose motion decides the motion of y; "elastic",
+    (q, x_p, x_g, y_p, y_g); or "back_side", where back sides touch after the backlash, with the laws of the
+    driving flanks. ``cycle`` replaces the element laws of ``contact_cycle``.
     """
     cycle = cycle or contact_cycle(pair)
     base = LTVSystem.of(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle, supports="springs")
-    s, g = base.structure, pair.geometry
+    s = base.structure
+    g = pair.geometry
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
     phases = cycle.breaks / cycle.period
@@ -110,12 +111,18 @@ class _Flank:
 
 
 def _coast_flank(pair: GearPair, cycle: MeshCycle, rows: FloatArray) -> _Flank:
-    """The back sides: their line of action is the mirror image of the driving one in the line of centres."""
+    """The back sides of the teeth.
+
+    The line of action of the back sides is the mirror image of the line of action of the driving flanks. The
+    mirror is the line of centres.
+    """
     g = pair.geometry
-    r_p, r_g = g.base_radius_pinion, g.base_radius_gear
+    r_p = g.base_radius_pinion
+    r_g = g.base_radius_gear
     # The line of action makes the angle pi - 2 alpha_w with that of the driving flanks.
     angle = np.pi - 2.0 * g.operating_pressure_angle
-    x, y = np.cos(angle), np.sin(angle)
+    x = np.cos(angle)
+    y = np.sin(angle)
     normal = np.array([r_p, -r_g, -x, x, -y, y])
     arm = np.array([[0.0, 1.0], [-g.L_XY, 1.0], [y, 0.0], [-y, 0.0], [-x, 0.0], [x, 0.0]])
     thickness = 2.0 * r_p * pair.wheels[0].tooth.base_half_angle
@@ -146,7 +153,7 @@ def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank
         return _over_phase(function, start, inside, pitch)
 
     k, c, e = (law(f) for f in (elements.stiffness, elements.damping, elements.error))
-    mu = flank.way * law(elements.friction)  # the sliding of the back sides is the other way
+    mu = flank.way * law(elements.friction)  # back sides slide in the opposite direction
     rate = None if elements.gap is None else pitch * law(elements.error_slope)
     e[:, 0] += flank.clearance
     xi = np.stack([start, np.full(start.size, pitch)], axis=1)
@@ -181,8 +188,9 @@ def unilateral_family(
 ) -> Family:
     """Return the unilateral system over its period, for speeds of a range.
 
-    Where friction depends on speed, its law is a weighted sum of two functions of the position wherever it
-    can be (`friction_families`); then only the weights change. Elsewhere it is fitted anew.
+    A friction law that depends on speed is a weighted sum of two functions of the position, for all speeds
+    for which this form exists (`friction_families`): only the weights change over these speeds. At other
+    speeds the law is fitted anew.
     """
     if not depends_on_speed(pair):
         system = unilateral_system(pair, form=form)
@@ -205,7 +213,7 @@ def unilateral_family(
 
 
 class _Parts:
-    """The system of a family of speeds: one without friction, and one or two parts of the friction law."""
+    """The system of a family of speeds: a system without friction plus parts of the friction law."""
 
     def __init__(self, pair: GearPair, family: FrictionFamily, form: ContactForm) -> None:
         self.family = family
@@ -213,7 +221,7 @@ class _Parts:
         mu = friction_path_function(there, interval=MeshCycle.of(there).elements.stiffness.interval)
         steady = _signed(mu, pair.geometry.L_XP, family.level or 0.0)
         parts = [mu] if family.level is None else [_plus(mu, steady, -1.0), steady]
-        # Zero times the law, so that all have the same pieces.
+        # Zero times the law, so that all parts have the same pieces.
         cycle = contact_cycle(there)
 
         def system(mu: PathFunction) -> ContactSystem:
@@ -228,7 +236,7 @@ class _Parts:
         self.each = [row - rows[0] for row in rows[1:]]
 
     def at(self, rpm: float) -> ContactSystem | None:
-        """The system at a speed; None where the speed is not of the family."""
+        """The system at a speed; None: the family does not have the speed."""
         factors = self.family.factors_at(np.array([rpm]))
         if factors is None:
             return None
@@ -252,20 +260,28 @@ def _signed(like: PathFunction, pitch_point: float, level: float) -> PathFunctio
 def _plus(one: PathFunction, other: PathFunction, factor: float) -> PathFunction:
     """Return one + factor other."""
     breaks = np.union1d(one.breaks, other.breaks)
-    one, other = one.split(breaks), other.split(breaks)
+    one = one.split(breaks)
+    other = other.split(breaks)
     rows = one.coefficients.copy()
     rows[-other.coefficients.shape[0] :] += factor * other.coefficients[-rows.shape[0] :]
     return PathFunction(one.breaks, rows, np.union1d(one.switches, other.switches))
 
 
 def contact_cycle(pair: GearPair) -> MeshCycle:
-    """The mesh cycle with clearance for relief; the linear model has the stiffness that statics leave."""
+    """The mesh cycle of unilateral contact, where relief is a clearance.
+
+    In the linear model relief changes the stiffness instead, as statics give it.
+    """
     return MeshCycle(pair.geometry, contact_of(pair).unilateral_elements(pair))
 
 
 def _over_phase(function: PathFunction, start: FloatArray, inside: FloatArray, pitch: float) -> FloatArray:
-    """Polynomials (P, D + 1) of the phase since the start of each piece, lowest power first; zero outside."""
-    breaks, low, high = function.breaks, *function.interval
+    """Polynomials (P, D + 1) of the phase since the start of each piece, lowest power first.
+
+    A piece outside the interval of the function is zero.
+    """
+    breaks = function.breaks
+    low, high = function.interval
     piece = np.clip(np.searchsorted(breaks, inside, side="right") - 1, 0, breaks.size - 2)
     rows = shifted(function.coefficients[:, piece], start - breaks[piece])[::-1].T
     rows = np.where(((inside >= low) & (inside <= high))[:, None], rows, 0.0)

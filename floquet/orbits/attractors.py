@@ -1,4 +1,4 @@
-"""Motions to which runs settle at speeds of a grid, and those that do not repeat followed over the speed.
+"""Motions to which runs settle at speeds of a grid. Motions that do not repeat are followed over the speed.
 
 Sources: docs/theory/orbits.md, "Motions that do not repeat".
 """
@@ -16,16 +16,16 @@ from floquet.orbits.long_run import LongRun, grown
 from floquet.orbits.settling import Settled, alike, settle
 from lumped.typing import BoolArray, FloatArray
 
-#: Change of size from one speed of the grid to the next that one motion may make.
+#: Largest relative change of the size of a motion from one speed of the grid to the next.
 _FOLLOWS = 0.2
-#: Steps between two speeds of the grid in which an end is looked for.
+#: Steps of the speed between two speeds of the grid in the search for the end of a motion.
 _STEPS = 32
-#: Runs that follow a motion, whose starts differ by this part. Where two of them leave it, at a speed of the
-#: grid within so many times the cycles of settling, it does not last.
+#: Number of runs that follow a motion, and relative difference of their starts. A motion does not last where
+#: two of the runs leave the motion at a speed of the grid within ``_LONG`` times the cycles of settling.
 _REPLICAS = 16
 _MOVED = 1e-6
 _LONG = 4
-#: Motions that are told apart at one speed.
+#: Largest number of different motions at one speed.
 _MOST = 12
 _NONE = np.zeros(3)
 
@@ -37,11 +37,11 @@ class Motion:
     Attributes
     ----------
     rate : 1/T [1/s]
-    state, parameter : at phase 0, and the free parameter
-    size : root mean square, smallest and largest value of the output, about
-    next : way (+1, -1) -> what it becomes at the next speed of the grid that way; None: it grows
-    starts : how many of the runs that started apart have come to it
-    identified : what it is exactly, once that was looked at
+    state, parameter : state at phase 0, and the free parameter
+    size : approximate root mean square, smallest and largest value of the output
+    next : direction (+1, -1) of the speed -> motion at the next speed of the grid; None: the motion grows
+    starts : number of runs from the starts of the survey that have settled to the motion
+    identified : the exact motion; None: not yet computed
     """
 
     rate: float
@@ -54,12 +54,12 @@ class Motion:
 
     @property
     def run(self) -> LongRun:
-        """The exact motion, or its exponent where the motion does not repeat."""
+        """The exact motion, or the exponent of a motion that does not repeat."""
         assert self.identified is not None
         return self.identified
 
     def identify(self, run: LongRun) -> None:
-        """Store the exact motion, and its size."""
+        """Store the exact motion and the size of this motion."""
         self.identified = run
         if run.run is not None:
             self.size = np.array([run.run.rms, run.run.least, run.run.most])
@@ -67,13 +67,13 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class AttractorEnd:
-    """Where a motion that does not repeat ends.
+    """End of a motion that does not repeat.
 
     Attributes
     ----------
-    rate, size : 1/T of the last one found [1/s], and what `Motion` has as its size
-    behind : T of the next one looked at [s]
-    after : what it becomes there
+    rate, size : 1/T [1/s] and `Motion.size` of the last motion before the end
+    behind : T of the first run beyond the end [s]
+    after : the motion at ``behind``
     """
 
     rate: float
@@ -84,13 +84,13 @@ class AttractorEnd:
 
 @dataclass(frozen=True, eq=False)
 class Attractor:
-    """A motion that does not repeat after the cycles looked for, over the speed.
+    """A motion over the speed that does not repeat within the cycles of the search.
 
     Attributes
     ----------
-    rates : 1/T at which it was found, increasing [1/s]
-    runs : what it is at each
-    ends : at low and at high speed; None: it goes on to the end of the range
+    rates : increasing 1/T at which the motion was found [1/s]
+    runs : the motion at each of the rates
+    ends : end at low and end at high speed; None: the motion continues to the end of the range
     """
 
     rates: FloatArray
@@ -118,7 +118,11 @@ class Survey:
         self.levels: list[list[Motion]] = [[] for _ in rates]
         self.grown = list[Motion]()
         for j, rate in enumerate(rates):
-            motions = [Motion(at, state, parameter, _NONE) for at, state, parameter in starts if at == rate]
+            motions = [
+                Motion(start_rate, state, parameter, _NONE)
+                for start_rate, state, parameter in starts
+                if start_rate == rate
+            ]
             result, grows = self._settle(motions, np.full(len(motions), rate))
             for i, motion in enumerate(motions):
                 if grows[i]:
@@ -126,11 +130,11 @@ class Survey:
                 else:
                     self._enter(j, result, i, motion.parameter).starts += 1
             report((j + 1) / rates.size)
-        while sum(self._carry(j, way) for way in (1, -1) for j in range(rates.size)[::way]):
+        while sum(self._carry(j, step) for step in (1, -1) for j in range(rates.size)[::step]):
             pass
 
     def _settle(self, motions: list[Motion], rates: FloatArray) -> tuple[Settled, BoolArray]:
-        """Settle from motions at speeds; the runs, and which of them grow."""
+        """Let runs from motions settle at speeds. Returns the settled runs, and whether each run grows."""
         self.deadline.check()
         result = settle(
             self.family, self.limits, np.array([motion.state for motion in motions]), 1.0 / rates,
@@ -139,9 +143,10 @@ class Survey:
         return result, result.grown(self.limits.amplitude)
 
     def _enter(self, j: int, result: Settled, i: int, parameter: float) -> Motion:
-        """The motion at speed j that is like run i.
+        """Return the motion at speed j that is like run i.
 
-        Without such a motion: a new one, or the motion nearest in size where the level is full.
+        No motion is like the run: a new motion is added. Where the level is full, the motion nearest in size
+        is returned.
         """
         level = self.levels[j]
         size = result.sizes[i]
@@ -151,58 +156,62 @@ class Survey:
         level.append(Motion(float(self.rates[j]), result.states[i], parameter, size))
         return level[-1]
 
-    def _carry(self, j: int, way: int) -> bool:
-        """Let motions at speed j run on at the next speed; return whether there was one that had not yet."""
-        waiting = [motion for motion in self.levels[j] if way not in motion.next]
-        if not waiting or not 0 <= j + way < self.rates.size:
+    def _carry(self, j: int, step: int) -> bool:
+        """Follow the motions at speed j to the speed j + step. Returns whether there was a new motion."""
+        waiting = [motion for motion in self.levels[j] if step not in motion.next]
+        if not waiting or not 0 <= j + step < self.rates.size:
             return False
-        result, grows = self._settle(waiting, np.full(len(waiting), self.rates[j + way]))
+        result, grows = self._settle(waiting, np.full(len(waiting), self.rates[j + step]))
         for i, motion in enumerate(waiting):
-            motion.next[way] = None if grows[i] else self._enter(j + way, result, i, motion.parameter)
+            motion.next[step] = None if grows[i] else self._enter(j + step, result, i, motion.parameter)
         return True
 
     def attractors(
         self, wanted: Callable[[LongRun], bool], identify: Callable[[Motion], LongRun]
     ) -> tuple[Attractor, ...]:
-        """Follow what is ``wanted`` from speed to speed, all motions being identified, and find its ends."""
+        """Follow the ``wanted`` motions from speed to speed, and find the ends of each of these motions.
+
+        All motions of the survey must be identified before.
+        """
         self.wanted = wanted
         self.identify = identify
-        left = [
+        unlinked = [
             [motion for motion in level if wanted(motion.run) and self._lasts(motion)]
             for level in self.levels
         ]
         result = list[Attractor]()
-        for j, level in enumerate(left):
+        for j, level in enumerate(unlinked):
             while level:
                 chain = [level.pop(0)]
                 ends = list[AttractorEnd | None]()
-                for way in (-1, 1):
-                    at = j
-                    last = chain[0 if way < 0 else -1]
+                for step in (-1, 1):
+                    k = j
+                    last = chain[0 if step < 0 else -1]
                     end = None
-                    while 0 <= at + way < self.rates.size and end is None:
-                        last, end = self._onward(last, way, at + way, left[at + way])
-                        at += way
+                    while 0 <= k + step < self.rates.size and end is None:
+                        k += step
+                        last, end = self._onward(last, step, k, unlinked[k])
                         if end is None:
-                            chain.insert(0 if way < 0 else len(chain), last)
+                            chain.insert(0 if step < 0 else len(chain), last)
                     ends.append(end)
                 rates = np.array([motion.rate for motion in chain])
                 result.append(Attractor(rates, tuple(motion.run for motion in chain), (ends[0], ends[1])))
         return tuple(result)
 
     def _onward(
-        self, last: Motion, way: int, to: int, level: list[Motion]
+        self, last: Motion, step: int, k: int, level: list[Motion]
     ) -> tuple[Motion, AttractorEnd | None]:
-        """The motion at the next speed to which the last motion leads, removed from the level of that speed.
+        """Follow the last motion by one step of the grid to the speed k.
 
-        Where the last motion ends before the next speed: the place of this end as well.
+        Returns the motion at the speed k, which is removed from the ``level`` of this speed, and None. Where
+        the last motion ends before: the motion just before the end, and the end.
         """
         for other in level:
-            linked = last.next.get(way) is other or other.next.get(-way) is last
+            linked = last.next.get(step) is other or other.next.get(-step) is last
             if linked and alike(last.size, other.size, _FOLLOWS):
                 level.remove(other)
                 return other, None
-        motion, end = self._walk(last, float(self.rates[to]))
+        motion, end = self._walk(last, float(self.rates[k]))
         for other in level:
             if end is None and alike(motion.size, other.size, _FOLLOWS):
                 level.remove(other)
@@ -210,19 +219,19 @@ class Survey:
         return motion, end
 
     def _walk(self, last: Motion, rate: float) -> tuple[Motion, AttractorEnd | None]:
-        """Follow a motion in small steps to another speed; return the last motion, and its end or None."""
+        """Follow a motion in small steps to another speed. Returns the last motion, and the end or None."""
         good = last
         states = self._replicas(last)
         for step in last.rate * (rate / last.rate) ** (np.arange(1.0, _STEPS + 1.0) / _STEPS):
-            result, left = self._left(states, float(step), good)
-            if np.count_nonzero(left) > 1:
-                i = int(np.flatnonzero(left)[0])
-                gone = Motion(float(step), result.states[i], good.parameter, result.sizes[i])
-                after = self.identify(gone) if np.isfinite(gone.size).all() else grown(good.parameter)
+            result, departed = self._settle_replicas(states, float(step), good)
+            if np.count_nonzero(departed) > 1:
+                i = int(np.flatnonzero(departed)[0])
+                beyond = Motion(float(step), result.states[i], good.parameter, result.sizes[i])
+                after = self.identify(beyond) if np.isfinite(beyond.size).all() else grown(good.parameter)
                 return good, AttractorEnd(good.rate, good.size, 1.0 / float(step), after)
-            stay = np.flatnonzero(~left)
-            states = result.states[np.where(left, stay[0], np.arange(_REPLICAS))]
-            good = Motion(float(step), states[0], good.parameter, result.sizes[stay].mean(axis=0))
+            staying = np.flatnonzero(~departed)
+            states = result.states[np.where(departed, staying[0], np.arange(_REPLICAS))]
+            good = Motion(float(step), states[0], good.parameter, result.sizes[staying].mean(axis=0))
         size = good.size
         good.identify(self.identify(good))
         if self.wanted(good.run) and alike(size, good.size, _FOLLOWS):
@@ -230,19 +239,22 @@ class Survey:
         return good, AttractorEnd(good.rate, size, 1.0 / good.rate, good.run)
 
     def _lasts(self, motion: Motion) -> bool:
-        """Whether runs stay on a motion. Runs leave some chaos soon, on their way to another motion."""
+        """Whether runs stay on a motion. Some chaos is transient: runs soon leave it for another motion."""
         states = self._replicas(motion)
         count = 0
         for _ in range(_LONG):
-            result, left = self._left(states, motion.rate, motion)
-            states = result.states[~left]
-            count = count + int(np.count_nonzero(left))
+            result, departed = self._settle_replicas(states, motion.rate, motion)
+            states = result.states[~departed]
+            count = count + int(np.count_nonzero(departed))
             if count > 1:
                 return False
         return True
 
-    def _left(self, states: FloatArray, rate: float, motion: Motion) -> tuple[Settled, BoolArray]:
-        """Settled runs at a speed, and which runs are no longer like a motion."""
+    def _settle_replicas(self, states: FloatArray, rate: float, motion: Motion) -> tuple[Settled, BoolArray]:
+        """Let runs settle at a speed.
+
+        Returns the settled runs, and whether each has departed from a motion.
+        """
         result, grows = self._settle(
             [Motion(rate, state, motion.parameter, motion.size) for state in states],
             np.full(len(states), rate),
@@ -252,5 +264,5 @@ class Survey:
 
     @staticmethod
     def _replicas(motion: Motion) -> FloatArray:
-        """(R, 2m) the state, slightly moved: chaos takes them apart."""
+        """(R, 2m) copies of the state with small differences, which chaos makes grow."""
         return np.asarray(motion.state * (1.0 + _MOVED * np.arange(_REPLICAS))[:, None])

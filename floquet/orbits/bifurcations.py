@@ -1,4 +1,4 @@
-"""Where stability or the number of periodic motions changes along a branch, and where an event appears.
+"""Bifurcations: places on a branch at which stability, the number of motions or contact events change.
 
 Sources: docs/theory/orbits.md, "Bifurcations"; Kuznetsov, Elements of applied bifurcation theory, 2004, ch.
 10.
@@ -24,13 +24,14 @@ from lumped.typing import FloatArray
 
 Kind = Literal["fold", "period doubling", "Neimark-Sacker", "grazing"]
 _Test = Callable[[Orbit, FloatArray], float]
-#: A test function this much below its values around is zero there; else it jumps, at a corner.
+#: A test function below this part of the neighbouring values vanishes. Otherwise it jumps: a corner.
 _ZERO = 1e-5
-#: Part of a step to which a place is refined; a contact begins to open or to close in a step of its test
-#: function, which is halved, and no other result builds on that place.
+#: Tolerance of a place as part of a step. Grazing has a wider tolerance: the test function of grazing is a
+#: step, so that bisection finds the place, and no other result depends on this place.
 _REFINED = 1e-13
 _GRAZES = 1e-7
-#: Inside a tongue the linear system has motions of any amplitude at one speed: a branch that neither turns.
+#: Rounding of a test function. Inside a tongue the linear system has motions of any amplitude at one speed: a
+#: branch at a constant speed, without a fold.
 _ROUNDING = 1e-11
 #: Least cosine between a tangent and the chord for a cubic between neighbours.
 _AHEAD = 0.5
@@ -43,11 +44,11 @@ class Bifurcation:
     Attributes
     ----------
     kind : "fold": two motions meet; "period doubling": a multiplier is -1; "Neimark-Sacker": a complex pair
-        has modulus 1, the motion begins to beat; "grazing": a contact begins to part or to strike
-    orbit : the motion there
-    place : where it is on the branch: the index of the orbit before it, and the part of the way to the next
-    sharp : whether the test function vanishes there; not so at a corner, where a contact begins to strike and
-        the multipliers jump
+        has modulus 1, the motion begins to beat; "grazing": a contact begins to open or to strike
+    orbit : the motion at the point
+    place : index of the orbit before the point, plus the part of the interval to the next orbit
+    sharp : whether the test function vanishes at the point. False: a corner, where a contact begins to strike
+        and the multipliers jump
     """
 
     kind: Kind
@@ -73,33 +74,34 @@ def with_bifurcations(along: Continuation, path: Path, result: list[Bifurcation]
         if two < j + 1 and two > one:
             chord = path.X[j + 1] - path.X[j]
             with contextlib.suppress(NumericalError):
-                at = path.X[j] + (middle - j) * chord
-                places.append((middle, along.correct(at, chord / np.linalg.norm(chord))[1]))
+                X = path.X[j] + (middle - j) * chord
+                _, orbit, *_ = along.correct(X, chord / np.linalg.norm(chord))
+                places.append((middle, orbit))
     return [orbit for _, orbit in sorted(places, key=lambda item: item[0])]
 
 
 def bifurcations(
     along: Continuation, path: Path, intervals: Sequence[int] | None = None, deadline: Deadline = ENDLESS
 ) -> tuple[list[Bifurcation], list[int]]:
-    """Return the bifurcations between the points of a path in order, each refined.
+    """Return the refined bifurcations of a path in order, and the intervals that the deadline has left out.
 
-    ``intervals`` are the indices of the points after which they are looked for, the most useful first; None:
-    all. Second come those for which the deadline left no time.
+    ``intervals`` are the intervals to search, the most useful first: interval j lies between the points j and
+    j + 1. None: all intervals.
     """
     result = list[Bifurcation]()
-    left = list[int]()
+    unsearched = list[int]()
     for j in range(len(path.orbits) - 1) if intervals is None else intervals:
         tests = _tests(path, j)
         if tests and deadline.passed:
-            left.append(j)
+            unsearched.append(j)
             continue
         points = [_refined(along, path, j, kind, test) for kind, test in tests]
         result += [point for point in points if point.kind != "Neimark-Sacker" or _turns(point.orbit)]
-    return sorted(result, key=lambda point: int(point.place)), left
+    return sorted(result, key=lambda point: int(point.place)), unsearched
 
 
 def doubling_direction(along: Continuation, orbit: Orbit) -> FloatArray:
-    """Scaled tangent at which the branch of twice the cycles leaves a period doubling."""
+    """Scaled tangent of the branch with twice the cycles at a period doubling."""
     values, vectors = np.linalg.eig(orbit.monodromy)
     vector = np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))])
     tangent = np.zeros(along.scale.size)
@@ -108,7 +110,7 @@ def doubling_direction(along: Continuation, orbit: Orbit) -> FloatArray:
 
 
 def _tests(path: Path, j: int) -> list[tuple[Kind, _Test]]:
-    """Kinds of bifurcations between points j and j + 1, each with its test function, which changes sign."""
+    """Kinds of the bifurcations between points j and j + 1, each with the test function that changes sign."""
     one, two = ends = [(path.orbits[i], path.tangents[i]) for i in (j, j + 1)]
     tests: list[tuple[Kind, _Test]] = [("fold", _speed_along), ("period doubling", _doubling)]
     if abs(_unstable_pairs(one[0]) - _unstable_pairs(two[0])) == 2:
@@ -143,7 +145,10 @@ def _unstable_pairs(orbit: Orbit) -> int:
 
 
 def _turns(orbit: Orbit) -> bool:
-    """Whether the multiplier nearest to the unit circle is complex; a pair may have met on the real axis."""
+    """Whether the multiplier nearest to the unit circle is complex.
+
+    A pair that changes its modulus may also have met on the real axis.
+    """
     mu = orbit.multipliers
     return bool(abs(mu[int(np.argmin(np.abs(np.abs(mu) - 1.0)))].imag) > _ZERO)
 
@@ -153,33 +158,33 @@ def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -
     chord = path.X[j + 1] - path.X[j]
     chord = chord / np.linalg.norm(chord)
     places = [0.0, 1.0]
-    known = [_TestedPoint(path.X[i], path.orbits[i], path.tangents[i], test) for i in (j, j + 1)]
-    around = max(abs(one.value) for one in known)
+    tested = [_TestedPoint(path.X[i], path.orbits[i], path.tangents[i], test) for i in (j, j + 1)]
+    largest_value = max(abs(point.value) for point in tested)
 
     def value(part: float) -> float:
-        at = bisect_left(places, part)
-        if at == len(places) or places[at] != part:
-            one = known[at - 1]
-            two = known[at]
-            share = (part - places[at - 1]) / (places[at] - places[at - 1])
-            X, orbit, turned, _ = along.correct(_between(one, two, chord, share), chord)
-            places.insert(at, part)
-            known.insert(at, _TestedPoint(X, orbit, turned, test))
-        return known[at].value
+        i = bisect_left(places, part)
+        if i == len(places) or places[i] != part:
+            one = tested[i - 1]
+            two = tested[i]
+            share = (part - places[i - 1]) / (places[i] - places[i - 1])
+            X, orbit, tangent, _ = along.correct(_between(one, two, chord, share), chord)
+            places.insert(i, part)
+            tested.insert(i, _TestedPoint(X, orbit, tangent, test))
+        return tested[i].value
 
     try:
-        room = _GRAZES if kind == "grazing" else _REFINED
-        part = float(brentq(value, 0.0, 1.0, xtol=room, rtol=1e-14, maxiter=80))
+        tolerance = _GRAZES if kind == "grazing" else _REFINED
+        part = float(brentq(value, 0.0, 1.0, xtol=tolerance, rtol=1e-14, maxiter=80))
         value(part)
     except (NumericalError, RuntimeError):
-        part = places[int(np.argmin([abs(one.value) for one in known]))]
-    result = known[places.index(part)]
-    sharp = kind != "grazing" and abs(result.value) <= _ZERO * around
+        part = places[int(np.argmin([abs(point.value) for point in tested]))]
+    result = tested[places.index(part)]
+    sharp = kind != "grazing" and abs(result.value) <= _ZERO * largest_value
     return Bifurcation(kind, result.orbit, j + part, sharp)
 
 
 class _TestedPoint:
-    """A point between two of a path, with its tangent and the value of a test there."""
+    """A point between two points of a path, with the tangent and the value of a test function."""
 
     def __init__(self, X: FloatArray, orbit: Orbit, tangent: FloatArray, test: _Test) -> None:
         self.X = X
@@ -189,12 +194,17 @@ class _TestedPoint:
 
 
 def _between(one: _TestedPoint, two: _TestedPoint, chord: FloatArray, t: float) -> FloatArray:
-    """A point of the cubic through two with their tangents; straight where these turn away from the chord."""
-    X, Y = one.X, two.X
+    """Point at the part t of the cubic through two points with their tangents.
+
+    Where a tangent turns away from the chord: the point at the part t of the chord.
+    """
+    X = one.X
+    Y = two.X
     length = float(chord @ (Y - X))
     ahead = [float(chord @ point.tangent) for point in (one, two)]
     if min(ahead) < _AHEAD:
         return np.asarray(X + t * (Y - X))
-    a, b = one.tangent * (length / ahead[0]), two.tangent * (length / ahead[1])
+    a = one.tangent * (length / ahead[0])
+    b = two.tangent * (length / ahead[1])
     cubic = (2 * t**3 - 3 * t**2 + 1) * X + (t**3 - 2 * t**2 + t) * a
     return np.asarray(cubic + (3 * t**2 - 2 * t**3) * Y + (t**3 - t**2) * b)

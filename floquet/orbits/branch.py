@@ -26,7 +26,7 @@ _LEAST_STEP = 1e-7
 _LARGEST_STEP = 0.2
 _CORNER_STEP = 2e-4
 _MOST_CORRECTIONS = 8
-#: Relative change of T by which coefficients that depend on it are differenced.
+#: Relative change of T for differences of the coefficients that depend on T.
 _PERIOD_STEP = 1e-5
 #: Least cosine between the tangents of neighbours.
 _BEND = 0.95
@@ -36,8 +36,8 @@ _SPEED = 0.04
 _MOST_LOG = 100.0
 #: Phase rates are about this many times the displacements.
 _RATE = 10.0
-#: Distance (the largest step is 0.2) within which what T does through coefficients is taken as the same: it
-#: decides how fast Newton's method comes to a motion, not to which.
+#: Distance (the largest step is 0.2) within which a derivative by T through the coefficients is used again.
+#: The distance decides how fast Newton's method converges, not to which motion.
 _ALIKE = 0.5
 
 
@@ -48,7 +48,7 @@ class Family:
     Attributes
     ----------
     at : T [s] -> the system
-    constant : whether the coefficients over the phase are the same at all periods
+    constant : whether the coefficients over the phase are equal at all periods
     """
 
     at: Callable[[float], ContactSystem]
@@ -57,17 +57,18 @@ class Family:
 
 @dataclass(frozen=True)
 class Limits:
-    """Where a branch ends, and the sizes that make its unknowns comparable.
+    """Ends of branches, and the sizes that scale the unknowns to order one.
 
     Attributes
     ----------
     slowest, fastest : range of 1/T [1/s]
     length : size of displacements
     parameter : size of the free parameter
-    amplitude : largest motion of the output from its mean that is followed
-    frequency : of the fastest natural motion while contacts hold, with the mean stiffness [1/s]
-    points : most orbits in a direction
-    calm : whether a motion of one cycle needs no following, for nothing happens beyond it; None: no motion
+    amplitude : largest motion of the output from its mean; a branch ends at a larger motion
+    frequency : frequency of the fastest natural motion while contacts hold, with the mean stiffness [1/s]
+    points : largest number of orbits in a direction
+    calm : orbit of one cycle -> whether the branch may end there, because nothing happens beyond the orbit;
+        None: no branch ends for this reason
     """
 
     slowest: float
@@ -84,7 +85,7 @@ class Limits:
 class Path:
     """Points of a branch in one direction: scaled unknowns X, motions, unit tangents, reason of the end.
 
-    ``step`` is the length of the next step. A path that ends because of "time" continues with this step.
+    ``step`` is the length of the next step. A path that the deadline has ended continues with this step.
     """
 
     X: list[FloatArray]
@@ -125,7 +126,7 @@ class Continuation:
     def evaluate(
         self, X: FloatArray, by_coefficients: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray, Orbit]:
-        """Scaled residual F of the closing conditions, its derivative by X, and the motion.
+        """Scaled residual F of the closing conditions, derivative of F by X, and the motion.
 
         The motion is periodic where F = 0. ``by_coefficients`` is a result of the method `by_coefficients`
         at a place nearby. None: the result is computed here.
@@ -160,10 +161,10 @@ class Continuation:
         return np.asarray((ends[0] - ends[1]) / (2.0 * _PERIOD_STEP * T))
 
     def _by_coefficients_near(self, X: FloatArray) -> FloatArray | None:
-        """Result of `by_coefficients` at a place within reach; None where no coefficient depends on T.
+        """Result of `by_coefficients` at a nearby place. None: no coefficient depends on T.
 
-        Folds stay where they are: the speed component of a tangent vanishes with the determinant of the
-        derivatives by the other unknowns.
+        The nearby place does not move a fold. At a fold the speed component of the tangent vanishes together
+        with the determinant of the derivatives by all unknowns but the speed.
         """
         if self.family.constant:
             return None
@@ -172,7 +173,10 @@ class Continuation:
         return self._coefficients[1]
 
     def correct(self, X: FloatArray, border: FloatArray) -> tuple[FloatArray, Orbit, FloatArray, int]:
-        """Newton's method in the plane through X across the border -> X, orbit, tangent, iterations."""
+        """Newton's method in the plane through X with the normal ``border``.
+
+        Returns X, orbit, unit tangent and the number of iterations.
+        """
         plane = float(border @ X)
         right = np.zeros((X.size, 2))
         right[-1, 1] = 1.0
@@ -199,9 +203,9 @@ class Continuation:
         tangent: FloatArray | None = None,
         deadline: Deadline = ENDLESS,
     ) -> Path:
-        """Orbits from one on until an end of the limits, towards higher (+1) or lower speeds (-1).
+        """Follow a branch from an orbit towards higher (+1) or lower speeds (-1) until a limit ends the path.
 
-        ``tangent`` is the one to start along instead, where the orbit is a bifurcation.
+        ``tangent`` replaces the first direction where the orbit is a bifurcation.
         """
         X = self.unknowns(orbit)
         if tangent is None:
@@ -211,7 +215,7 @@ class Continuation:
         return path
 
     def extend(self, path: Path, deadline: Deadline = ENDLESS) -> None:
-        """Follow a path on from its last orbit until an end of the limits, or of the time."""
+        """Continue a path from the last orbit until a limit or the deadline ends the path."""
         step = path.step
         path.end = "points"
         while len(path.orbits) < self.limits.points:
@@ -222,8 +226,9 @@ class Continuation:
             X = path.X[-1]
             tangent = path.tangents[-1]
             try:
-                new, orbit, turned, iterations = self.correct(X + step * tangent, tangent)
-                good = float(turned @ tangent) > _BEND and float(np.linalg.norm(new - X)) < 2.0 * step
+                new, orbit, new_tangent, iterations = self.correct(X + step * tangent, tangent)
+                straight = float(new_tangent @ tangent) > _BEND
+                good = straight and float(np.linalg.norm(new - X)) < 2.0 * step
             except NumericalError:
                 good = False
             if not good:
@@ -237,7 +242,7 @@ class Continuation:
             if self.n % 2 == 0 and self._falls_back(path, orbit):
                 path.end = "doubling"
                 break
-            path.append(new, orbit, turned)
+            path.append(new, orbit, new_tangent)
             end = self._end(path, step)
             if end is not None:
                 path.end = end
@@ -248,7 +253,10 @@ class Continuation:
                 step *= 0.6
 
     def _falls_back(self, path: Path, orbit: Orbit) -> bool:
-        """Whether the path has passed the motion of half the cycles: both halves have changed places."""
+        """Whether the path has passed the motion of half the cycles.
+
+        At this motion the difference between the first and the second half of the cycles changes sign.
+        """
         first = path.orbits[1] if len(path.orbits) > 1 else orbit
         one, two = (o.run.states[self.n // 2] - o.start for o in (first, orbit))
         scale = self.scale[: self.size]
@@ -266,7 +274,7 @@ class Continuation:
         return "closed" if len(path.X) > 10 and self._returns(path, step) else None
 
     def _returns(self, path: Path, step: float) -> bool:
-        """Whether the next step comes to the first orbit again, started in any of its cycles."""
+        """Whether the next step reaches the first orbit again, at the start of any cycle of the orbit."""
         for start in path.orbits[0].shifted():
             first = path.X[0].copy()
             first[: self.size] = start / self.scale[: self.size]
@@ -276,23 +284,29 @@ class Continuation:
         return False
 
     def _pass_corner(self, path: Path) -> bool:
-        """Where an event makes the branch turn sharply: go on along the tangent of the motion just beyond."""
+        """Continue a path beyond a corner, where an event makes the branch turn sharply.
+
+        The new direction is the tangent of a motion just beyond the corner. Returns whether the path
+        continues.
+        """
         X = path.X[-1]
         tangent = path.tangents[-1]
         try:
             _, J, _ = self.evaluate(X + 100.0 * _LEAST_STEP * tangent)
         except NumericalError:
             return False
-        null = np.linalg.svd(J)[2][-1]
-        came = path.X[-2] - X if len(path.X) > 1 else -tangent
-        for way in (null, -null):
+        _, _, right_vectors = np.linalg.svd(J)
+        null = right_vectors[-1]
+        to_previous = path.X[-2] - X if len(path.X) > 1 else -tangent
+        for direction in (null, -null):
             try:
-                new, orbit, turned, _ = self.correct(X + _CORNER_STEP * way, way)
+                new, orbit, new_tangent, _ = self.correct(X + _CORNER_STEP * direction, direction)
             except NumericalError:
                 continue
-            went = new - X
-            back = float(went @ came) > 0.999 * float(np.linalg.norm(went) * np.linalg.norm(came))
-            if not back and float(turned @ way) > 0.0:
-                path.append(new, orbit, turned)
+            step = new - X
+            lengths = float(np.linalg.norm(step) * np.linalg.norm(to_previous))
+            goes_back = float(step @ to_previous) > 0.999 * lengths
+            if not goes_back and float(new_tangent @ direction) > 0.0:
+                path.append(new, orbit, new_tangent)
                 return True
         return False

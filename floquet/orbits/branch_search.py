@@ -1,4 +1,4 @@
-"""The search for branches: the first ones, those that double, and isolated ones from settled runs.
+"""The search for branches: first branches, branches of period doublings, and isolated branches.
 
 Sources: docs/theory/orbits.md, "Branches" and "Jumps within a time".
 """
@@ -25,11 +25,11 @@ from lumped.errors import NumericalError
 from lumped.typing import FloatArray, Progress
 
 #: Speeds in an octave at which Newton's method starts. They are powers of a ratio times the fastest natural
-#: frequency, so that what is looked for at a speed does not depend on the range.
+#: frequency, so that the search at a speed does not depend on the range.
 STARTS = 12
 #: Least number of such speeds in a window.
 _LEAST_STARTS = 3
-#: Part of a speed that is rounding; speeds of the grid in an octave, at most.
+#: Rounding, as part of a speed, and most speeds of the grid in an octave.
 _SAME = 1e-9
 _EVEN = 10_000
 _SUBHARMONICS = 10
@@ -38,8 +38,8 @@ _NEIGHBOURS = 6
 #: Runs at each speed, evenly spread by an additive recurrence (Roberts 2018), the same at every run.
 _RUNS = 32
 _FILL = np.array([0.7548776662466927, 0.5698402909980532])
-#: Parts of the time that is left: for a window beside others, for one branch of many, for following within
-#: those (what remains is for refining what was found), and for one run of many.
+#: Parts of the remaining time: for one of several windows, for one of many branches, for following within
+#: these times (the rest is for refining bifurcations), and for one of many runs.
 _WINDOW = 0.5
 _BRANCH = 0.25
 _FOLLOWING = 0.5
@@ -50,14 +50,14 @@ Window = tuple[float, float]
 
 @dataclass(frozen=True)
 class Agenda:
-    """Where a search looks, and in which order.
+    """Ranges of speeds for a search, and the order of the search.
 
     Attributes
     ----------
     reported : slowest and fastest 1/T whose jumps are of interest [1/s]
-    windows : ranges of 1/T in which motions may be another than the linear one [1/s]
-    above : 1/T up to which large motions start that reach down into the range [1/s]
-    reach : part of its speed to which a branch that is not followed may lead down
+    windows : ranges of 1/T in which a motion may differ from the linear motion [1/s]
+    above : 1/T up to which large motions start whose branches reach down into the range [1/s]
+    reach : lowest speed that a branch may reach, over the speed at which the branch was cut
     first : 1/T of most interest [1/s]
     """
 
@@ -68,7 +68,7 @@ class Agenda:
     first: float
 
     def away(self, rate: float) -> float:
-        """Distance of a speed from the one of most interest, in logarithms."""
+        """Distance of a speed from the speed of most interest, in logarithms."""
         return abs(float(np.log(rate / self.first)))
 
 
@@ -78,12 +78,13 @@ def find_branches(
 ) -> Response:  # fmt: skip
     """Return the branches of motions of some periods over a range of speeds.
 
-    First those from the motion while all contacts hold, at 12 speeds an octave; then those behind period
-    doublings; then isolated ones from runs that settled, at ``seeds`` speeds an octave.
+    The search first follows branches from the motion while all contacts hold, at 12 speeds an octave. Next
+    come branches of period doublings. Last come isolated branches from settled runs, at ``seeds`` speeds an
+    octave.
 
-    With an ``agenda`` only its windows are looked at, and branches from them as far as they lead. With a
-    ``deadline`` what runs do behind the loss of stability is looked at as well, for each branch after it was
-    found, and `Response.open` says where the time did not suffice.
+    With an ``agenda`` the search is limited to the windows of the agenda and to branches that lead out of
+    these windows. With a ``deadline`` runs also show the motion beyond each loss of stability, and
+    `Response.open` has the speeds for which the time did not suffice.
     """
     search = _Search(member, set(periods), agenda, deadline)
     search.explore(seeds, progress)
@@ -121,10 +122,11 @@ def find_branches_of_stack(
 
 @dataclass(eq=False)
 class _Trace:
-    """A branch as it is followed: paths up and down from its first motion, and what was refined of it.
+    """A branch during the search: paths up and down from the first motion, and refined bifurcations.
 
-    ``down`` is None where the path closes, or where it starts at a period doubling, which is ``first_end``.
-    ``left`` are intervals between points that are still to be looked at.
+    ``down`` is None where the path closes, or where the path starts at a period doubling. ``first_end`` is
+    then the reason of the end at the first motion. ``found`` are the refined bifurcations, ``left`` the
+    intervals between points in which bifurcations are still to be found.
     """
 
     along: Continuation
@@ -153,40 +155,44 @@ class _Trace:
 
     @property
     def unfinished(self) -> bool:
-        """Whether it goes on, or has intervals that were not looked at."""
+        """Whether the branch continues, or has intervals without a search for bifurcations."""
         return "time" in self.ends or bool(self.left)
 
     def extend(self, deadline: Deadline) -> None:
-        """Follow it on where it ended for want of time."""
+        """Continue the paths that the deadline has ended."""
         before = len(self.path.orbits)
         down = 0 if self.down is None else len(self.down.orbits)
         for path, limit in ((self.up, deadline.share(0.5)), (self.down, deadline)):
             if path is not None and path.end == "time":
                 self.along.extend(path, limit)
-        # Points before the first one move the others' indices.
+        # New points before the first point shift the indices of all other points.
         shift = 0 if self.down is None else len(self.down.orbits) - down
         self.found = [replace(b, place=b.place + shift) for b in self.found]
         self.left = [j + shift for j in self.left] + list(range(shift))
         self.left += range(shift + before - 1, len(self.path.orbits) - 1)
 
-    def refine(self, away: Callable[[float], float], deadline: Deadline) -> None:
-        """Find the bifurcations in the intervals that are left, the nearest to a speed first."""
+    def refine(self, distance: Callable[[float], float], deadline: Deadline) -> None:
+        """Find the bifurcations in the remaining intervals.
+
+        ``distance`` of a speed gives the order: the nearest interval comes first.
+        """
         path = self.path
-        order = sorted(self.left, key=lambda j: away(1.0 / path.orbits[j].period))
-        found, self.left = bifurcations(self.along, path, order, deadline)
-        self.found = sorted([*self.found, *found], key=lambda b: int(b.place))
+        order = sorted(self.left, key=lambda j: distance(1.0 / path.orbits[j].period))
+        refined, self.left = bifurcations(self.along, path, order, deadline)
+        self.found = sorted([*self.found, *refined], key=lambda b: int(b.place))
 
     def branch(self) -> Branch:
-        """The branch as far as it was followed."""
+        """The branch up to the last motion of the paths."""
         orbits = tuple(with_bifurcations(self.along, self.path, self.found))
         return Branch(self.along.family, self.along.n, orbits, tuple(self.found), self.ends)
 
 
 def merged(parts: Iterable[Window], inside: Window) -> tuple[Window, ...]:
-    """Ranges within one range, in order and without overlap."""
+    """Ranges within the range ``inside``, in order and without overlap."""
     result = list[Window]()
     for one, two in sorted(parts):
-        start, end = max(one, inside[0]), min(two, inside[1])
+        start = max(one, inside[0])
+        end = min(two, inside[1])
         if start >= end:
             continue
         if result and start <= result[-1][1]:
@@ -214,19 +220,19 @@ class _Search:
         self.start = member.start
         self.agenda = agenda
         self.deadline = deadline
-        whole = self.limits.slowest, self.limits.fastest
-        self.reported: Window = agenda.reported if agenda else whole
-        self.asked: list[Window] = sorted(agenda.windows, key=self._from_first) if agenda else [whole]
+        full_range = self.limits.slowest, self.limits.fastest
+        self.reported: Window = agenda.reported if agenda else full_range
+        self.asked: list[Window] = sorted(agenda.windows, key=self._from_first) if agenda else [full_range]
         self.branches: list[Branch] = []
         self.settled: list[tuple[float, LongRun]] = []
         self.attractors: list[Attractor] = []
         self.behind: dict[Orbit, LongRun] = {}
         self.runs = 0
-        #: Time for what is done at present, and for the part of it that follows branches.
+        #: Time of the present step, and time for following branches within this step.
         self.slot = self.following = deadline
         self._doubled: set[Orbit] = set()
         self._cut: dict[int, _Trace] = {}
-        #: Windows and speeds 1/T at which something is left to do.
+        #: Windows and speeds 1/T with unfinished work.
         self._late: set[Window] = set()
         self._left: list[float] = []
         self._losses: dict[Branch, list[tuple[Bifurcation, float]]] = {}
@@ -245,7 +251,7 @@ class _Search:
             limited=self.deadline.limited,
         )
 
-    # Windows and what is left of them.
+    # Windows, and the unfinished parts of windows.
 
     def windows(self) -> tuple[Window, ...]:
         """The windows of the agenda and the speeds to which branches have led, without overlap."""
@@ -272,7 +278,7 @@ class _Search:
         reach = self.agenda.reach if self.agenda else 0.0
         parts = [(rate * (1.0 - _SAME), rate * (1.0 + _SAME)) for rate in behind]
         for one, two in late:
-            # Up to the next window, in which motions of their own start.
+            # Up to the next window, in which other motions start.
             above = min((w[0] for w in windows if w[0] > two), default=high)
             parts.append((min(one, reach * two), max(two, above)))
         touched = [w for w in windows if any(one <= w[1] and two >= w[0] for one, two in parts)]
@@ -288,7 +294,7 @@ class _Search:
         return min(map(self.agenda.away, window))
 
     def _away(self, rate: float) -> float:
-        """Distance of a speed from that of most interest; without one all are as near."""
+        """Distance of a speed from the speed of most interest; 0 without such a speed."""
         return self.agenda.away(rate) if self.agenda else 0.0
 
     def _inside(self, rate: float) -> bool:
@@ -297,7 +303,7 @@ class _Search:
     # The order of the search.
 
     def explore(self, seeds: int, progress: Progress | None = None) -> None:
-        """Look everywhere: see `find_branches`."""
+        """Carry out the whole search, see `find_branches`."""
         report = progress or (lambda done: None)
         self.primaries(report)
         self.slot = self.deadline.share(_WINDOW)
@@ -325,7 +331,7 @@ class _Search:
         report(1.0)
 
     def primaries(self, report: Callable[[float], None]) -> None:
-        """Follow the branches through the motion while all contacts hold, in one window after the other."""
+        """Follow the branches through the motion while all contacts hold, window by window."""
         pending = [*self.asked]
         if self.agenda is not None and self.agenda.above > self.reported[1]:
             pending.append((self.reported[1], self.agenda.above))
@@ -338,16 +344,16 @@ class _Search:
                 for trace in [*self._cut.values()]:
                     if self._touches(trace, window):
                         self._resume(trace)
-                whole = self.from_linear(window, partial(_tell, report, 0.0, 0.4 / count))
+                complete = self.from_linear(window, partial(_tell, report, 0.0, 0.4 / count))
                 self.look_behind(folds=True)
                 touched = any(self._touches(trace, window) for trace in self._cut.values())
-                again += [] if whole and not touched else [window]
+                again += [] if complete and not touched else [window]
             pending = again
             report(0.4 * (1.0 - len(pending) / count))
         self._late.update(pending)
 
     def finish(self) -> None:
-        """Go on with what was cut, as long as there is time."""
+        """Continue the branches that a deadline has cut, as long as there is time."""
         while self._cut and not self.deadline.passed:
             index = min(
                 self._cut, key=lambda i: min(self._away(1.0 / o.period) for o in self.branches[i].orbits)
@@ -363,7 +369,10 @@ class _Search:
         return any(window[0] <= 1.0 / o.period <= window[1] for o in trace.path.orbits)
 
     def from_linear(self, window: Window, report: Callable[[float], None] = lambda done: None) -> bool:
-        """Follow what starts at the motion while all contacts hold; whether there was time for all starts."""
+        """Follow the branches that start at the motion while all contacts hold.
+
+        Returns whether there was time for all starts.
+        """
         rates = self.member.grid(STARTS)[::-1]
         if self.agenda is not None:
             rates = rates[(rates >= window[0]) & (rates <= window[1])]
@@ -372,22 +381,23 @@ class _Search:
             if window[0] <= self.agenda.first <= window[1]:
                 rates = np.append(rates, self.agenda.first)
             rates = np.array(sorted(rates, key=self._away))
-        found = False
+        any_motion = False
         for j, rate in enumerate(map(float, rates)):
-            # A branch that was cut may lead to where the next motion starts.
+            # A branch that was cut may lead to the next start.
             if self.following.passed or any(self._touches(trace, window) for trace in self._cut.values()):
                 return False
             state, parameter = self.start(1.0 / rate)
-            found |= self.follow_near(state, 1.0 / rate, 1, parameter)
+            any_motion |= self.follow_near(state, 1.0 / rate, 1, parameter)
             report((j + 1) / rates.size)
-        if not found:  # no claim about a window without any motion
+        if not any_motion:  # no claim about a window without any motion
             self._left += map(float, rates)
         return True
 
     def look_behind(self, folds: bool = False) -> None:
-        """Let runs say what happens behind each loss of stability, or behind folds alone.
+        """Let runs show the motion beyond each loss of stability, or beyond folds alone.
 
-        Folds come first: most jumps are there. A search without limit leaves it to who asks for the jumps.
+        Folds come first, because most jumps are at folds. A search without a limit of time starts no runs
+        here: `ResponseBranches.losses` starts the runs when the jumps are read.
         """
         if not self.deadline.limited:
             return
@@ -406,7 +416,7 @@ class _Search:
         return Response(tuple(self.branches), (), (), 0).at(period)
 
     def _unknown_behind(self) -> list[tuple[Bifurcation, float]]:
-        """Losses of stability in the range of which nobody has looked at what comes behind."""
+        """Losses of stability in the range beyond which no run was started."""
         return [
             (b, period)
             for branch in self.branches
@@ -415,7 +425,7 @@ class _Search:
         ]
 
     def _of(self, branch: Branch) -> list[tuple[Bifurcation, float]]:
-        """Losses of stability of a branch in the range, looked for once."""
+        """Losses of stability of a branch in the range, computed once."""
         if branch not in self._losses:
             losses = lost_stability(branch)
             self._losses[branch] = [one for one in losses if self._inside(1.0 / one[0].orbit.period)]
@@ -427,7 +437,7 @@ class _Search:
         """Let runs settle at some speeds, and follow the branches of new motions."""
         starts = []
         for rate in map(float, rates):
-            # The same numbers at a speed, whatever the range.
+            # The numbers at a speed do not depend on the range.
             first = _RUNS * round(_EVEN * np.log2(rate / self.limits.frequency))
             places = np.mod(0.5 + (first + np.arange(_RUNS))[:, None] * _FILL, 1.0)
             starts += self.member.apart(rate, places)
@@ -444,22 +454,22 @@ class _Search:
         self.attractors += survey.attractors(self.unlisted, self.identify)
 
     def unlisted(self, run: LongRun) -> bool:
-        """Whether a run has come to a motion that no branch can have."""
+        """Whether a run has settled to a motion that no branch can have."""
         return run.run is not None and (run.orbit is None or run.orbit.n not in self.periods)
 
     def identify(self, motion: Motion) -> LongRun:
         """The exact motion of a settled run. The branch of a new periodic motion is followed."""
-        known = self.response_at(1.0 / motion.rate)
-        run = self.member.exactly(motion, known, self.deadline)
-        if run.orbit is not None and run.orbit not in known:
+        orbits = self.response_at(1.0 / motion.rate)
+        run = self.member.exactly(motion, orbits, self.deadline)
+        if run.orbit is not None and run.orbit not in orbits:
             self.from_settled(run.orbit)
-        elif run.orbit is None and run.run is not None:  # unstable motions to which beats or chaos come near
+        elif run.orbit is None and run.run is not None:  # beats and chaos come near to unstable motions
             for n in sorted(self.periods - {1}):
                 self.follow_near(run.run.end, 1.0 / motion.rate, n, run.parameter)
         return run
 
     def from_neighbour(self, other: _Search) -> None:
-        """Look for the branches of a neighbouring system, lengths in proportion."""
+        """Look for the branches of a neighbouring system, with lengths and parameter in proportion."""
         for branch in list(other.branches):
             for part in range(_NEIGHBOURS):
                 orbit = branch.orbits[(2 * part + 1) * len(branch.orbits) // (2 * _NEIGHBOURS)]
@@ -468,7 +478,7 @@ class _Search:
                 self.follow_near(start, orbit.period, orbit.n, parameter)
 
     def subharmonics(self) -> None:
-        """Look for motions of n cycles near large ones of one cycle at 1/n of the speed."""
+        """Look for motions of n cycles near large motions of one cycle at 1/n of the speed."""
         singles = [branch for branch in self.branches if branch.n == 1]
         for n in sorted(self.periods - {1}):
             for branch in singles:
@@ -486,7 +496,7 @@ class _Search:
     # Single branches.
 
     def known(self, orbit: Orbit, besides: Branch | None = None) -> bool:
-        """Whether a motion lies on a branch that was found, besides one."""
+        """Whether a motion lies on a branch that was found. The branch ``besides`` does not count."""
         return any(
             same_motion(orbit, other, 1e-5)
             for branch in self.branches
@@ -503,7 +513,10 @@ class _Search:
         return sum(self.known(orbit, besides) for orbit in inner) > 1
 
     def follow_near(self, start: FloatArray, period: float, n: int, parameter: float) -> bool:
-        """Whether there is a motion near a start; its branch is followed unless it has fewer cycles."""
+        """Whether there is a motion near a start.
+
+        The branch of the motion is followed, unless the motion repeats after fewer cycles.
+        """
         try:
             orbit = close_orbit(self.family.at(period), start, period, n, parameter)
         except NumericalError:
@@ -513,13 +526,16 @@ class _Search:
         return True
 
     def from_settled(self, orbit: Orbit) -> None:
-        """Follow a stable motion. With too many cycles: the motion from which it has doubled."""
+        """Follow the branch of a stable motion.
+
+        A motion with too many cycles: the branch of the motion with fewer cycles from which it has doubled.
+        """
         for n in sorted((n for n in self.periods if orbit.n % n == 0), reverse=True):
             if self.follow_near(orbit.start, orbit.period, n, orbit.parameter):
                 return
 
     def both_ways(self, orbit: Orbit) -> None:
-        """Add the branch through an orbit unless it is known."""
+        """Add the branch through an orbit, unless the orbit lies on a branch that was found."""
         if self.known(orbit):
             return
         along = Continuation(self.family, orbit.n, self._limits(orbit.n))
@@ -534,7 +550,7 @@ class _Search:
         self.add(_Trace(along, up, down, down.end, [], []))
 
     def _limits(self, n: int) -> Limits:
-        """Motions of several cycles are followed in the range of interest alone."""
+        """Limits for motions of n cycles: several cycles are followed in the range of interest alone."""
         if self.agenda is None or n == 1:
             return self.limits
         step = 2.0 ** (1.0 / STARTS)
@@ -555,7 +571,7 @@ class _Search:
         return trace.branch()
 
     def _resume(self, trace: _Trace) -> None:
-        """Continue a branch that the deadline has cut, or drop it where it repeats another branch."""
+        """Continue a branch that the deadline has cut. A branch that repeats another branch is dropped."""
         index = next(i for i, other in self._cut.items() if other is trace)
         if not self.twice(trace.path.orbits, self.branches[index]):
             try:
@@ -571,7 +587,7 @@ class _Search:
             self._cut = {i - (i > index): other for i, other in self._cut.items()}
 
     def doublings(self) -> None:
-        """Follow the branches that leave period doublings, as long as their cycles are wanted."""
+        """Follow the branches of period doublings, for the numbers of cycles in ``periods``."""
         while not self.deadline.passed:
             points: Iterable[tuple[Branch, Bifurcation]] = self._undoubled()
             branch, point = min(
@@ -597,7 +613,7 @@ class _Search:
         ]
 
     def _double(self, along: Continuation, single: Orbit) -> None:
-        run = closing_residual(single.system, single.start, single.period, along.n, single.parameter)[2]
+        _, _, run = closing_residual(single.system, single.start, single.period, along.n, single.parameter)
         twice = Orbit(single.system, single.period, along.n, single.parameter, run)
         try:
             path = along.follow(twice, tangent=doubling_direction(along, single), deadline=self.following)

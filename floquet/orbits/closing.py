@@ -1,7 +1,7 @@
-"""Closing a period: Newton's method for the state after which nothing is left at the end of n cycles.
+"""Closing a period: Newton's method for the start state to which a motion returns after n cycles.
 
-The speed is fixed here. `floquet.orbits.branch` closes periods in a plane across a branch, and
-`floquet.orbits.folds` at a fold, both with the residual of this file.
+The speed is fixed here. `floquet.orbits.branch` closes a period in a plane across a branch, and
+`floquet.orbits.folds` closes a period at a fold. Both use the residual of this file.
 
 Sources: docs/theory/orbits.md, "Periodic motions".
 """
@@ -23,7 +23,7 @@ _CYCLE_STARTS = np.zeros(1)
 def closing_residual(
     system: ContactSystem, start: FloatArray, period: float, n: int, parameter: float
 ) -> tuple[FloatArray, FloatArray, Run]:
-    """Mismatch (2m + r,) of n cycles and of the accumulated rows, its derivatives, and the run.
+    """Mismatch (2m + r,) of n cycles and of the accumulated rows, derivatives of the mismatch, and the run.
 
     The derivatives (2m + r, 2m + 2) are by the start, T and the parameter.
     """
@@ -40,8 +40,8 @@ def close_orbit(
 ) -> Orbit:
     """Periodic motion of n cycles by Newton's method at a fixed period T [s].
 
-    It starts from displacements and phase rates (2m,), and from ``parameter`` where the system has an
-    accumulated row. Raises NumericalError where no motion is found.
+    Newton's method starts from displacements and phase rates (2m,), and from ``parameter`` where the system
+    has an accumulated row. Raises NumericalError where no motion is found.
     """
     x = np.array(start, dtype=float)
     size = system.size
@@ -66,7 +66,7 @@ def close_orbit(
 
 
 def primitive(orbit: Orbit) -> Orbit:
-    """The orbit with the least number of cycles after which it repeats."""
+    """The same motion as an orbit over the least number of cycles after which the motion repeats."""
     for n in range(1, orbit.n // 2 + 1):
         if orbit.n % n == 0:
             scale = state_scale(orbit.start) * 1e-7

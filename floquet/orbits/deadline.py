@@ -11,7 +11,10 @@ import time
 
 
 class OutOfTimeError(Exception):
-    """The processor time of a search is used up. Never reaches a user: the search says what it left open."""
+    """The processor time of a search is used up.
+
+    The error never reaches a user: the result of the search has the open speeds.
+    """
 
 
 class Deadline:
@@ -38,21 +41,21 @@ class Deadline:
 
     @property
     def left(self) -> float:
-        """Processor time that is left [s], 0 at least; infinite without limit."""
+        """Remaining processor time [s], at least 0; infinite without limit."""
         return max(self._end - time.process_time(), 0.0) if self.limited else math.inf
 
     @property
     def passed(self) -> bool:
-        """Whether nothing is left."""
+        """Whether no time remains."""
         return self.left == 0.0
 
     def check(self) -> None:
-        """Raise OutOfTimeError where nothing is left."""
+        """Raise OutOfTimeError where no time remains."""
         if self.passed:
             raise OutOfTimeError
 
     def share(self, part: float) -> Deadline:
-        """A new deadline after a part of the time left."""
+        """A new deadline after a part of the remaining time."""
         return Deadline(part * self.left if self.limited else None)
 
 

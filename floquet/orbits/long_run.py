@@ -1,4 +1,4 @@
-"""What a motion settles to: a periodic motion, beats or chaos.
+"""The motion to which a long run settles: a periodic motion, beats or chaos.
 
 Sources: docs/theory/orbits.md, "Motions that do not repeat"; Lyapunov exponent by re-normalised tangent
 vectors: Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
@@ -22,16 +22,17 @@ Settled = Literal["periodic", "beats", "chaos", "grows"]
 
 _RECURS = 1e-6
 _NEAR = 0.3
-#: A run that has not settled goes on for twice as long, so many times in all.
+#: A run that has not settled settles again for twice as many cycles, at most so many times.
 _TURNS = 4
-#: Blocks of cycles of an exponent; the first is not counted.
+#: Number of blocks of cycles over which an exponent is measured. The first block is not counted.
 BLOCKS = 8
-#: A run is looked at for so many times the cycles of the motions looked for: locked beats repeat after many.
+#: Cycles over which a run is compared with itself, over ``most_cycles``: locked beats repeat after many
+#: cycles.
 _LOOKED = 8
-#: Largest exponent per cycle that counts as zero; quasi-periodic motions come to it as the inverse of the
-#: length.
+#: Largest exponent per cycle that counts as zero. The measured exponent of a quasi-periodic motion falls as
+#: the inverse of the number of cycles.
 _ZERO_EXPONENT = 5e-3
-#: Cycles between two looks at a deadline.
+#: Cycles between two checks of a deadline.
 _PART = 32
 
 
@@ -42,11 +43,11 @@ class LongRun:
     Attributes
     ----------
     kind : "periodic", "beats" (quasi-periodic), "chaos", or "grows" beyond the amplitude of interest
-    orbit : the periodic motion, where it is one
-    exponent, uncertainty : largest Lyapunov exponent per cycle and its standard error; NaN for a periodic
-        motion, whose multipliers say more
-    run : the last cycles, with means, extremes and the state at the end; None where it grows
-    parameter : the free parameter, found with the periodic motion where it is one
+    orbit : the periodic motion; None: the motion is not periodic
+    exponent, uncertainty : largest Lyapunov exponent per cycle and standard error of the exponent; NaN for a
+        periodic motion, because the multipliers say more
+    run : the last cycles, with means, extremes and the state at the end; None: the motion grows
+    parameter : the free parameter; for a periodic motion the solution of Newton's method
     """
 
     kind: Settled
@@ -58,12 +59,12 @@ class LongRun:
 
     @property
     def rms(self) -> float:
-        """Of the output less its mean; NaN where the motion grows."""
+        """Root mean square of the output about the mean; NaN where the motion grows."""
         return float("nan") if self.run is None else self.run.rms
 
     @property
     def largest_load(self) -> float:
-        """Of all contacts; NaN where the motion grows."""
+        """Largest load of all contacts; NaN where the motion grows."""
         return float("nan") if self.run is None else self.run.largest_load
 
 
@@ -79,19 +80,20 @@ def long_run(
     amplitude: float = np.inf,
     deadline: Deadline = ENDLESS,
 ) -> LongRun:
-    """Let a motion settle, and find out whether it is periodic, beats, chaos, or grows.
+    """Let a motion settle, and say whether the motion is periodic, beats, chaos, or grows.
 
-    First it is compared with itself after 1 to 8 n cycles, then Newton's method looks for a stable motion of
-    1 to n cycles near it, since near a bifurcation settling takes long; what is left has its Lyapunov
-    exponent measured. Where that is negative the run is on its way to a motion that repeats, and goes on.
+    First the run is compared with itself after 1 to 8 n cycles. Then Newton's method looks for a stable
+    motion of 1 to n cycles near the run, because settling is slow near a bifurcation. Then the Lyapunov
+    exponent of the run is measured. A negative exponent says that the run approaches a motion that repeats:
+    the run continues.
 
     Parameters
     ----------
-    settle : cycles before it is looked at for the first time
+    settle : cycles before the first comparison
     observe : cycles over which exponents and means are taken
     most_cycles : largest n
-    amplitude : largest motion of the output from its mean that is looked at
-    deadline : OutOfTimeError where it passes before that is known
+    amplitude : largest motion of the output from its mean; a motion beyond "grows"
+    deadline : OutOfTimeError: the deadline has passed before the motion is known
     """
     state = start
     for turn in range(_TURNS + 1):
@@ -110,7 +112,7 @@ def long_run(
             continue
         exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe, deadline)
         zero = max(3.0 * uncertainty, _ZERO_EXPONENT)
-        if exponent > -zero:  # else it has left for a motion that repeats, and will have reached it next time
+        if exponent > -zero:  # else the run approaches a motion that repeats, and reaches it in the next turn
             break
     last = _run(system, state, period, observe, parameter, deadline)
     return LongRun("chaos" if exponent > zero else "beats", None, exponent, uncertainty, last, parameter)
@@ -119,7 +121,7 @@ def long_run(
 def _run(
     system: ContactSystem, start: FloatArray, period: float, cycles: int, parameter: float, deadline: Deadline
 ) -> Run:
-    """`ContactSystem.run`, in parts where there is a deadline."""
+    """`ContactSystem.run`, split into parts where there is a deadline."""
     if not deadline.limited or cycles <= _PART:
         return system.run(start, period, cycles, parameter)
     done = 0
@@ -135,7 +137,7 @@ def _run(
 
 
 def _joined(one: Run, cycles: int, other: Run, more: int) -> Run:
-    """A run of some cycles and the next ones, as one."""
+    """One run from a run of some cycles and the run of the next cycles."""
     share = more / (cycles + more)
     return replace(
         other,
@@ -153,7 +155,7 @@ def _joined(one: Run, cycles: int, other: Run, more: int) -> Run:
 def _periodic(
     system: ContactSystem, seen: Run, period: float, parameter: float, most_cycles: int, deadline: Deadline
 ) -> Orbit | None:
-    """The stable periodic motion that a run has come to or comes near to."""
+    """The stable periodic motion to which a run has settled or comes near. None: no such motion was found."""
     scale = state_scale(seen.end)
     recurs = [
         n for n in range(1, len(seen.states)) if (np.abs(seen.states[-n] - seen.end) <= _RECURS * scale).all()
@@ -188,9 +190,10 @@ def lyapunov_exponent(
     cycles: int = 800,
     deadline: Deadline = ENDLESS,
 ) -> tuple[float, float]:
-    """Largest Lyapunov exponent per cycle and its standard error by blocks, from a state on the motion.
+    """Largest Lyapunov exponent per cycle, from a state on the motion, and standard error by blocks.
 
-    The first eighth of the cycles turns the vector into its direction and is not counted.
+    In the first eighth of the cycles the tangent vector turns to the direction of largest growth. This eighth
+    is not counted.
     """
     scale = state_scale(start)
     vector = 1.0 / (1.0 + 0.6180339887 * np.arange(start.size))

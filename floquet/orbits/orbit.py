@@ -1,6 +1,6 @@
-"""A periodic motion: its multipliers, whether it closes, and whether two are the same motion.
+"""A periodic motion: multipliers, test whether the motion closes, and comparison of two motions.
 
-`floquet.orbits.closing` finds one.
+`floquet.orbits.closing` finds periodic motions.
 
 Sources: docs/theory/orbits.md, "Periodic motions".
 """
@@ -18,8 +18,9 @@ from lumped.typing import ComplexArray, FloatArray
 
 #: Residual of a motion that counts as periodic, over the largest displacement or phase rate.
 CLOSED_TO = 1e-11
-#: Rounding of the accumulated row over what the parameter alone gathers: at low speeds, where the cycle is
-#: long, that is far more than a state, and no number for the parameter closes the row better.
+#: Rounding of the accumulated row over the part that the parameter alone accumulates. At low speeds, where
+#: the cycle is long, this part is far larger than a state, and no value of the parameter closes the row
+#: better.
 _BALANCED_TO = 16.0 * float(np.finfo(np.float64).eps)
 _LOWER_ORDER = 14
 
@@ -32,9 +33,9 @@ class Orbit:
     ----------
     system : the system at this period
     period : T of one cycle [s]
-    n : number of cycles after which it repeats
-    parameter : the free parameter, as found
-    run : one pass of it, with derivatives, its events, and the state at the start of each cycle
+    n : number of cycles after which the motion repeats
+    parameter : the free parameter, the solution of Newton's method
+    run : one pass of the motion, with derivatives, events, and the state at the start of each cycle
     """
 
     system: ContactSystem
@@ -56,7 +57,7 @@ class Orbit:
 
     @cached_property
     def multipliers(self) -> ComplexArray:
-        """(2m,) over n cycles, largest first."""
+        """(2m,) Floquet multipliers over n cycles, largest first."""
         values = np.linalg.eigvals(self.monodromy)
         return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
 
@@ -74,8 +75,8 @@ class Orbit:
     def error(self) -> float:
         """Estimate of the error of the multipliers.
 
-        The same pass with series of lower order says how far the matrix may be off, and the condition of its
-        eigenvectors by how much the multipliers move (Bauer and Fike).
+        A second pass with series of lower order gives the error of the monodromy matrix. The condition of the
+        eigenvectors turns this error into the error of the multipliers (Bauer and Fike).
         """
         low = self.system.run(
             self.start, self.period, self.n, self.parameter, derivatives=True, order=_LOWER_ORDER
@@ -84,18 +85,21 @@ class Orbit:
         scale = state_scale(self.start)
         to_norm = scale / scale[:, None]
         M = self.monodromy * to_norm
-        off = np.linalg.norm(low.derivative[:size, :size] * to_norm - M, 2)
+        truncation = np.linalg.norm(low.derivative[:size, :size] * to_norm - M, 2)
         rounding = 1e-15 * np.linalg.norm(M, 2) * self.n
-        return float(np.linalg.cond(np.linalg.eig(M)[1]) * (off + rounding))
+        return float(np.linalg.cond(np.linalg.eig(M)[1]) * (truncation + rounding))
 
     @property
     def closes(self) -> bool:
-        """Whether it is periodic to rounding: the state by its largest displacement and rate, and the row."""
+        """Whether the motion is periodic to rounding, in the state and in the accumulated row.
+
+        The scales of the state are the largest displacement and the largest phase rate.
+        """
         run = self.run
         scale = np.maximum(state_scale(run.start), state_scale(run.end))
         gathered = np.abs(self.parameter * run.derivative[self.system.size :, -1])
-        off = np.abs(run.accumulated) / np.maximum(CLOSED_TO * scale[-1], _BALANCED_TO * gathered)
-        return bool((np.abs(run.end - run.start) < CLOSED_TO * scale).all() and (off < 1.0).all())
+        imbalance = np.abs(run.accumulated) / np.maximum(CLOSED_TO * scale[-1], _BALANCED_TO * gathered)
+        return bool((np.abs(run.end - run.start) < CLOSED_TO * scale).all() and (imbalance < 1.0).all())
 
     @property
     def signature(self) -> tuple[tuple[int, int], ...]:
@@ -110,16 +114,16 @@ class Orbit:
 
     @property
     def strikes(self) -> bool:
-        """Whether a contact closes after a gap, with its damper's load at once."""
+        """Whether a contact closes after a gap, where the damper's load begins at once."""
         return any(new == CLOSED for _, new in self.signature)
 
     def shifted(self) -> list[FloatArray]:
-        """States (2m,) at the start of each of its n cycles: all belong to the same motion."""
+        """States (2m,) at the start of each of the n cycles: any of the states starts the same motion."""
         return list(self.run.states)
 
 
 def state_scale(start: FloatArray) -> FloatArray:
-    """(2m,) sizes of displacements and of phase rates: for norms that mean something."""
+    """(2m,) largest displacement and largest phase rate of a state, which scale a norm of states."""
     m = start.size // 2
     length = max(float(np.abs(start[:m]).max()), 1e-300)
     rate = max(float(np.abs(start[m:]).max()), length)
@@ -127,9 +131,9 @@ def state_scale(start: FloatArray) -> FloatArray:
 
 
 def same_motion(one: Orbit, other: Orbit, tolerance: float = 1e-6) -> bool:
-    """Whether two orbits at one period are the same motion, started in any of the cycles.
+    """Whether two orbits at one period are one motion. The orbits may start in different cycles.
 
-    A motion of n cycles may repeat after a divisor of n. The orbit with the divisor is the same motion.
+    A motion of n cycles may also repeat after a divisor of n: an orbit over the divisor is the same motion.
     """
     scale = state_scale(one.start) * tolerance
     return any(bool((np.abs(start - one.start) <= scale).all()) for start in other.shifted())

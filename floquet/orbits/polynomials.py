@@ -7,9 +7,9 @@ from lumped.typing import FloatArray
 
 _SAMPLES = 8
 _MOST_BISECTIONS = 100
-#: Of a zero, relative: a bit or two.
+#: Relative tolerance of a zero: one or two bits.
 _ROOT = 4e-16
-#: An extreme is flat: its value is good to the square of this power of a half.
+#: Halvings of the interval around an extreme. The error of the value is of second order in the last interval.
 _HALVINGS = 20
 
 
@@ -55,23 +55,34 @@ def shift(c: FloatArray, s: float, out: FloatArray) -> None:
 
 @compiled(nogil=True)
 def bounds(c: FloatArray, h: float) -> tuple[float, float]:
-    """Bounds on [0, h]: those of the quadratic part, less and more the size of the rest."""
+    """Lower and upper bound of a polynomial on [0, h].
+
+    The bounds are the extremes of the quadratic part, widened by the size of the higher powers.
+    """
+    constant = c[0]
+    linear = c[1]
+    quadratic = c[2]
     rest = 0.0
     power = h * h * h
     for j in range(3, c.size):
         rest += abs(c[j]) * power
         power *= h
-    end = c[0] + h * (c[1] + h * c[2])
-    low, high = min(c[0], end), max(c[0], end)
-    if c[1] * (c[1] + 2.0 * c[2] * h) < 0.0:
-        turn = c[0] - 0.25 * c[1] * c[1] / c[2]
-        low, high = min(low, turn), max(high, turn)
+    end = constant + h * (linear + h * quadratic)
+    low = min(constant, end)
+    high = max(constant, end)
+    if linear * (linear + 2.0 * quadratic * h) < 0.0:
+        extreme = constant - 0.25 * linear * linear / quadratic
+        low = min(low, extreme)
+        high = max(high, extreme)
     return low - rest, high + rest
 
 
 @compiled(nogil=True)
 def crossing(c: FloatArray, h: float, sign: float) -> float:
-    """First s in (0, h] where the polynomial leaves the sign that it counts as having at 0; else 2 h."""
+    """First s in (0, h] at which a polynomial loses the sign; 2 h where the polynomial keeps the sign.
+
+    ``sign`` is the sign at 0. A polynomial that vanishes at 0 counts as having this sign there.
+    """
     least, most = bounds(c, h)
     if (least if sign > 0.0 else -most) > 0.0:
         return 2.0 * h
@@ -81,34 +92,36 @@ def crossing(c: FloatArray, h: float, sign: float) -> float:
     for k in range(1, _SAMPLES + 1):
         high = h * k / _SAMPLES
         y, rate = value_and_slope(c, high)
-        now = sign * y
-        down = sign * rate < 0.0
-        if now <= 0.0:
-            return _root(c, low, high, sign, before, now)
-        if falling and not down:  # it may have crossed twice between the samples
-            a, b = low, high
+        after = sign * y
+        still_falling = sign * rate < 0.0
+        if after <= 0.0:
+            return _root(c, low, high, sign, before, after)
+        if falling and not still_falling:  # the polynomial may have crossed zero twice between the samples
+            one = low
+            two = high
             for _ in range(_MOST_BISECTIONS):
-                middle = 0.5 * (a + b)
-                if middle <= a or middle >= b:
+                middle = 0.5 * (one + two)
+                if middle <= one or middle >= two:
                     break
                 y, rate = value_and_slope(c, middle)
                 if sign * rate < 0.0:
-                    a = middle
+                    one = middle
                 else:
-                    b = middle
+                    two = middle
                 if sign * y <= 0.0:
                     return _root(c, low, middle, sign, before, sign * y)
         low = high
-        before = now
-        falling = down
+        before = after
+        falling = still_falling
     return 2.0 * h
 
 
 @compiled(nogil=True)
 def _root(c: FloatArray, low: float, high: float, sign: float, above: float, below: float) -> float:
-    """Zero between low, where the sign holds or counts as holding, and high, where it does not.
+    """Zero of a polynomial between low and high, by Newton's method with bisection.
 
-    Values there, times the sign, are above and below; the first step is that of the secant.
+    ``above`` and ``below`` are the values at low and high times the sign: the polynomial has the sign at low,
+    or counts as having the sign, and has lost the sign at high. The first step is a secant step.
     """
     s = low + (high - low) * above / (above - below) if above > 0.0 else 0.5 * (low + high)
     for _ in range(_MOST_BISECTIONS):
@@ -128,28 +141,32 @@ def _root(c: FloatArray, low: float, high: float, sign: float, above: float, bel
 
 @compiled(nogil=True)
 def extremes(c: FloatArray, h: float, low: float, high: float) -> tuple[float, float]:
-    """The given smallest and largest value, or those on [0, h] where they are beyond."""
+    """Smallest and largest value: ``low`` and ``high``, widened by the values of a polynomial on [0, h]."""
     least, most = bounds(c, h)
     if least >= low and most <= high:
         return low, high
-    low, high = min(low, c[0]), max(high, c[0])
+    low = min(low, c[0])
+    high = max(high, c[0])
     before = 0.0
     rising = c[1] > 0.0
     for k in range(1, _SAMPLES + 1):
         s = h * k / _SAMPLES
         y, rate = value_and_slope(c, s)
-        now = rate > 0.0
-        low, high = min(low, y), max(high, y)
-        if now != rising:
-            a, b = before, s
+        still_rising = rate > 0.0
+        low = min(low, y)
+        high = max(high, y)
+        if still_rising != rising:
+            one = before
+            two = s
             for _ in range(_HALVINGS):
-                middle = 0.5 * (a + b)
+                middle = 0.5 * (one + two)
                 if (slope(c, middle) > 0.0) == rising:
-                    a = middle
+                    one = middle
                 else:
-                    b = middle
-            y = value(c, 0.5 * (a + b))
-            low, high = min(low, y), max(high, y)
+                    two = middle
+            extreme = value(c, 0.5 * (one + two))
+            low = min(low, extreme)
+            high = max(high, extreme)
         before = s
-        rising = now
+        rising = still_rising
     return low, high

@@ -1,4 +1,4 @@
-"""Branches over the speed, what a search for them has found, and the system that it is about.
+"""Branches over the speed, results of a search for branches, and the system of the search.
 
 Sources: docs/theory/orbits.md, "Branches".
 """
@@ -21,24 +21,26 @@ from floquet.orbits.settling import alike
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
-#: T [s] -> (state, parameter) to start from: the motion while all contacts hold.
+#: T [s] -> start (state, parameter): the motion while all contacts hold.
 Start = Callable[[float], tuple[FloatArray, float]]
 
-#: Part of a step of the grid of speeds that is rounding.
+#: Rounding, as part of a step of the grid of speeds.
 _SAME = 1e-6
 #: Runs start apart from the motion while all contacts hold: by displacements in lengths, and by phase rates
 #: in lengths times those of the fastest natural motion, in this rectangle.
 _SPREAD = np.array([[-8.0, 5.0], [-6.5, 6.5]])
-#: Distance from a stable motion, over its size, within which a settled run has come to it.
+#: Distance of a settled run from a stable motion, over the size of the motion, within which both are one
+#: motion.
 _CLOSE = 0.03
-#: Cycles that a run which has settled settles once more, and is observed; cycles of a motion for which Newton
-#: looks near a run that has not come to one yet.
+#: Cycles for which a settled run settles once more, cycles for which a run is observed, and most cycles of a
+#: motion that Newton's method looks for near a run.
 _AGAIN = 40
 _OBSERVE = 400
 _MOST_CYCLES = 4
-#: Cycles in which a run leaves a motion that has lost its stability, before it is looked at first.
+#: Cycles in which a run leaves a motion that has lost stability, before the run is compared with itself.
 _AWAY = 100
-#: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
+#: Largest modulus of the multipliers of a stable motion. A bifurcation, whose modulus is one but for
+#: rounding, counts as stable.
 MARGINAL = 1.0 + 1e-6
 #: Part of the speed behind a bifurcation where a run shows what happens there.
 _BEYOND = 1e-3
@@ -52,10 +54,10 @@ class Branch:
     Attributes
     ----------
     family : the system over its period
-    n : cycles
-    orbits : in order along the branch, those of the bifurcations among them
-    bifurcations : in order along the branch
-    ends : why it ends at its first and at its last orbit
+    n : cycles after which the motions repeat
+    orbits : motions in order along the branch, with the motions of the bifurcations
+    bifurcations : bifurcations in order along the branch
+    ends : reason of the end at the first orbit, and at the last orbit
     """
 
     family: Family
@@ -71,13 +73,14 @@ class Branch:
 
     def at(self, period: float) -> list[Orbit]:
         """All orbits of the branch at a period, by Newton's method from the neighbours."""
-        away = self.rates - 1.0 / period
+        distance = self.rates - 1.0 / period
         system = self.family.at(period)
         result = list[Orbit]()
-        for j in np.flatnonzero(away[:-1] * away[1:] <= 0.0):
+        for j in np.flatnonzero(distance[:-1] * distance[1:] <= 0.0):
             one = self.orbits[j]
             two = self.orbits[j + 1]
-            part = away[j] / (away[j] - away[j + 1]) if away[j] != away[j + 1] else 0.5
+            differ = distance[j] != distance[j + 1]
+            part = distance[j] / (distance[j] - distance[j + 1]) if differ else 0.5
             start = (1.0 - part) * one.start + part * two.start
             parameter = (1.0 - part) * one.parameter + part * two.parameter
             try:
@@ -91,19 +94,19 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """What was found over a range of speeds.
+    """Motions that a search has found over a range of speeds.
 
     Attributes
     ----------
     branches : curves of periodic motions
-    settled : (T [s], what runs settled to) at the speeds that were tried
-    attractors : what does not repeat after the cycles looked for, over speed
-    runs : how many runs settled
-    behind : orbit at which a branch loses stability -> what a run does right behind, as far as that was
-        looked at
-    windows : ranges of 1/T that were searched, and those to which branches have led [1/s]
-    open : those of them in which the time did not suffice [1/s]
-    limited : whether there was a limit of time
+    settled : (T [s], motion to which runs have settled) at the speeds of the runs
+    attractors : motions over speed that do not repeat within the cycles of the search
+    runs : number of runs
+    behind : orbit at which a branch loses stability -> motion of a run just beyond; only for the orbits from
+        which a run was started
+    windows : ranges of 1/T that were searched, and ranges to which branches have led [1/s]
+    open : parts of the windows for which the time did not suffice [1/s]
+    limited : whether the search had a limit of time
     """
 
     branches: tuple[Branch, ...]
@@ -123,7 +126,10 @@ class Response:
         return result
 
     def basins(self, member: Member, rate: float, places: FloatArray) -> list[tuple[LongRun, int]]:
-        """To what runs from places (k, 2) of the unit square settle at a speed, and how many of them."""
+        """Motions to which runs from places (k, 2) of the unit square settle at a speed.
+
+        Each motion has the number of the runs that settle to it. The most frequent motion comes first.
+        """
         survey = Survey(member.family, member.limits, np.array([rate]), member.apart(rate, places))
         orbits = self.at(1.0 / rate)
         result = list[tuple[Motion, int]]()
@@ -140,21 +146,22 @@ class Response:
 
 def _same(one: Motion, other: Motion) -> bool:
     """Whether two identified motions at one speed are equal."""
-    a, b = one.run.orbit, other.run.orbit
-    if a is None or b is None:
-        return a is b and alike(one.size, other.size)
-    return a.n == b.n and same_motion(a, b)
+    orbit = one.run.orbit
+    other_orbit = other.run.orbit
+    if orbit is None or other_orbit is None:
+        return orbit is other_orbit and alike(one.size, other.size)
+    return orbit.n == other_orbit.n and same_motion(orbit, other_orbit)
 
 
 @dataclass(frozen=True)
 class Member:
-    """A system over a range of speeds: one of a stack.
+    """A system over a range of speeds; a stack of members varies a second parameter.
 
     Attributes
     ----------
     family : the system over its period
     limits : range of speeds, sizes and amplitude
-    start : from where to look for the first motions
+    start : T -> start of the search for the first motions
     """
 
     family: Family
@@ -162,14 +169,20 @@ class Member:
     start: Start
 
     def grid(self, count: int) -> FloatArray:
-        """Speeds 1/T of the range, ``count`` an octave, the fastest natural frequency among them."""
+        """Speeds 1/T of the range, ``count`` in an octave.
+
+        The fastest natural frequency is a speed of the grid.
+        """
         limits = self.limits
         low, high = (count * np.log2(rate / limits.frequency) for rate in (limits.slowest, limits.fastest))
         steps = np.arange(np.ceil(low - _SAME), np.floor(high + _SAME) + 1.0)
         return np.asarray(limits.frequency * 2.0 ** (steps / count))
 
     def apart(self, rate: float, places: FloatArray) -> list[tuple[float, FloatArray, float]]:
-        """Starts apart from the motion while all contacts hold, at places (k, 2) of the unit square."""
+        """Starts (1/T, state, parameter) at places (k, 2) of the unit square.
+
+        The square covers states around the motion while all contacts hold.
+        """
         state, parameter = self.start(1.0 / rate)
         half = state.size // 2
         limits = self.limits
@@ -191,7 +204,7 @@ class Member:
         )  # fmt: skip
 
     def exactly(self, motion: Motion, orbits: list[Orbit], deadline: Deadline = ENDLESS) -> LongRun:
-        """The exact motion of a settled run: one of the given orbits, or the result of a longer run."""
+        """The exact motion of a settled run: one of the ``orbits``, or the result of a longer run."""
         period = 1.0 / motion.rate
         for orbit in orbits:
             close = _CLOSE * state_scale(motion.state)
@@ -205,21 +218,21 @@ class Member:
 
 
 def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
-    """Places where a branch loses its stability, and T 0.1 % of the speed behind each."""
+    """Bifurcations at which a branch loses stability, each with the period T of a speed 0.1 % beyond."""
     result = []
     marginal = {id(b.orbit) for b in branch.bifurcations if b.kind != "grazing"}
     for b in branch.bifurcations:
-        at = branch.orbits.index(b.orbit)
+        index = branch.orbits.index(b.orbit)
         before, after = (
             next((o.stable for o in side if id(o) not in marginal), None)
-            for side in (branch.orbits[:at][::-1], branch.orbits[at + 1 :])
+            for side in (branch.orbits[:index][::-1], branch.orbits[index + 1 :])
         )
         if b.kind == "grazing" or before is None or after is None or before == after:
             continue
-        way = 1 if after else -1
+        to_stable = 1 if after else -1
         # A corner is not the extreme of the speed to the last digit.
-        calm = (o.period / b.orbit.period for o in branch.orbits[at + way :: way])
-        ratio = next((ratio for ratio in calm if abs(ratio - 1.0) > _CORNER), 1.0)
+        ratios = (o.period / b.orbit.period for o in branch.orbits[index + to_stable :: to_stable])
+        ratio = next((ratio for ratio in ratios if abs(ratio - 1.0) > _CORNER), 1.0)
         if ratio != 1.0:
             result.append((b, b.orbit.period * (1.0 - _BEYOND if ratio > 1.0 else 1.0 + _BEYOND)))
     return result

@@ -35,21 +35,21 @@ _ROUNDING = 1e-15
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """One unilateral contact: N = k d + c d' where d = u.z - e > 0 and that is positive, else 0.
+    """One unilateral contact: N = k d + c d' where d = u.z - e > 0 and k d + c d' > 0, otherwise N = 0.
 
-    It never pulls, and a gap carries nothing. Each coefficient is a number or polynomials (P, D + 1) of the
-    phase since the start of each of the P pieces, lowest power first.
+    A contact never pulls, and carries no load over a gap. Each coefficient is a number or polynomials
+    (P, D + 1) of the phase since the start of each of the P pieces, lowest power first.
 
     Attributes
     ----------
     direction : (m,) u
-    acceleration : (n,) or (P, n, D + 1), what a unit load does to the m coordinates and the accumulated rows
+    acceleration : (n,) or (P, n, D + 1) acceleration of the m coordinates and accumulated rows by a unit load
     stiffness, damping : k >= 0 and c >= 0
     clearance : e
-    clearance_rate : de/dtau as the damper sees it; None: the derivative of e
-    sign : (alpha, beta), polynomials with N > 0 where alpha d + beta d' > 0; None: (k, c). They serve where k
-        and c vanish together, because N itself is nothing but rounding there
-    present : (P,) in which pieces the contact exists; None: in all
+    clearance_rate : de/dtau for the damper; None: the derivative of e
+    sign : (alpha, beta), polynomials with N > 0 where alpha d + beta d' > 0; None: (k, c). The polynomials
+        are necessary where k and c vanish together, because N is only rounding there
+    present : (P,) whether the contact exists in a piece; None: in all pieces
     """
 
     direction: ArrayLike
@@ -99,13 +99,13 @@ class Run:
 
     @property
     def derivative(self) -> FloatArray:
-        """The derivatives, of a run that has them."""
+        """The derivatives of a run with derivatives."""
         assert self.derivatives is not None
         return self.derivatives
 
     @property
     def rms(self) -> float:
-        """Of the output less its mean."""
+        """Root mean square of the output about the mean."""
         return float(np.sqrt(max(self.mean_square - self.mean**2, 0.0)))
 
 
@@ -113,8 +113,9 @@ class Run:
 class ContactSystem:
     """z'' = F + p H - K z - C z' + sum a_i(tau) N_i, periodic in tau = t/T, contacts unilateral.
 
-    One further row of K, C, F, H and a, behind the m coordinates, may gather an acceleration that does not
-    act back and must vanish in the mean, as that of a rigid rotation: the parameter p is the unknown for it.
+    One further row of K, C, F, H and a, after the m coordinates, may accumulate an acceleration, for example
+    the acceleration of a rigid rotation. This acceleration has no effect on the coordinates, and the mean
+    must vanish: the parameter p is the unknown for this condition.
 
     Attributes
     ----------
@@ -158,7 +159,7 @@ class ContactSystem:
         return np.ascontiguousarray(np.stack([np.broadcast_to(row, pieces) for row in rows], axis=1))
 
     def _laws(self) -> ContactLaws:
-        """Laws of all contacts as polynomials of one width, without powers that are rounding."""
+        """Laws of all contacts as polynomials of one width, without powers below rounding."""
         lengths = np.diff(self.phases)
         laws = [_laws_of(contact, lengths.size, self.force.size) for contact in self.contacts]
         trimmed = [ContactLaws(*(_trimmed(rows, lengths) for rows in law)) for law in laws]

@@ -1,4 +1,4 @@
-"""Refusals of the schema in the user's words: field, value, range and action of each of pydantic's errors."""
+"""Refusals of the schema in the user's words: field, value, range and action for each error of pydantic."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
 
 Model = TypeVar("Model", bound=BaseModel)
-#: What pydantic puts into a place for the parts of a union of plain types.
+#: Parts of pydantic's location that name a member of a union of plain types.
 _UNION_PARTS = {"int", "float", "str"}
-#: Keys of other gear programs -> what to do, for they are no misspelt keys of this one.
+#: Keys of other gear programs -> what to do. These keys are no misspelt keys of this program.
 _ELSEWHERE = {
     ("quality", "accuracy", "accuracy_grade", "quality_class"): "Write deviations.tolerance_class in the "
     "section of the gear (ISO 1328), or delete it: then all teeth are alike.",
@@ -45,9 +45,9 @@ _NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
 
 
 def made_of(root: type[Model], data: Mapping[str, Any], source: str, folder: Path = Path()) -> Model:
-    """Make a model of plain data in file units, or refuse the data; ``source`` says where they come from.
+    """Make a model from plain data in file units, or refuse the data. ``source`` is the origin of the data.
 
-    Data files that the data name are read relative to ``folder``.
+    Data files named in the data are read relative to ``folder``.
     """
     try:
         return root.model_validate(data, context={"folder": folder})
@@ -58,7 +58,7 @@ def made_of(root: type[Model], data: Mapping[str, Any], source: str, folder: Pat
 
 
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
-    """Return the problems, one for each field that pydantic refused when it built the model ``root``."""
+    """Return one problem for each field that pydantic has refused in the model ``root``."""
     items = error.errors(include_url=False)[:MOST_PROBLEMS]
     result = [problem for item in items for problem in _problems(item, root)]
     first: dict[str, FieldProblem] = {}
@@ -85,7 +85,7 @@ def field_of(root: type[BaseModel], path: str) -> FieldInfo:
 
 
 def models_in(annotation: Any) -> list[type[BaseModel]]:
-    """Schema sections that a field of this type may hold."""
+    """Schema sections that a field with this annotation may hold."""
     origin = get_origin(annotation)
     if origin is Annotated:
         return models_in(get_args(annotation)[0])
@@ -100,9 +100,12 @@ def _is_list(info: FieldInfo) -> bool:
     return get_origin(info.annotation) in (tuple, list)
 
 
-def unknown_key(path: str, known: list[str], part: str, root: type[BaseModel] | None = None) -> FieldProblem:
-    """Return the problem of a key that the schema does not have; a key of a section of ``root`` is named."""
-    names = list(dict.fromkeys(known))
+def unknown_key(path: str, keys: list[str], part: str, root: type[BaseModel] | None = None) -> FieldProblem:
+    """Return the problem of a key ``part`` that the schema does not have beside ``keys``.
+
+    The action names a near key, also a key in a section of ``root``.
+    """
+    names = list(dict.fromkeys(keys))
     allowed = "one of " + ", ".join(names) if names else "no key below a value"
     below = _below(root, path) if root is not None else ""
     close = nearest(part, names)
@@ -112,7 +115,10 @@ def unknown_key(path: str, known: list[str], part: str, root: type[BaseModel] | 
 
 
 def _below(root: type[BaseModel], path: str) -> str:
-    """Whether a field of the next inner section has a name, nearly a name, or a name with this word."""
+    """A question with fields of inner sections whose name is near to the last part of a path, or contains it.
+
+    Empty: there is no such field.
+    """
     fields: dict[str, list[str]] = {}
     *parents, part = path.split(".")
     owners = [root]
@@ -141,8 +147,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         ]
     value = shown(quoted(item.get("input")))
     if kind == "extra_forbidden":
-        known = [name for model in models for name in model.model_fields]
-        return [unknown_key(path, known, parts[-1], root)]
+        names = [name for model in models for name in model.model_fields]
+        return [unknown_key(path, names, parts[-1], root)]
     if kind == "missing" and parts and parts[-1].isidentifier():
         return [FieldProblem(path, "missing", _description(field_of(root, path)), "Add it.")]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
@@ -172,7 +178,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         keys = [f"{name} = ..." for model in models[:1] for name in model.model_fields]
         allowed = f"a list of tables such as [{{ {', '.join(keys[:3])} }}]" if models else "a list"
     if count := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", allowed):
-        allowed = f"{count[1]} instead of {count[2]}"
+        allowed_count, actual_count = count.groups()
+        allowed = f"{allowed_count} instead of {actual_count}"
     for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):
         allowed = allowed.removeprefix(start)
     return [FieldProblem(path or "file", value, allowed, "Correct the value.")]
@@ -181,7 +188,7 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
 def _location(
     location: tuple[int | str, ...], root: type[BaseModel]
 ) -> tuple[list[str], list[type[BaseModel]]]:
-    """Path of pydantic's location without union tags and tuple indices, and the sections that it ends in."""
+    """Path of pydantic's location without union tags and tuple indices, and the sections at its end."""
     models = [root]
     parts: list[str] = []
     listed = False
@@ -203,7 +210,7 @@ def _location(
 
 
 def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
-    """What chooses this member of a union: values of ``model`` or ``kind`` in a file, or its own ``tag``."""
+    """Values of ``model`` or ``kind`` in a file that choose a member of a union, or the member's ``tag``."""
     if tag := getattr(model, "tag", None):
         return (tag,)
     info = model.model_fields.get("model") or model.model_fields.get("kind")
@@ -217,7 +224,8 @@ def _choice(path: str, value: object, names: list[str]) -> FieldProblem:
 
 def _whole_number(info: FieldInfo) -> str:
     limits = {type(marker).__name__: marker for marker in info.metadata}
-    low, high = getattr(limits.get("Ge"), "ge", "-inf"), getattr(limits.get("Le"), "le", "inf")
+    low = getattr(limits.get("Ge"), "ge", "-inf")
+    high = getattr(limits.get("Le"), "le", "inf")
     return f"a whole number from {low} to {high}"
 
 

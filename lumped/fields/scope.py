@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limit:
-    """One thing that is not computed.
+    """A feature of gears that spurcheck does not compute.
 
     Attributes
     ----------
-    subject : what it is called
-    names : keys under which gear programs keep it
-    stems : starts of words of a key that mean it in any key: "helix" in ``pinion.helix_angle``
+    subject : name of the feature
+    names : keys of gear programs for the feature
+    stems : words that mean the feature in any key: "helix" in ``pinion.helix_angle``
     sentence : what spurcheck models instead, and what to do
     """
 
@@ -82,7 +82,7 @@ LIMITS = (HELICAL, INTERNAL, SEVERAL_MESHES, PLANETARY, CROWNING, LEAD, MISALIGN
 
 
 def about_key(key: str) -> str:
-    """Return the sentence on a key that means something that is not computed; empty for other keys.
+    """Return the sentence on a key of a feature that is not computed; empty for any other key.
 
     >>> about_key("number_of_planets")[:34]
     'Planetary stages are not computed:'
@@ -99,7 +99,7 @@ _NUMBERS = re.compile(r"[+\-\u2212\u2013]?\d+")
 
 
 def about_teeth(text: str) -> str:
-    """Return the sentence on numbers of teeth of gears that are not computed; empty for other text.
+    """Return the sentence on numbers of teeth of gears that are not computed; empty for any other text.
 
     >>> about_teeth("20/-60")[:23], about_teeth("12/24/48")[:20]
     ('Both gears are external', 'A file has one mesh ')

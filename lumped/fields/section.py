@@ -48,9 +48,9 @@ def _plain(value: Any, unit: str | None) -> Any:
 
 @dataclass(frozen=True)
 class OneOf:
-    """Annotation of a text field: one of these names, which may come from a registry.
+    """Annotation of a text field with one of several names, for example the names of a registry.
 
-    ``spelling`` turns another spelling into the name, where there are others.
+    ``spelling`` turns another spelling into a name. None: there are no other spellings.
     """
 
     names: tuple[str, ...]
@@ -59,7 +59,7 @@ class OneOf:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """Validate and describe it as pydantic does a ``Literal``."""
+        """Validate and describe the field like a ``Literal`` of pydantic."""
         names = core_schema.literal_schema(list(self.names))
         if self.spelling is None:
             return names

@@ -27,7 +27,7 @@ _MAX_BYTES = 10_000_000
 
 
 def read_columns(file: object, folder: object, quantity: tuple[str, str]) -> dict[str, object]:
-    """Read a table from a CSV file: ``axis``, ``points`` and the quantity as the schema takes them.
+    """Read a table from a CSV file: ``axis``, ``points`` and the quantity, as fields of the schema.
 
     The file has a header with a column ``position``, ``roll_angle`` or ``phase`` and a column of the
     quantity, each with its unit in brackets (none for ratios), in any order; lines that start with # are
@@ -51,7 +51,10 @@ def read_columns(file: object, folder: object, quantity: tuple[str, str]) -> dic
 
 
 def with_file(data: Any, info: ValidationInfo, quantity: tuple[str, str]) -> Any:
-    """Replace ``file`` in a section by what it holds; a relative path is beside the parameter file."""
+    """Replace ``file`` in a section by the content of the file.
+
+    A relative path starts at the parameter file.
+    """
     if not isinstance(data, dict) or "file" not in data:
         return data
     folder = (info.context or {}).get("folder", ".")
@@ -76,7 +79,8 @@ def table_of(
     for name, match, values in zip(names, matches, columns.values(), strict=True):
         assert match is not None  # it has a name
         axis, stated = AXES.get(name, quantity)
-        factor = _factor(match[2] or "", stated, name, field, where)
+        _, unit = match.groups()
+        factor = _factor(unit or "", stated, name, field, where)
         scaled = tuple((np.asarray(values, dtype=float) * factor).tolist())
         table |= {axis: scaled} if name == quantity[0] else {"axis": axis, "points": scaled}
     return table
@@ -85,9 +89,9 @@ def table_of(
 def check_points(
     points: Sequence[float], values: Sequence[float], quantity: tuple[str, str], largest: float, action: str
 ) -> None:
-    """Refuse unequal lengths, points that do not increase, and values outside 0 to the largest.
+    """Refuse unequal lengths, points that do not increase, and values outside 0 to ``largest``.
 
-    Those of a quantity with a unit must be above 0; ``action`` is what to do with a value.
+    Values of a quantity with a unit must be above 0. ``action`` is the advice on a refused value.
     """
     field, unit = quantity
     if len(points) != len(values):
@@ -104,7 +108,7 @@ def check_points(
 
 
 def uncovered(x: FloatArray, low: float, high: float, field: str) -> FieldProblem | None:
-    """A table over xi (n,) [m] that does not reach from A to D; None where it does."""
+    """Problem of a table over xi (n,) [m] that does not reach from A to D; None: the table does."""
     gap = _END_GAP * (high - low)
     if x[0] <= low + gap and x[-1] >= high - gap:
         return None

@@ -44,14 +44,14 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 def read_text(
     path: str | Path, limit: int, *, field: str = "file", kind: str = "text file", **words: str
 ) -> str:
-    """Return the text of an ordinary file in UTF-8, with or without Windows' mark; as ``read_bytes``.
+    """Return the text of an ordinary file in UTF-8, with or without a byte order mark; see ``read_bytes``.
 
-    A CSV file may be in UTF-16 with a mark, as spreadsheets and measuring machines write it.
+    A CSV file may also be in UTF-16 with a mark: spreadsheets and measuring machines write such files.
     """
     data = read_bytes(path, limit, field=field, kind=kind, **words)
-    wide = kind == "CSV file" and data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    is_utf_16 = kind == "CSV file" and data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return data.decode("utf-16" if wide else "utf-8-sig")
+        return data.decode("utf-16" if is_utf_16 else "utf-8-sig")
     except UnicodeDecodeError as error:
         why = f"It cannot be read: byte {error.start} is no {error.encoding.upper()}. Save it as UTF-8 text."
         raise refuse(field, Path(path), f"a {kind} in UTF-8", why) from None
@@ -66,9 +66,9 @@ def read_bytes(
     instead: str = "",
     action: str = "Check the path.",
 ) -> bytes:
-    """Return the bytes of an ordinary file (or of one that a link leads to), or refuse it.
+    """Return the bytes of an ordinary file, also through a link. Any other file is refused.
 
-    A pipe would block for ever and a device never ends, so both are refused before anything is read.
+    A pipe would block for ever, and a device never ends. Both are refused before the first byte is read.
     ``field`` named the file, ``kind`` is wanted, ``instead`` (", or ...") could have been named; ``action``
     is what to do where it does not exist.
     """

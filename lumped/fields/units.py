@@ -1,4 +1,4 @@
-"""Units at the file boundary: a number has the field's stated unit, a string names its own; SI inside."""
+"""Units at the file boundary: a number has the field's stated unit, a string names a unit; SI inside."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache, cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from pydantic_core import core_schema
@@ -50,7 +50,7 @@ _TURNS = (
     (re.compile(r"(?<![A-Za-z])(?:rev|revs|r|tr|U)?\s*/\s*s(ec)?\b(?<=[a-zU]/s)"), " rps"),
     (re.compile(r"(?<![A-Za-z])(k?)Hz\b"), r"\1rps"),
 )
-#: Spellings that mean what they do in a quantity of this stated unit alone: a pound is a force in a torque.
+#: Stated unit -> spellings with a special meaning in a quantity of this unit: a pound is a force in a torque.
 _WHERE: dict[str, tuple[Rewriting, ...]] = {
     "N*m": _POUND_FORCE,
     "N": _POUND_FORCE,
@@ -58,7 +58,7 @@ _WHERE: dict[str, tuple[Rewriting, ...]] = {
     "rpm": _TURNS,
     "degC": ((re.compile(r"(?<=[\d.])\s*[°º]?\s*([CF])\s*$"), r" deg\1"),),
 }
-#: Units that pint lacks, in its own notation; prefixes come with them.
+#: Units that pint lacks, in the notation of pint. Prefixes work with these units too.
 DEFINITIONS = (
     "newton_meter = newton * meter = Nm",
     "newton_millimeter = newton * millimeter = Nmm",
@@ -71,51 +71,68 @@ _COMMA = re.compile(r"\s*([+-]?[\d.]*\d),(\d+)(?=$|[^\d,])")
 
 
 def about_digits(text: str) -> str:
-    """Return what to write instead of a number with a comma or with gaps; nothing where it has neither."""
+    """Return what to write instead of a number with a comma or with gaps; empty for any other text."""
     if _GAP.search(text):  # pint would multiply the parts
         return f"leave the gap between the digits out: write '{_GAP.sub('', text)}'"
     result = _COMMA.match(text)
     if result is None:
         return "write decimals with a point" if "," in text else ""
-    whole = result[1].replace(".", "")
-    decimals = result[2]
+    before_comma, decimals = result.groups()
+    integer = before_comma.replace(".", "")
     rest = text[result.end() :]
-    if len(decimals) == 3 and "." not in result[1]:
+    if len(decimals) == 3 and "." not in before_comma:
         return (
-            f"the comma may be a decimal comma or part thousands: write '{whole}.{decimals}{rest}' or "
-            f"'{whole}{decimals}{rest}'"
+            f"the comma may be a decimal comma or part thousands: write '{integer}.{decimals}{rest}' or "
+            f"'{integer}{decimals}{rest}'"
         )
-    return f"this is a decimal comma: write '{whole}.{decimals}{rest}'"
+    return f"this is a decimal comma: write '{integer}.{decimals}{rest}'"
+
+
+class StatedUnit(NamedTuple):
+    """A unit of numbers in files.
+
+    Attributes
+    ----------
+    si : SI unit
+    factor : factor to SI
+    meaning : the kind of quantity
+    example : a string with another unit of this kind
+    """
+
+    si: str
+    factor: Decimal
+    meaning: str
+    example: str
 
 
 _PI = Decimal("3.14159265358979323846264338327950288")
-#: Stated unit in files -> (SI unit, factor to SI, what it measures, example of a string with another unit).
-UNITS: dict[str, tuple[str, Decimal, str, str]] = {
-    "1": ("1", Decimal(1), "a pure number", "0.05"),
-    "mm": ("m", Decimal("1e-3"), "a length", "0.125 inch"),
-    "um": ("m", Decimal("1e-6"), "a length", "16 microinch"),
-    "1/mm": ("1/m", Decimal("1e3"), "an inverse length", "500 1/inch"),
-    "deg": ("rad", _PI / 180, "an angle", "0.349 rad"),
-    "rpm": ("rad/s", _PI / 30, "a rotational speed", "104.7 rad/s"),
-    "N*m": ("N*m", Decimal(1), "a torque", "200 lbf*in"),
-    "kg": ("kg", Decimal(1), "a mass", "0.7 lb"),
-    "kg*m**2": ("kg*m**2", Decimal(1), "a moment of inertia", "1.05 lb*inch**2"),
-    "kg/m**3": ("kg/m**3", Decimal(1), "a density", "7.85 g/cm**3"),
-    "GPa": ("Pa", Decimal("1e9"), "a pressure", "30e6 psi"),
-    "N/m": ("N/m", Decimal(1), "a stiffness", "571000 lbf/inch"),
-    "N/mm": ("N/m", Decimal("1e3"), "a load per length", "600 lbf/inch"),
-    "N*m/rad": ("N*m/rad", Decimal(1), "a torsional stiffness", "150 N*m/deg"),
-    "N*s/m": ("N*s/m", Decimal(1), "a damping", "2 lbf*s/inch"),
-    "N*m*s/rad": ("N*m*s/rad", Decimal(1), "a torsional damping", "0.5 N*m*s/deg"),
-    "mPa*s": ("Pa*s", Decimal("1e-3"), "a dynamic viscosity", "10 cP"),
-    "mm**2/s": ("m**2/s", Decimal("1e-6"), "a kinematic viscosity", "32 cSt"),
-    "degC": ("K", Decimal(1), "a temperature", "140 degF"),
-    "mm/s": ("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
-    "N": ("N", Decimal(1), "a force", "5 lbf"),
-    "m": ("m", Decimal(1), "a length", "3 um"),
-    "s": ("s", Decimal(1), "a time", "2 ms"),
-    "rad": ("rad", Decimal(1), "an angle", "20 deg"),
-    "Hz": ("Hz", Decimal(1), "a frequency", "50 kHz"),
+#: Stated unit in files -> the unit.
+UNITS: dict[str, StatedUnit] = {
+    "1": StatedUnit("1", Decimal(1), "a pure number", "0.05"),
+    "mm": StatedUnit("m", Decimal("1e-3"), "a length", "0.125 inch"),
+    "um": StatedUnit("m", Decimal("1e-6"), "a length", "16 microinch"),
+    "1/mm": StatedUnit("1/m", Decimal("1e3"), "an inverse length", "500 1/inch"),
+    "deg": StatedUnit("rad", _PI / 180, "an angle", "0.349 rad"),
+    "rpm": StatedUnit("rad/s", _PI / 30, "a rotational speed", "104.7 rad/s"),
+    "N*m": StatedUnit("N*m", Decimal(1), "a torque", "200 lbf*in"),
+    "kg": StatedUnit("kg", Decimal(1), "a mass", "0.7 lb"),
+    "kg*m**2": StatedUnit("kg*m**2", Decimal(1), "a moment of inertia", "1.05 lb*inch**2"),
+    "kg/m**3": StatedUnit("kg/m**3", Decimal(1), "a density", "7.85 g/cm**3"),
+    "GPa": StatedUnit("Pa", Decimal("1e9"), "a pressure", "30e6 psi"),
+    "N/m": StatedUnit("N/m", Decimal(1), "a stiffness", "571000 lbf/inch"),
+    "N/mm": StatedUnit("N/m", Decimal("1e3"), "a load per length", "600 lbf/inch"),
+    "N*m/rad": StatedUnit("N*m/rad", Decimal(1), "a torsional stiffness", "150 N*m/deg"),
+    "N*s/m": StatedUnit("N*s/m", Decimal(1), "a damping", "2 lbf*s/inch"),
+    "N*m*s/rad": StatedUnit("N*m*s/rad", Decimal(1), "a torsional damping", "0.5 N*m*s/deg"),
+    "mPa*s": StatedUnit("Pa*s", Decimal("1e-3"), "a dynamic viscosity", "10 cP"),
+    "mm**2/s": StatedUnit("m**2/s", Decimal("1e-6"), "a kinematic viscosity", "32 cSt"),
+    "degC": StatedUnit("K", Decimal(1), "a temperature", "140 degF"),
+    "mm/s": StatedUnit("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
+    "N": StatedUnit("N", Decimal(1), "a force", "5 lbf"),
+    "m": StatedUnit("m", Decimal(1), "a length", "3 um"),
+    "s": StatedUnit("s", Decimal(1), "a time", "2 ms"),
+    "rad": StatedUnit("rad", Decimal(1), "an angle", "20 deg"),
+    "Hz": StatedUnit("Hz", Decimal(1), "a frequency", "50 kHz"),
 }
 _ZERO_CELSIUS = Decimal("273.15")
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
@@ -131,28 +148,29 @@ _ANGLE = re.compile(
 
 
 def _in_degrees(text: str) -> str:
-    """An angle in degrees, minutes and seconds of arc as degrees, text of another form unchanged."""
-    found = _ANGLE.fullmatch(text)
-    parts = [] if found is None else [found[2], found[3], found[4]]
+    """An angle in degrees, minutes and seconds of arc, as degrees. Text of another form is unchanged."""
+    match = _ANGLE.fullmatch(text)
+    groups: tuple[Any, ...] = (None, None, None, None) if match is None else match.groups()
+    sign, *parts = groups  # degrees, minutes, seconds
     stated = [place for place, part in enumerate(parts) if part is not None]
-    if found is None or not stated or stated == [0]:
+    if not stated or stated == [0]:
         return re.sub(r"(?<=\d)\s*(?:º|Grad\b)", " deg", text)
-    whole = all("." not in parts[place] for place in stated[:-1])
-    below = all(Decimal(parts[place]) < 60 for place in stated[1:])
-    if not (whole and below):
+    without_decimals = all("." not in parts[place] for place in stated[:-1])
+    below_sixty = all(Decimal(parts[place]) < 60 for place in stated[1:])
+    if not (without_decimals and below_sixty):
         raise ValueError(
             f"'{text}' is no angle: beside a larger part, minutes and seconds are below 60, and the last "
             "part alone has decimals; write degrees: '20.5 deg'"
         )
     sixtieths = zip(parts, (1, 60, 3600), strict=True)
     angle = sum((Decimal(part) / part_of for part, part_of in sixtieths if part is not None), Decimal(0))
-    return f"{'-' if found[1] in ('-', '−', '–') else ''}{angle:f} deg"
+    return f"{'-' if sign in ('-', '−', '–') else ''}{angle:f} deg"
 
 
 class SIValue(float):
-    """A number in SI with its unit, which a field reads as and takes back unchanged.
+    """A number in SI with the unit, the value of a field. A field takes such a number back unchanged.
 
-    It is a float in every formula, and what comes out of a formula is a bare number.
+    In a formula the number is a float, and the result of a formula is a bare number.
     """
 
     __slots__ = ("unit",)
@@ -165,13 +183,13 @@ class SIValue(float):
         return made
 
     def to(self, unit: str) -> float:
-        """Return the bare number in another unit of its kind: ``pair.operating.pinion_speed.to("rpm")``."""
-        stated = next(key for key, one in UNITS.items() if one[0] == self.unit)
+        """Return the bare number in another unit: ``pair.operating.pinion_speed.to("rpm")``."""
+        stated = next(name for name, one in UNITS.items() if one.si == self.unit)
         try:
             zero, one = (to_si(f"{number} {unit}", stated) for number in (0, 1))
         except ValueError as error:
             raise refuse("unit", shown(unit), f"a unit that {self.unit} converts to", f"{error}.") from None
-        if unit in UNITS and UNITS[unit][0] == self.unit:
+        if unit in UNITS and UNITS[unit].si == self.unit:
             return to_stated(self, unit)  # exact
         return (self - zero) / (one - zero)
 
@@ -204,11 +222,14 @@ def _number_to_si(text: str, unit: str) -> float:
     number = Decimal(text)
     if not number.is_finite():
         return float(text)
-    return float(number + _ZERO_CELSIUS if unit == "degC" else number * UNITS[unit][1])
+    return float(number + _ZERO_CELSIUS if unit == "degC" else number * UNITS[unit].factor)
 
 
 def to_si(value: float | str, unit: str) -> float:
-    """Convert to SI: a number in the stated unit, or text with a unit; ValueError says what is wrong."""
+    """Convert a number in the stated unit, or text with a unit, to SI.
+
+    Raises ValueError with what is wrong and what to write.
+    """
     si, _, meaning, example = UNITS[unit]
     advice = f"write a number (read as {unit}) or a string such as '{example}'"
     if isinstance(value, SIValue):
@@ -260,7 +281,7 @@ def to_si(value: float | str, unit: str) -> float:
 
 
 def _about_kinematic(text: str, viscosity: float) -> str:
-    """What to write instead of a kinematic viscosity [mm^2/s] where a dynamic one is read."""
+    """What to write instead of a kinematic viscosity [mm^2/s] in a field for a dynamic viscosity."""
     return (
         "it is a kinematic viscosity. Where it is the oil's at 40 degC, as on a data sheet, write instead of "
         f"viscosity: viscosity_law = {{ iso_vg = '{text}', temperature = 70 }}, with your oil temperature. "
@@ -270,35 +291,38 @@ def _about_kinematic(text: str, viscosity: float) -> str:
 
 
 def to_file(value: float, unit: str) -> float | str:
-    """Write an SI number so that reading gives the same bits: in the stated unit if this is exact."""
+    """Write an SI number so that reading gives the same bits.
+
+    The number is in the stated unit if the conversion is exact, otherwise text in the SI unit.
+    """
     stated = to_stated(value, unit)
-    return stated if to_si(stated, unit) == value else f"{float(value)!r} {UNITS[unit][0]}"
+    return stated if to_si(stated, unit) == value else f"{float(value)!r} {UNITS[unit].si}"
 
 
 def to_stated(value: float, unit: str) -> float:
-    """Convert an SI number to the field's stated unit, for reading: to the shortest number that means it."""
+    """Convert an SI number to the field's stated unit: the shortest number that reads as the SI number."""
     return _stated(repr(float(value)), unit)
 
 
 @lru_cache(maxsize=4096)
 def _stated(text: str, unit: str) -> float:
     number = Decimal(text)
-    stated = number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit][1]
+    stated = number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit].factor
     short = float(f"{stated:.15g}")  # 3000 rpm, not 2999.9999999999998
     return short if to_si(short, unit) == float(text) else float(stated)
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """Annotation of a float field: its stated unit and allowed range, both as a user writes them.
+    """Annotation of a float field: stated unit and allowed range, as a user writes both.
 
-    Its refusals have no field; pydantic knows the place.
+    A refusal of a quantity names no field; pydantic adds the place.
 
     Attributes
     ----------
     unit : stated unit of a bare number, a key of ``UNITS``
-    above, below : open bounds in that unit
-    at_least, at_most : closed bounds in that unit
+    above, below : open bounds in this unit
+    at_least, at_most : closed bounds in this unit
     optional : whether None (in a file: leaving the key out) is a value
     word : text that is a value too
     action : what to do when the value is refused
@@ -315,7 +339,7 @@ class Quantity:
 
     @property
     def allowed(self) -> str:
-        """The allowed range as text, with its unit."""
+        """The allowed range as text, with the unit."""
         unit = "" if self.unit == "1" else f" {self.unit}"
         parts = (f"{sign} {bound:g}{unit}" for sign, _, bound, _ in self._bounds)
         allowed = " and ".join(parts) or f"any finite number{unit}"
@@ -323,7 +347,7 @@ class Quantity:
 
     @property
     def _bounds(self) -> list[tuple[str, str, float, Callable[[float, float], bool]]]:
-        """Sign, key of JSON Schema, value and comparison of each bound that is given."""
+        """Sign, key of JSON Schema, value and comparison of each bound of the quantity."""
         every = (
             (">", "exclusiveMinimum", self.above, operator.gt),
             (">=", "minimum", self.at_least, operator.ge),
@@ -334,14 +358,17 @@ class Quantity:
 
     @cached_property
     def _limits(self) -> list[tuple[Callable[[float, float], bool], float]]:
-        """Comparison and bound in SI, converted like values: a value at a bound equals it bit for bit."""
+        """Comparison and bound in SI of each bound.
+
+        Bounds are converted like values: a value at a bound equals the bound bit for bit.
+        """
         return [(holds, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds]
 
     def _refusal(self, value: str, action: str) -> ParameterError:
         return refuse("", value, self.allowed, action)
 
     def parse(self, value: object) -> Any:
-        """Read a number, text with a unit or an `SIValue` into SI, or refuse it."""
+        """Convert a number, text with a unit or an `SIValue` to SI, or refuse the value."""
         if (value is None and self.optional) or (isinstance(value, str) and value == self.word != ""):
             return value
         if isinstance(value, np.generic):
@@ -358,7 +385,7 @@ class Quantity:
             bare = not isinstance(value, (str, SIValue))
             text = f"{value!r} {self.unit}".removesuffix(" 1") if bare else shown(value)
             raise self._refusal(text, self.action if finite else "Give a finite number.")
-        return si if self.unit == "1" else SIValue(si, UNITS[self.unit][0])
+        return si if self.unit == "1" else SIValue(si, UNITS[self.unit].si)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
@@ -373,8 +400,8 @@ class Quantity:
     def json_schema(self) -> JsonSchemaValue:
         """JSON Schema of the quantity: a number in the stated unit with its bounds, or text with a unit."""
         number = {"type": "number"} | {key: bound for _, key, bound, _ in self._bounds}
-        text = {"type": "string", "examples": [UNITS[self.unit][3]]}
-        return {"anyOf": [number, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}
+        text = {"type": "string", "examples": [UNITS[self.unit].example]}
+        return {"anyOf": [number, text], "unit": self.unit, "si_unit": UNITS[self.unit].si}
 
 
 class QuantityRange(Quantity):
@@ -386,13 +413,14 @@ class QuantityRange(Quantity):
         return f"two increasing values FROM..TO, each {super().allowed}"
 
     def parse(self, value: object) -> tuple[float, float] | None:
-        """Read two ends, or text FROM..TO, into SI, or refuse it."""
+        """Convert two ends, or text FROM..TO, to SI, or refuse the value."""
         if value is None:
             return None
         ends = _ends(value) if isinstance(value, str) else value
         if not isinstance(ends, (list, tuple)) or len(ends) != 2:
             raise self._refusal(shown(value), self.action)
-        low, high = super().parse(ends[0]), super().parse(ends[1])
+        low = super().parse(ends[0])
+        high = super().parse(ends[1])
         if low >= high:
             raise self._refusal(shown(value), self.action)
         return low, high
@@ -401,7 +429,7 @@ class QuantityRange(Quantity):
         """Two ends, or text."""
         ends = {"type": "array", "items": super().json_schema(), "minItems": 2, "maxItems": 2}
         text = {"type": "string", "examples": ["200..3000"]}
-        return {"anyOf": [ends, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}
+        return {"anyOf": [ends, text], "unit": self.unit, "si_unit": UNITS[self.unit].si}
 
 
 class QuantityList(Quantity):
@@ -409,11 +437,11 @@ class QuantityList(Quantity):
 
     @property
     def allowed(self) -> str:
-        """The allowed range of each as text."""
+        """The allowed range of each value as text."""
         return f"a list of values, each {super().allowed}"
 
     def parse(self, value: object) -> tuple[float, ...] | None:
-        """Read a list of numbers or text with units into SI, or refuse it."""
+        """Convert a list of numbers or text with units to SI, or refuse the list."""
         if value is None:
             return None
         if isinstance(value, np.ndarray):
@@ -425,11 +453,14 @@ class QuantityList(Quantity):
     def json_schema(self) -> JsonSchemaValue:
         """A list of numbers."""
         items = {"type": "array", "items": super().json_schema(), "minItems": 1}
-        return items | {"unit": self.unit, "si_unit": UNITS[self.unit][0]}
+        return items | {"unit": self.unit, "si_unit": UNITS[self.unit].si}
 
 
 def _ends(text: str) -> list[float | str]:
-    """Ends of "FROM..TO": bare numbers as numbers; a first end without a unit has that of the second."""
+    """Ends of "FROM..TO", bare numbers as numbers.
+
+    A first end without a unit has the unit of the second end.
+    """
     if text.count("..") != 1:
         return []
     low, high = text.split("..")

@@ -20,7 +20,7 @@ from lumped.gear_geometry.tooth_profile import ToothProfile, tooth_half_angle
 
 @dataclass(frozen=True)
 class Wheel:
-    """One gear as it is cut, SI.
+    """One gear as cut, SI.
 
     Attributes
     ----------
@@ -41,8 +41,8 @@ class Geometry:
 
     X and Y are the tangent points of the line of action on the pinion's and the gear's base circle; A, B, P,
     C, D are start of contact, lowest point of single contact, pitch point, highest point of single contact
-    and end of contact. Contact starts and ends at the mate's tip circle, or before it at the edge that an
-    undercut leaves. B and C are the pitch-spaced counterparts of D and A also when the contact ratio is 2 or
+    and end of contact. Contact starts and ends at the mate's tip circle; on an undercut flank contact starts
+    or ends at the edge of the undercut. B and C are one pitch from D and A, also at a contact ratio of 2 or
     more.
 
     Attributes
@@ -103,31 +103,37 @@ class Geometry:
 
     @property
     def tip_length_pinion(self) -> float:
-        """From X along the line of action to the pinion's tip circle [m]; an undercut gear ends before it."""
+        """Distance along the line of action from X to the pinion's tip circle [m].
+
+        Where the gear is undercut, contact ends before this circle.
+        """
         return math.sqrt(self.tip_radius_pinion**2 - self.base_radius_pinion**2)
 
     @property
     def tip_length_gear(self) -> float:
-        """From Y along the line of action to the gear's tip circle [m]; an undercut pinion ends before it."""
+        """Distance along the line of action from Y to the gear's tip circle [m].
+
+        Where the pinion is undercut, contact begins after this circle.
+        """
         return math.sqrt(self.tip_radius_gear**2 - self.base_radius_gear**2)
 
     @property
     def tip_contact_ratio(self) -> float:
-        """Contact ratio that the tip circles alone would give: ``contact_ratio`` without undercut [-]."""
+        """Contact ratio from the tip circles alone: ``contact_ratio`` without undercut [-]."""
         return (self.tip_length_pinion + self.tip_length_gear - self.L_XY) / self.base_pitch
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a reader of the drawing should know: whether undercut shortens the contact."""
+        """Notes for the reader of the drawing: a sentence where undercut shortens the contact."""
         lost = {
             "start": self.L_XA - (self.L_XY - self.tip_length_gear),
             "end": self.tip_length_pinion - self.L_XD,
         }
-        ways = [f"{1e3 * way:.3g} mm at its {end}" for end, way in lost.items() if way > 0.0]
-        if not ways:
+        parts = [f"{1e3 * length:.3g} mm at its {end}" for end, length in lost.items() if length > 0.0]
+        if not parts:
             return ()
         ratios = f"contact ratio {self.contact_ratio:.3f} instead of {self.tip_contact_ratio:.3f}"
-        return (f"undercut shortens contact by {' and '.join(ways)}: {ratios}",)
+        return (f"undercut shortens contact by {' and '.join(parts)}: {ratios}",)
 
     @property
     def mesh_frequency(self) -> float:
@@ -145,14 +151,14 @@ def build_geometry(
 ) -> Geometry:
     """Return the geometry of two gears cut by racks of the same module and pressure angle.
 
-    ``existence_problems`` says whether the gears can mesh; only what has no geometry is refused
-    here, under the names of the schema.
+    ``existence_problems`` says whether the gears can mesh. Only gears without a geometry are refused here,
+    under the names of the schema.
 
     Parameters
     ----------
-    centre_distance : [m]; None: that of no backlash for these profile shifts
-    backlash : by which the teeth are thinner than the rack leaves them, along the line of action [m]
-    pinion_speed : [rad/s]
+    centre_distance : centre distance [m]; None: the distance without backlash for these profile shifts
+    backlash : backlash by thinning of the teeth, along the line of action [m]
+    pinion_speed : speed of the pinion [rad/s]
     """
     try:
         return _build(pinion, gear, centre_distance, backlash, pinion_speed)
@@ -162,9 +168,9 @@ def build_geometry(
 
 
 def theoretical_backlash(pinion: Wheel, gear: Wheel, pressure_angle: float) -> float:
-    """Backlash along the line of action that the rack leaves [m]; negative where the teeth would wedge.
+    """Backlash along the line of action of teeth as the rack cuts them [m]; negative: the teeth would wedge.
 
-    ``pressure_angle`` is the operating one [rad].
+    ``pressure_angle`` is the operating pressure angle [rad].
     """
     radii = [wheel.tooth.base_radius / math.cos(pressure_angle) for wheel in (pinion, gear)]
     halves = [
@@ -181,8 +187,10 @@ def _build(
     rack = pinion.tooth
     alpha = rack.pressure_angle
     m = rack.module
-    r_bp, r_bg = pinion.tooth.base_radius, gear.tooth.base_radius
-    r_ap, r_ag = pinion.tip_radius, gear.tip_radius
+    r_bp = pinion.tooth.base_radius
+    r_bg = gear.tooth.base_radius
+    r_ap = pinion.tip_radius
+    r_ag = gear.tip_radius
     centre, alpha_w = _centre_distance(pinion.tooth, gear.tooth, centre_distance)
     for name, tip, base in (("pinion", r_ap, r_bp), ("gear", r_ag, r_bg)):
         if tip <= base:
@@ -269,7 +277,7 @@ class ToothProblem(FieldProblem):
     Attributes
     ----------
     gear : "pinion" or "gear"
-    sense : of the change of its profile shift, 1 to raise it
+    sense : direction of the change of the profile shift, 1: larger
     """
 
     gear: Name = "pinion"
@@ -279,7 +287,7 @@ class ToothProblem(FieldProblem):
 def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> list[FieldProblem]:
     """Return the reasons why a pair cannot exist, each with the field of the schema to change.
 
-    ``backlash`` is how much the teeth are thinner than the rack leaves them [m].
+    ``backlash`` is the backlash by thinning of the teeth [m].
     """
     problems = list(_of_the_pair(g))
     problems += _of_one_gear("gear", gear, pinion, g)

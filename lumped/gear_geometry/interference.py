@@ -21,15 +21,16 @@ def tip_clearance(
 ) -> float:
     """Least clearance of the mate's tip corner from fillet and flank while the driving flanks touch [m].
 
-    The corner stands on a triangle of centre distance, tip radius and its distance R from the centre of the
-    gear. Both gears turn with the ratio of their teeth, so the corner passes every R at one angle from the
-    centre line of the tooth; the clearance is the arc between corner and tooth there. It is 0 where the
-    corner rolls onto the involute, and negative where it would cut into the tooth.
+    Centre distance, tip radius of the mate and the distance R of the corner from the gear's centre form a
+    triangle. Both gears turn with the ratio of their teeth. At a distance R the corner therefore has one
+    angle from the centre line of the tooth. The clearance is the arc between corner and tooth at this
+    distance. The clearance is 0 where the corner rolls onto the involute, and negative where the corner would
+    cut into the tooth.
 
     Parameters
     ----------
-    tooth, tip : gear whose teeth are met, and its tip radius [m]
-    mate, mate_tip : gear with the corner, and its tip radius [m]
+    tooth, tip : gear whose teeth the corner meets, and tip radius of this gear [m]
+    mate, mate_tip : gear with the corner, and tip radius of this gear [m]
     centre : centre distance, above the sum of the base radii [m]
     """
     ratio = mate.teeth / tooth.teeth
@@ -46,10 +47,10 @@ def tip_clearance(
     radius = radius[reached]
     outline = outline[reached]
     # Angles of the corner from the line of centres, about the mate's centre and about the gear's.
-    turned = _angle_between(centre, mate_tip, radius)
-    seen = _angle_between(centre, radius, mate_tip)
+    mate_angle = _angle_between(centre, mate_tip, radius)
+    gear_angle = _angle_between(centre, radius, mate_tip)
     # With the flanks touching at the pitch point, the corner is corner_half - mate_half off the line.
-    path = half + ratio * (turned + mate_half - corner_half) - seen
+    path = half + ratio * (mate_angle + mate_half - corner_half) - gear_angle
     return float((radius * (path - outline)).min())
 
 

@@ -46,7 +46,7 @@ def shift_from_span(tooth: ToothProfile, teeth_spanned: int, measured: float) ->
 def teeth_spanned(tooth: ToothProfile, radius: float) -> int:
     """Return the number of teeth k, at least 2, whose span touches the flanks nearest to a circle.
 
-    ``radius`` [m] is above that of the base circle. The planes touch on the circle where
+    ``radius`` [m] is larger than the base radius. The planes touch on the circle where
     W_k = 2 sqrt(r^2 - r_b^2).
     """
     wanted = 2.0 * math.sqrt(radius**2 - tooth.base_radius**2)
@@ -57,15 +57,15 @@ def teeth_spanned(tooth: ToothProfile, radius: float) -> int:
 def ball_touching_at(tooth: ToothProfile, radius: float) -> float:
     """Return the diameter of the ball that touches both flanks of a space on a circle [m].
 
-    D_M = d_b (tan(tan(alpha_y) + eta_b) - tan(alpha_y)); ``radius`` [m] is above that of the base circle,
-    alpha_y the profile angle there and eta_b half the space at the base circle, as an angle.
+    D_M = d_b (tan(tan(alpha_y) + eta_b) - tan(alpha_y)). ``radius`` [m] is larger than the base radius,
+    alpha_y is the profile angle at this radius, and eta_b is half the space at the base circle as an angle.
     """
     tangent = math.sqrt(radius**2 - tooth.base_radius**2) / tooth.base_radius
     return 2.0 * tooth.base_radius * (math.tan(tangent + _space_at_base(tooth)) - tangent)
 
 
 def over_balls(tooth: ToothProfile, ball: float) -> float:
-    """Return M_dK, the dimension over two balls in spaces that lie as opposite as they can [m].
+    """Return M_dK, the dimension over two balls in opposite or nearly opposite spaces [m].
 
     inv(alpha_K) = D_M / d_b - eta_b; M_dK = d_b / cos(alpha_K) + D_M with an even number of teeth, with an
     odd one d_b cos(pi / (2 z)) / cos(alpha_K) + D_M. ``ball`` is the diameter D_M [m], eta_b as for
@@ -92,7 +92,7 @@ def shift_from_balls(tooth: ToothProfile, ball: float, measured: float) -> float
 
 
 def _across(teeth: int) -> float:
-    """Distance of two opposite balls over the diameter of their circle."""
+    """Distance of two opposite balls over the diameter of the circle of the balls."""
     return 1.0 if teeth % 2 == 0 else math.cos(0.5 * math.pi / teeth)
 
 
@@ -104,21 +104,21 @@ def _space_at_base(tooth: ToothProfile) -> float:
 def as_made(tooth: ToothProfile, thinning: float) -> ToothProfile:
     """Return the tooth with its generating profile shift x_E.
 
-    x_E = x - thinning / (2 m sin(alpha)); ``thinning`` of this gear along the line of action [m], by which
-    its span is shorter. For measures of the flanks: the root of the model stays that of x.
+    x_E = x - thinning / (2 m sin(alpha)). ``thinning`` of this gear along the line of action [m] shortens the
+    span. The result is for measures of the flanks: the root of the model belongs to x.
     """
     less = thinning / (2.0 * tooth.module * math.sin(tooth.pressure_angle))
     return replace(tooth, profile_shift=tooth.profile_shift - less)
 
 
 def _as(label: str, symbol: str, unit: str, decided_by: str = "") -> dict[str, str]:
-    """How a field of a record is shown, and the field of the parameter file that decides it."""
+    """Label, symbol and unit of a measure, and the field of the parameter file that decides the measure."""
     return {"label": label, "symbol": symbol, "unit": unit, "decided_by": decided_by}
 
 
 @dataclass(frozen=True)
 class GearMeasures:
-    """One gear of a pair as its drawing states it, SI.
+    """The measures of one gear of a pair on a drawing, SI.
 
     Attributes
     ----------
@@ -183,13 +183,13 @@ class TableRow:
 
 @dataclass(frozen=True)
 class GearTable:
-    """A pair as two drawings and an assembly state it, SI.
+    """The measures of a pair on two drawings and an assembly, SI.
 
     Attributes
     ----------
     module : m [m]
     pressure_angle : of the basic rack, alpha [rad]
-    pinion, gear : what each drawing states
+    pinion, gear : measures of each drawing
     centre_distance : a [m]
     operating_pressure_angle : alpha_w [rad]
     normal_backlash : j_n along the line of action, of thinning and centre distance together [m]
@@ -238,7 +238,7 @@ class GearTable:
 
 
 def _shown(about: Any, values: tuple[float | int | None, ...], sections: tuple[str, ...]) -> TableRow:
-    """Row of a field with this metadata: values in SI become those of a drawing."""
+    """Row of a field with metadata. Values in SI are converted to the units of a drawing."""
     scale = {"mm": 1e3, "deg": math.degrees(1.0), "": 1}[about["unit"]]
     shown = tuple("not measurable" if one is None else one * scale for one in values)
     deciding = tuple(section + about["decided_by"] for section in sections) if about["decided_by"] else ()
@@ -252,23 +252,23 @@ class _Thinned(Protocol):
 
 
 class CutPair(Protocol):
-    """A gear pair, as far as its table reads it."""
+    """The attributes of a gear pair that the table reads."""
 
     @property
     def wheels(self) -> tuple[Wheel, Wheel]:
-        """Pinion and gear as they are cut."""
+        """Pinion and gear as cut by the rack."""
 
     @property
     def geometry(self) -> Geometry:
-        """Of the pair at its centre distance."""
+        """Geometry of the pair at the centre distance."""
 
     @property
     def basic_rack(self) -> Any:
-        """With its ``addendum_coefficient``."""
+        """Basic rack with ``addendum_coefficient``."""
 
     @property
     def mesh(self) -> _Thinned:
-        """With its ``backlash``."""
+        """Mesh with ``backlash``."""
 
 
 def gear_table(
@@ -276,7 +276,7 @@ def gear_table(
     teeth_spanned: tuple[int, int] | None = None,
     balls: tuple[float, float] | None = None,
 ) -> GearTable:
-    """Return the diameters, thicknesses and inspection dimensions of a pair, as drawings state them.
+    """Return the diameters, thicknesses and inspection dimensions of a pair for drawings.
 
     Parameters
     ----------
@@ -291,7 +291,8 @@ def gear_table(
     Each gear has half of ``pair.mesh.backlash``; thickness, span and dimension over balls are of teeth as
     made. With unequal thinning use `as_made` with `span` and `over_balls`.
     """
-    g, (first, second) = pair.geometry, pair.wheels
+    g = pair.geometry
+    first, second = pair.wheels
     thinning = 0.5 * pair.mesh.backlash
     addendum = pair.basic_rack.addendum_coefficient
     spans = teeth_spanned or (None, None)
@@ -363,7 +364,7 @@ _COARSE_FROM = 2.5e-3
 
 
 def _standing_out(tooth: ToothProfile, ideal: float, tip: float) -> float:
-    """Least diameter of the steps, from the ideal one on, whose balls stand out of the tip circle."""
+    """Least diameter of the steps, from the ideal one on, with balls that stand out of the tip circle."""
     step = _COARSE if ideal >= _COARSE_FROM else _FINE
     size = step * math.ceil(ideal / step - 1e-9)
     while (over_balls(tooth, size) - size) / _across(tooth.teeth) + size <= 2.0 * tip:

@@ -52,7 +52,7 @@ def shift_sum(teeth: int, module: float, pressure_angle: float, centre_distance:
 def distance_without_backlash(teeth: int, module: float, pressure_angle: float, shift: float) -> float:
     """Return the centre distance [m] at which gears with a sum of profile shifts have no backlash.
 
-    The inverse of `shift_sum`. A sum so negative that the base circles would overlap is refused.
+    This function is the inverse of `shift_sum`. A negative sum with base circles that overlap is refused.
     """
     value = involute(pressure_angle) + 2.0 * shift / teeth * math.tan(pressure_angle)
     if value < 0.0:
@@ -64,62 +64,62 @@ def distance_without_backlash(teeth: int, module: float, pressure_angle: float, 
 
 
 def shared(shift: float, teeth: tuple[int, int]) -> tuple[float, float]:
-    """Share the sum of the profile shift coefficients between two gears, where nothing says how.
+    """Share the sum of the profile shift coefficients between two gears, where no input decides the shares.
 
-    The gear with fewer teeth gets the larger part of a positive sum and the smaller part of a negative one,
-    in proportion to the numbers of teeth: a convention of this program between the usual ones, half to each
-    gear and all to the smaller gear (to the larger one of a negative sum).
+    The gear with fewer teeth gets the larger part of a positive sum, and the smaller part of a negative sum.
+    The parts are in proportion to the numbers of teeth. This convention of the program lies between two usual
+    conventions: half to each gear, and all to the smaller gear (a negative sum: all to the larger gear).
     """
     of_first = (teeth[1] if shift > 0.0 else teeth[0]) / sum(teeth)
     return shift * of_first, shift * (1.0 - of_first)
 
 
 def resolved_shifts(
-    given: tuple[float | None, float | None],
+    shifts: tuple[float | None, float | None],
     teeth: tuple[int, int],
     module: float,
     pressure_angle: float,
     distance: float | None,
 ) -> tuple[float, float]:
-    """Return both profile shift coefficients: of the file, or else from the centre distance.
+    """Return both profile shift coefficients: from the file, otherwise from the centre distance.
 
     Parameters
     ----------
-    given : of pinion and gear; None where it is not given
-    distance : centre distance [m]; None: a shift that is not given is 0
+    shifts : profile shift coefficients of pinion and gear in the file; None: the file has none
+    distance : centre distance [m]; None: a shift that is not in the file is 0
 
     Raises
     ------
-    ParameterError : a centre distance that asks for profile shifts that no gear has
+    ParameterError : a centre distance for which no gear has the necessary profile shifts
     """
-    first, second = given
+    first, second = shifts
     if first is not None and second is not None:
         return first, second
     if distance is None:
         return first or 0.0, second or 0.0
     total = shift_sum(sum(teeth), module, pressure_angle, distance)
     if first is not None:
-        shifts = first, total - first
+        resolved = first, total - first
     elif second is not None:
-        shifts = total - second, second
+        resolved = total - second, second
     else:
-        shifts = shared(total, teeth)
-    if not all(LEAST_SHIFT <= one <= LARGEST_SHIFT for one in shifts):
-        asked = f"the profile shifts {shifts[0]:.4g} and {shifts[1]:.4g} without backlash"
-        value = f"{1e3 * distance:.6g} mm, which asks for {asked}"
+        resolved = shared(total, teeth)
+    if not all(LEAST_SHIFT <= one <= LARGEST_SHIFT for one in resolved):
+        pair_of_shifts = f"the profile shifts {resolved[0]:.4g} and {resolved[1]:.4g} without backlash"
+        value = f"{1e3 * distance:.6g} mm, which asks for {pair_of_shifts}"
         reference = 5e2 * module * sum(teeth)
         allowed = f"{LEAST_SHIFT:g} to {LARGEST_SHIFT:g} for each; {reference:.6g} mm asks for none"
         action = "Check centre_distance, module and the numbers of teeth."
         raise refuse("centre_distance", value, allowed, action)
-    return shifts
+    return resolved
 
 
 def tip_alteration(distance: float, module: float, teeth: int, shift: float) -> float:
-    """Return k m [m] of both gears that keeps the clearance of the basic rack; never positive.
+    """Return the tip alteration k m [m] of both gears that keeps the clearance of the basic rack.
 
     k m = a - a_d - m (x_1 + x_2) with the reference centre distance a_d (DIN 3960); ``teeth`` and ``shift``
-    are the sums of both gears. Tips are shortened where the gears stand closer than their profile shifts have
-    moved their roots; they are not lengthened.
+    are the sums of both gears. Tips are shortened where the centre distance a is smaller than
+    a_d + m (x_1 + x_2). Tips are not lengthened: k m is never positive.
     """
     value = distance - 0.5 * module * teeth - module * shift
     return 0.0 if value > -_ROUNDING * module else value

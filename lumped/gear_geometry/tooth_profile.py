@@ -1,6 +1,6 @@
 """True profile of a rack-generated tooth: involute and fillet trochoid, in the tooth's own axes.
 
-Axes: u along the tooth's centre line, from the gear's centre outwards; h across it, so that the tooth's
+Axes: u along the tooth's centre line, from the gear's centre outwards; h across the centre line: the tooth's
 section at u is 2 h wide. Both flanks are equal. References: ISO 21771 for the involute and the tooth
 thickness; the fillet is the envelope of the rack's tip circle (see ``ToothProfile.trochoid``).
 """
@@ -36,24 +36,25 @@ def inverse_involute(value: float) -> float:
 
 
 def tooth_half_angle(teeth: int, profile_shift: float, pressure_angle: float, radius_angle: float) -> float:
-    """Half the tooth's thickness as an angle at the gear centre, where the profile angle is ``radius_angle``.
+    """Half the tooth's thickness at a radius, as an angle at the gear centre [rad].
 
-    That is arccos(r_b / r) at the radius in question; ``pressure_angle`` is that of the basic rack [rad].
+    ``radius_angle`` is the profile angle arccos(r_b / r) at the radius r, ``pressure_angle`` the pressure
+    angle of the basic rack [rad].
     """
     reference = (0.5 * math.pi + 2.0 * profile_shift * math.tan(pressure_angle)) / teeth
     return reference + involute(pressure_angle) - involute(radius_angle)
 
 
-#: The centre of the rack's tip circle is at least so far from the pitch line [modules].
+#: Least distance of the centre of the rack's tip circle from the pitch line [modules].
 _OFF = 1e-6
 
 
 @dataclass(frozen=True)
 class ToothProfile:
-    """A tooth as its basic rack cuts it: flank and fillet as functions of one parameter each.
+    """A tooth cut by a basic rack. Flank and fillet are functions of one parameter each.
 
-    Lengths in m, angles in rad; ``dedendum`` and ``fillet`` are dedendum and tip radius of the rack over
-    module.
+    Lengths in m, angles in rad. ``dedendum`` is the dedendum and ``fillet`` the tip radius of the rack, both
+    over module.
     """
 
     teeth: int
@@ -75,10 +76,10 @@ class ToothProfile:
 
     @property
     def rack_tip(self) -> tuple[float, float, float]:
-        """Tip radius, half distance of the tip circles' centres, their depth below the pitch line [m]."""
+        """Tip radius; half distance of the tip circles' centres; depth of both below the pitch line [m]."""
         radius = self.fillet * self.module
-        flat = self.dedendum - self.fillet
-        half_width = self.module * (0.25 * math.pi - flat * math.tan(self.pressure_angle))
+        centre_depth = self.dedendum - self.fillet
+        half_width = self.module * (0.25 * math.pi - centre_depth * math.tan(self.pressure_angle))
         half_width -= radius / math.cos(self.pressure_angle)
         down = self.module * (self.dedendum - self.profile_shift) - radius
         # On the pitch line the whole tip would be cut at one roll angle.
@@ -92,13 +93,15 @@ class ToothProfile:
         return bottom, bottom - down / (self.reference_radius * math.tan(self.pressure_angle))
 
     def trochoid(self, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Fillet cut by the rack's rounded tip at roll angles, in axes that have turned with the roll.
+        """Fillet cut by the rack's rounded tip at roll angles, in axes that turn with the roll.
 
-        The rack's pitch line rolls on the reference circle. The envelope of the tip circle has its normal
-        through the pitch point, so the cut point lies on the line from the pitch point through the tip
-        circle's centre: beyond the centre, or before it where a large profile shift lifts it over the pitch
-        line. Returned are x, y across and along the line from the gear's centre to the pitch point [m]; the
-        angle from the centre line of the space is arctan2(x, y) + roll.
+        The rack's pitch line rolls on the reference circle. The normal of the tip circle's envelope passes
+        through the pitch point. The cut point therefore lies on the line from the pitch point through the
+        centre of the tip circle: beyond the centre, or before the centre where a large profile shift lifts
+        the centre above the pitch line.
+
+        Returns x and y, across and along the line from the gear's centre to the pitch point [m]. The angle of
+        the cut point from the centre line of the space is arctan2(x, y) + roll.
         """
         radius, half_width, down = self.rack_tip
         along = half_width - self.reference_radius * roll
@@ -109,37 +112,37 @@ class ToothProfile:
     def form_length(self) -> float:
         """Length along the base tangent at which the involute begins [m].
 
-        Where the rack undercuts the flank, it is the crossing of the involute and the fillet's trochoid,
-        found numerically.
+        Where the rack undercuts the flank, the involute begins at the crossing with the fillet's trochoid.
+        The crossing is computed numerically.
         """
         return self.undercut_length if self._undercut else max(self._joint_length, 0.0)
 
     @property
     def _joint_length(self) -> float:
-        """Length at which the rack's straight flank ends [m]; beyond the tangent point it is negative."""
+        """Length at which the rack's straight flank ends [m]; negative beyond the tangent point."""
         sine = math.sin(self.pressure_angle)
         flank_depth = self.dedendum - self.fillet * (1.0 - sine)
         return self.reference_radius * sine - (flank_depth - self.profile_shift) * self.module / sine
 
     @property
     def _undercut(self) -> bool:
-        # No longer than that: it moves the form radius by 1e-9 modules.
+        # A shorter undercut moves the form radius by less than 1e-9 modules.
         return self._joint_length < -1e-4 * self.module
 
     @cached_property
     def undercut_length(self) -> float:
         """Length along the base tangent at which an undercut ends the involute in an edge [m].
 
-        It is 0 where the fillet joins the flank smoothly.
+        The length is 0 where the fillet joins the flank smoothly.
         """
         return self._crossing_length() if self._undercut else 0.0
 
     def _crossing_length(self) -> float:
-        """Length at which the fillet's trochoid crosses the involute, where the rack undercuts.
+        """Length at which the fillet's trochoid crosses the involute of an undercut tooth [m].
 
-        The trochoid climbs from the root circle to its joint with the rack's straight flank, beyond the
-        tangent point. At the base circle it is inside the tooth, at the joint outside: it crosses the
-        involute once.
+        The trochoid climbs from the root circle to the joint with the rack's straight flank, beyond the
+        tangent point. The trochoid is inside the tooth at the base circle and outside at the joint: trochoid
+        and involute cross once.
         """
         r_base = self.base_radius
         bottom, joint = self.fillet_rolls
@@ -157,7 +160,8 @@ class ToothProfile:
         base = brentq(lambda roll: radius(roll) - r_base, bottom, joint, xtol=1e-15)
         if depth(base) <= 0.0:
             return 0.0
-        # By rounding the depth may vanish at a joint that is all but on the base circle; so is the crossing.
+        # By rounding the depth may vanish at a joint close to the base circle. The crossing is then the
+        # joint.
         crossing = joint if depth(joint) >= 0.0 else brentq(depth, base, joint, xtol=1e-15)
         return math.sqrt(max(radius(crossing) ** 2 - r_base**2, 0.0))
 
@@ -190,10 +194,10 @@ class ToothProfile:
         return bottom, float(brentq(excess, bottom, joint, xtol=1e-14))
 
     def involute_points(self, length: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Points u, h of the involute at lengths L along the base tangent [m], any shape.
+        """Points u, h of the involute at lengths L along the base tangent [m], any shape; du/dL [-]; angle a.
 
-        Also du/dL = (L/r_b) cos(a) [-] and the angle a between the flank's normal and the normal to the
-        centre line, L/r_b - base_half_angle; positive when the load pushes towards the root.
+        a = L/r_b - base_half_angle is the angle between the flank's normal and the normal to the centre line,
+        positive where the load pushes towards the root. du/dL = (L/r_b) cos(a).
         """
         load_angle = length / self.base_radius - self.base_half_angle
         u = self.base_radius * np.cos(load_angle) + length * np.sin(load_angle)
@@ -213,8 +217,11 @@ class ToothProfile:
         radius = math.copysign(radius, down)
         stretch = 1.0 + radius / distance
         stretch_rate = radius * along * r / distance**3
-        x_rate, y_rate = -r * stretch + along * stretch_rate, -down * stretch_rate
+        x_rate = -r * stretch + along * stretch_rate
+        y_rate = -down * stretch_rate
         turn = roll - math.pi / self.teeth
-        cosine, sine = np.cos(turn), np.sin(turn)
-        u, h = y * cosine - x * sine, -(x * cosine + y * sine)
+        cosine = np.cos(turn)
+        sine = np.sin(turn)
+        u = y * cosine - x * sine
+        h = -(x * cosine + y * sine)
         return u, h, y_rate * cosine - x_rate * sine - y * sine - x * cosine

@@ -67,7 +67,7 @@ class CycleSteps:
 
     Parameters
     ----------
-    pair : gear pair with its own teeth
+    pair : gear pair with teeth that differ
     system : coordinates, of any form
     samples : outputs in a mesh cycle
     steps : least number of steps in a mesh cycle

@@ -30,7 +30,7 @@ class MotionForm(Enum):
 
     LINEAR_LIKE_TEETH = auto()  # the laws of one mesh cycle
     LINEAR_OWN_TEETH = auto()  # like teeth, plus what the deviations of each pair change
-    UNILATERAL = auto()  # by momentary load, like teeth or own teeth
+    UNILATERAL = auto()  # by momentary load, like teeth or teeth that differ
 
 
 def motion_form(pair: GearPair, contact: ContactArgument) -> MotionForm:

@@ -44,7 +44,7 @@ _MOST_TEETH = 1000
 
 
 def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
-    """The problems of a pair; a problem of teeth says what would solve it, unless the teeth also wedge."""
+    """The problems of a pair. A problem of teeth names a solution, unless the teeth also wedge."""
     if any(one.field == "centre_distance" for one in problems):
         return problems
     return [
@@ -56,15 +56,15 @@ def advised(pair: Tried, problems: list[FieldProblem]) -> list[FieldProblem]:
 
 
 def what_would_mesh(pair: Tried, name: Name, sense: int = 1) -> str:
-    """Values with which the pair meshes, each by itself: "pinion.profile_shift = 0.24 would do."
+    """Sentence with changes that let the gears mesh, for example "pinion.profile_shift = 0.24 would do."
 
-    The search goes in steps of 0.01 modules and of one tooth, and returns the first value of a field that
-    meshes. Empty: no value meshes.
+    Each change alone is sufficient. The search tries steps of 0.01 modules and of one tooth, and takes the
+    first value of a field with which the gears mesh. Empty: there is no such value.
 
     Parameters
     ----------
     name : gear whose profile shift and teeth are tried first
-    sense : of the profile shift that is tried first, 1 to raise it
+    sense : first direction of the search for a profile shift, 1: upwards
     """
     values = list(_alone(pair, name, sense)) or list(_beside_the_mate(pair, name, sense))
     return f"{', or '.join(values)} would do." if values else ""
@@ -145,7 +145,7 @@ def _first(pair: Tried, changes: Callable[[int], Changes], most: int, stride: in
 
 
 def _meshes(pair: Tried, changes: Changes) -> bool:
-    """Whether the pair meshes with changes, which a file may have."""
+    """Whether the gears mesh with changes, and the changes are values that a file may have."""
     for fields in changes.values():
         if abs(fields.get("profile_shift", 0.0)) > _LARGEST_SHIFT or fields.get("teeth", 0) > _MOST_TEETH:
             return False

@@ -1,8 +1,8 @@
-"""Which values of a pair are assumed: the record that the table ``[assumed]`` of a parameter file holds.
+"""Assumed values of a pair: the record of the table ``[assumed]`` in a parameter file.
 
-A field is assumed where the table has its path with the value that the field has. It is known everywhere
-else: where the table does not name it, and where its value was changed since the table was written. Text in
-``[sources]`` decides nothing.
+A field is assumed where the table has the path of the field with the present value of the field. A field
+without an entry in the table is known. A field whose value was changed since the table was written is known
+too. Text in ``[sources]`` decides nothing.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from lumped.fields.refusals import field_of, models_in
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity, to_file, to_si
 
-#: A value as a parameter file has it; a list is a tuple.
+#: A value of a parameter file. A list is a tuple here.
 Value = float | int | bool | str | tuple[Any, ...]
-#: Tables of a pair that are about its fields and are no values of it.
+#: Tables of a pair about fields. These tables are no values of the pair.
 ABOUT = ("sources", "assumed", "uncertainty")
 #: Fields that are words for the reader.
 WORDS = ("name", "description")
 
 
 class State(Enum):
-    """Whether a value is known or assumed; the value is the word that a reader gets."""
+    """Whether a value is known or assumed. The value of a member is the word for the reader."""
 
     KNOWN = "known"
     ASSUMED = "assumed"
 
 
 class Assumed(Mapping[str, Value]):
-    """Field path -> value in file units that is assumed; in the order of the paths, frozen and hashable."""
+    """Field path -> assumed value in file units, in the order of the paths. Frozen and hashable."""
 
     __slots__ = ("_hash", "_values")
 
@@ -56,17 +56,19 @@ class Assumed(Mapping[str, Value]):
         return len(self._values)
 
     def __hash__(self) -> int:
-        """Pairs are keys of caches."""
+        """Return the hash: pairs are keys of caches."""
         return self._hash
 
     def __repr__(self) -> str:
-        """Return it as a dictionary is printed."""
+        """Return the record as the text of a dictionary."""
         return repr(self._values)
 
     def without(self, *paths: str) -> Assumed:
-        """Return the record without some fields and all fields inside them."""
-        kept = {path: value for path, value in self.items() if not any(within(path, one) for one in paths)}
-        return self if len(kept) == len(self) else Assumed(kept)
+        """Return the record without the fields and sections ``paths``."""
+        remaining = {
+            path: value for path, value in self.items() if not any(within(path, one) for one in paths)
+        }
+        return self if len(remaining) == len(self) else Assumed(remaining)
 
     def to_mapping(self) -> dict[str, Any]:
         """Return plain data for a file."""
@@ -74,28 +76,28 @@ class Assumed(Mapping[str, Value]):
 
 
 def within(path: str, section: str) -> bool:
-    """Whether a path is that of a field or section, or of a field inside it."""
+    """Whether a path is the path of a field or section, or of a field inside the section."""
     return path == section or path.startswith(f"{section}.")
 
 
 def _parsed(table: object) -> Assumed:
-    """The table as written; keys without quotation marks make tables inside it."""
+    """The record of a table. Keys without quotation marks make tables inside the table: they are joined."""
     if isinstance(table, Assumed):
         return table
     if not isinstance(table, Mapping):
         allowed = "a table: path of a field = the value that is assumed"
         raise refuse("", shown(table), allowed, 'For example [assumed] with "mesh.backlash" = 0.1.')
-    found: dict[str, Value] = {}
+    values: dict[str, Value] = {}
 
     def walk(inside: Mapping[Any, Any], prefix: str) -> None:
         for key, value in inside.items():
             if isinstance(value, Mapping):
                 walk(value, f"{prefix}{key}.")
             else:
-                found[f"{prefix}{key}"] = _frozen(value)
+                values[f"{prefix}{key}"] = _frozen(value)
 
     walk(table, "")
-    return Assumed(found)
+    return Assumed(values)
 
 
 def _frozen(value: Any) -> Any:
@@ -113,7 +115,7 @@ AssumedTable = Annotated[
 
 
 def problems_of(root: type[Section], written: Assumed) -> Iterator[FieldProblem]:
-    """Entries of a table that no field of the model ``root`` can have."""
+    """Problems of entries with a path of no field of ``root``, or with a value that the field cannot have."""
     for path, value in written.items():
         field = f"assumed.{path}"
         try:
@@ -130,7 +132,7 @@ def problems_of(root: type[Section], written: Assumed) -> Iterator[FieldProblem]
 
 @lru_cache(maxsize=1024)
 def _kind(root: type[Section], path: str) -> tuple[str | None, str]:
-    """Unit of a field, and what values it may have; a section is refused."""
+    """Unit of a field, and allowed values as text. A section is refused."""
     info = field_of(root, path)
     if path.split(".")[0] in (*ABOUT, *WORDS):
         raise refuse(path, "unknown key", "a field with a value", "Delete the line.")
@@ -142,10 +144,10 @@ def _kind(root: type[Section], path: str) -> tuple[str | None, str]:
 
 
 def recorded(pair: Section, written: Assumed, derived: Mapping[str, Value]) -> Assumed:
-    """The record of a pair: entries of the table that its values still have, and defaults that it took.
+    """The record of a pair: entries of the written table that are still valid, and defaults.
 
-    A field that the file does not write is assumed at the default of the schema; ``derived`` has those whose
-    default follows from other fields.
+    An entry is valid where the field still has the value of the entry. A field that is not in the file is
+    assumed at the default of the schema. ``derived`` has the defaults that follow from other fields.
     """
     defaults = dict(_defaults_taken(pair, ""))
     values = {path: _value_at(pair, path) for path in (*written, *defaults)}
@@ -161,7 +163,7 @@ def recorded(pair: Section, written: Assumed, derived: Mapping[str, Value]) -> A
 
 
 def _defaults_taken(section: Section, prefix: str) -> Iterator[tuple[str, None]]:
-    """Paths of all fields of a section, and of sections inside, that neither file nor caller gave."""
+    """Paths of all fields of a section, and of the sections inside, without a value from file or caller."""
     for name in type(section).model_fields:
         path = f"{prefix}{name}"
         value = getattr(section, name)
@@ -177,7 +179,7 @@ def _defaults_taken(section: Section, prefix: str) -> Iterator[tuple[str, None]]
 
 
 def _value_at(pair: Section, path: str) -> Value | None:
-    """Value of a field in file units; None where the pair has none."""
+    """Value of a field in file units; None: the pair has no value for the field."""
     *parents, leaf = path.split(".")
     node: Any = pair
     for part in parents:
@@ -204,7 +206,7 @@ def _in_file(value: Any, unit: str | None) -> Any:
 
 
 def _same(root: type[Section], path: str, written: Value, value: Value) -> bool:
-    """Whether a value of the table is the one that the field has."""
+    """Whether a value in the table equals the value of the field."""
     if written == value:
         return type(written) is not bool or type(value) is bool
     unit = _kind(root, path)[0]
@@ -217,7 +219,7 @@ def _same(root: type[Section], path: str, written: Value, value: Value) -> bool:
 
 
 def _si(value: object, unit: str) -> float | None:
-    """A number or a text with a unit in SI; None where it is neither."""
+    """A number or a text with a unit, in SI; None for anything else."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         return None
     try:

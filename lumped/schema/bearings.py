@@ -46,9 +46,9 @@ class Bearing(Section):
 
 
 class RollingBearing(Section):
-    """Rolling bearings that hold one gear; their stiffness is estimated at the mesh force of the pair.
+    """Rolling bearings of one gear. The stiffness is estimated at the mesh force of the pair.
 
-    The mesh force lies along the line of action, so the bearings are loaded along it and unloaded across it.
+    The mesh force lies along the line of action. The bearings are therefore loaded in this direction alone.
     ``lumped.bearings.rolling`` has the formulas.
     """
 
@@ -89,32 +89,32 @@ class RollingBearing(Section):
         return data
 
     def under(self, load: float) -> Self:
-        """These bearings under a mesh force [N], at which the stiffnesses are read."""
+        """The bearings under a mesh force [N]. The force decides the stiffnesses."""
         loaded = self.model_copy()
         loaded._load = load
         return loaded
 
     @property
     def loa_stiffness(self) -> float:
-        """Stiffness along the LOA of all bearings together, under their load [N/m]; NaN without a pair."""
+        """Stiffness along the LOA of all bearings together, under the mesh force [N/m]; NaN: no pair."""
         load = self._load / self.bearings
         each = stiffness_along(self.type, self.number, self.size, load, self.contact_angle)
         return float(self.bearings * self.stiffness_factor * each)
 
     @property
     def oloa_stiffness(self) -> float:
-        """Stiffness off the LOA of all bearings together, under their load [N/m]; NaN without a pair."""
+        """Stiffness off the LOA of all bearings together, under the mesh force [N/m]; NaN without a pair."""
         return across_ratio(self.type, self.number) * self.loa_stiffness
 
     @property
     def springs(self) -> dict[str, float]:
-        """The section of two springs that act as these bearings do, in file units."""
-        names = [f"{way}_{key}" for key in ("stiffness", "damping_ratio") for way in ("loa", "oloa")]
+        """The section of two springs with the same action as the bearings, in file units."""
+        names = [f"{line}_{key}" for key in ("stiffness", "damping_ratio") for line in ("loa", "oloa")]
         return {name: float(getattr(self, name)) for name in names}
 
 
 def _form(data: Any) -> str:
-    """Tag of the section that data are of."""
+    """Tag of the section for the data."""
     if isinstance(data, Mapping):
         return RollingBearing.tag if any(key in data for key in ROLLING) else Bearing.tag
     return getattr(data, "tag", Bearing.tag)
@@ -134,7 +134,7 @@ class Bearings(Section):
     gear: AnyBearing
 
     def under(self, load: float) -> Self:
-        """The bearings under a mesh force [N]; themselves where it changes nothing."""
-        own = {"pinion": self.pinion, "gear": self.gear}
-        rolling = {name: b.under(load) for name, b in own.items() if isinstance(b, RollingBearing)}
+        """The bearings under a mesh force [N]. Springs do not depend on the force: the same object."""
+        by_gear = {"pinion": self.pinion, "gear": self.gear}
+        rolling = {name: b.under(load) for name, b in by_gear.items() if isinstance(b, RollingBearing)}
         return self.model_copy(update=rolling) if rolling else self

@@ -40,7 +40,7 @@ def solid_disc(radius: float, width: float, density: float, bore: float = 0.0) -
 
 
 def bodies(pair: AnyPair) -> Bodies:
-    """Return masses and inertias: those given, else the disc of reference diameter and face width."""
+    """Return masses and inertias: the inputs, otherwise of a disc of reference diameter and face width."""
     return bodies_of(load_gear_pair(pair))
 
 

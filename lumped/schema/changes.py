@@ -1,4 +1,4 @@
-"""Changes of a pair by names of its fields, short ones too: ``with_``, ``new_pair`` and --set take them."""
+"""Changes of a pair by field names and short names, for ``with_``, ``new_pair`` and --set."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ SHORT_NAMES = {
 }
 _TEETH = re.compile(r"\s*[(\[]?\s*(\d{1,4})\s*[/:x,]\s*(\d{1,4})\s*[)\]]?\s*")
 
-#: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
+#: Another model of stiffness starts with the defaults of this model: each model has other keys.
 _SECTION = "mesh.stiffness"
 _STIFFNESS = "mesh.stiffness.model"
-#: Fields of which only one can be given: naming one removes the others.
+#: Groups of alternative fields: a change of one field removes the other fields of the group.
 _ALTERNATIVES = (
     *((f"{gear}.addendum", f"{gear}.tip_diameter", f"{gear}.tip_alteration") for gear in _GEARS),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
@@ -57,13 +57,13 @@ _ALTERNATIVES = (
         for end in ("tip", "root")
     ),
 )
-#: Field whose default follows others -> those others.
+#: Field whose default follows from other fields, and these other fields.
 _FILLET = "basic_rack.fillet_radius_coefficient"
 _OF_FILLET = ("basic_rack.pressure_angle", "basic_rack.dedendum_coefficient")
 
 
 def fields_of(name: str) -> tuple[str, ...]:
-    """Return the fields that a short name or a path sets; ``gears.`` in front means both gears."""
+    """Return the fields of a short name or a path. ``gears.`` in front of a path means both gears."""
     section, _, key = name.partition(".")
     return SHORT_NAMES.get(name) or (
         tuple(f"{gear}.{key}" for gear in _GEARS) if section == "gears" and key else (name,)
@@ -88,16 +88,18 @@ def by_fields(request: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the plain data of a pair with other values of some fields: known ones, with the user as source.
+    """Return the plain data of a pair with changed fields.
 
-    A field that is given the value that it has is known too, where it was assumed. Another stiffness decides
-    anew what contact and relief are, where they are assumed.
+    The changed values are known, with the user as source. A change to the present value makes an assumed
+    value known. Another stiffness decides anew on contact and relief, where both are assumed.
     """
     data = pair.to_mapping()
     if any(within(path, _SECTION) for path in changes):
         mesh: Mesh = pair.__dict__["mesh"]
-        left = {name: value for name, value in mesh.by_stiffness.items() if f"mesh.{name}" not in changes}
-        data = without_assumed_defaults(data, left)
+        unchanged = {
+            name: value for name, value in mesh.by_stiffness.items() if f"mesh.{name}" not in changes
+        }
+        data = without_assumed_defaults(data, unchanged)
     sources: dict[str, str] = data.setdefault("sources", {})
     assumed: dict[str, Any] = data.setdefault("assumed", {})
     for gear in _GEARS:
@@ -130,21 +132,23 @@ def changed(pair: Section, changes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _other_bearing(pair: Section, data: dict[str, Any], gear: str, changes: Mapping[str, Any]) -> None:
-    """Make springs of a gear's rolling bearings where a stiffness is named; type, number or size end springs.
+    """Change the kind of a gear's bearings.
 
-    The springs have the stiffness of the bearings at the pair's load, in the direction that is not named.
+    A change of a stiffness replaces rolling bearings by springs. A change of type, number or size replaces
+    springs by rolling bearings. In a direction that the change does not name, springs have the stiffness of
+    the bearings at the pair's load.
     """
     start = f"bearings.{gear}."
     named = {path.removeprefix(start) for path in changes if path.startswith(start)}
     springs = not named.isdisjoint(STIFFNESSES)
     rolling = not named.isdisjoint(ROLLING)
     section: dict[str, Any] = data["bearings"][gear]
-    own = getattr(pair.__dict__["bearings"], gear)
+    bearing = getattr(pair.__dict__["bearings"], gear)
     outdated: tuple[str, ...]
-    if springs and not rolling and isinstance(own, RollingBearing):
-        data["bearings"][gear] = own.springs
+    if springs and not rolling and isinstance(bearing, RollingBearing):
+        data["bearings"][gear] = bearing.springs
         outdated = ROLLING
-    elif rolling and not springs and not isinstance(own, RollingBearing):
+    elif rolling and not springs and not isinstance(bearing, RollingBearing):
         for key in STIFFNESSES:
             section.pop(key, None)
         outdated = STIFFNESSES
@@ -156,7 +160,7 @@ def _other_bearing(pair: Section, data: dict[str, Any], gear: str, changes: Mapp
 
 
 def _reads(pair: Section, path: str, value: object) -> bool:
-    """Whether a field reads as this value already."""
+    """Whether a field already reads as a value."""
     result: object = pair
     for part in path.split("."):
         if isinstance(result, tuple) and _is_entry(result, part):
@@ -187,15 +191,15 @@ def _assign(root: type[Section], data: dict[str, Any], path: str, value: Any) ->
 
 
 def _inside(node: Any, path: str, part: str) -> Any:
-    """The table, or list of tables, that a table has under a key or a list has as an entry."""
+    """The table, or the list of tables, under a key of a table or at an entry of a list."""
     if isinstance(node, dict):
         inner = node.setdefault(part, {})
     else:
         inner = node[int(part)] if _is_entry(node, part) else None
     if isinstance(inner, dict) or (isinstance(inner, list) and inner and isinstance(inner[0], dict)):
         return inner
-    known = list(node) if isinstance(node, dict) else list(map(str, range(len(node))))
-    raise ParameterError([unknown_key(path, known, part)])
+    keys = list(node) if isinstance(node, dict) else list(map(str, range(len(node))))
+    raise ParameterError([unknown_key(path, keys, part)])
 
 
 def _is_entry(node: Sequence[Any], part: str) -> bool:

@@ -106,7 +106,7 @@ class Mesh(Section):
 
     @model_validator(mode="after")
     def _follows_the_stiffness(self) -> Self:
-        """Contact and relief, where they are not given, are what the stiffness leaves: the only place."""
+        """Set the defaults of contact and relief from the stiffness. No other place sets these defaults."""
         for name, value in self.by_stiffness.items():
             if name not in self.model_fields_set:
                 self.__dict__[name] = value  # nobody has the section yet
@@ -118,21 +118,18 @@ class Mesh(Section):
 
     @property
     def by_stiffness(self) -> dict[str, str]:
-        """Defaults of ``contact`` and ``relief``, which the stiffness decides.
+        """Defaults of ``contact`` and ``relief``. The stiffness decides both.
 
-        A stiffness of the whole mesh is load over transmission error. Early contact, gaps that share the load
-        and relief are part of such a stiffness.
+        A stiffness of the whole mesh is load over transmission error. This stiffness includes early contact,
+        gaps that share the load, and relief.
         """
-        whole = self.stiffness.whole_mesh
-        return (
-            {"contact": "prescribed", "relief": "ignored"}
-            if whole
-            else {"contact": "loaded", "relief": "static"}
-        )
+        if self.stiffness.whole_mesh:
+            return {"contact": "prescribed", "relief": "ignored"}
+        return {"contact": "loaded", "relief": "static"}
 
 
 def _grade(value: object) -> object:
-    """A grade that text names; a number is checked as one."""
+    """The grade in a text. A number is returned unchanged, and checked later."""
     return grade_of(value) if isinstance(value, str) else value
 
 
@@ -185,10 +182,12 @@ class ViscosityLaw(Section):
         if self.iso_vg is not None:
             nu = float(grade_viscosity(self.iso_vg, celsius, self.viscosity_index))
         else:
-            low, high = self.kinematic_viscosity_40, self.kinematic_viscosity_100
-            assert low is not None  # the section has the grade or both viscosities
-            assert high is not None
-            nu = float(kinematic_viscosity(celsius, walther_constants(low * 1e6, 40.0, high * 1e6, 100.0)))
+            at_40 = self.kinematic_viscosity_40
+            at_100 = self.kinematic_viscosity_100
+            assert at_40 is not None  # the section has the grade or both viscosities
+            assert at_100 is not None
+            constants = walther_constants(at_40 * 1e6, 40.0, at_100 * 1e6, 100.0)
+            nu = float(kinematic_viscosity(celsius, constants))
         return nu * 1e-6 * float(oil_density(self.density, celsius))
 
 
@@ -217,7 +216,7 @@ class Lubricant(Section):
 
     @property
     def dynamic_viscosity(self) -> float:
-        """Dynamic viscosity at the contact inlet [Pa s]: as given, or by its law at the oil temperature."""
+        """Dynamic viscosity at the contact inlet [Pa s]: the input, or the law at the oil temperature."""
         if self.viscosity_law is not None:
             return self.viscosity_law.dynamic_viscosity
         assert self.viscosity is not None  # the section has exactly one of them

@@ -33,11 +33,11 @@ _CONDITIONAL = {
 
 
 def fields_read(pair: AnyPair, *, contact_lost: bool = False) -> frozenset[str]:
-    """Return the fields of a pair that its motion, its losses and its stability depend on.
+    """Return the fields on which motion, losses and stability of a pair depend.
 
-    A field that is not among them changes no number of page 1 of the report. ``mesh.backlash`` is read where
-    contact is lost alone: the prediction has no back sides of teeth, but the second model has, and motions
-    beyond contact loss are followed over twice the backlash.
+    Any other field changes no number of page 1 of the report. ``mesh.backlash`` is read only where contact is
+    lost: the prediction has no back sides of teeth, but the second model has them, and motions beyond contact
+    loss are followed over twice the backlash.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _of_friction(pair: GearPair) -> set[str]:
 
 
 def _of_bodies(pair: GearPair) -> set[str]:
-    """Fields of both gears that geometry, masses and what holds the gears depend on."""
+    """Fields of both gears on which geometry, masses and supports depend."""
     fields: set[str] = set()
     gears = {"pinion": pair.pinion, "gear": pair.gear}
     for name, gear in gears.items():
@@ -105,11 +105,11 @@ def _of_bodies(pair: GearPair) -> set[str]:
 
 
 def _of_contact(pair: GearPair) -> set[str]:
-    """Where pairs touch, and the profile of the flanks; a stiffness of the whole mesh has both in it."""
+    """Fields of contact and of the flanks' profile. A stiffness of the whole mesh already includes both."""
     if pair.mesh.stiffness.whole_mesh:
-        # What the tips of single teeth have beyond the relief acts, with its start and shape.
-        own = ("gears.tip_relief.start_roll_angle", "gears.tip_relief.shape")
-        return set() if pair.healthy is pair else set(own)
+        # Differences of single tips from the relief act, with the start and the shape of the relief.
+        of_single_tips = ("gears.tip_relief.start_roll_angle", "gears.tip_relief.shape")
+        return set() if pair.healthy is pair else set(of_single_tips)
     gears = (pair.pinion, pair.gear)
     relieved = any(one.tip_relief is not None or one.root_relief is not None for one in gears)
     return {"mesh.contact", *(_PROFILE if relieved else ())}

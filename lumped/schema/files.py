@@ -60,7 +60,8 @@ def preset_text(name: str) -> str:
 def load_gear_pair(source: AnyPair) -> GearPair:
     """Read a gear pair from a preset name, a TOML file or a mapping, and validate it.
 
-    Every function that takes a gear pair calls this function first, and so takes all three forms.
+    Every function with a gear pair as argument calls this function first. All these functions therefore take
+    a name, a file or a mapping.
 
     Parameters
     ----------
@@ -131,12 +132,12 @@ def _from_file(source: str | Path) -> GearPair:
 
 
 def _changes_since(data: Mapping[str, Any], pair: GearPair) -> Iterator[str]:
-    """Yield what a file of format 1 means that the same file of today's format would not, one sentence each.
+    """Yield one sentence for each difference between the meaning of a file in format 1 and in today's format.
 
     Parameters
     ----------
-    data : the file as it was read
-    pair : the pair that was made of it
+    data : the data of the file
+    pair : the pair from these data
     """
     written = {name: data[name] for name in ("pinion", "gear")}
     if pair.centre_distance is not None and not any("profile_shift" in gear for gear in written.values()):

@@ -31,8 +31,10 @@ def _increasing(value: object) -> object:
     """Three increasing positive numbers; pydantic alone would take booleans and text for numbers."""
     numbers = list(value) if isinstance(value, (list, tuple)) else []
     real = all(isinstance(n, (int, float)) and not isinstance(n, bool) for n in numbers)
-    if len(numbers) == 3 and real and 0 < numbers[0] < numbers[1] < numbers[2] < math.inf:
-        return tuple(float(n) for n in numbers)
+    if len(numbers) == 3 and real:
+        low, middle, high = numbers
+        if 0 < low < middle < high < math.inf:
+            return tuple(float(n) for n in numbers)
     raise refuse("", value, "three increasing positive numbers", "Correct the list.")
 
 

@@ -46,20 +46,21 @@ class BasicRack(Section):
 
     @property
     def full_radius_coefficient(self) -> float:
-        """Tip radius over module with which the rack's tooth has no flat tip; negative where it is pointed.
+        """Full tip radius over module: the rack's tooth has no flat tip. Negative: the tooth is pointed.
 
-        Half the rack tooth's width at its tip, over module, is pi/4 - h tan a; a tip radius rho between flank
-        and tip takes rho (1 - sin a)/cos a of it.
+        Half the width of the rack's tooth at the tip, over module, is pi/4 - h tan a. A tip radius rho
+        between flank and tip needs rho (1 - sin a)/cos a of this half width.
         """
-        sine, cosine = math.sin(self.pressure_angle), math.cos(self.pressure_angle)
-        room = 0.25 * math.pi - self.dedendum_coefficient * sine / cosine
-        return room * cosine / (1.0 - sine)
+        sine = math.sin(self.pressure_angle)
+        cosine = math.cos(self.pressure_angle)
+        half_width = 0.25 * math.pi - self.dedendum_coefficient * sine / cosine
+        return half_width * cosine / (1.0 - sine)
 
     @property
     def assumed_fillet(self) -> float:
-        """Fillet radius over module where none is given: that of ISO 53 where it fits the rack's tip.
+        """Default fillet radius over module: the value of ISO 53, if this radius fits the rack's tip.
 
-        Else it is 0.95 of the full tip radius, rounded down to two digits.
+        Otherwise the default is 0.95 of the full tip radius, rounded down to two digits.
         """
         full = self.full_radius_coefficient
         if full >= STANDARD_FILLET:
@@ -72,7 +73,8 @@ class BasicRack(Section):
             self.__dict__["fillet_radius_coefficient"] = self.assumed_fillet
         largest = self.full_radius_coefficient
         if largest < 0.0:
-            cosine, sine = math.cos(self.pressure_angle), math.sin(self.pressure_angle)
+            cosine = math.cos(self.pressure_angle)
+            sine = math.sin(self.pressure_angle)
             raise refuse(
                 "dedendum_coefficient",
                 f"{self.dedendum_coefficient:g}",
@@ -194,8 +196,8 @@ class Gear(Section):
     @model_validator(mode="after")
     def _one_tip(self) -> Self:
         names = ("addendum", "tip_diameter", "tip_alteration")
-        given = [name for name in names if getattr(self, name) is not None]
-        if len(given) > 1:
-            value = f"{getattr(self, given[-1]) * 1e3:g} mm beside {' and '.join(given[:-1])}"
-            raise refuse(given[-1], value, f"one of {', '.join(names)}", "Keep one of them.")
+        stated = [name for name in names if getattr(self, name) is not None]
+        if len(stated) > 1:
+            value = f"{getattr(self, stated[-1]) * 1e3:g} mm beside {' and '.join(stated[:-1])}"
+            raise refuse(stated[-1], value, f"one of {', '.join(names)}", "Keep one of them.")
         return self

@@ -43,8 +43,9 @@ def period_of(pair: GearPair) -> int:
 def revolution(pair: AnyPair) -> int:
     """Mesh cycles after which a pair of gears repeats: docs/theory/teeth.md, "Numbering and sign".
 
-    1 for like teeth. Where the teeth of one gear differ, this gear is eccentric, or its torque has a ripple:
-    the number of its teeth. Where both gears do: the least common multiple, the hunting period.
+    1 for like teeth. The number of teeth of a gear, if the teeth of this gear differ, the gear is eccentric,
+    or the torque of its shaft has a ripple. The least common multiple of both numbers (the hunting period),
+    if this is true for both gears.
 
     Parameters
     ----------
@@ -54,7 +55,7 @@ def revolution(pair: AnyPair) -> int:
 
 
 def meeting_teeth(pair: AnyPair, cycles: int | None = None) -> xr.Dataset:
-    """Teeth of the pairs in the order in which they come to A: docs/theory/teeth.md, "Numbering and sign".
+    """Teeth of the pairs in the order of the first contact at A: docs/theory/teeth.md, "Numbering and sign".
 
     Parameters
     ----------

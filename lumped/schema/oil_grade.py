@@ -22,13 +22,13 @@ _AT_40 = re.compile(r"\s*(?:at|@|,)?\s*40\s*(?:°|º|deg)?\s*C\s*$")
 
 
 def grade_of(value: object, field: str = "") -> int:
-    """Return the ISO viscosity grade that a number or text names, of any number; see ``midpoint``.
+    """Return the ISO viscosity grade of a number or text. The number may be any number, see ``midpoint``.
 
     Parameters
     ----------
-    value : 68, "ISO VG 68", "VG68", "CLP 68" (DIN 51517: a mineral gear oil of that grade), or "68 cSt": the
-        kinematic viscosity at 40 degC that a grade has as its mid-point
-    field : for the refusal
+    value : 68, "ISO VG 68", "VG68", "CLP 68" (DIN 51517: a mineral gear oil of this grade), or "68 cSt": the
+        mid-point of a grade, a kinematic viscosity at 40 degC
+    field : name of the field in a refusal
 
     Raises
     ------
@@ -38,8 +38,8 @@ def grade_of(value: object, field: str = "") -> int:
     (68, 68, 5)
     """
     text = value if isinstance(value, str) else quoted(value)
-    if found := _GRADE.fullmatch(text) if isinstance(value, (int, str, np.integer)) else None:
-        return int(found[1])
+    if match := _GRADE.fullmatch(text) if isinstance(value, (int, str, np.integer)) else None:
+        return int(match[1])
     allowed = "an ISO viscosity grade, such as 'ISO VG 220', or its viscosity at 40 degC"
     try:
         nu = 1e6 * to_si(_AT_40.sub("", value), "mm**2/s") if isinstance(value, str) else math.nan

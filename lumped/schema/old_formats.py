@@ -23,19 +23,19 @@ _OF_FORMAT_1 = {"profile_shift": (), "tip_alteration": ("addendum", "tip_diamete
 def upgraded(data: Mapping[str, Any]) -> dict[str, Any]:
     """Return the plain data of a parameter file in today's format, without the entry ``format``.
 
-    What an older format meant by leaving a field out is written, and recorded as assumed.
+    A field that is not in the file gets the default of the older format, and is recorded as assumed.
 
     Raises
     ------
     ParameterError : a format that this release does not know
     """
     fields = {key: value for key, value in data.items() if key != "format"}
-    given = data.get("format", FORMAT)
-    if given == FORMAT and type(given) is int:
+    file_format = data.get("format", FORMAT)
+    if file_format == FORMAT and type(file_format) is int:
         return fields
-    if given != _FIRST or type(given) is not int:
+    if file_format != _FIRST or type(file_format) is not int:
         action = "Use a later release of spurcheck, or correct the number."
-        raise refuse("format", given, f"{_FIRST} or {FORMAT}, the formats of this release", action)
+        raise refuse("format", file_format, f"{_FIRST} or {FORMAT}, the formats of this release", action)
     fields = copy.deepcopy(fields)
     added: dict[str, float] = {}
     for name in ("pinion", "gear"):

@@ -48,7 +48,7 @@ def is_own(path: str, value: object) -> bool:
 
 
 def own_friction(path: ContactPath, law: object) -> dict[str, Any]:
-    """Fields of a pair with a friction law of the user, sampled at the operating point of its contact."""
+    """Fields of a pair for a friction law of the user, sampled at the operating point."""
     name = "table"
     field = "friction.law"
     if isinstance(law, (int, float)):
@@ -130,27 +130,27 @@ def _array(field: str, value: object) -> FloatArray:
 
 
 def _arguments(
-    function: Callable[..., object], field: str, known: tuple[str, ...], only_one: bool = False
+    function: Callable[..., object], field: str, names: tuple[str, ...], only_one: bool = False
 ) -> tuple[str, ...]:
-    """Names of the arguments that a function needs, all of them known."""
+    """Names of the arguments of a function without a default. All names must be in ``names``."""
     try:
         parameters = [*inspect.signature(function).parameters.values()]
     except (TypeError, ValueError):  # some compiled functions have none
         parameters = []
     needed = tuple(p.name for p in parameters if p.default is p.empty)
-    if not needed or set(needed) - set(known) or (only_one and len(needed) > 1):
+    if not needed or set(needed) - set(names) or (only_one and len(needed) > 1):
         value = f"{_name(function)}({', '.join(needed)})"
         count = "one of" if only_one else "any of"
-        allowed = f"a function whose arguments are called {count} {', '.join(known)}"
+        allowed = f"a function whose arguments are called {count} {', '.join(names)}"
         raise refuse(field, value, allowed, "Name each argument after what it is, in SI units.")
     return needed
 
 
-def _sampled(function: Callable[..., object], at: dict[str, FloatArray], field: str) -> FloatArray:
+def _sampled(function: Callable[..., object], columns: dict[str, FloatArray], field: str) -> FloatArray:
     """Values of a function, called with one number for each argument."""
     values = []
-    for row in zip(*(column.tolist() for column in at.values()), strict=True):
-        call = dict(zip(at, row, strict=True))
+    for row in zip(*(column.tolist() for column in columns.values()), strict=True):
+        call = dict(zip(columns, row, strict=True))
         try:
             values.append(float(function(**call)))  # type: ignore[arg-type]
         except Exception as error:

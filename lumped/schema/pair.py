@@ -67,7 +67,7 @@ _INSTEAD = {
 
 
 class OperatingPoint(Section):
-    """Where the pair runs. The pinion drives, in its positive sense."""
+    """Speeds and torques of the pair. The pinion drives in the positive sense."""
 
     pinion_speed: Annotated[float, Quantity("rpm", above=0, at_most=LARGEST_SPEED, action=_RUNNING)] = Field(
         description="nominal speed of the pinion"
@@ -91,19 +91,19 @@ class OperatingPoint(Section):
     )
 
 
-#: Problems that a centre distance of other gears can be the reason of.
+#: Problems that a wrong centre distance may cause.
 _OF_THE_MESH = ("centre_distance", "contact_ratio", "pinion.tip_diameter", "gear.tip_diameter")
-#: Largest normal backlash over module that a centre distance may leave between teeth as they are cut: the
-#: allowances of ISO/TR 10064-2 are at most half of it, and the centre distance has tolerances of its own.
+#: Largest normal backlash over module at a centre distance, of teeth as cut. The allowances of ISO/TR 10064-2
+#: are at most half of this backlash, and the centre distance has tolerances too.
 _LARGEST_PLAY = 0.2
-#: Fields that a stiffness decides where they are not known.
+#: Fields that a stiffness decides, unless their values are known.
 _BESIDE = ("mesh.contact", "mesh.relief")
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
 
 
 def _pairs_in(value: object) -> object:
-    """Table of texts, or of lists of them, as pairs in order."""
+    """A table of texts or lists of texts, as pairs in order."""
     if not isinstance(value, dict):
         return value
     return tuple(sorted((path, tuple(s) if isinstance(s, list) else s) for path, s in value.items()))
@@ -127,7 +127,7 @@ Spreads = Annotated[
 
 
 class _InOurWords(type(Section)):  # type: ignore[misc]  # pydantic's metaclass
-    """A call of the class refuses as a parameter file does: with the field, the value and what to do."""
+    """Metaclass: a call of the class refuses like a parameter file, with field, value and what to do."""
 
     def __call__(cls, *args: Any, **fields: Any) -> Any:
         if args:
@@ -177,7 +177,7 @@ class GearPair(Section, metaclass=_InOurWords):
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if self.friction.law == TABLE and self.friction.table is not None and not problems:
             problems += self.friction.table.problems(self.geometry)
-        problems += [*self._teeth_that_are_not("pinion", 0), *self._teeth_that_are_not("gear", 1)]
+        problems += [*self._missing_teeth("pinion", 0), *self._missing_teeth("gear", 1)]
         problems += [*self._relief_counted_twice()]
         if problems:
             raise ParameterError(problems, self.name)
@@ -186,17 +186,17 @@ class GearPair(Section, metaclass=_InOurWords):
         wrong += problems_of(type(self), self.assumed)
         if wrong:
             raise ParameterError(wrong)
-        for which, name in enumerate(("pinion", "gear")):
-            self.__dict__[name] = self._with_relief(name, self.flank(which))
+        for index, name in enumerate(("pinion", "gear")):
+            self.__dict__[name] = self._with_relief(name, self.flank(index))
         force = self.operating.pinion_torque / self.geometry.base_radius_pinion
         self.__dict__["bearings"] = self.bearings.under(force)
         return self
 
     def meshes_with(self, changes: Changes) -> bool:
-        """Whether the gears can exist with other values of their fields: {"pinion": {"teeth": 19}}, in SI."""
-        own = {field: getattr(self, field) for field in type(self).model_fields}
-        own |= {name: getattr(self, name).model_copy(update=dict(new)) for name, new in changes.items()}
-        tried = GearPair.model_construct(**own)
+        """Whether the gears can mesh with changed fields, for example {"pinion": {"teeth": 19}}, in SI."""
+        sections = {field: getattr(self, field) for field in type(self).model_fields}
+        sections |= {name: getattr(self, name).model_copy(update=dict(new)) for name, new in changes.items()}
+        tried = GearPair.model_construct(**sections)
         try:
             return not existence_problems(*tried.wheels, tried.geometry, tried.mesh.backlash)
         except ParameterError:
@@ -208,9 +208,10 @@ class GearPair(Section, metaclass=_InOurWords):
         return self
 
     def _assumed_sizes(self) -> dict[str, float]:
-        """Profile shifts and tip alterations that no file gives and nothing decides: path -> file units.
+        """Path -> value in file units of each assumed profile shift and tip alteration.
 
-        A shift that the other one and the centre distance leave no choice is known.
+        The value is assumed where neither the file nor another input decides. A profile shift that follows
+        from the centre distance and the other profile shift is known.
         """
         gears = {"pinion": self.pinion, "gear": self.gear}
         assumed: dict[str, float] = {}
@@ -235,7 +236,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
         Raises
         ------
-        ParameterError : a name that is no field; it names the nearest
+        ParameterError : a name that is no field; the refusal suggests the nearest field
         """
         field_at(field)
         return State.ASSUMED if field in self.assumed else State.KNOWN
@@ -253,16 +254,17 @@ class GearPair(Section, metaclass=_InOurWords):
         return build_geometry(*self.wheels, centre_distance, self.mesh.backlash, speed)
 
     def _of_contradicting_sizes(self, problems: list[FieldProblem]) -> list[FieldProblem]:
-        """Problems, led by a centre distance and profile shifts that contradict each other.
+        """Put a contradiction of centre distance and profile shifts in front of the problems.
 
-        They do where the teeth as they are cut would wedge, or have a backlash that is larger than any
-        allowance, or cannot mesh although they would at the centre distance of their profile shifts.
+        There is a contradiction where the teeth as cut would wedge, where the backlash would be larger than
+        any allowance, or where the gears cannot mesh, but would mesh at the centre distance of the profile
+        shifts.
         """
         shifts = self.pinion.profile_shift, self.gear.profile_shift
         if self.centre_distance is None or None in shifts:
             return problems
-        own = {name: getattr(self, name) for name in GearPair.model_fields}
-        of_shifts = GearPair.model_construct(**own | {"centre_distance": None})
+        sections = {name: getattr(self, name) for name in GearPair.model_fields}
+        of_shifts = GearPair.model_construct(**sections | {"centre_distance": None})
         try:
             free = of_shifts._geometry_at(None)
         except ParameterError:
@@ -301,13 +303,13 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @cached_property
     def wheels(self) -> tuple[Wheel, Wheel]:
-        """Pinion and gear as the basic rack cuts them, SI."""
+        """Pinion and gear as cut by the basic rack, SI."""
         first, second = self.profile_shifts
         return self._wheel(self.pinion, first), self._wheel(self.gear, second)
 
     @cached_property
     def profile_shifts(self) -> tuple[float, float]:
-        """Profile shift coefficients of pinion and gear: as given, else what the centre distance asks for.
+        """Profile shift coefficients of pinion and gear: of the file, otherwise from the centre distance.
 
         See ``lumped.gear_geometry.profile_shift.resolved_shifts``.
         """
@@ -323,7 +325,7 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @cached_property
     def tip_alteration(self) -> float:
-        """Tip alteration k m [m] of a gear that gives none: it keeps the clearance of the basic rack."""
+        """Default tip alteration k m [m], which keeps the clearance of the basic rack."""
         rack = self.basic_rack
         teeth = self.pinion.teeth + self.gear.teeth
         shift = sum(self.profile_shifts)
@@ -354,7 +356,10 @@ class GearPair(Section, metaclass=_InOurWords):
             raise ParameterError(problems, self.name) from None
 
     def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
-        """Mass or inertia that no gear of this size has: its vibration would take years to compute."""
+        """Problems: a mass or inertia far too small for the gear.
+
+        The vibration would take years to compute.
+        """
         gear: Gear = getattr(self, name)
         radius = 0.5 * self.basic_rack.module * gear.teeth
         mass = gear.density * math.pi * radius**2 * gear.face_width
@@ -365,19 +370,19 @@ class GearPair(Section, metaclass=_InOurWords):
                 action = "Check the unit, or leave it out: the disc's is taken."
                 yield FieldProblem(f"{name}.{field}", f"{value:g} {unit}", allowed, action)
 
-    def _teeth_that_are_not(self, name: Literal["pinion", "gear"], which: int) -> Iterator[FieldProblem]:
+    def _missing_teeth(self, name: Literal["pinion", "gear"], index: int) -> Iterator[FieldProblem]:
         """Problems: a first tooth that the gear does not have, faults that do not fit the teeth."""
         gear: Gear = getattr(self, name)
-        if self.mesh.first_teeth is not None and self.mesh.first_teeth[which] > gear.teeth:
+        if self.mesh.first_teeth is not None and self.mesh.first_teeth[index] > gear.teeth:
             value = f"{list(self.mesh.first_teeth)}"
             allowed = f"tooth of the {name} from 1 to {gear.teeth}"
             yield FieldProblem("mesh.first_teeth", value, allowed, "Name a tooth that the gear has.")
         for number, fault in enumerate(gear.faults):
-            for one in fault.problems(self.flank(which)):
+            for one in fault.problems(self.flank(index)):
                 yield replace(one, field=f"{name}.faults.{number}.{one.field}")
 
     def _relief_counted_twice(self) -> Iterator[FieldProblem]:
-        """Relief beside a stiffness of the whole mesh, which has the profile in it."""
+        """Problem: relief beside a stiffness of the whole mesh, which already includes the profile."""
         reliefs = [one for gear in (self.pinion, self.gear) for one in (gear.tip_relief, gear.root_relief)]
         acts = self.mesh.relief == "static" and any(one is not None and one.amount > 0.0 for one in reliefs)
         if self.mesh.stiffness.whole_mesh and acts:
@@ -390,12 +395,12 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @property
     def stiffness_words(self) -> str:
-        """What stiffness is given, for a reader: of the whole mesh or of one tooth pair."""
+        """Words for the kind of stiffness in the file: of the whole mesh or of one tooth pair."""
         return self.mesh.stiffness.words
 
     @property
     def stiffness_note(self) -> str:
-        """What follows from a stiffness of the whole mesh, in a sentence; empty with that of a tooth pair."""
+        """Sentence on a stiffness of the whole mesh; empty for a stiffness of a tooth pair."""
         if not self.mesh.stiffness.whole_mesh:
             return ""
         return (
@@ -405,25 +410,25 @@ class GearPair(Section, metaclass=_InOurWords):
 
     @property
     def nominal_contact(self) -> ContactPath:
-        """What friction laws see, see ``lumped.path_of_contact.contact_path``."""
+        """Conditions of contact for friction laws, see ``lumped.path_of_contact.contact_path``."""
         gears = (self.pinion, self.gear)
         torque = self.operating.pinion_torque
         return nominal_contact(self.geometry, gears, self.lubricant, self.friction, torque)
 
-    def flank(self, which: int) -> Flank:
-        """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""
+    def flank(self, index: int) -> Flank:
+        """The loaded flank of a tooth of the pinion (0) or the gear (1), for faults."""
         g = self.geometry
-        gear = (self.pinion, self.gear)[which]
+        gear = (self.pinion, self.gear)[index]
         moduli = [one.youngs_modulus / (1.0 - one.poisson_ratio**2) for one in (self.pinion, self.gear)]
-        tip, start = ((g.tip_length_pinion, g.L_XA), (g.tip_length_gear, g.L_XY - g.L_XD))[which]
+        tip, start = ((g.tip_length_pinion, g.L_XA), (g.tip_length_gear, g.L_XY - g.L_XD))[index]
         hertz = 2.0 * (1.0 / moduli[0] + 1.0 / moduli[1]) / (math.pi * g.face_width)
-        return Flank(self.wheels[which], tip, start, g.face_width, gear.youngs_modulus, hertz)
+        return Flank(self.wheels[index], tip, start, g.face_width, gear.youngs_modulus, hertz)
 
     @property
     def healthy(self) -> GearPair:
         """The pair with like teeth, centred gears and steady torques; the same object if nothing changes."""
         if not (self.pinion.has_own_teeth or self.gear.has_own_teeth or self.operating.torque_ripple):
-            return self  # not cached: pairs are compared by what they hold, and would hold themselves
+            return self  # not cached: pairs are compared by their attributes, and a pair would contain itself
         return self._with_like_teeth
 
     @cached_property
@@ -438,17 +443,17 @@ class GearPair(Section, metaclass=_InOurWords):
         )
 
     def at_speed(self, rpm: float) -> GearPair:
-        """The pair at another pinion speed [rpm] of its own range, of which nothing is checked again."""
+        """The pair at another pinion speed [rpm] within the speed range of the pair, without a new check."""
         speed = SIValue(to_si(rpm, "rpm"), "rad/s")
-        own = {name: getattr(self, name) for name in GearPair.model_fields}
-        own["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
-        own["assumed"] = self.assumed.without("operating.pinion_speed")
-        return GearPair.model_construct(**own)
+        sections = {name: getattr(self, name) for name in GearPair.model_fields}
+        sections["operating"] = self.operating.model_copy(update={"pinion_speed": speed})
+        sections["assumed"] = self.assumed.without("operating.pinion_speed")
+        return GearPair.model_construct(**sections)
 
     if not TYPE_CHECKING:  # a checker knows the fields
 
         def __getattr__(self, name: str) -> Any:
-            """Say where a value is that ``with_`` takes by a short name."""
+            """Refuse a name that is no attribute, with the attribute for a short name of ``with_``."""
             if name in SHORT_NAMES:
                 raise AttributeError(
                     f"a pair has no {name!r}: read pair.{' or pair.'.join(SHORT_NAMES[name])}"
@@ -458,23 +463,23 @@ class GearPair(Section, metaclass=_InOurWords):
             return super().__getattr__(name)
 
     def __repr__(self) -> str:
-        """Return the pair in one line; ``to_toml()`` says every field."""
+        """Return the pair in one line; ``to_toml()`` has every field."""
         pinion = self.pinion
         gear = self.gear
-        at = self.operating
+        operating = self.operating
         law = self.friction.law if self.friction.law != TABLE else law_of(self.friction).title
         return (
             f"<GearPair {self.name}: {pinion.teeth}/{gear.teeth} teeth, "
             f"module {self.basic_rack.module * 1e3:g} mm, "
             f"face widths {pinion.face_width * 1e3:g}/{gear.face_width * 1e3:g} mm, "
-            f"{to_stated(at.pinion_speed, 'rpm'):g} rpm, {at.pinion_torque:g} N m, "
+            f"{to_stated(operating.pinion_speed, 'rpm'):g} rpm, {operating.pinion_torque:g} N m, "
             f"friction {law}>"
         )
 
     __str__ = __repr__
 
     def _repr_html_(self) -> str:
-        """Return every field with its unit as a table that unfolds, for notebooks."""
+        """Return all fields with units as a table that unfolds, for notebooks."""
         rows = "".join(
             f"<tr><td>{path}</td><td>{html.escape(str(value))}</td><td>{_unit_beside(path, value)}</td></tr>"
             for path, value in leaf_paths(self).items()
@@ -483,16 +488,21 @@ class GearPair(Section, metaclass=_InOurWords):
         return f"<details><summary>{head}</summary><table>{rows}</table></details>"
 
     def to_mapping(self) -> dict[str, Any]:
-        """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
+        """Return the pair as nested plain data for TOML or JSON.
+
+        These data, read again, give an equal pair.
+        """
         data = super().to_mapping()
         data.pop("assumed")
         tables = {name: dict(data.pop(name, {})) for name in ("sources", "uncertainty")}
-        written = self.assumed.without(*self._assumed_sizes())  # the others follow from what is written
+        written = self.assumed.without(
+            *self._assumed_sizes()
+        )  # the assumed sizes follow from the written fields
         tables = {"sources": tables["sources"], "assumed": written.to_mapping()} | tables
         return data | {name: table for name, table in tables.items() if table}
 
     def to_toml(self) -> str:
-        """Return the pair as TOML text; reading it back gives an equal pair."""
+        """Return the pair as TOML text. This text, read again, gives an equal pair."""
         import tomli_w
 
         return tomli_w.dumps({"format": FORMAT} | self.to_mapping())
@@ -503,39 +513,43 @@ class GearPair(Section, metaclass=_InOurWords):
         Parameters
         ----------
         changes : dotted field paths -> values, e.g. ``{"operating.pinion_speed": "2000 rpm"}``
-        **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
-            the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
-            A dict replaces a whole section; ``None`` restores the default. Short names are ``speed``,
+        **fields : field paths with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number is in
+            the field's stated unit. Text with a unit, and a value read from a field, keep their units. A dict
+            replaces a whole section; ``None`` restores the default. Short names are ``speed``,
             ``torque``, ``range``, ``law``, ``stiffness``, ``damping``, ``module``, ``pressure_angle``,
             ``viscosity``, ``oil`` ("ISO VG 220", with ``temperature``) and, of both gears, ``teeth``
             ("19/41"), ``face_width``, ``roughness``. ``gears.`` in front of a key means both gears,
             ``bearings.stiffness`` all four directions.
 
-        ``law`` and ``stiffness`` may be the user's own: a function, an array or columns. They are sampled
-        into the tables that a parameter file holds, after all other changes (docs/how_to/own_laws.md).
+        ``law`` and ``stiffness`` may also be a law of the user: a function, an array or columns. Such a law
+        is sampled into the table of a parameter file, after all other changes (docs/how_to/own_laws.md).
 
         - law as a function: magnitude of mu of any of ``xi`` (position from X [m]), ``radius`` [m],
           ``sliding_velocity``, ``entraining_velocity`` [m/s], ``slide_to_roll``, ``hertz_pressure`` [Pa],
           ``film_thickness`` [m], ``film_parameter``; called with numbers at the operating point.
         - law as an array: mu at equal distances from A to D.
-        - stiffness as a text: the name of a model; as a number: that of the whole mesh, constant [N/m].
-        - stiffness as a function: of ``xi``, one pair from A to D, or of ``phase`` from 0 to 1, all pairs
-          over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included. That
-          of the whole mesh is used as given: contact is prescribed, relief is in it.
+        - stiffness as a text: the name of a model; as a number: the constant stiffness of the whole mesh
+        [N/m]. - stiffness as a function: of ``xi``, one pair from A to D, or of ``phase`` from 0 to 1, all
+          pairs over a mesh cycle that begins at A [N/m]; as an array: over phase 0 to 1, both ends included.
+          A stiffness of the whole mesh is not changed: contact is prescribed, and relief is part of the
+          stiffness.
         - columns: a mapping or DataFrame such as ``{"position [mm]": ..., "coefficient": ...}``,
           ``{"phase": ..., "stiffness [N/um]": ...}``.
 
         Raises
         ------
-        ParameterError : a value that is refused, or a name that is no field; it names the nearest
+        ParameterError : a value that is refused, or a name that is no field; the refusal suggests the nearest
+            field
         """
         request = {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}}
         fields = by_fields(request)
-        own = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
-        # Contact and relief are judged with the stiffness that they are given for.
-        beside = {path: fields.pop(path) for path in _BESIDE if path in fields and "mesh.stiffness" in own}
-        pair = self._changed(fields) if fields or not own else self
-        for path, value in own.items():
+        user_laws = {path: fields.pop(path) for path in list(fields) if own_laws.is_own(path, fields[path])}
+        # Contact and relief are judged together with the stiffness of the same request.
+        beside = {
+            path: fields.pop(path) for path in _BESIDE if path in fields and "mesh.stiffness" in user_laws
+        }
+        pair = self._changed(fields) if fields or not user_laws else self
+        for path, value in user_laws.items():
             if path == "friction.law":
                 pair = pair._changed(own_laws.own_friction(pair.nominal_contact, value))
             else:
@@ -548,9 +562,9 @@ class GearPair(Section, metaclass=_InOurWords):
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:
-    """Return every set field of a pair as dotted path -> value in file units, without the tables about them.
+    """Return dotted path -> value in file units of every set field, without the tables about fields.
 
-    An entry of a list of tables has its number, from 0 on, as part of its path.
+    The path of an entry in a list of tables contains the number of the entry, from 0 on.
     """
     result: dict[str, Any] = {}
 
@@ -569,7 +583,7 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 
 
 def field_values(pair: GearPair) -> dict[str, Any]:
-    """Return `leaf_paths` and, where a file does not give them, the profile shifts and tips that follow."""
+    """Return `leaf_paths`, and the assumed values of fields that the file does not have."""
     written = leaf_paths(pair)
     values = written | {path: value for path, value in pair.assumed.items() if path not in written}
     sections = list(dict.fromkeys(path.rpartition(".")[0] for path in written))
@@ -579,23 +593,26 @@ def field_values(pair: GearPair) -> dict[str, Any]:
 
 
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
-    """Return the gear pair of plain data in file units, or refuse it in the user's words.
+    """Return the gear pair of plain data in file units, or refuse the data in the user's words.
 
-    ``source`` says where it comes from; data files that it names are read relative to ``folder``. Data of an
-    older ``format`` mean what they meant then; without one they are of today's.
+    ``source`` is the origin of the data. Data files named in the data are read relative to ``folder``. Data
+    of an older ``format`` keep their old meaning. Data without a format are of today's format.
     """
     fields = upgraded(data)
     return made_of(GearPair, fields, source, folder)
 
 
 def field_at(path: str) -> FieldInfo:
-    """Return pydantic's description of a field of a gear pair by dotted path; the nearest is suggested."""
+    """Return pydantic's description of a field of a gear pair by dotted path.
+
+    A path of no field is refused, with the nearest field.
+    """
     return field_of(GearPair, path)
 
 
 @lru_cache(maxsize=1024)  # every variation of a pair has the same paths
 def _path_problems(path: str, table: str) -> tuple[FieldProblem, ...]:
-    """A misspelt path would leave its value without a source."""
+    """Problems of a path in a table about fields. A misspelt path would leave a value without a source."""
     try:
         field_at(path)
     except ParameterError as error:
@@ -609,7 +626,7 @@ def stated_unit(path: str) -> str | None:
 
 
 def _unit_beside(path: str, value: object) -> str:
-    """Unit of a number in a parameter file; nothing where the value has none, or says its own."""
+    """Unit of a number in a parameter file; empty for a value without a unit, or with a unit in the text."""
     if isinstance(value, str) or (path.startswith("mesh.stiffness.") and isinstance(value, list)):
         return ""
     unit = stated_unit(path)

@@ -24,9 +24,9 @@ _NOT_STATED: Any = None
 class ProfileRelief(Section):
     """Deviation of a flank from the involute by design, growing from its start to the flank's end.
 
-    The end of tip relief is the tip circle, that of root relief the start of the active flank, where the
-    mate's tip touches last. Exactly one of ``start_roll_angle``, ``start_diameter`` and ``length`` says where
-    it starts. In a pair ``start_roll_angle`` has a value in each case; a file keeps what was written.
+    Tip relief ends at the tip circle. Root relief ends at the start of the active flank, where the mate's tip
+    touches last. Exactly one of ``start_roll_angle``, ``start_diameter`` and ``length`` gives the start. In a
+    pair ``start_roll_angle`` always has a value. A written file keeps the field of the user.
     """
 
     model_config = ConfigDict(json_schema_extra={"oneOf": [{"required": [name]} for name in STARTS]})
@@ -50,9 +50,9 @@ class ProfileRelief(Section):
 
     @model_validator(mode="after")
     def _one_start(self) -> Self:
-        given = [name for name in STARTS if getattr(self, name) is not None]
-        if len(given) != 1:
-            value = " and ".join(given) or "missing"
+        stated = [name for name in STARTS if getattr(self, name) is not None]
+        if len(stated) != 1:
+            value = " and ".join(stated) or "missing"
             raise refuse("start_roll_angle", value, f"exactly one of {_TO}", "Give one of them.")
         return self
 
@@ -62,10 +62,10 @@ class ProfileRelief(Section):
         return self.start_diameter is None and self.length is None
 
     def on(self, flank: Flank, kind: str) -> Self:
-        """The relief with the roll angle of its start on a flank.
+        """The relief with the roll angle phi of the start on a flank.
 
-        phi = sqrt(d^2 - d_b^2)/d_b of a diameter d; phi = (L_end -+ length)/r_b of a length, minus from the
-        tip and plus from the start of the active flank.
+        From a diameter d: phi = sqrt(d^2 - d_b^2)/d_b. From a length: phi = (L_end -+ length)/r_b, minus for
+        a length from the tip, plus for a length from the start of the active flank.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class ProfileRelief(Section):
         return refuse(f"{kind}.start_roll_angle", value, allowed, _ON_IT)
 
     def to_mapping(self) -> dict[str, Any]:
-        """Return plain data in file units, with the start as it was stated."""
+        """Return plain data in file units, with the user's field for the start."""
         data = super().to_mapping()
         if not self.by_angle:
             data.pop("start_roll_angle", None)

@@ -58,7 +58,10 @@ class ShaftBearing(Section):
 
 
 class Shaft(Section):
-    """The shaft of one gear: an elastic beam of segments in bearings, with the gear as a rigid disc on it."""
+    """The shaft of one gear: an elastic beam of segments in bearings.
+
+    The gear is a rigid disc on the beam.
+    """
 
     segments: tuple[ShaftSegment, ...] = Field(
         min_length=1, max_length=60, description="pieces of constant section, from z = 0 on"
@@ -130,7 +133,7 @@ class CoupledInertia(Section):
 
 
 class Shafts(Section):
-    """Both gears on their shafts; directions are those of the contact, x along and y off the LOA."""
+    """Shafts of both gears, in the directions of the contact: x along and y off the LOA."""
 
     damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
         description="of every elastic mode of a shaft with its gear and coupled inertia in its bearings, "

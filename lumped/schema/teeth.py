@@ -74,19 +74,19 @@ class Deviations(Section):
     @model_validator(mode="after")
     def _one_source(self) -> Self:
         lists = [self.index, self.profile_slope, self.tip_relief]
-        given = [one for one in lists if one is not None]
+        stated = [one for one in lists if one is not None]
         if self.tolerance_class is not None and self.index is not None:
             action = "Remove one: a tolerance class draws the index deviations."
             raise refuse("index", f"{len(self.index)} values", "tolerance_class, index or file", action)
         if self.tolerance_class is None and self.seed != 1:
             action = "Give the class too, or leave the seed out."
             raise refuse("seed", str(self.seed), "a tolerance_class whose teeth it draws", action)
-        if self.tolerance_class is None and not given:
+        if self.tolerance_class is None and not stated:
             raise refuse("tolerance_class", "missing", "tolerance_class, index or file", "Give one of them.")
         return self
 
     def problems(self, teeth: int, relieved: bool) -> Iterator[FieldProblem]:
-        """Lists that do not fit a gear of so many teeth, with or without tip relief."""
+        """Problems of lists that do not fit the number of teeth, or a gear without tip relief."""
         for name in ("index", "profile_slope", "tip_relief"):
             values = getattr(self, name)
             if values is not None and len(values) != teeth:
@@ -100,7 +100,7 @@ class Deviations(Section):
 
 
 class Mounting(Section):
-    """How a gear sits on its shaft."""
+    """Position of a gear on the shaft."""
 
     eccentricity: Annotated[float, Quantity("um", at_least=0, at_most=1000)] = Field(
         0.0, description="of the base circle's centre from the axis of rotation"
@@ -141,8 +141,8 @@ def read_deviations(file: object, folder: str | Path = ".") -> dict[str, object]
         lines = [line.replace(",", ".").rstrip(mark) for line in lines]
     rows = list(csv.reader(lines, delimiter=mark))
     names = [name.strip().lower() for name in rows[0]] if rows else []
-    known = {"tooth", *_COLUMNS}
-    if not {"tooth"} < {*names} <= known or len(names) != len({*names}) or len(rows) < 2:
+    allowed_names = {"tooth", *_COLUMNS}
+    if not {"tooth"} < {*names} <= allowed_names or len(names) != len({*names}) or len(rows) < 2:
         raise refuse("file", path, _FORMAT, f"The header is '{shown(','.join(names))}'.")
     try:
         table = [[float(cell) for cell in row] for row in rows[1:]]

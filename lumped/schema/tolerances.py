@@ -23,12 +23,12 @@ _CLASS = re.compile(
 
 
 def tolerance_class_of(value: object) -> object:
-    """Return the tolerance class that text names; anything but text unchanged, for the check of a number.
+    """Return the tolerance class of a text. Any other value is returned unchanged, and checked later.
 
     "ISO 6", "ISO 1328-1:2013 class 6", "Q6" and "6" are class 6 of ISO 1328-1:2013. "DIN 6" is class 6 of
-    DIN 3962, which has a table of its own: it is read as the ISO class of the same number, with a warning.
-    For modules of 1 to 2 mm and diameters of 50 to 560 mm, f_p and F_p of class 6 differ by less than a fifth
-    (docs/theory/teeth.md).
+    DIN 3962. DIN 3962 has another table: the text is read as the ISO class of the same number, with a
+    warning. For modules of 1 to 2 mm and diameters of 50 to 560 mm, f_p and F_p of class 6 differ by less
+    than a fifth (docs/theory/teeth.md).
 
     Raises
     ------
@@ -39,10 +39,10 @@ def tolerance_class_of(value: object) -> object:
     """
     if not isinstance(value, str):
         return value
-    found = _CLASS.fullmatch(value)
-    body, number = (found["body"] or "", found["number"] or "") if found else ("", "")
+    match = _CLASS.fullmatch(value)
+    body, number = (match["body"] or "", match["number"] or "") if match else ("", "")
     german = body.upper() == "DIN" and not number.startswith("1328")
-    if not found or (number and not number.startswith("396" if german else "1328")):
+    if not match or (number and not number.startswith("396" if german else "1328")):
         action = "Write the class of ISO 1328-1, 1 to 11: a smaller number is a more accurate gear."
         if "agma" in value.lower():
             action += (
@@ -51,12 +51,12 @@ def tolerance_class_of(value: object) -> object:
         raise refuse("", shown(repr(value)), "1 to 11, or text such as 'ISO 6' or 'DIN 6'", action)
     if german:
         warnings.warn(
-            f"{shown(value)!r} is read as class {found['of']} of ISO 1328-1:2013: DIN 3962 has its own table "
+            f"{shown(value)!r} is read as class {match['of']} of ISO 1328-1:2013: DIN 3962 has its own table "
             "of tolerances, which is near. Give measured deviations where the difference matters.",
             UserWarning,
             stacklevel=2,
         )
-    return int(found["of"])
+    return int(match["of"])
 
 
 def flank_tolerances(teeth: int, module: float, tolerance_class: int) -> dict[str, float]:
@@ -94,8 +94,8 @@ def drawn_index(teeth: int, module: float, tolerance_class: int, seed: int) -> F
     """Index deviations (teeth,) of a random gear of a class [m], the same for each seed.
 
     Pitch deviations are white, of zero sum; a first harmonic of as large a range as the tolerance F_p is
-    added to their sum. The whole is scaled until the largest pitch deviation or the range meets its
-    tolerance.
+    added to the sum of the pitch deviations. All deviations are scaled until the largest pitch deviation or
+    the range reaches the tolerance.
     """
     tolerance = flank_tolerances(teeth, module, tolerance_class)
     draw = random.Random(seed).random

@@ -64,9 +64,9 @@ def tooth_errors(pair: GearPair) -> tuple[ToothErrors, ToothErrors]:
     return _of_gear(pair, PINION), _of_gear(pair, GEAR)
 
 
-def _of_gear(pair: GearPair, which: int) -> ToothErrors:
+def _of_gear(pair: GearPair, gear_index: int) -> ToothErrors:
     """The errors of the teeth of the pinion (0) or the gear (1)."""
-    gear = (pair.pinion, pair.gear)[which]
+    gear = (pair.pinion, pair.gear)[gear_index]
     teeth = gear.teeth
     deviations = gear.deviations
     slope = _in_order_of_engagement(deviations, "profile_slope", teeth, mirrored_sign=1.0)
@@ -79,13 +79,13 @@ def _of_gear(pair: GearPair, which: int) -> ToothErrors:
     if deviations.tolerance_class is not None:
         module = pair.basic_rack.module
         index = drawn_index(teeth, module, deviations.tolerance_class, deviations.seed)
-    error = _LATE[which] * math.cos(pair.basic_rack.pressure_angle) * index
+    error = _LATE[gear_index] * math.cos(pair.basic_rack.pressure_angle) * index
     if deviations.first_order == "steps":
         return ToothErrors(index, error, slope, relief, float(gear.eccentricity), float(mounting_phase))
     error, first_harmonic = without_first_harmonic(error)
-    # The index of a tooth is that of its contact at the pitch point, the phase that of its contact at A.
+    # The index deviation of a tooth belongs to contact at the pitch point, the phase to contact at A.
     g = pair.geometry
-    radius = (g.base_radius_pinion, g.base_radius_gear)[which]
+    radius = (g.base_radius_pinion, g.base_radius_gear)[gear_index]
     phase = float(np.angle(first_harmonic)) - (g.L_XP - g.L_XA) / radius
     return ToothErrors(index, error, slope, relief, float(abs(first_harmonic)), phase)
 
@@ -93,8 +93,8 @@ def _of_gear(pair: GearPair, which: int) -> ToothErrors:
 def without_first_harmonic(error: FloatArray) -> tuple[FloatArray, complex]:
     """Errors (z,) less the first harmonic, and the first harmonic.
 
-    The first harmonic turns continuously, as an eccentric gear does. As equal steps of a list it would be a
-    staircase, with sidebands that are several times too large.
+    The first harmonic turns continuously, like an eccentric gear. As a list of steps the harmonic would be a
+    staircase, with sidebands several times too large.
     """
     teeth = error.size
     turn = 2.0 * np.pi * np.arange(teeth) / teeth

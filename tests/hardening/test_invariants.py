@@ -94,7 +94,7 @@ def scaled(pair, scales):
         unit = stated_unit(path)
         if unit is None or value == "balanced":
             continue
-        si = UNITS[unit][0]
+        si = UNITS[unit].si
         if any(EXPONENTS[si]):
             changes[path] = f"{to_si(value, unit) * factor(EXPONENTS[si], scales)!r} {si}"
     return pair.with_(changes)

@@ -1,4 +1,4 @@
-"""Are beats and chaos found whatever the range of speeds, and are numbers of motions those of plain runs?"""
+"""Does the search find beats and chaos for any range of speeds, and are shares of motions right?"""
 
 from __future__ import annotations
 
@@ -34,23 +34,26 @@ def at(pair, rpm):
 
 
 @pytest.fixture(scope="module")
-def found(pair):
+def branches(pair):
     return floquet.response_branches(pair, (25600.0, 28500.0))
 
 
-def test_beats_beside_a_stable_motion_are_found_and_told(found):
-    """The one stable motion ends at a fold, where the pair jumps to beats that exist below it too."""
-    (up,) = [jump for jump in found.jumps if jump.rising]
+def test_beats_beside_a_stable_motion_are_found_and_told(branches):
+    """The only stable motion ends at a fold.
+
+    There the pair jumps to beats, which exist below the fold too.
+    """
+    (up,) = [jump for jump in branches.jumps if jump.rising]
     assert up.after == "beats"
     assert up.speed_rpm == pytest.approx(27523.69, abs=0.01)
-    (beats,) = found.attractors
-    assert (beats.low_rpm, beats.high_rpm) == found.speeds_rpm
+    (beats,) = branches.attractors
+    assert (beats.low_rpm, beats.high_rpm) == branches.speeds_rpm
     assert beats.kind == "beats"
     assert beats.exponent_interval[0] < 0.0 < beats.exponent_interval[1] < 0.05
-    assert any(o.stable for o in found.at(26000.0))
+    assert any(o.stable for o in branches.at(26000.0))
     # A run of its own from each point stays there: the size is that of many more cycles.
     for point in beats.points[::2]:
-        there = at(found.pair, point.speed_rpm)
+        there = at(branches.pair, point.speed_rpm)
         state, torque = start_of(there, None)
         state[0] += 30e-6
         system = unilateral_system(there)
@@ -58,7 +61,7 @@ def test_beats_beside_a_stable_motion_are_found_and_told(found):
         run = system.run(system.run(state, T, 1500, torque).end, T, 1500, torque)
         assert point.dte_rms == pytest.approx(run.rms, rel=0.02)
         assert point.dte_peak_to_peak == pytest.approx(run.most - run.least, rel=0.05)
-    table = found.dataset
+    table = branches.dataset
     assert table["attractor_dte_rms"].to_numpy() == pytest.approx([point.dte_rms for point in beats.points])
 
 
@@ -118,30 +121,30 @@ def test_stability_is_lost_on_one_side_only(pair):
             assert sorted(sides) == [False, True]
 
 
-def test_shares_of_starts_are_those_of_plain_runs(found):
-    """Another seed lies in the interval, and starts settled one by one come to the same motions."""
-    basins = found.basins(26000.0, starts=256)
+def test_shares_of_starts_are_those_of_plain_runs(branches):
+    """The share with another seed lies in the interval. Starts settle one by one to the same motions."""
+    basins = branches.basins(26000.0, starts=256)
     assert sum(basin.share for basin in basins) == pytest.approx(1.0)
-    again = {basin.kind: basin for basin in found.basins(26000.0, starts=256, seed=2)}
+    again = {basin.kind: basin for basin in branches.basins(26000.0, starts=256, seed=2)}
     for basin in basins:
         low, high = binomtest(basin.starts, 256).proportion_ci(0.95)
         assert basin.share_interval == pytest.approx((low, high), abs=1e-9)
         assert low < again[basin.kind].share < high
-    rate = 26000.0 / (found.pair.geometry.mesh_period * 26000.0)
+    rate = 26000.0 / (branches.pair.geometry.mesh_period * 26000.0)
     places = np.random.default_rng(1).uniform(size=(256, 2))
-    starts = found.member.apart(rate, places)[:24]
+    starts = branches.member.apart(rate, places)[:24]
     states = np.array([s for _, s, _ in starts])
     torques = np.array([p for _, _, p in starts])
     periods = np.full(24, 1.0 / rate)
-    settled = settle(found.member.family, found.member.limits, states, periods, torques)
-    system = found.member.family.at(1.0 / rate)
+    settled = settle(branches.member.family, branches.member.limits, states, periods, torques)
+    system = branches.member.family.at(1.0 / rate)
     for j, state in enumerate(states):
         run = system.run(system.run(state, 1.0 / rate, 200, torques[j]).end, 1.0 / rate, 128, torques[j])
         assert settled.rms[j] == pytest.approx(run.rms, rel=0.1), j
     assert binomial_interval(0, 50)[0] == 0.0
     assert binomial_interval(50, 50)[1] == 1.0
     with pytest.raises(ParameterError, match="starts"):
-        found.basins(26000.0, starts=0)
+        branches.basins(26000.0, starts=0)
 
 
 @pytest.fixture(scope="module")

@@ -42,8 +42,10 @@ def test_a_resonance_between_two_speeds_is_not_lost():
     speeds = np.arange(1000.0, 2000.0, 100.0)
     windows = floquet.contact_loss_windows(sweep(speeds, np.abs(speeds - 1450.0) - 20.0), (1000.0, 1900.0))
     assert windows == ((1400.0, 1500.0),)
-    kept = floquet.contact_loss_windows(sweep(speeds, np.abs(speeds - 1450.0) + 20.0), (1000.0, 1900.0))
-    assert kept == ()
+    windows_with_contact = floquet.contact_loss_windows(
+        sweep(speeds, np.abs(speeds - 1450.0) + 20.0), (1000.0, 1900.0)
+    )
+    assert windows_with_contact == ()
 
 
 def test_speeds_that_the_sweep_does_not_cover_are_refused():
@@ -81,37 +83,37 @@ def speeds_of(jumps):
 
 def test_a_window_that_is_too_narrow_grows_to_the_end_of_its_branch(shifted, everywhere):
     """Its fold on running down lies far below the window, where the large motion ends."""
-    found = floquet.search_jumps(shifted, [(26_000.0, 28_000.0)], seconds=60.0, seeds=0, speeds=LARGE_SHIFTS)
+    search = floquet.search_jumps(shifted, [(26_000.0, 28_000.0)], seconds=60.0, seeds=0, speeds=LARGE_SHIFTS)
     assert len(everywhere) == 2
     assert min(speeds_of(everywhere)) < 26_000.0
     assert max(speeds_of(everywhere)) > 28_000.0
-    assert speeds_of(found.jumps) == pytest.approx(speeds_of(everywhere), rel=1e-6)
-    assert found.open == ()
-    ((low, high),) = found.windows
+    assert speeds_of(search.jumps) == pytest.approx(speeds_of(everywhere), rel=1e-6)
+    assert search.open == ()
+    ((low, high),) = search.windows
     assert low < min(speeds_of(everywhere))
     assert high > max(speeds_of(everywhere))
     middle = float(np.mean(speeds_of(everywhere)))
-    assert len([o for o in found.at(middle) if o.n == 1]) == 3
+    assert len([o for o in search.at(middle) if o.n == 1]) == 3
     with pytest.raises(ParameterError, match="18000 to 47000 rpm"):
-        found.at(1000.0)
+        search.at(1000.0)
 
 
 def test_large_motions_of_a_resonance_above_the_range_are_found(frictionless):
-    """From 8558 to 12,000 rpm they exist beside the small ones, which keep contact at 11,000 rpm."""
+    """Large motions exist from 8558 to 12,000 rpm beside small motions that keep contact at 11,000 rpm."""
     assert not floquet.periodic_orbit(frictionless.with_(operating__pinion_speed="11000 rpm")).contact_lost
     range_rpm = 10_800.0, 11_800.0
     linear = lumped.speed_sweep(frictionless, np.linspace(*range_rpm, 9))
     windows = floquet.contact_loss_windows(linear, range_rpm)
     assert windows == ()
-    found = floquet.search_jumps(frictionless, windows, seconds=60.0, seeds=0, speeds=range_rpm)
-    sizes = sorted(o.dte_rms for o in found.at(11_000.0) if o.n == 1)
-    whole = floquet.response_branches(frictionless, (10_800.0, 20_000.0), (1,), seeds=0)
-    assert sizes[-1] == pytest.approx(max(o.dte_rms for o in whole.at(11_000.0)), rel=1e-6)
+    search = floquet.search_jumps(frictionless, windows, seconds=60.0, seeds=0, speeds=range_rpm)
+    sizes = sorted(o.dte_rms for o in search.at(11_000.0) if o.n == 1)
+    all_branches = floquet.response_branches(frictionless, (10_800.0, 20_000.0), (1,), seeds=0)
+    assert sizes[-1] == pytest.approx(max(o.dte_rms for o in all_branches.at(11_000.0)), rel=1e-6)
     assert sizes[-1] > 20e-6
 
 
 class Ticks:
-    """Processor time that passes by a second whenever somebody looks."""
+    """Processor time that increases by a second at each reading."""
 
     def __init__(self):
         self.now = 0.0
@@ -126,23 +128,23 @@ class Ticks:
 def test_what_is_found_in_a_time_is_right_and_the_rest_is_named(
     shifted, everywhere, monkeypatch, seconds, window
 ):
-    """Whenever the time ends: each jump is one of the whole search, each that is missing lies in ``open``.
+    """At any end of the time each jump is a jump of the complete search. ``open`` covers the missing jumps.
 
-    Also where its branch has not come out of a window yet. In 500 s, of which each look takes one, the branch
-    is cut several times, and all is found in the end.
+    This is also true for a branch that has not yet left a window. Each check of the clock takes 1 s: in 500 s
+    the branch is cut several times, and all jumps are found in the end.
     """
     monkeypatch.setattr(clock, "time", Ticks())
-    found = floquet.search_jumps(
+    search = floquet.search_jumps(
         shifted, [window], seconds=seconds, seeds=0, speeds=LARGE_SHIFTS, first=24_000.0
     )
-    true = speeds_of(everywhere)
-    own = speeds_of(found.jumps)
-    assert len(set(own)) == len(own)
-    assert all(min(abs(one - other) for other in true) < 0.05 for one in own)
-    for one in true:
-        known = any(abs(one - other) < 0.05 for other in own)
-        assert known or any(low <= one <= high for low, high in found.open)
-    assert found.open if seconds < 300.0 else seconds < 400.0 or not found.open
+    all_jump_speeds = speeds_of(everywhere)
+    jump_speeds = speeds_of(search.jumps)
+    assert len(set(jump_speeds)) == len(jump_speeds)
+    assert all(min(abs(one - other) for other in all_jump_speeds) < 0.05 for one in jump_speeds)
+    for one in all_jump_speeds:
+        has_jump = any(abs(one - other) < 0.05 for other in jump_speeds)
+        assert has_jump or any(low <= one <= high for low, high in search.open)
+    assert search.open if seconds < 300.0 else seconds < 400.0 or not search.open
 
 
 def test_an_end_behind_which_no_run_had_time_leaves_its_window_open(shifted, monkeypatch):
@@ -153,10 +155,10 @@ def test_an_end_behind_which_no_run_had_time_leaves_its_window_open(shifted, mon
 
     monkeypatch.setattr(Member, "leads_to", late)
     window = 20_000.0, 47_000.0
-    found = floquet.search_jumps(shifted, [window], seconds=60.0, seeds=0, speeds=LARGE_SHIFTS)
-    assert found.jumps == ()
-    assert [b.kind for one in found.branches for b in one.bifurcations].count("fold") == 2
-    assert found.open == found.windows
+    search = floquet.search_jumps(shifted, [window], seconds=60.0, seeds=0, speeds=LARGE_SHIFTS)
+    assert search.jumps == ()
+    assert [b.kind for one in search.branches for b in one.bifurcations].count("fold") == 2
+    assert search.open == search.windows
 
 
 def test_the_time_is_kept():
@@ -166,15 +168,15 @@ def test_the_time_is_kept():
         "operating.pinion_speed": "3157.87 rpm", "mesh.contact": "prescribed", "mesh.relief": "ignored",
         "mesh.damping_ratio": 0.0043,
     })  # fmt: skip
-    found = floquet.search_jumps(pair, [(2974.0, 3909.0)], seconds=1.0, seeds=0)
-    assert found.seconds < 1.2
-    assert found.open
-    assert all(3000.0 < jump.speed_rpm < 3300.0 for jump in found.jumps)
+    search = floquet.search_jumps(pair, [(2974.0, 3909.0)], seconds=1.0, seeds=0)
+    assert search.seconds < 1.2
+    assert search.open
+    assert all(3000.0 < jump.speed_rpm < 3300.0 for jump in search.jumps)
 
 
 def test_a_deadline_is_shared():
-    whole = Deadline(100.0)
-    assert 24.0 < whole.share(0.25).left <= 25.0
-    assert not whole.passed
+    deadline = Deadline(100.0)
+    assert 24.0 < deadline.share(0.25).left <= 25.0
+    assert not deadline.passed
     assert Deadline(0.0).passed
     assert Deadline().share(0.5).left == np.inf

@@ -37,9 +37,9 @@ def test_where_contact_holds_it_is_the_linear_motion(name, brake):
     assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-10 * span)
     assert orbit.motion.attrs["dte_peak_to_peak"] == pytest.approx(linear.attrs["dte_peak_to_peak"], rel=1e-6)
     for name in ("y_p", "y_g", "bearing_force_y_g", "friction_force"):
-        own = orbit.motion[name].values
-        wanted = linear[name].values[..., :256]
-        assert own == pytest.approx(wanted, abs=1e-9 * np.ptp(wanted)), name
+        values = orbit.motion[name].values
+        expected = linear[name].values[..., :256]
+        assert values == pytest.approx(expected, abs=1e-9 * np.ptp(expected)), name
     assert orbit.motion.normal_load.sum("pair").values == pytest.approx(
         linear.normal_load.sum("pair").values[:256], rel=1e-9
     )
@@ -77,11 +77,11 @@ def branches(frictionless):
 
 
 def test_one_switch_in_contact_repeats_as_two_cycles_at_twice_the_speed(branches):
-    """A motion that meets one jump of the stiffness in contact does not see to which cycle it belongs."""
-    found = [b for b in branches.bifurcations if b.sharp]
+    """The single jump of the stiffness in contact does not decide to which cycle the jump belongs."""
+    bifurcations = [b for b in branches.bifurcations if b.sharp]
     for kind in ("fold", "period doubling"):
-        single = max((b for b in found if (b.n, b.kind) == (1, kind)), key=lambda b: b.dte_rms)
-        double = [b for b in found if (b.n, b.kind) == (2, kind)]
+        single = max((b for b in bifurcations if (b.n, b.kind) == (1, kind)), key=lambda b: b.dte_rms)
+        double = [b for b in bifurcations if (b.n, b.kind) == (2, kind)]
         nearest = min(double, key=lambda b: abs(b.speed_rpm - 2.0 * single.speed_rpm))
         assert nearest.speed_rpm == pytest.approx(2.0 * single.speed_rpm, rel=1e-9)
         assert nearest.dte_rms == pytest.approx(single.dte_rms, rel=1e-8)
@@ -158,13 +158,13 @@ def test_back_sides_push_as_the_mirror_image_of_the_driving_flanks_in_the_line_o
     centres = np.array([np.sin(angle), np.cos(angle)])
     mirror = 2.0 * np.outer(centres, centres) - np.eye(2)
     coast = _coast_flank(pair, cycle, np.eye(6))
-    for own, image in ((drive.normal, coast.normal), (drive.apart, coast.apart)):
+    for driving, coasting in ((drive.normal, coast.normal), (drive.apart, coast.apart)):
         for gear in ([2, 4], [3, 5]):
-            assert image[gear] == pytest.approx(mirror @ own[gear], abs=1e-12)
+            assert coasting[gear] == pytest.approx(mirror @ driving[gear], abs=1e-12)
 
 
 def test_with_back_sides_a_motion_larger_than_the_backlash_is_another(frictionless):
-    """It strikes both flanks; a motion within the backlash is the same with and without them."""
+    """The large motion strikes both flanks. A motion within the backlash does not depend on back sides."""
     small = floquet.periodic_orbit(at(frictionless, 8000.0), back_side=True)
     assert small.dte_rms == pytest.approx(floquet.periodic_orbit(small.pair).dte_rms, rel=1e-9)
     assert small.multipliers.size == 10
@@ -188,9 +188,9 @@ def test_without_clearance_the_jump_map_does_not_depend_on_torque(over_torque):
     assert one["motions"].to_numpy() == pytest.approx(two["motions"].to_numpy())
     assert one["contact_kept"].to_numpy() == pytest.approx(two["contact_kept"].to_numpy())
     # Interpolated along a branch whose motions need not be at the same speeds; beats are other runs.
-    calm = one["motions"].to_numpy() > 0
+    periodic = one["motions"].to_numpy() > 0
     for name in ("dte_rms_smallest", "dte_rms_largest", "largest_load"):
-        assert two[name].to_numpy()[calm] == pytest.approx(3.0 * one[name].to_numpy()[calm], rel=1e-3)
+        assert two[name].to_numpy()[periodic] == pytest.approx(3.0 * one[name].to_numpy()[periodic], rel=1e-3)
     speeds = [over_torque["jump_speed_rpm"][over_torque["jump_torque"] == t] for t in (30.0, 90.0)]
     assert speeds[0].to_numpy() == pytest.approx(speeds[1].to_numpy(), rel=1e-9)
 
@@ -198,10 +198,10 @@ def test_without_clearance_the_jump_map_does_not_depend_on_torque(over_torque):
 def test_a_jump_map_has_the_motions_and_jumps_of_the_branches(over_torque, branches, frictionless):
     row = over_torque.isel(torque=1)
     for j in (6, 20, 36, 70):  # one motion, two, beats, two of which one repeats after two cycles
-        found = [o for o in branches.at(float(row["speed_rpm"][j])) if o.stable]
-        assert int(row["motions"][j]) == len(found)
-        if found:
-            sizes = [o.dte_rms * 90.0 / 56.5 for o in found]
+        stable_orbits = [o for o in branches.at(float(row["speed_rpm"][j])) if o.stable]
+        assert int(row["motions"][j]) == len(stable_orbits)
+        if stable_orbits:
+            sizes = [o.dte_rms * 90.0 / 56.5 for o in stable_orbits]
             assert float(row["dte_rms_smallest"][j]) == pytest.approx(min(sizes), rel=1e-4)
             assert float(row["dte_rms_largest"][j]) == pytest.approx(max(sizes), rel=1e-4)
     jumps = over_torque["jump_speed_rpm"][over_torque["jump_torque"] == 90.0].to_numpy()
@@ -227,7 +227,7 @@ def test_what_a_jump_map_cannot_vary_is_refused(frictionless):
 
 
 def test_contact_is_kept_where_all_motions_and_all_runs_keep_it(frictionless):
-    held = floquet.response_branches(frictionless, (4400.0, 4600.0), (1,), seeds=2)
-    assert held.contact_kept
-    assert held.response.runs == 32
+    with_contact = floquet.response_branches(frictionless, (4400.0, 4600.0), (1,), seeds=2)
+    assert with_contact.contact_kept
+    assert with_contact.response.runs == 32
     assert not floquet.response_branches(frictionless, (8000.0, 8100.0), (1,), seeds=0).contact_kept

@@ -16,8 +16,8 @@ from lumped.model.tooth_laws import ToothLaws
 from lumped.schema.bodies import bodies
 from tests.unlike_pairs import unlike_pair
 
-#: 20/30, a rack of 22.5 degrees. Unlike teeth of the pinion repeat after 20 cycles, those of both after 60.
-#: What moves by itself off the line of action is damped so much that the mesh decides the rate.
+#: 20/30, a rack of 22.5 degrees. Teeth of the pinion that differ repeat after 20 cycles, of both after 60.
+#: Motions off the line of action are damped so much that the mesh decides the rate.
 PAIR = unlike_pair("unlike_teeth_finite_elements").healthy.with_(
     {
         "friction.law": "coulomb", "friction.coefficient": 0.06, "mesh.stiffness": {"model": "rectangular"},

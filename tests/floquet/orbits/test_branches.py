@@ -47,10 +47,10 @@ def start(T):
 def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
     """While contact holds, a period doubling is where the trace of the closed map is -1 - det."""
     system = meissner(e=0.6, damping=0.1)
-    found = find_branches(Member(Family(lambda T: system, True), LIMITS, start), periods=(1, 2), seeds=1)
+    response = find_branches(Member(Family(lambda T: system, True), LIMITS, start), periods=(1, 2), seeds=1)
     doublings = [
         1.0 / b.orbit.period
-        for branch in found.branches
+        for branch in response.branches
         for b in branch.bifurcations
         if branch.n == 1 and b.kind == "period doubling" and not b.orbit.contact_lost
     ]
@@ -59,27 +59,29 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue():
         M = meissner_map(1.0 / rate, e=0.6)
         assert np.linalg.det(M + np.eye(2)) == pytest.approx(0.0, abs=1e-10)
     along = Continuation(Family(lambda T: system, True), 1, LIMITS)
-    for branch in found.branches:
+    for branch in response.branches:
         for b in branch.bifurcations:
             if branch.n == 1 and b.kind == "period doubling":
-                way = doubling_direction(along, b.orbit)[:2] * along.scale[:2]
-                assert b.orbit.monodromy @ way == pytest.approx(-way, abs=1e-6 * np.abs(way).max())
+                direction = doubling_direction(along, b.orbit)[:2] * along.scale[:2]
+                assert b.orbit.monodromy @ direction == pytest.approx(
+                    -direction, abs=1e-6 * np.abs(direction).max()
+                )
     # Inside the tongue, where no motion that holds contact is stable, the doubled one bounces and is stable.
     T = 1.0 / (max(doublings) - 0.005)
-    assert not any(o.stable for o in found.at(T) if not o.contact_lost)
-    assert any(o.stable and o.contact_lost and o.n == 2 for o in found.at(T))
+    assert not any(o.stable for o in response.at(T) if not o.contact_lost)
+    assert any(o.stable and o.contact_lost and o.n == 2 for o in response.at(T))
 
 
 def test_a_fold_ends_the_jump_of_the_bouncing_resonance():
     """At speeds beyond a fold no motion of its branch is left, and at the fold a multiplier is 1."""
     system = meissner(e=0.3, damping=0.3)
-    found = find_branches(Member(Family(lambda T: system, True), LIMITS, start), periods=(1,), seeds=0)
-    folds = [b for branch in found.branches for b in branch.bifurcations if b.kind == "fold" and b.sharp]
+    response = find_branches(Member(Family(lambda T: system, True), LIMITS, start), periods=(1,), seeds=0)
+    folds = [b for branch in response.branches for b in branch.bifurcations if b.kind == "fold" and b.sharp]
     assert len(folds) == 2
     for fold in folds:
         assert np.abs(fold.orbit.multipliers - 1.0).min() < 1e-6
         rate = 1.0 / fold.orbit.period
-        counts = [len(found.at(1.0 / (rate * (1.0 + off)))) for off in (-1e-4, 1e-4)]
+        counts = [len(response.at(1.0 / (rate * (1.0 + change)))) for change in (-1e-4, 1e-4)]
         assert abs(counts[0] - counts[1]) == 2
     with pytest.raises(NumericalError, match="no motion of 3 cycles"):
         close_orbit(system, np.array([-1e6, -1e6]), 5.0, 3)
@@ -97,20 +99,20 @@ def test_a_long_run_tells_chaos_from_a_periodic_motion():
     assert run.orbit.start == pytest.approx(orbit.start, abs=1e-8)
 
 
-class Looks(Deadline):
-    """A deadline that has passed after so many looks at it."""
+class PassesAfterChecks(Deadline):
+    """A deadline that passes after a number of checks."""
 
-    def __init__(self, looks):
+    def __init__(self, checks):
         super().__init__(1e9)
-        self.looks = looks
+        self.checks = checks
 
     @property
     def passed(self):
-        self.looks -= 1
-        return self.looks < 0
+        self.checks -= 1
+        return self.checks < 0
 
     def share(self, part):
-        return Looks(self.looks)
+        return PassesAfterChecks(self.checks)
 
 
 def away(rate):
@@ -119,30 +121,30 @@ def away(rate):
 
 @pytest.mark.parametrize("rate", [0.11, 0.3, 0.9])
 def test_a_branch_followed_in_parts_is_the_branch_followed_at_once(rate):
-    """The same points, folds at the same speeds and in their places, however often the time ends."""
+    """Points, speeds of folds and places of folds do not depend on the number of interruptions."""
     system = meissner(e=0.3, damping=0.3)
     along = Continuation(Family(lambda T: system, True), 1, LIMITS)
     orbit = close_orbit(system, np.array([1.0, 0.0]), 1.0 / rate)
 
-    def trace(looks):
-        limit = Looks(looks)
-        up, down = (along.follow(orbit, way, deadline=limit.share(0.5)) for way in (1.0, -1.0))
+    def trace(count):
+        limit = PassesAfterChecks(count)
+        up, down = (along.follow(orbit, direction, deadline=limit.share(0.5)) for direction in (1.0, -1.0))
         result = _Trace(along, up, down, down.end, [], [])
         result.left = list(range(len(result.path.orbits) - 1))
         result.refine(away, limit)
         return result
 
-    whole = trace(10**9)
+    uninterrupted = trace(10**9)
     parts = trace(7)
     turns = 0
     while parts.unfinished:
-        parts.extend(Looks(9))
-        parts.refine(away, Looks(1))
+        parts.extend(PassesAfterChecks(9))
+        parts.refine(away, PassesAfterChecks(1))
         turns += 1
     assert turns > 3
-    one = whole.branch()
+    one = uninterrupted.branch()
     two = parts.branch()
-    assert parts.ends == whole.ends == ("range", "range")
+    assert parts.ends == uninterrupted.ends == ("range", "range")
     assert two.rates == pytest.approx(one.rates, rel=1e-9)
     folds = [b for b in one.bifurcations if b.kind == "fold"]
     assert len(folds) == 2
@@ -151,7 +153,7 @@ def test_a_branch_followed_in_parts_is_the_branch_followed_at_once(rate):
 
 
 def test_a_long_run_in_parts_is_the_run_at_once():
-    """A deadline that does not pass changes nothing but rounding; one that has passed says so."""
+    """A deadline that does not pass changes only rounding. A deadline that has passed raises an error."""
     system = meissner(e=0.6, damping=0.1)
     T = 1.0 / 0.29
     one = long_run(system, np.array([1.3, 0.2]), T, settle=100, observe=100)
@@ -166,9 +168,9 @@ def test_parts_of_a_run_join_to_the_run():
     # it decays: the extremes are of the first part
     start = np.array([1.5, 0.2])
     T = 2.0
-    whole = system.run(start, T, 100)
+    one_run = system.run(start, T, 100)
     parts = _run(system, start, T, 100, 0.0, Deadline(1e9))
-    assert 0.0 < whole.least_load < 0.9 * system.run(whole.end, T, 10).least_load
-    assert parts.end == pytest.approx(whole.end, rel=1e-9)
+    assert 0.0 < one_run.least_load < 0.9 * system.run(one_run.end, T, 10).least_load
+    assert parts.end == pytest.approx(one_run.end, rel=1e-9)
     for name in ("mean", "mean_square", "least", "most", "largest_load", "least_load"):
-        assert getattr(parts, name) == pytest.approx(getattr(whole, name), rel=1e-8, abs=1e-12), name
+        assert getattr(parts, name) == pytest.approx(getattr(one_run, name), rel=1e-8, abs=1e-12), name

@@ -107,7 +107,7 @@ def test_a_string_with_the_stated_unit_is_the_bare_number():
 
 @pytest.mark.parametrize("unit", UNITS)
 def test_example_of_every_unit_is_accepted(unit):
-    assert math.isfinite(to_si(UNITS[unit][3], unit))
+    assert math.isfinite(to_si(UNITS[unit].example, unit))
 
 
 #: Without unit, without number, of another kind, code, what would never end, and what may not vanish.

@@ -78,17 +78,17 @@ def test_a_ball_touches_both_flanks_of_a_space(tooth, larger):
     if tooth.teeth % 2:
         centre /= math.cos(0.5 * math.pi / tooth.teeth)
     turn = math.pi / tooth.teeth  # from the tooth's centre line to that of the space
-    at = centre * math.cos(turn), centre * math.sin(turn)
+    ball_centre = centre * math.cos(turn), centre * math.sin(turn)
 
     def distance(length):
         u, h = flank(tooth, length)
-        return math.hypot(u - at[0], h - at[1])
+        return math.hypot(u - ball_centre[0], h - ball_centre[1])
 
-    found = minimize_scalar(distance, bounds=(0.0, 2.0 * tooth.base_radius), method="bounded",
+    nearest = minimize_scalar(distance, bounds=(0.0, 2.0 * tooth.base_radius), method="bounded",
                             options={"xatol": 1e-10 * tooth.module})  # fmt: skip
-    assert found.fun == pytest.approx(0.5 * ball, rel=1e-9)
+    assert nearest.fun == pytest.approx(0.5 * ball, rel=1e-9)
     if larger == 1.0:
-        touched = math.hypot(tooth.base_radius, found.x)
+        touched = math.hypot(tooth.base_radius, nearest.x)
         assert touched == pytest.approx(shifted_radius(tooth), rel=1e-5)
 
 

@@ -150,8 +150,8 @@ def test_interference_is_found_as_by_brute_force():
     """20 random small pairs, as many of each kind, whose clearance is not too near 0 for polygons to call."""
     seed = 20261128
     rng = np.random.default_rng(seed)
-    left = {False: 10, True: 10}
-    while any(left.values()):
+    missing = {False: 10, True: 10}
+    while any(missing.values()):
         z = int(rng.integers(7, 20)), int(rng.integers(12, 60))
         shift = float(rng.uniform(-0.3, 0.25)), float(rng.uniform(-0.2, 0.3))
         dedendum = float(rng.uniform(1.05, 1.4))
@@ -164,14 +164,14 @@ def test_interference_is_found_as_by_brute_force():
         tips = [0.5 * n + x + rng.uniform(0.85, 1.3) for n, x in zip(z, shift, strict=True)]
         if any(centre - tips[i] - teeth[1 - i].root_radius < 0.01 for i in (0, 1)):
             continue
-        own = tip_clearance(teeth[0], tips[0], teeth[1], tips[1], centre)
-        if -1e-3 < own < -1e-6 or not left[own < -1e-4]:
+        by_program = tip_clearance(teeth[0], tips[0], teeth[1], tips[1], centre)
+        if -1e-3 < by_program < -1e-6 or not missing[by_program < -1e-4]:
             continue
-        left[own < -1e-4] -= 1
+        missing[by_program < -1e-4] -= 1
         gears = [Cut(n, x, dedendum, fillet, t) for n, x, t in zip(z, shift, tips, strict=True)]
-        found = clearance(*gears, centre)
+        by_polygons = clearance(*gears, centre)
         # Bins of 5e-4 modules, in which a flank that stands askew changes by up to as much.
-        assert found == pytest.approx(own, abs=6e-4), (seed, z, shift, dedendum, fillet, tips)
+        assert by_polygons == pytest.approx(by_program, abs=6e-4), (seed, z, shift, dedendum, fillet, tips)
 
 
 # ---- what is refused, and what would do --------------------------------------------------------------------
@@ -193,9 +193,9 @@ _VALUE = re.compile(r"(pinion|gear)\.(\w+) = (-?\d+(?:\.\d+)?)")
 def ways_out(error):
     """Changes that a refusal says would do, each as {field: value}."""
     for problem in error.problems:
-        for said in re.findall(r"(?:pinion|gear)\.\w+ = .*? would do", problem.action):
-            for way in said.split(", or "):
-                yield {f"{gear}.{field}": float(value) for gear, field, value in _VALUE.findall(way)}
+        for sentence in re.findall(r"(?:pinion|gear)\.\w+ = .*? would do", problem.action):
+            for change in sentence.split(", or "):
+                yield {f"{gear}.{field}": float(value) for gear, field, value in _VALUE.findall(change)}
 
 
 @pytest.mark.parametrize(("teeth", "changes", "field"), REFUSED)
@@ -203,14 +203,14 @@ def test_what_a_refusal_says_would_do_does(teeth, changes, field):
     with pytest.raises(ParameterError) as refusal:
         stock(teeth, **changes)
     assert any(problem.field.endswith(field) for problem in refusal.value.problems)
-    ways = list(ways_out(refusal.value))
-    assert ways
-    for way in ways:
-        sizes = {path: int(value) if path.endswith("teeth") else value for path, value in way.items()}
+    solutions = list(ways_out(refusal.value))
+    assert solutions
+    for solution in solutions:
+        sizes = {path: int(value) if path.endswith("teeth") else value for path, value in solution.items()}
         z = [int(n) for n in teeth.split("/")]
         z = [sizes.pop(f"{gear}.teeth", n) for gear, n in zip(("pinion", "gear"), z, strict=True)]
-        given = {key.replace("__", "."): value for key, value in changes.items()} | sizes
-        assert stock(f"{z[0]}/{z[1]}", changes=given).geometry.contact_ratio >= 1.0
+        all_changes = {key.replace("__", "."): value for key, value in changes.items()} | sizes
+        assert stock(f"{z[0]}/{z[1]}", changes=all_changes).geometry.contact_ratio >= 1.0
 
 
 def test_the_profile_shift_that_would_do_is_the_least():
@@ -252,26 +252,26 @@ def outline(tooth, tip):
 def gap_of_outlines(pair, xi):
     """Way of the flanks along the line of action until both outlines touch, the pair at xi [m]."""
     g, (pinion, gear) = pair.geometry, pair.wheels
-    own = outline(pinion.tooth, pinion.tip_radius)
-    mate = outline(gear.tooth, gear.tip_radius)
+    pinion_outline = outline(pinion.tooth, pinion.tip_radius)
+    gear_outline = outline(gear.tooth, gear.tip_radius)
     inverse = math.tan(g.operating_pressure_angle) - g.operating_pressure_angle
     back = g.L_XP - xi
     # Half a tooth on the operating pitch circle, behind the pinion's flank and ahead of the gear's.
-    at = pinion.tooth.base_half_angle - inverse + back / g.base_radius_pinion
-    mate_at = -(gear.tooth.base_half_angle - inverse) + back / g.base_radius_gear
-    found = []
+    pinion_turn = pinion.tooth.base_half_angle - inverse + back / g.base_radius_pinion
+    gear_turn = -(gear.tooth.base_half_angle - inverse) + back / g.base_radius_gear
+    gaps = []
     for (radius, half), (other, other_half), turn, other_turn, sense, base in (
-        (mate, own, mate_at, at, 1.0, g.base_radius_pinion),
-        (own, mate, at, mate_at, -1.0, g.base_radius_gear),
+        (gear_outline, pinion_outline, gear_turn, pinion_turn, 1.0, g.base_radius_pinion),
+        (pinion_outline, gear_outline, pinion_turn, gear_turn, -1.0, g.base_radius_gear),
     ):
         angle = turn + sense * half
         across = radius * np.sin(angle)
         along = g.centre_distance - radius * np.cos(angle)
         far = np.hypot(across, along)
-        met = (far > other[0]) & (far < other[-1])
-        apart = sense * (other_turn - np.arctan2(across, along)) - np.interp(far, other, other_half)
-        found.append(base * float(apart[met].min()) if met.any() else math.inf)
-    return min(found)
+        facing = (far > other[0]) & (far < other[-1])
+        angle_between = sense * (other_turn - np.arctan2(across, along)) - np.interp(far, other, other_half)
+        gaps.append(base * float(angle_between[facing].min()) if facing.any() else math.inf)
+    return min(gaps)
 
 
 @pytest.mark.parametrize("teeth", ["15/40", "12/60", "10/60", "16/200"])
@@ -308,26 +308,26 @@ def test_edges_of_both_models_have_one_gap(teeth):
     """Gap and slopes of the multibody model's ends of flanks against the lumped gap, and differences."""
     pair = stock(teeth)
     g = pair.geometry
-    own = circles(pair)
-    assert (own.start, own.end) == pytest.approx((g.L_XA, g.L_XD), rel=1e-9)
+    circle = circles(pair)
+    assert (circle.start, circle.end) == pytest.approx((g.L_XA, g.L_XD), rel=1e-9)
     line = kn.Line(1.0, 0.0, g.L_XY, kn.DRIVE, g.base_radius_pinion, g.base_radius_gear)
-    tips = (own.reach_pinion, own.reach_gear)
-    edges = (own.edge_pinion, own.edge_gear)
+    tips = (circle.reach_pinion, circle.reach_gear)
+    edges = (circle.edge_pinion, circle.edge_gear)
 
-    def corners(rho_p, rho_g, longer=0.0):
-        return kn.corners_at(line._replace(length=g.L_XY + longer), rho_p, rho_g, tips, edges)
+    def corners(rho_p, rho_g, lengthening=0.0):
+        return kn.corners_at(line._replace(length=g.L_XY + lengthening), rho_p, rho_g, tips, edges)
 
     h = 1e-8
-    for way in (0.01, 0.04, 0.1, 0.3):
-        for xi in (g.L_XA - way * g.base_pitch, g.L_XD + way * g.base_pitch):
-            at = xi, g.L_XY - xi
-            found = corners(*at)
-            assert found.gap == pytest.approx(float(corner_gap(g, np.array([xi]))[0]), rel=1e-7)
-            moved = [corners(at[0] + s, at[1]).gap for s in (h, -h)]
-            other = [corners(at[0], at[1] + s).gap for s in (h, -h)]
-            longer = [corners(*at, s).gap for s in (h, -h)]
-            slopes = [(a - b) / (2.0 * h) for a, b in (moved, other, longer)]
-            assert (found.by_p, found.by_g, found.by_length) == pytest.approx(slopes, rel=1e-5, abs=1e-8)
+    for distance in (0.01, 0.04, 0.1, 0.3):
+        for xi in (g.L_XA - distance * g.base_pitch, g.L_XD + distance * g.base_pitch):
+            lengths = xi, g.L_XY - xi
+            corner = corners(*lengths)
+            assert corner.gap == pytest.approx(float(corner_gap(g, np.array([xi]))[0]), rel=1e-7)
+            by_p = [corners(lengths[0] + s, lengths[1]).gap for s in (h, -h)]
+            by_g = [corners(lengths[0], lengths[1] + s).gap for s in (h, -h)]
+            by_length = [corners(*lengths, s).gap for s in (h, -h)]
+            slopes = [(a - b) / (2.0 * h) for a, b in (by_p, by_g, by_length)]
+            assert (corner.by_p, corner.by_g, corner.by_length) == pytest.approx(slopes, rel=1e-5, abs=1e-8)
 
 
 @pytest.mark.parametrize("teeth", ["15/40", "40/15", "12/60"])
@@ -346,8 +346,8 @@ def test_loaded_contact_reaches_beyond_the_edge(teeth):
     # Where the edge begins to touch, and gives way to the tip, the pieces of the fit end; it follows to 5e-9.
     at_start = g.undercut_pinion == g.L_XA
     breaks = contact.gap.breaks
-    for number in (mesh.back, mesh.exchange):
-        assert np.abs(number(at_start, breaks)).min() < 1e-11
+    for quantity in (mesh.beyond_edge, mesh.tip_minus_edge):
+        assert np.abs(quantity(at_start, breaks)).min() < 1e-11
     xi = np.linspace(low, high, 2001)[1:-1]
     exact = mesh.static(xi)
     assert contact.gap(xi) == pytest.approx(exact.gap, abs=2e-8 * exact.approach.max())

@@ -153,7 +153,7 @@ class TestJsonSchema:
                 continue
             node = next(n["properties"][part] for n in _alternatives(node, schema) if part in n["properties"])
         assert node["unit"] == quantity.unit
-        assert node["si_unit"] == UNITS[quantity.unit][0]
+        assert node["si_unit"] == UNITS[quantity.unit].si
         number, text = node["anyOf"]
         assert (number["type"], text["type"]) == ("number", "string")
         assert number.get("exclusiveMinimum") == quantity.above

@@ -123,7 +123,7 @@ def test_every_number_with_a_unit_shows_it(quantity_field, known_fields):
         if quantity.unit == "1":
             assert type(value) is float
         else:
-            assert value.unit == UNITS[quantity.unit][0]
+            assert value.unit == UNITS[quantity.unit].si
             assert repr(value).endswith(f" {value.unit}")
             assert quantity.parse(value) == value
 
