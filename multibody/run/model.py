@@ -217,7 +217,7 @@ def _add_shafts(
 
 
 def _load_of(machine: Machine, train: Train, number: int) -> dict[str, object]:
-    """Force of motor or load on the shaft of the pinion (0) or the gear (1); with ripples a function of time."""
+    """Force of motor or load on the shaft of the pinion (0) or the gear (1); a function where it ripples."""
     by_unit_torque = train.shafts[number].torque
     places = train.places[number]
     state = np.zeros((1, train.size))

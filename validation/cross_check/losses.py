@@ -53,9 +53,9 @@ class LossAgreement:
 
     @property
     def difference(self) -> float:
-        """Difference of both totals over that of the lumped motion; infinite where only one model loses.
+        """Difference of both totals over the total of the lumped motion; infinite if only one model loses.
 
-        Losses below ``_NO_LOSS`` of the driving power are what the integration leaves.
+        A loss below ``_NO_LOSS`` of the driving power is an error of the integration.
         """
         apart = abs(self.total_multibody - self.total)
         scale = max(self.total, _NO_LOSS * self.input_power)
@@ -63,7 +63,7 @@ class LossAgreement:
 
     @property
     def within(self) -> bool:
-        """Whether the difference is within its limit; one that is not a number is not."""
+        """Whether the difference is within its limit. A difference that is not a number is not."""
         return self.difference <= self.limit
 
     @property
@@ -73,16 +73,16 @@ class LossAgreement:
 
 
 def loss_agreement(pair: GearPair, lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
-    """Compare the losses that a motion of each model carries; None where one of them carries none."""
-    own = losses_of(lumped)
-    other = losses_of(multibody)
+    """Compare the losses in the attributes of both motions. None: a motion has no losses there."""
+    lost = losses_of(lumped)
+    lost_multibody = losses_of(multibody)
     power = pair.operating.pinion_torque * pair.geometry.omega_pinion
-    return LossAgreement(own, other, input_power=power) if own and other else None
+    return LossAgreement(lost, lost_multibody, input_power=power) if lost and lost_multibody else None
 
 
 def sliding_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement:
-    """Compare what sliding takes over the same times, where a run of teeth that differ does not repeat."""
-    own, other = (
+    """Compare the loss by sliding over the same times. For runs of unlike teeth, which do not repeat."""
+    lost, lost_multibody = (
         {"sliding": -float(run["friction_power"].sum("pair").mean())} for run in (lumped, multibody)
     )
-    return LossAgreement(own, other)
+    return LossAgreement(lost, lost_multibody)

@@ -43,7 +43,7 @@ class Judgement:
 
     @property
     def within(self) -> bool:
-        """Whether it passes; a value that is not a number does not."""
+        """Whether the value passes. A value that is not a number does not pass."""
         return self.value <= self.limit
 
 
@@ -72,7 +72,7 @@ SAME_EQUATIONS: Mapping[str, float] = MappingProxyType(
 def limit_of(quantity: str, fidelity: str, limit: float = LOAD_LIMIT) -> tuple[float, str]:
     """Limit of the largest difference over the peak to peak of a quantity at a fidelity, and why.
 
-    ``limit`` is that of quantities that the tooth load drives, at "exact".
+    limit : limit at "exact" of the quantities that the tooth load drives
     """
     by_friction = quantity in _BY_FRICTION
     if fidelity == "linear":

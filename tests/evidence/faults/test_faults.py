@@ -123,9 +123,9 @@ def test_a_sound_report_passes_and_faults_in_it_are_seen(pair):
 
 
 def test_every_fault_of_the_report_is_seen():
-    found = stored("report_faults.json")
-    assert set(found) == set(REPORT_FAULTS)
-    assert [key for key, checks in found.items() if not checks] == []
+    results = stored("report_faults.json")
+    assert set(results) == set(REPORT_FAULTS)
+    assert [key for key, checks in results.items() if not checks] == []
 
 
 def test_the_stored_table_is_of_these_faults_and_misses_none():

@@ -52,12 +52,12 @@ def test_ctrl_c_stops_a_run():
 
 @pytest.mark.parametrize("which", [1, 2])
 def test_coordinates_or_rates_alone_that_are_not_finite_are_seen(monkeypatch, which):
-    whole = multibody.run.integration.stored
+    stored = multibody.run.integration.stored
 
     def spoilt(model):
-        found = [np.array(one) for one in whole(model)]
-        found[which][-1, 0] = np.nan
-        return tuple(found)
+        arrays = [np.array(one) for one in stored(model)]
+        arrays[which][-1, 0] = np.nan
+        return tuple(arrays)
 
     monkeypatch.setattr("multibody.run.integration.stored", spoilt)
     with pytest.raises(lumped.NumericalError, match="not finite"):
@@ -229,10 +229,10 @@ def test_an_interrupted_command_leaves_no_half_written_file(moment, tmp_path, mo
 
         monkeypatch.setattr("multibody.run.integration._run", run)
     else:
-        own = Path.write_bytes
+        write_bytes = Path.write_bytes
 
         def write(path, content):
-            own(path, bytes(content)[:100])
+            write_bytes(path, bytes(content)[:100])
             raise KeyboardInterrupt
 
         monkeypatch.setattr(Path, "write_bytes", write)

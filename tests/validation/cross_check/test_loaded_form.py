@@ -28,9 +28,9 @@ def apart(pair, share):
         if (relief := getattr(pair, name).tip_relief) is not None:
             sizes[f"{name}.tip_relief.amount"] = 1e6 * relief.amount
     small = pair.with_({field: share * size for field, size in sizes.items()})
-    own = predicted(small).cycle["dte"].to_numpy()
-    exact = multibody.steady_state(small, samples_per_cycle=own.size)["dte"].to_numpy()[: own.size]
-    return float(np.abs(exact - own).max() / np.ptp(own))
+    dte = predicted(small).cycle["dte"].to_numpy()
+    exact = multibody.steady_state(small, samples_per_cycle=dte.size)["dte"].to_numpy()[: dte.size]
+    return float(np.abs(exact - dte).max() / np.ptp(dte))
 
 
 @pytest.mark.parametrize("name", NAMES)
