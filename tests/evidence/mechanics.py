@@ -151,9 +151,10 @@ def _averaged(pair: GearPair) -> Check:
 
 
 def _sharing() -> Check:
-    """Three springs of unequal stiffness and error, solved by hand: the third stays apart.
+    """Springs of unequal stiffness and error, solved by hand.
 
-    Then two that move each other by 1e-9 m/N: late by 1 um the second helps, by 4.5 um it is pushed away.
+    First three springs: the third spring does not touch. Then two springs that move each other by 1e-9 m/N:
+    with an error of 1 um the second spring carries a load; with 4.5 um the second spring does not touch.
     """
     results = share_load([2e8, 1e8, 3e8], [0.0, 2e-6, 1.0], 1000.0)
     delta = (1000.0 + 1e8 * 2e-6) / 3e8

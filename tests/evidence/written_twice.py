@@ -214,7 +214,10 @@ class _Mesh:
         return approaches, tilt
 
     def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
+        """Loads of pairs, and compressions of the pairs without the part that neighbours take.
+
+        The pair that is farthest behind comes first.
+        """
         stiffness = np.array([table_value(self.machine.stiffness_table, xi) for xi in places])
         pairs = np.zeros(places.size, PAIR)
         pairs["position"] = places

@@ -146,7 +146,7 @@ def random_pair(rng: np.random.Generator) -> GearPair:
 def stress_test(count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Largest error, bound and ratio of error to bound of the multipliers of random gear pairs.
 
-    Each computed multiplier is matched with one of the reference so that the sum of the distances is least.
+    Computed multipliers are matched with the reference multipliers so that the sum of the distances is least.
     """
     rng = np.random.default_rng(seed)
     results = []

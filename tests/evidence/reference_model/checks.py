@@ -72,9 +72,11 @@ _POINTS = 400
 
 @dataclass(frozen=True)
 class Blank:
-    """One gear body: mass [kg] and inertia [kg m^2] of its outline and as the simulations take them.
+    """One gear body: mass [kg] and inertia [kg m^2] by the outline, and the values of the simulations.
 
-    ``error`` is that of both outline values by the polygon, relative.
+    mass, inertia : by the outline
+    error : relative error of both outline values by the polygon
+    taken_mass, taken_inertia : values of the simulations
     """
 
     mass: float

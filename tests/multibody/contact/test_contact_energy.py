@@ -135,7 +135,7 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
 @pytest.mark.parametrize("which", ["pinion", "gear"])
 @pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
 def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(which, beyond):
-    """Whatever the corner does, the flank it touches has its normal on its own base circle."""
+    """The normal of the flank that a corner touches is a tangent of the base circle of this flank."""
     numbers = machine(PAIRS["parabolic"])
     p = numbers.record
     radii = numbers.base_radii
@@ -190,9 +190,10 @@ def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alon
 
 @pytest.mark.parametrize(("name", "flank"), FLANKS)
 def test_a_damper_takes_from_the_bodies_what_its_own_compression_does_on_it(name, flank):
-    """It follows the rate of the compression, along whose gradient it pushes: relief, corners, lengths.
+    """A damper follows the rate of the compression, and pushes along the gradient of the compression.
 
-    So its wrench times the velocities of the bodies, with their rotation, is minus the sum of N_d p'.
+    The compression contains relief, corners and lengths. So the wrench of the dampers times the velocities of
+    the bodies, with the rotation, is minus the sum of N_d p'.
     """
     elastic, numbers = (machine(PAIRS[name].with_(mesh__damping_ratio=ratio), ALL) for ratio in (0.0, 0.1))
     p = numbers.record
@@ -286,7 +287,7 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
 
 
 def loads_of(compression, stiffness, couplings, law, pulls=0):
-    """Loads of pairs that move each other; with ``pulls`` 1 they cannot lose contact."""
+    """Loads of pairs that move each other. With ``pulls`` 1 the pairs cannot lose contact."""
     pairs = np.zeros(len(compression), PAIR)
     pairs["compression"] = compression
     pairs["stiffness"] = stiffness

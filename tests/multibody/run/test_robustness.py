@@ -107,9 +107,9 @@ def test_a_repeated_state_is_evaluated_again_in_a_new_run():
 
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
 def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
-    """The stiffness is finite but for a stretch that a tooth pair passes at 0.3 to 0.5 of the mesh cycle.
+    """The stiffness is not finite where a tooth pair is at 0.3 to 0.5 of the mesh cycle.
 
-    The run must stop at that force, and not when somebody looks at its states.
+    The run must stop at the first force that is not finite, not when the states are read afterwards.
     """
     setup = prepare(PAIR.with_(friction__law="none"), fidelity=fidelity)
     machine = setup.machine

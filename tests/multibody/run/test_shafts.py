@@ -105,8 +105,9 @@ def test_a_ripple_is_that_of_motor_or_load_in_both_models(shaft, order, other):
 
 
 def test_gears_are_discs_on_shafts_that_turn_against_each_other(setup):
-    """Overhung or not, a gear that moves out in x tilts as one that moves out in y: the gyroscopic moment
-    between both has the sign of the rotation. The pinion turns clockwise.
+    """The gyroscopic moment between both planes has the sign of the rotation. The pinion turns clockwise.
+
+    A gear that moves along x tilts like a gear that moves along y, overhung or not.
     """
     train = setup.machine.train
     m = setup.machine
@@ -206,8 +207,9 @@ def test_on_shafts_too_the_brake_of_the_loaded_form_supplies_every_loss():
 
 
 def test_finite_motions_on_shafts_fall_with_torque():
-    """The exact periodic motion, found from the own linear map, differs from the lumped one by what the
-    deflections do to the geometry: a fourth of it at a fourth of the torque, over the range.
+    """The exact periodic motion differs from the lumped motion by the change of the geometry by deflections.
+
+    At a fourth of the torque the difference over the swing is a fourth.
     """
     differences = []
     for torque in (16.0, 4.0):

@@ -70,7 +70,7 @@ def test_without_path_work_and_tip_contact_the_balance_needs_a_source(name):
 
 @pytest.mark.parametrize("name", LIKE_TEETH)
 def test_the_balance_of_the_linear_mesh_in_the_loaded_form_closes(name):
-    """Its springs follow the tangent's error its dampers the gap; with Hertz's contact these differ."""
+    """The springs follow the error of the tangent, the dampers the gap. With Hertz's contact these differ."""
     balance = multibody.power_balance(unlike_pair(name), 3, fidelity="linear", rtol=1e-11, supports="springs")
     assert abs(balance.residual) < 1e-10 * balance.driving
     # Work that goes into no energy, ten thousand times the residual: stiffness varies along each path.

@@ -107,9 +107,10 @@ def test_steady_state_attracts():
 
 @pytest.mark.parametrize("stiffness", ["rectangular", "parabolic"])
 def test_periodic_motion_is_found_where_friction_holds_the_teeth(stiffness):
-    """There the lumped monodromy matrix is far from the own one, and iterating with it alone fails.
+    """Here the lumped monodromy matrix is far from the matrix of the multibody model.
 
-    Corrected along its way it closes the cycle to ten times rtol, in some ten cycles.
+    An iteration with the lumped matrix alone fails. Broyden's method corrects the matrix in every step, and
+    closes the cycle to ten times rtol in some ten cycles.
     """
     pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
         mesh__contact="prescribed", friction__law="benedict_kelley", mesh__stiffness={"model": stiffness}

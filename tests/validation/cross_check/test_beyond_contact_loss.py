@@ -50,7 +50,7 @@ def test_the_multibody_model_has_the_same_periodic_motion(name, effects):
 
 
 def test_motions_of_two_cycles_are_found_too(pair_beyond):
-    """An unstable one, to which no run comes; it is that of one cycle at half the speed."""
+    """The motion is unstable, so no run settles to this motion. At half the speed it repeats every cycle."""
     start = np.zeros(12)
     start[0] = 1e-4 / pair_beyond.geometry.base_radius_pinion
     single = floquet.periodic_orbit(pair_beyond.with_({"operating.pinion_speed": 9500.0}), start=start)
@@ -68,7 +68,7 @@ def test_motions_of_two_cycles_are_found_too(pair_beyond):
 
 
 def test_the_multibody_sweep_measures_the_mean_over_whole_cycles(pair_beyond):
-    """The root mean square is that of the periodic motion; it was 6e-4 off with one sample too many."""
+    """The root mean square is that of the periodic motion. One sample too many gave an error of 6e-4."""
     orbit = floquet.periodic_orbit(pair_beyond)
     sweep = multibody.speed_sweep(
         pair_beyond,

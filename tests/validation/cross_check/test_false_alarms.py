@@ -183,7 +183,7 @@ def test_backs_that_strike_are_named_as_the_reason_why_a_pulling_motion_is_compa
     (own("39/108", 1.5, 9.7, 497.0, 23.86, ENERGY), "normal_load", 0.1),
 ], ids=["x", "y", "y of corners", "load"])  # fmt: skip
 def test_a_small_swing_is_no_difference_of_the_models(pair, quantity, share):
-    """Over its own swing the difference is large; over what it stands for it is small."""
+    """The difference is large over the swing of the quantity, and small over the scale of the cross-check."""
     result = crosscheck(pair, cycles=6, samples_per_cycle=128, variant=False)
     motions = [m.isel(time=slice(-129, None)) for m in (result.multibody["exact"], result.lumped)]
     keep = off_switch_samples(pair, motions[1]["time"].to_numpy(), 0.02)
