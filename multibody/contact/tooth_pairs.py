@@ -76,7 +76,7 @@ class OwnPair(NamedTuple):
 
 
 class FaultEffect(NamedTuple):
-    """What one fault adds at a place of a flank: compliance [m/N], slope of this compliance [1/N], gap [m]."""
+    """What a fault adds at a place of a flank: compliance [m/N], slope of the compliance [1/N], gap [m]."""
 
     compliance: float
     compliance_slope: float

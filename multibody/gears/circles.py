@@ -88,9 +88,9 @@ class Relieved(NamedTuple):
     """A relief of one flank.
 
     gear : 0 pinion, 1 gear
-    start, end : roll angles at which the relief starts, and at which the relief reaches its amount [rad]
-    amount : material that is missing at ``end`` [m]
-    power : power of the roll angle by which the relief grows
+    start, end : roll angles at which the relief starts and ends [rad]
+    amount : missing material at ``end`` [m]
+    power : the relief grows with this power of the roll angle
     """
 
     gear: int
@@ -173,7 +173,7 @@ def _tip_radius(pair: GearPair, number: int, centre_distance: float) -> float:
 
 
 def _close_mesh(pair: GearPair, base: float) -> float:
-    """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
+    """Centre distance without backlash, with the teeth as the rack cuts the teeth [m]."""
     alpha = pair.basic_rack.pressure_angle
     teeth = pair.pinion.teeth + pair.gear.teeth
     shift = sum(profile_shifts(pair))

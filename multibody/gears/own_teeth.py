@@ -123,7 +123,7 @@ class OwnFault(NamedTuple):
 
 
 def drawn_gears(pair: GearPair, drawn: Circles) -> tuple[DrawnGear, DrawnGear]:
-    """Both gears with the lengths that errors of their teeth refer to."""
+    """Both gears with the lengths for the errors of the teeth."""
     module = pair.basic_rack.module
     share = drawn.base_pinion / (drawn.base_pinion + drawn.base_gear)
     to_pitch_point = share * drawn.tangent - drawn.start
@@ -184,8 +184,8 @@ def rotation_since_first_tooth(pair: GearPair, gear: DrawnGear) -> float:
 def in_order_of_mesh(deviations: Deviations | None, field: str, teeth: int) -> FloatArray:
     """Sort a list with one value for each tooth into the order in which the teeth come into mesh.
 
-    Tooth 1 is tooth 1 in both numberings. Where the file numbers against the order, its tooth number j is
-    the tooth that comes into mesh j - 1 places before tooth 1.
+    Tooth 1 is tooth 1 in both numberings. Where the file numbers against the order, tooth j
+    of the file comes into mesh j - 1 places before tooth 1.
     """
     values = None if deviations is None else getattr(deviations, field)
     ordered = np.zeros(teeth)
@@ -281,7 +281,7 @@ def own_faults(pair: GearPair, gears: Sequence[DrawnGear]) -> list[OwnFault]:
 
 
 def own_fault(pair: GearPair, gear: DrawnGear, fault: ToothFault) -> OwnFault:
-    """One fault. The root section of a crack is that of ``lumped.faults``; the arm of the load is not."""
+    """One fault. ``lumped.faults`` supplies the root section of a crack, but not the arm of the load."""
     sound = OwnFault(
         gear=gear.number,
         tooth=fault.tooth - 1,

@@ -62,8 +62,8 @@ class FlowMap:
     ----------
     matrix : (10, 10) map of (q, x_p, x_g, y_p, y_g and rates)
     full : (12, 12) map of the lumped states (theta_p, theta_g, x_p, x_g, y_p, y_g and rates)
-    state : (12,) state of the motion at t = 0 about which the map is taken
-    brake_torque : torque that balances that motion [N m]
+    state : (12,) state of the motion at t = 0
+    brake_torque : torque that balances the motion [N m]
     closure : largest change of a state over one cycle, relative to the scale of the state
     read, lift : (10, 12) from lumped states to relative states; (12, 10) from perturbations of the relative
         states to perturbations of the lumped states, with the rigid rotation fixed
@@ -103,13 +103,13 @@ def monodromy(
     ----------
     pair : a validated gear pair
     fidelity, effects : as ``multibody.simulate``
-    rtol : relative tolerance of the runs; default 1e-9, at fidelity "exact" 1e-10. The map errs by some times
-        as much, at "exact" by as much over 1e-3
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
+    rtol : relative tolerance of the runs; default 1e-9, at fidelity "exact" 1e-10. The error of the map is
+        some times rtol; at "exact" some times rtol over 1e-3
+    supports : "springs", the only supports of this function; needed for a pair with shafts
 
     Raises
     ------
-    NumericalError : no periodic motion is found near the lumped one
+    NumericalError : no periodic motion is found near the lumped motion
     """
     pair = on_springs(load_gear_pair(pair), supports, "multibody.monodromy")
     one_of("fidelity", fidelity, get_args(Fidelity))
@@ -148,11 +148,11 @@ def find_orbit(
 ) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    `close_period` starts from the monodromy matrix of the lumped model, on shafts from that of the model's
-    own linear mesh.
+    ``close_period`` starts from the monodromy matrix of the lumped model. On shafts the search starts from
+    the matrix of the multibody model with the linear mesh.
 
-    near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
-    near : motion of the pair with other effects, to start from with its matrix
+    near_lumped : False where the lumped model has no motion nearby; then differences supply the matrix
+    near : motion of the pair with other effects, from which the search starts
     Raises NumericalError : the iteration does not close the cycle
     """
     machine = setup.machine
@@ -280,7 +280,7 @@ def cycles_of(orbit: Orbit, samples_per_cycle: int, cycles: int = 1) -> xr.Datas
 
 
 def mean_powers(orbit: Orbit, cycles: int) -> Powers:
-    """Mean powers of an orbit over its mesh cycles [W], by the segments of its run."""
+    """Mean powers of an orbit over the mesh cycles [W], from the segments of the run."""
     totals = np.zeros(len(Powers._fields))
 
     def visit(_: int, segment: Segment) -> None:
@@ -335,7 +335,7 @@ def _unpacked(machine: Machine, state: FloatArray) -> tuple[FloatArray, FloatArr
 def _differences(
     flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None = None
 ) -> FloatArray:
-    """Columns of the map: differences to ``end``, the state after the cycles; without it central ones."""
+    """Columns of the map: differences to the state ``end`` after the cycles; None: central differences."""
     columns = []
     for i, h in enumerate(steps):
         ahead = state.copy()

@@ -94,8 +94,7 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
 def state_scale(machine: Machine, deflection: float) -> FloatArray:
     """Sizes of the states in a vibration of one swing a mesh cycle, with a deflection [m] as amplitude.
 
-    On shafts these are the 2n states of the train. On springs these are the lumped states, of which the
-    first two are angles.
+    On shafts: the 2n states of the train. On springs: the lumped states; the first two are angles.
     """
     radii = machine.base_radii
     lengths = np.full(machine.size, deflection)

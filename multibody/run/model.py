@@ -1,8 +1,8 @@
 """The exudyn model: two planar rigid bodies in bearings, one massless object that carries the tooth contacts.
 
-Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g), which contacts
-add: so the relative tolerance acts on the vibration. A frame that turns at constant speed about each body's
-own centre of mass adds no inertia terms in the plane.
+Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g). The contacts
+add the nominal rotation, so the relative tolerance acts on the vibration. A frame that turns at constant
+speed about the centre of mass of a body adds no inertia terms in the plane.
 """
 
 from __future__ import annotations
@@ -48,14 +48,14 @@ _WATCHED = 600
 
 @dataclass
 class CallBudget:
-    """Counts force evaluations, so that no run can hang, and remembers why one was stopped.
+    """Counts force evaluations, so no run can hang, and records why a run was stopped.
 
-    limit : most calls allowed in one interval
-    calls, before : calls since the start, and those before the present interval
-    reason : empty, or the last problem met ("not finite", "too many calls", "standstill")
-    look : calls at which the next look is due
-    seen, least : time of the last look, and by how much it must have advanced until the next [s]
-    last : time of the last call, or NaN where its force may not hold any more [s]
+    limit : most calls in one interval
+    calls, before : calls since the start, and calls before the present interval
+    reason : empty, or the last problem ("not finite", "too many calls", "standstill")
+    look : number of calls at the next look at the time
+    seen, least : time of the last look, and least advance of the time until the next look [s]
+    last : time of the last call [s]; NaN: the last force must be computed again
     """
 
     limit: int
@@ -95,7 +95,7 @@ class CallBudget:
 
 @dataclass(eq=False)
 class ExudynModel:
-    """An assembled exudyn system and the buffers its user function writes.
+    """An assembled exudyn system and the buffers of the user function.
 
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
     sensors : numbers of the sensors that store coordinates and velocities at every step: of both gears, or of

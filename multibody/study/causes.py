@@ -1,4 +1,4 @@
-"""Why the exact model differs from the lumped one: its finite-motion effects, switched one at a time.
+"""Why the exact model differs from the lumped model: finite-motion effects, switched one at a time.
 
 Sources: docs/theory/multibody.md, "Effects".
 """
@@ -40,20 +40,19 @@ def attribution(
     Parameters
     ----------
     pair : a validated gear pair
-    supports : "springs" or "shafts", as of ``multibody.simulate``; by default the shafts of a pair that has
-        them
+    supports : "springs" or "shafts", as of ``multibody.simulate``; by default shafts for a pair with shafts
     progress : called with the finished fraction
 
     Returns
     -------
     xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change by one cause, and
-    ``without``, the largest change when all causes but this one act; both over the peak to peak of the
-    motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
-    difference: the effects that act by default. The attribute ``largest`` names the cause of this difference
-    that changes the transmission error most. "friction_load" stands below "all": it is no part of the
-    difference. A quantity that does not move without effects (y_p without friction) is NaN.
+    ``without``, the largest change when all causes but this cause act. Both are over the peak to peak of the
+    motion without effects. Cause "all" is the whole difference from the lumped model, by all effects that act
+    by default. The attribute ``largest`` names the cause with the largest change of the transmission error.
+    "friction_load" is below "all", because this cause is no part of the difference. A quantity that does not
+    move without effects (y_p without friction) is NaN.
 
-    Every exact motion includes "contact": where the actual flanks meet, and unilateral.
+    Every exact motion includes "contact": unilateral contact of the actual flanks.
     ``alone`` of another cause is the change of the motion with "contact". The ``without`` of "contact" is
     NaN, because teeth would then pull over a gap.
 

@@ -39,12 +39,12 @@ class Agreement:
 
     Attributes
     ----------
-    quantity, unit, long_name : what is compared; at fidelity "exact" of tooth forces the sum over the pairs
+    quantity, unit, long_name : the compared quantity; tooth forces at "exact" are sums over the pairs
     fidelity : "linear" or "exact"
     difference : largest difference over ``scale``; of y at fidelity "exact" see ``_off_line``
-    scale : peak to peak of the lumped history, or what stands for it (``_scale``), in ``unit``
+    scale : peak to peak of the lumped history, or a larger scale (``_scale``), in ``unit``
     peak_to_peak, peak_to_peak_multibody : of both histories, in ``unit``
-    limit, reason : largest ``difference`` that passes, and why
+    limit, reason : largest ``difference`` within the limit, and the reason for the limit
     """
 
     quantity: str
@@ -60,7 +60,7 @@ class Agreement:
 
     @property
     def within(self) -> bool:
-        """Whether the difference is within its limit. A difference that is not a number is not."""
+        """Whether the difference is within the limit. NaN is not within the limit."""
         return self.difference <= self.limit
 
     @property
@@ -103,7 +103,7 @@ def agreement(
 
     pair : times near the switches of this pair are left out
     candidate, reference : the multibody motion and the lumped motion
-    limit : largest difference that agrees, and the reason, of ``verdict.limit_of``
+    limit : the result of ``verdict.limit_of``: largest difference within the limit, and the reason
     Raises NumericalError : a value is not finite
     """
     exact = fidelity == "exact"

@@ -53,19 +53,18 @@ class CrossCheck:
 
     Attributes
     ----------
-    pair : the gear pair, without shafts; of teeth that differ counted from the first tooth of the cycles that
-        were run
+    pair : the gear pair, without shafts; unlike teeth are counted from the first tooth of the computed cycles
     agreements : one per quantity and fidelity
-    lumped : dataset of the lumped model that "exact" is compared with
+    lumped : dataset of the lumped model, with which "exact" is compared
     multibody : fidelity -> dataset of the multibody model, at the same times
-    periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
+    periodic : whether "exact" is a periodic motion, repeated over the times, and not a run
     conservation : conservation laws, checked on both models
-    stiffness : stiffness of a tooth pair, its change with the load and the coupling of neighbours, which both
-        models read from one place, against second values
+    stiffness : stiffness of a tooth pair, change of the stiffness with the load and coupling of neighbours,
+        against second values, because both models read these quantities from one place
     powers : model -> power of ``power_balance.POWERS`` and "driving" -> mean over the mesh cycle [W]
-    orbit : the lumped motion with loss of contact that is compared; None where teeth push all the time, or
+    orbit : the compared lumped motion with loss of contact; None where teeth push all the time, or
         where no stable motion of one mesh cycle is found
-    loss : power that both motions lose at "exact"; None where the multibody motion does not repeat
+    loss : lost power of both motions at "exact"; None where the multibody motion does not repeat
     pulling : why a motion in which teeth pull is compared; empty where teeth push
     variant : cross-check of a variation of the pair in which nothing is symmetric; None where the caller does
         not want the variant, or where no variation is sound
@@ -96,7 +95,7 @@ class CrossCheck:
 
     @property
     def failures(self) -> tuple[Judgement, ...]:
-        """What does not hold: a check of the program, not of the model."""
+        """Judgements beyond the limit. These are faults of the program, not of the model."""
         return tuple(j for j in self.judgements if not j.within)
 
     @property
@@ -119,7 +118,7 @@ class CrossCheck:
         return tuple(a for a in self.agreements if a.fidelity == fidelity)
 
     def worst(self, fidelity: Fidelity) -> Agreement:
-        """Agreement that uses most of its limit."""
+        """Agreement with the largest difference over the limit."""
         return max(self.of(fidelity), key=lambda a: a.difference / a.limit)
 
 
@@ -156,15 +155,15 @@ def crosscheck(
 
     Parameters
     ----------
-    pair : a validated gear pair. Of teeth that differ "exact" compares both models over a revolution of up to
-        64 mesh cycles, else over 6 round the tooth with the largest load; the same equations and the
-        conservation laws are those of the twin with like teeth
+    pair : a validated gear pair. With unlike teeth "exact" compares both models over a revolution of up to 64
+        mesh cycles; in longer revolutions over 6 mesh cycles round the tooth with the largest load. Fidelity
+        "linear" and the conservation laws then check the twin with like teeth
     cycles : mesh cycles to simulate, 6 to 100000
-    samples_per_cycle : output times per mesh cycle, at least 32; more are compared where the fastest mode
-        swings so fast that these would not show it
+    samples_per_cycle : output times per mesh cycle, at least 32. Where the fastest mode is too fast for this
+        number, more times are compared
     fidelities : of the multibody model, out of ``FIDELITIES``; without "exact" the verdict is "not checked"
-    limit : largest difference that agrees, over the peak to peak, of the transmission error, the tooth load
-        and the motions along the line of action; that of what friction drives is 0.2
+    limit : largest difference, over the peak to peak, at which the transmission error, the tooth load and the
+        motions along the line of action agree; for quantities driven by friction the limit is 0.2
     variant : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
     supports : "springs", on which alone both models are compared; needed for a pair with shafts
     progress : called with the finished fraction
@@ -209,7 +208,7 @@ def crosscheck(
 
 
 def _with_own_teeth(check: CrossCheck, pair: GearPair, samples: int, limit: float) -> CrossCheck:
-    """Replace "exact" in the cross-check of the twin with like teeth by that of the pair with its teeth."""
+    """Replace "exact" in the cross-check of the twin with like teeth by "exact" of the unlike teeth."""
     if "exact" not in check.multibody:
         return replace(check, pair=pair)
     pair, reference, exact = both_motions(pair, samples)

@@ -139,7 +139,7 @@ def lumped_motion(pair: GearPair) -> WeightedMotion:
 
 
 def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
-    """Times (k,) in the mesh cycle and weights (k,), which add up to one.
+    """Times (k,) in the mesh cycle and weights (k,). The sum of the weights is one.
 
     Every law is one polynomial in each panel.
     """
@@ -210,7 +210,7 @@ def residual(powers: Mapping[str, float]) -> float:
 
 
 def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
-    """For each law and model the check that uses most of its limit. For a short table."""
+    """The check with the largest value over the limit, for each law and model. For a short table."""
     groups: dict[tuple[str, str], Judgement] = {}
     for check in checks:
         law, model = check.check.removeprefix("conservation: ").rsplit(", ", 1)
@@ -393,7 +393,7 @@ def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:
 
 
 def _same_powers(lumped: Mapping[str, float], linear: Mapping[str, float]) -> list[Judgement]:
-    """Every power of the same equations is that of the lumped model."""
+    """At "linear" every power equals the power of the lumped model."""
     return [
         Judgement(
             f"conservation: power {power}, linear",

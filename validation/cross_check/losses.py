@@ -27,13 +27,13 @@ _REASON = (
 
 @dataclass(frozen=True)
 class LossAgreement:
-    """Mean powers that are lost in both motions.
+    """Mean lost powers of both motions.
 
     Attributes
     ----------
     lumped, multibody : place of ``validation.prediction.motion.PLACES`` -> mean power lost there [W]
-    limit : largest ``difference`` that agrees
-    input_power : driving power, whose rounding is no loss [W]
+    limit : largest ``difference`` within the limit
+    input_power : driving power [W]; rounding of the driving power is no loss
     """
 
     lumped: Mapping[str, float]
@@ -63,7 +63,7 @@ class LossAgreement:
 
     @property
     def within(self) -> bool:
-        """Whether the difference is within its limit. A difference that is not a number is not."""
+        """Whether the difference is within the limit. NaN is not within the limit."""
         return self.difference <= self.limit
 
     @property
@@ -81,7 +81,7 @@ def loss_agreement(pair: GearPair, lumped: xr.Dataset, multibody: xr.Dataset) ->
 
 
 def sliding_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement:
-    """Compare the loss by sliding over the same times. For runs of unlike teeth, which do not repeat."""
+    """Compare the loss by sliding over the same times. Runs of unlike teeth do not repeat."""
     lost, lost_multibody = (
         {"sliding": -float(run["friction_power"].sum("pair").mean())} for run in (lumped, multibody)
     )

@@ -70,9 +70,10 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
 def settled_orbit(pair: GearPair) -> GearOrbit:
     """The motion with unilateral contact to which a run settles.
 
-    Tangents and dampers are those of the static load. Newton's method starts from the linear motion. If the
-    motion that it finds is not stable, a run is computed until the run settles. A NumericalError says that
-    the motion does not repeat, or does not stay bounded.
+    Tangents and dampers belong to the static load. Newton's method starts from the linear motion. If the
+    result is not stable, a run is computed until the run settles.
+
+    Raises NumericalError : the motion does not repeat, or does not stay bounded
     """
     with suppress(NumericalError):
         orbit = floquet.periodic_orbit(pair)

@@ -1,4 +1,4 @@
-"""What the cross-check decides: single checks against their limits, and the verdict on all of them."""
+"""Decisions of the cross-check: single checks against limits, and the verdict on all checks."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Judgement:
-    """A value against the largest one that passes; ``check`` is as "variant: same equations: dte"."""
+    """A value against a limit. ``check`` is the name of the check, as "variant: same equations: dte"."""
 
     check: str
     value: float
@@ -43,7 +43,7 @@ class Judgement:
 
     @property
     def within(self) -> bool:
-        """Whether the value passes. A value that is not a number does not pass."""
+        """Whether the value is within the limit. NaN is not within the limit."""
         return self.value <= self.limit
 
 

@@ -59,7 +59,7 @@ def failed_checks(check: CrossCheck, most: int = 3) -> str:
 
 
 def _failed(judgement: Judgement) -> str:
-    """One check that fails; a difference of the motions in words."""
+    """A failed check in words."""
     check = judgement.check.removeprefix("variant: ")
     kind, _, name = check.partition(": ")
     if kind != "same equations":
@@ -81,7 +81,7 @@ def same_equations(check: CrossCheck) -> str:
 
 
 def loss_difference(check: CrossCheck) -> str:
-    """How much power the multibody model loses beside the lumped one; empty where that is not known."""
+    """Lost power of the multibody model beside the lumped model. Empty: the loss is not known."""
     loss = check.loss
     if loss is None:
         return ""
@@ -95,7 +95,7 @@ def loss_difference(check: CrossCheck) -> str:
 
 
 def whole_difference(check: CrossCheck) -> str:
-    """How much the exact model differs: in the transmission error, and in what uses most of its limit."""
+    """Difference of the exact model: transmission error, and quantity with the largest share of a limit."""
     dte = next(a for a in check.of("exact") if a.quantity == "dte")
     worst = check.worst("exact")
     lumped = quantity(dte.peak_to_peak, dte.unit, 3)
@@ -114,10 +114,9 @@ def whole_difference(check: CrossCheck) -> str:
 
 
 def cause_of_difference(check: CrossCheck) -> str:
-    """The effect that explains most of the difference in the quantity that uses most of its limit.
+    """The effect behind most of the difference, for the quantity with the largest share of a limit.
 
-    Where teeth differ: a swing of the free shafts that is large beside the base pitch. Without such a swing
-    the text is empty.
+    With unlike teeth: a swing of the free shafts, if the swing is large beside the base pitch; else empty.
     """
     g = check.pair.geometry
     turn = float(np.ptp(check.multibody["exact"]["theta_p"].to_numpy())) * g.base_radius_pinion / g.base_pitch
