@@ -116,9 +116,9 @@ def elastic_load(compression: float, stiffness: float, law: ContactLaw) -> float
 
 @uncounted
 def stored_energy(load: float, stiffness: float, slope: float, law: ContactLaw) -> tuple[float, float]:
-    """Energy U = N p - C that one pair stores [J], and its slope over xi at constant compression [J/m].
+    """Energy U = N p - C that one pair stores [J], and slope of U over xi at constant compression [J/m].
 
-    C is the integral of the compression p over the load N. ``slope`` is the slope of the stiffness.
+    C is the integral of the compression p over the load N. ``slope`` is the slope of the stiffness over xi.
     """
     if stiffness <= 0.0:
         return 0.0, 0.0
@@ -139,7 +139,7 @@ def stored_energy(load: float, stiffness: float, slope: float, law: ContactLaw) 
 def two_loads(one: Record, other: Record, coupling: float, law: ContactLaw) -> tuple[float, float]:
     """Loads of two tooth pairs that touch and move each other [N].
 
-    Chebyshev's method from the loads of linear springs: Newton's step, and what the bend adds to it.
+    Chebyshev's method, from the loads of linear springs: Newton's step, corrected by the second derivative.
     """
     first = 1.0 / one.stiffness
     second = 1.0 / other.stiffness
@@ -200,7 +200,7 @@ def _eliminate(count: int, pairs: Records) -> None:
 
 @inner
 def _many_loads(count: int, pairs: Records, law: ContactLaw) -> None:
-    """Loads of more than two pairs that touch, by Newton's steps from the loads that they have."""
+    """Loads of more than two pairs that touch, by Newton's steps from the present loads of the pairs."""
     for _ in range(_MOST_STEPS):
         _newton_equations(count, pairs, law)
         _eliminate(count, pairs)
@@ -242,7 +242,7 @@ def _loads_of_touching(count: int, pairs: Records, law: ContactLaw) -> None:
 
 @inner
 def _change_touching(count: int, pairs: Records) -> bool:
-    """Let pairs go that would pull, and take in those that would overlap; whether one changed."""
+    """Release pairs that would pull, and add pairs that would overlap. Return whether a pair changed."""
     changed = False
     for i in range(count):
         pair = pairs[i]
@@ -290,9 +290,11 @@ def gradual(share: float) -> float:
 
 @uncounted
 def relief_at(machine: Record, xi: float, own_p: float, own_g: float) -> tuple[float, float]:
-    """Material that reliefs take off both flanks at xi [m], and its slope. Each grows over its roll angle.
+    """Material that the reliefs of both flanks remove at xi [m], and slope of this material over xi.
 
-    ``own_p``, ``own_g``: tip relief of the teeth of pinion and gear beyond the relief of the design [m].
+    A relief grows over the roll angle of the relieved gear.
+
+    own_p, own_g : tip relief of the teeth of pinion and gear beyond the relief of the design [m]
     """
     geometry = machine.geometry
     error = slope = 0.0

@@ -109,9 +109,9 @@ def event_table(
 
 
 def _change(law: PathFunction, j: int, step: float) -> float:
-    """Bound on the difference, a step away, of the polynomials that meet at break j, over the largest value.
+    """Bound on the difference of the polynomials at break j, one step from j, over the largest value.
 
-    It sums the jumps of value, slope and curvature. Outside its path of contact a law is zero.
+    The bound sums the jumps of value, slope and curvature. Outside the path of contact a law is zero.
     """
     total = 0.0
     for order in range(3):
@@ -167,7 +167,7 @@ class Neighbours(NamedTuple):
     """The pairs whose loads move a tip corner.
 
     contacts : CONTACT records
-    number : how many of them count; 0 where pairs do not move each other
+    number : number of records in use; 0 where pairs do not move each other
     """
 
     contacts: Records

@@ -338,10 +338,11 @@ def dynamic_viscosity(lubricant: Lubricant) -> float:
 
 
 class FrictionSwitch(NamedTuple):
-    """A jump or kink of the coefficient.
+    """A jump or kink of the coefficient of friction.
 
-    moves : whether it is at the sliding velocity of the place, which vibration moves; else at the place
-    place : position xi at which the nominal motion has it [m]
+    moves : whether the jump is at a sliding velocity, so that vibration moves the jump; else the jump is at a
+        place
+    place : position xi of the jump in the nominal motion [m]
     """
 
     moves: bool

@@ -223,7 +223,7 @@ def set_stiffness(pair: Record, stiffness: FloatArray, own: OwnPair) -> None:
 def pairs_near_contact(
     side: SideMotion, machine: Record, flags: int, tables: Tables, motion: TeethMotion, work: Workspace
 ) -> int:
-    """Write the pairs of one side that touch or may touch, without their loads; returns their number."""
+    """Write the pairs of one side that touch or may touch, without loads. Return the number of pairs."""
     arms = work.arms
     pairs = work.pairs
     position = side.position
@@ -393,9 +393,9 @@ def add_side(
     wrench: FloatArray,
     contacts: Records,
 ) -> int:
-    """Add the forces of ``count`` pairs of one side to the wrench; returns the number of contacts written.
+    """Add the forces of ``count`` pairs of one side to the wrench. Return the number of contacts written.
 
-    A pair beyond the ends of its flanks, and a pair of the back side, touches only where it is compressed.
+    A pair beyond the ends of the flanks touches only under compression. So does a pair of the back side.
     """
     law = contact_law(machine, flags)
     coupled = machine.coupling_count > 0 and (flags & kn.NEIGHBOURS) != 0

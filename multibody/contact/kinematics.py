@@ -340,9 +340,12 @@ def pairs_in_contact(
 
 
 class Corners(NamedTuple):
-    """Gap that corners beyond the path leave [m], its derivatives by both flank distances and the length.
+    """Gap at a corner beyond the path [m], and derivatives of the gap.
 
-    A corner is that of a tip, or the edge of an undercut. Only one of them ever decides the gap.
+    A corner is the corner of a tip, or the edge of an undercut. Only one corner decides the gap.
+
+    by_p, by_g : derivatives by the flank distances of pinion and gear
+    by_length : derivative by the length of the line of action
     """
 
     gap: float
@@ -395,11 +398,11 @@ def corners_at(
 
 
 class MeshPosition(NamedTuple):
-    """Where the teeth of one side stand.
+    """Position of the teeth of one side.
 
     line : line of action
     overlap : delta, overlap of the flanks [m]
-    rho : rho_p of one tooth pair, from which ``engaged`` counts whole pitches [m]
+    rho : rho_p of one tooth pair [m]; ``engaged`` adds whole pitches for the other pairs
     xi : position of this tooth pair [m]
     """
 
@@ -438,9 +441,10 @@ def mesh_position(t: float, q: FloatArray, machine: Record, flags: int, flank: f
 
 @inner
 def engaged(mesh: MeshPosition, machine: Record, flags: int, arms: FloatArray) -> int:
-    """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift.
+    """Find the tooth pairs in contact: on the actual flanks; without entry shift on the nominal path.
 
-    With the effect of tip corners these are candidates: those beyond the ends touch where they press.
+    With the effect of tip corners these pairs are candidates. A pair beyond the ends of the flanks touches
+    only under compression.
     """
     geometry = machine.geometry
     edge_p = geometry.edge_p

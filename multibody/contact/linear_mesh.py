@@ -55,7 +55,7 @@ class LinearPair(NamedTuple):
 class LinearForce(NamedTuple):
     """Force of one tooth pair.
 
-    normal, elastic : normal load, and its part without the damper [N]
+    normal, elastic : normal load, and normal load without the damper [N]
     friction : friction force [N]
     apart : force of a tip corner that pushes the gears apart [N]
     """

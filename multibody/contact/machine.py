@@ -1,10 +1,14 @@
-"""A gear pair turned into the plain numbers that a multibody model needs.
+"""A gear pair as the numbers that the multibody model needs.
 
-Only the stiffness of a tooth pair and how far it moves the next ones are taken from ``lumped``, and the
-coefficient of a friction law that ``multibody.contact.friction`` does not have. Circles, tooth thickness,
-reliefs, bodies and bearings are derived here again from the fields of the schema: nothing reads
-``pair.geometry`` or ``lumped.bodies``, so that agreement of the two models is evidence for both. Sources: ISO
-21771 for the circles; solid discs, elementary.
+Circles, tooth thickness, reliefs, masses, inertias and bearings are derived here from the fields of the
+schema: nothing reads ``pair.geometry`` for them, so that the agreement of the two models is evidence for
+both. ``lumped`` supplies the stiffness of a tooth pair, the softening of the stiffness by the load, and the
+motion of a pair by the loads of its neighbours. ``lumped`` also supplies the coefficient of a friction law
+for which ``multibody.contact.friction`` has no formula. A mesh with prescribed contact takes the stiffness
+from the lumped mesh cycle, where relief ends contact. A linear mesh with loaded contact takes all its laws
+and switches from the lumped mesh cycle. docs/contributing/decisions.md, section 1, lists what is shared.
+
+Sources: ISO 21771 for the circles; solid discs, elementary.
 """
 
 from __future__ import annotations

@@ -31,10 +31,10 @@ WAYS = 2
 
 
 class TurnedArcs(NamedTuple):
-    """How far each base circle has turned [m].
+    """Arcs by which the base circles have turned [m].
 
-    pinion : distance from X, of the pinion flank of the pair that was at A at t = 0
-    gear : distance from Y, of the gear flank of that pair; it falls
+    pinion : distance from X of the pinion flank of the pair that was at A at t = 0
+    gear : distance from Y of the gear flank of this pair; the distance falls with time
     """
 
     pinion: float
@@ -76,7 +76,7 @@ class OwnPair(NamedTuple):
 
 
 class FaultEffect(NamedTuple):
-    """What one fault adds at one place of its flank: compliance [m/N], its slope [1/N], gap [m]."""
+    """What a fault adds at a place of a flank: compliance [m/N], slope of the compliance [1/N], gap [m]."""
 
     compliance: float
     compliance_slope: float

@@ -66,13 +66,13 @@ class Section(NamedTuple):
     rise: FloatArray
 
 
-def outline(pair: GearPair, which: int) -> Outline:
+def outline(pair: GearPair, number: int) -> Outline:
     """Outline of a tooth of the pinion (0) or the gear (1), without the thinning for backlash."""
     rack = pair.basic_rack
     angle = rack.pressure_angle
     module = rack.module
-    gear = (pair.pinion, pair.gear)[which]
-    shift = profile_shifts(pair)[which]
+    gear = (pair.pinion, pair.gear)[number]
+    shift = profile_shifts(pair)[number]
     reference = 0.5 * module * gear.teeth
     base = reference * math.cos(angle)
     rounding = rack.fillet_radius_coefficient * module

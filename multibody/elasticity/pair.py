@@ -104,7 +104,7 @@ def elastic_pair(pair: GearPair) -> ElasticPair:
     """Read a gear pair for the second values."""
     drawn = circles(pair)
     reach = (drawn.reach_pinion, drawn.reach_gear)
-    pinion, gear = (_elastic_gear(pair, which, reach[which]) for which in (0, 1))
+    pinion, gear = (_elastic_gear(pair, number, reach[number]) for number in (0, 1))
     model = pair.mesh.stiffness
     return ElasticPair(
         pair=pair,
@@ -117,10 +117,10 @@ def elastic_pair(pair: GearPair) -> ElasticPair:
     )
 
 
-def _elastic_gear(pair: GearPair, which: int, reach: float) -> ElasticGear:
+def _elastic_gear(pair: GearPair, number: int, reach: float) -> ElasticGear:
     """Pinion (0) or gear (1) whose flank ends at the length ``reach`` on its base tangent [m]."""
-    gear = (pair.pinion, pair.gear)[which]
-    tooth = outline(pair, which)
+    gear = (pair.pinion, pair.gear)[number]
+    tooth = outline(pair, number)
     material = Elasticity(gear.youngs_modulus, gear.poisson_ratio)
     model = pair.mesh.stiffness
     if model.model != "finite_elements":
@@ -291,8 +291,8 @@ def _parabola(elastic: ElasticPair, place: FloatArray) -> FloatArray:
         end_ratio = 3.0 * single / elastic.contact_ratio - 2.0
     else:
         end_ratio = model.end_ratio
-    off_middle = (2.0 * place - start - end) / (end - start)
-    return np.asarray(peak * (1.0 - (1.0 - end_ratio) * off_middle**2), dtype=np.float64)
+    from_middle = (2.0 * place - start - end) / (end - start)
+    return np.asarray(peak * (1.0 - (1.0 - end_ratio) * from_middle**2), dtype=np.float64)
 
 
 def _table_stiffness(elastic: ElasticPair, place: FloatArray, load: float) -> FloatArray:

@@ -88,9 +88,9 @@ class Relieved(NamedTuple):
     """A relief of one flank.
 
     gear : 0 pinion, 1 gear
-    start, end : roll angles at which it starts, and at which it has its amount [rad]
-    amount : material missing there [m]
-    power : of its growth
+    start, end : roll angles at which the relief starts and ends [rad]
+    amount : missing material at ``end`` [m]
+    power : the relief grows with this power of the roll angle
     """
 
     gear: int
@@ -124,7 +124,11 @@ def reliefs(pair: GearPair, drawn: Circles) -> list[Relieved]:
 
 
 def _relief_start(relief: ProfileRelief, base: float, end: float, sense: float) -> float:
-    """Roll angle at which a relief starts [rad], of what the file states; `end` is the reach of its end [m].
+    """Roll angle at which a relief starts [rad], from the length, the diameter or the angle of the file.
+
+    base : base radius [m]
+    end : length on the base tangent at which the relief ends [m]
+    sense : -1 for a tip relief, +1 for a root relief
 
     The profile angle at radius r is arccos(r_b/r), and its tangent the roll angle.
     """
@@ -135,40 +139,41 @@ def _relief_start(relief: ProfileRelief, base: float, end: float, sense: float) 
     return relief.start_roll_angle
 
 
-def base_tooth_angle(pair: GearPair, which: int, base: float) -> float:
-    """Angle between both flanks of a tooth on the base circle, thinned by its share of the backlash [rad].
+def base_tooth_angle(pair: GearPair, number: int, base: float) -> float:
+    """Angle between both flanks of a tooth on the base circle, less half of the backlash [rad].
 
-    ``which``: pinion (0) or gear (1), with the base radius ``base`` [m].
+    number : 0 pinion, 1 gear
+    base : base radius [m]
     """
     rack = pair.basic_rack
-    gear = (pair.pinion, pair.gear)[which]
-    shift = profile_shifts(pair)[which]
+    gear = (pair.pinion, pair.gear)[number]
+    shift = profile_shifts(pair)[number]
     alpha = rack.pressure_angle
     at_reference = (0.5 * math.pi + 2.0 * shift * math.tan(alpha)) / (0.5 * gear.teeth)
     return at_reference + 2.0 * (math.tan(alpha) - alpha) - 0.5 * pair.mesh.backlash / base
 
 
-def _tip_radius(pair: GearPair, which: int, centre_distance: float) -> float:
-    """Tip radius of the pinion (0) or the gear (1) [m]: of the file, else as the rack leaves room for it.
+def _tip_radius(pair: GearPair, number: int, centre_distance: float) -> float:
+    """Tip radius of the pinion (0) or the gear (1) [m]: the radius of the file, else the radius by the rack.
 
-    The tip stays off the mate's root by the clearance of the rack, and does not reach beyond the addendum
-    that the rack gives.
+    By the rack the tip keeps the clearance of the rack to the root of the mating gear, and does not reach
+    beyond the addendum of the rack.
     """
-    gear = (pair.pinion, pair.gear)[which]
+    gear = (pair.pinion, pair.gear)[number]
     rack = pair.basic_rack
     if gear.tip_diameter is not None:
         return gear.tip_diameter / 2.0
     if gear.addendum is not None:
         return rack.module * gear.teeth / 2.0 + gear.addendum
-    full = rack.module * (0.5 * gear.teeth + rack.addendum_coefficient + profile_shifts(pair)[which])
+    full = rack.module * (0.5 * gear.teeth + rack.addendum_coefficient + profile_shifts(pair)[number])
     if gear.tip_alteration is not None:
         return full + gear.tip_alteration
     clearance = rack.module * (rack.dedendum_coefficient - rack.addendum_coefficient)
-    return min(full, centre_distance - root_radius(pair, 1 - which) - clearance)
+    return min(full, centre_distance - root_radius(pair, 1 - number) - clearance)
 
 
 def _close_mesh(pair: GearPair, base: float) -> float:
-    """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
+    """Centre distance without backlash, with the teeth as the rack cuts the teeth [m]."""
     alpha = pair.basic_rack.pressure_angle
     teeth = pair.pinion.teeth + pair.gear.teeth
     shift = sum(profile_shifts(pair))

@@ -1,7 +1,7 @@
-"""What single teeth of a gear differ by: errors, eccentricity, faults; and ripples of the torques.
+"""What makes single teeth of a gear differ: errors, eccentricity and faults; further ripples of the torques.
 
-Everything is read from the schema by formulas of this package, from one starting point: the angle at which
-each flank is drawn on its gear. ``lumped.schema.tooth_errors`` starts from errors along the line of action
+Formulas of this package read everything from the schema, from one starting point: the angle at which each
+flank is drawn on the gear. ``lumped.schema.tooth_errors`` starts from errors along the line of action
 instead, so a wrong sign, phase or number in one of the two shows as a difference of the models. Only the
 deviations that a random seed draws out of a tolerance class, and the root section of a crack, come from
 ``lumped``.
@@ -62,7 +62,7 @@ class DrawnGear:
 
 @dataclass(frozen=True, eq=False)
 class GearTeeth:
-    """The teeth of one gear in the order in which they come into mesh, from tooth 1 on, SI.
+    """The teeth of one gear in the order of mesh, from tooth 1 on, SI.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class GearTeeth:
 class OwnRipple(NamedTuple):
     """A harmonic of the torque of one shaft: amplitude * cos(order * rotation since t = 0 + phase).
 
-    gear : 0 acts on the pinion's shaft and counts its rotation, 1 the same of the gear's shaft
+    gear : 0: the ripple acts on the pinion's shaft, and the rotation is the pinion's; 1: on the gear's shaft
     order : periods in a turn
     amplitude : [N m]
     phase : [rad]
@@ -98,7 +98,7 @@ class OwnRipple(NamedTuple):
 
 
 class OwnFault(NamedTuple):
-    """A fault of one tooth; lengths are on the base tangent of its own gear [m].
+    """A fault of one tooth. Lengths are on the base tangent of the gear that has the fault [m].
 
     gear, tooth : 0 pinion or 1 gear; tooth counted from 0
     crack : compliance of the crack over the square of the arm of the load [1/(N m)]
@@ -123,7 +123,7 @@ class OwnFault(NamedTuple):
 
 
 def drawn_gears(pair: GearPair, drawn: Circles) -> tuple[DrawnGear, DrawnGear]:
-    """Both gears with the lengths that errors of their teeth refer to."""
+    """Both gears with the lengths for the errors of the teeth."""
     module = pair.basic_rack.module
     share = drawn.base_pinion / (drawn.base_pinion + drawn.base_gear)
     to_pitch_point = share * drawn.tangent - drawn.start
@@ -182,10 +182,10 @@ def rotation_since_first_tooth(pair: GearPair, gear: DrawnGear) -> float:
 
 
 def in_order_of_mesh(deviations: Deviations | None, field: str, teeth: int) -> FloatArray:
-    """A list of one value a tooth, sorted into the order in which the teeth come into mesh.
+    """Sort a list with one value for each tooth into the order in which the teeth come into mesh.
 
-    Tooth 1 is tooth 1 in both numberings. Where the file numbers against the order, its tooth number j is
-    the tooth that comes into mesh j - 1 places before tooth 1.
+    Tooth 1 is tooth 1 in both numberings. Where the file numbers against the order, tooth j
+    of the file comes into mesh j - 1 places before tooth 1.
     """
     values = None if deviations is None else getattr(deviations, field)
     ordered = np.zeros(teeth)
@@ -234,7 +234,7 @@ def rise_of_slopes(gear: DrawnGear, slope_deviations: FloatArray) -> FloatArray:
 def first_harmonic(gap: FloatArray) -> tuple[float, float]:
     """Coefficients a, b of the harmonic a cos(tau) + b sin(tau), tau = 2 pi n/z at tooth n [m].
 
-    They are the least squares fit to the list.
+    The harmonic is the least squares fit to the list.
     """
     tau = 2.0 * math.pi * np.arange(gap.size) / gap.size
     return 2.0 * float(gap @ np.cos(tau)) / gap.size, 2.0 * float(gap @ np.sin(tau)) / gap.size
@@ -266,7 +266,7 @@ def mounted_eccentricity(gear: DrawnGear) -> tuple[float, float]:
 
 
 def own_ripples(pair: GearPair, gears: Sequence[DrawnGear]) -> list[OwnRipple]:
-    """Ripples of both torques; each counts the rotation of its own shaft, from tooth 1 at A on."""
+    """Ripples of both torques. Each ripple counts the rotation of its shaft, from tooth 1 at A on."""
     ripples = []
     for entry in pair.operating.torque_ripple:
         gear = gears[0] if entry.shaft == "pinion" else gears[1]
@@ -281,7 +281,7 @@ def own_faults(pair: GearPair, gears: Sequence[DrawnGear]) -> list[OwnFault]:
 
 
 def own_fault(pair: GearPair, gear: DrawnGear, fault: ToothFault) -> OwnFault:
-    """One fault. The root section of a crack is that of ``lumped.faults``; the arm of the load is not."""
+    """One fault. ``lumped.faults`` supplies the root section of a crack, but not the arm of the load."""
     sound = OwnFault(
         gear=gear.number,
         tooth=fault.tooth - 1,

@@ -18,11 +18,12 @@ _LEAST = 1e-4
 
 
 def undercut_edge(rack: BasicRack, teeth: int, shift: float) -> float:
-    """Length on the base tangent at which the trochoid of the rack's tip cuts the involute off [m]; 0: none.
+    """Length on the base tangent at which an undercut ends the involute [m]; 0: no undercut.
 
-    In modules and complex numbers, the gear's centre at 0 and its space along the real axis: rolling by phi
-    moves the rack's pitch line by r phi along the pitch circle, and the centre of its rounded tip with it.
-    The tip cuts where the line from the pitch point through that centre leaves the rounding.
+    The trochoid of the rack's tip cuts the involute. Lengths are in modules, and points are complex numbers:
+    the gear's centre is 0, and the middle of a tooth space is on the real axis. Rolling by phi moves the
+    rack's pitch line by r phi along the pitch circle, and moves the centre of the rack's rounded tip too. The
+    tip cuts at the point where the line from the pitch point through this centre leaves the rounding.
     """
     angle = rack.pressure_angle
     radius = 0.5 * teeth
@@ -34,7 +35,7 @@ def undercut_edge(rack: BasicRack, teeth: int, shift: float) -> float:
     deep = rack.dedendum_coefficient - rounding - shift  # of the centre of the rounding below the pitch line
     if abs(deep) < 1e-6:
         deep = 1e-6
-    off = (
+    across = (
         0.25 * math.pi - (rack.dedendum_coefficient - rounding) * math.tan(angle) - rounding / math.cos(angle)
     )
     space = (
@@ -43,17 +44,17 @@ def undercut_edge(rack: BasicRack, teeth: int, shift: float) -> float:
 
     def cut(roll: float) -> complex:
         pitch_point = radius * np.exp(1j * roll)
-        to_centre = (-deep + 1j * (off - radius * roll)) * np.exp(1j * roll)
+        to_centre = (-deep + 1j * (across - radius * roll)) * np.exp(1j * roll)
         return complex(pitch_point + to_centre * (1.0 + math.copysign(rounding, deep) / abs(to_centre)))
 
     def beside(roll: float) -> float:
-        """Angle by which the cut is inside the tooth, beyond the involute; negative in the space."""
+        """Angle by which the cut point is inside the tooth, beyond the involute; negative in the space."""
         point = cut(roll)
         turn = math.sqrt(max((abs(point) / base) ** 2 - 1.0, 0.0))
         flank = space - (math.tan(angle) - angle) + (turn - math.atan(turn))
         return float(np.angle(point)) - flank
 
-    bottom = off / radius
+    bottom = across / radius
     last = bottom - deep / (radius * math.tan(angle))  # where the straight flank takes over
     first = bottom
     if abs(cut(bottom)) < base:

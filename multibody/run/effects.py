@@ -1,9 +1,10 @@
-"""The finite-motion effects of the exact model, each of which can be switched off to see what it does.
+"""The finite-motion effects of the exact model. Each effect can be switched off, to see what the effect does.
 
-With all of them off the exact model solves the lumped equations.
+Without all effects the exact model solves the lumped equations.
 
-The momentary load in the friction law is no finite motion: it changes the coefficient however small the
-torque is. So it acts only where it is asked for, and the attribution shows what it does.
+The momentary load in the friction law is no finite motion: the load changes the coefficient of friction
+however small the torque is. So this effect acts only where the caller names it, and the attribution shows
+its size.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ WHOLE = "whole mesh"
 class Effect(NamedTuple):
     """One finite-motion effect.
 
-    bits : its switches in ``kernels``
-    cause : the cause of differences that it belongs to, a key of ``CAUSES``
-    forms : forms of the contact, see ``form_of``, with which it acts where no effects are named
+    bits : switches of the effect in ``kernels``
+    cause : cause of differences to which the effect belongs, a key of ``CAUSES``
+    forms : forms of the contact, see ``form_of``, with which the effect acts by default
     """
 
     bits: int

@@ -1,8 +1,8 @@
-"""Periodic motion and stability as the multibody model sees them: perturbed states over one mesh cycle.
+"""Periodic motion and stability of the multibody model: perturbed states over one mesh cycle.
 
-The 12-state map has a double multiplier +1, the rigid rotation of the free gear train. The verdict is taken
-on the 10 states of the relative form (q, x_p, x_g, y_p, y_g and rates, q = r_bp theta_p - r_bg theta_g),
-perturbed with the rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg fixed.
+The map of 12 states has a double multiplier +1, the rigid rotation of the free gear train. Stability is
+judged by the 10 states of the relative form (q, x_p, x_g, y_p, y_g and rates, q = r_bp theta_p - r_bg
+theta_g). A perturbation of these states leaves the rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg fixed.
 
 Sources: docs/theory/multibody.md, "Stability".
 """
@@ -36,19 +36,22 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-#: Relative tolerance of the runs whose differences make the map, where it is not given.
+#: Relative tolerance of the runs from which the map is computed, where the caller does not give one.
 _RTOL = {"linear": 1e-9, "exact": 1e-10}
-#: Perturbation over the static deflection: large for the linear level, where size does not matter; at the
-#: exact level central differences err by its square times the nonlinearity, and by rtol over it.
+#: Perturbation over the static deflection. At "linear" the size does not matter, and is large. At "exact"
+#: central differences err by the square of the perturbation times the nonlinearity, and by rtol over the
+#: perturbation.
 _STEP = {"linear": 1.0, "exact": 1e-3}
 #: Mismatch over one cycle, relative to the scale of each state: the iteration stops at this multiple of
 #: rtol ...
 _CLOSED = 10.0
-#: ... and accepts this much where it stops falling before.
+#: ... and accepts a mismatch below this where the mismatch stops falling before.
 _ACCEPTED = 1e-5
 #: Steps without a smaller mismatch before the iteration is given up, and most steps.
 _PATIENCE = 8
 _ITERATIONS = 40
+#: Column of the lumped forcings, after the errors of the teeth and the driving torque.
+_BY_BRAKE = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +62,11 @@ class FlowMap:
     ----------
     matrix : (10, 10) map of (q, x_p, x_g, y_p, y_g and rates)
     full : (12, 12) map of the lumped states (theta_p, theta_g, x_p, x_g, y_p, y_g and rates)
-    state : (12,) state of the motion at t = 0 about which the map is taken
-    brake_torque : torque that balances that motion [N m]
-    closure : largest change of the state over one cycle, relative to its scale
-    read, lift : (10, 12) reads the relative states off the lumped ones; (12, 10) perturbs the lumped states
-        by relative ones, with the rigid rotation held fixed
+    state : (12,) state of the motion at t = 0
+    brake_torque : torque that balances the motion [N m]
+    closure : largest change of a state over one cycle, relative to the scale of the state
+    read, lift : (10, 12) from lumped states to relative states; (12, 10) from perturbations of the relative
+        states to perturbations of the lumped states, with the rigid rotation fixed
     """
 
     matrix: FloatArray
@@ -100,13 +103,13 @@ def monodromy(
     ----------
     pair : a validated gear pair
     fidelity, effects : as ``multibody.simulate``
-    rtol : relative tolerance of the runs; default 1e-9, at fidelity "exact" 1e-10. The map errs by some times
-        as much, at "exact" by as much over 1e-3
-    supports : "springs", on which alone it is computed; needed for a pair with shafts
+    rtol : relative tolerance of the runs; default 1e-9, at fidelity "exact" 1e-10. The error of the map is
+        some times rtol; at "exact" some times rtol over 1e-3
+    supports : "springs", the only supports of this function; needed for a pair with shafts
 
     Raises
     ------
-    NumericalError : no periodic motion is found near the lumped one
+    NumericalError : no periodic motion is found near the lumped motion
     """
     pair = on_springs(load_gear_pair(pair), supports, "multibody.monodromy")
     one_of("fidelity", fidelity, get_args(Fidelity))
@@ -127,8 +130,10 @@ class Orbit:
 
     state : (12,) lumped states at t = 0; on shafts (2n,) coordinates and velocities
     machine : numbers of the pair, with the brake torque that balances this motion
-    flow, closure : its flow map, and the largest change of the state over it, relative to its scale
-    derivatives : of what is left after the cycles, as of `close_period`; near the motion, those of others
+    flow : flow map of the motion
+    closure : largest change of a state over the flow map, relative to the scale of the state
+    derivatives : derivatives of the mismatch after the cycles, as ``close_period`` returns them. A search
+        for a motion nearby may start from these derivatives
     """
 
     state: FloatArray
@@ -143,11 +148,11 @@ def find_orbit(
 ) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    `close_period` starts from the monodromy matrix of the lumped model, on shafts from that of the model's
-    own linear mesh.
+    ``close_period`` starts from the monodromy matrix of the lumped model. On shafts the search starts from
+    the matrix of the multibody model with the linear mesh.
 
-    near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
-    near : motion of the pair with other effects, to start from with its matrix
+    near_lumped : False where the lumped model has no motion nearby; then differences supply the matrix
+    near : motion of the pair with other effects, from which the search starts
     Raises NumericalError : the iteration does not close the cycle
     """
     machine = setup.machine
@@ -162,7 +167,7 @@ def find_orbit(
     torque = machine.torque_gear
 
     def over_cycles(unknowns: FloatArray) -> tuple[FloatArray, Flow]:
-        """What is left of the state after the cycles; the free rotation stays where it is."""
+        """Mismatch of the state after the cycles. The free rotation is not changed."""
         flow = Flow(setup, replace(machine, torque_gear=float(unknowns[-1])), cycles)
         return np.append((flow(unknowns[:-1]) - unknowns[:-1]) / scale, 0.0), flow
 
@@ -198,9 +203,9 @@ def _first_matrix(
         system = setup.system
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
         transition, forced = maps.over_all
-        by_torque = forced[:, 2]
+        by_torque = forced[:, _BY_BRAKE]
     else:
-        # Central ones: from the matrix of one-sided differences Newton's method loses motions far above the
+        # Central differences: with one-sided differences Newton's method does not find motions far above the
         # resonances, where contact is lost.
         flow = Flow(setup, machine, cycles)
         end = flow(state)
@@ -233,8 +238,9 @@ def steady_state(
     pair : a validated gear pair
     fidelity, effects, rtol, friction_velocity, supports : as ``multibody.simulate``
     samples_per_cycle : output times in [0, T_m)
-    initial : 12 states near which the motion is looked for, as ``lumped.simulate`` takes them; None: those of
-        the lumped motion, on shafts the motion with the linear mesh. With contact loss several may exist
+    initial : 12 states near which the motion is looked for, as ``lumped.simulate`` takes them. None: the
+        states of the lumped motion, on shafts of the motion with the linear mesh. With contact loss several
+        motions may exist
     cycles : mesh cycles after which the motion repeats, 1 to 64
 
     Returns
@@ -274,7 +280,7 @@ def cycles_of(orbit: Orbit, samples_per_cycle: int, cycles: int = 1) -> xr.Datas
 
 
 def mean_powers(orbit: Orbit, cycles: int) -> Powers:
-    """Mean powers of an orbit over its mesh cycles [W], by the segments of its run."""
+    """Mean powers of an orbit over the mesh cycles [W], from the segments of the run."""
     totals = np.zeros(len(Powers._fields))
 
     def visit(_: int, segment: Segment) -> None:
@@ -329,7 +335,7 @@ def _unpacked(machine: Machine, state: FloatArray) -> tuple[FloatArray, FloatArr
 def _differences(
     flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None = None
 ) -> FloatArray:
-    """Columns of the map: differences to ``end``, where the state itself arrives, else central ones."""
+    """Columns of the map: differences to the state ``end`` after the cycles; None: central differences."""
     columns = []
     for i, h in enumerate(steps):
         ahead = state.copy()
@@ -342,7 +348,7 @@ def _differences(
 
 
 def _relative(machine: Machine) -> tuple[FloatArray, FloatArray]:
-    """Matrices (10, 12) that reads the relative states off, and (12, 10) that perturbs them."""
+    """Matrices ``read`` (10, 12) and ``lift`` (12, 10) of ``FlowMap``."""
     radii = machine.base_radii * (1.0, -1.0)
     by_inertia = radii / machine.inertia
     down = np.zeros((5, 6))

@@ -1,9 +1,10 @@
 """Time integration by exudyn's DOPRI5, interval by interval, with dense output.
 
-Each interval ends where the nominal element laws switch (linear) or at the end of a mesh cycle (exact). The
-latter is cut further at events (``multibody.contact.events``): the integrator stops before, a few steps
-without exudyn (``bridge``) and a Taylor step lead across. Between the steps the state is a quintic Hermite
-polynomial, whose error, of sixth order in the step, stays below the integrator's, of fifth.
+At fidelity "linear" an interval ends where the nominal element laws switch. At "exact" an interval is a mesh
+cycle, and events (``multibody.contact.events``) divide the cycle further: the integrator stops before an
+event, a Taylor step leads across the event, and a few steps without exudyn follow (``bridge``). Between the
+steps the state is a quintic Hermite polynomial. The error of the polynomial is of sixth order in the step, so
+the error stays below the error of the integrator, which is of fifth order.
 
 Source: J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19-26.
 """
@@ -28,20 +29,20 @@ from multibody.contact.kernels import tooth_forces
 from multibody.contact.records import CONTACTS_SIZE, COORDINATES, RATES, WRENCH, Records, inner
 from multibody.run.model import ExudynModel, accelerations, stored
 
-#: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
-#: cannot shrink enough to be accepted and the solver tries it for ever.
+#: Smallest step over the mesh cycle. With a larger floor the solver hangs where friction changes sign: the
+#: step cannot shrink enough to be accepted, and the solver repeats the step for ever.
 _STEP_FLOOR = 1e-14
 _FIRST_STEP = 1e-4
 #: A run stands still when some hundred force evaluations advance the time by less than this, over the mesh
 #: cycle; at the call limit they advance it a thousand times as much.
 _STANDSTILL = 1e-6
-#: Most predictions in one interval. A mesh cycle takes some ten; friction that sticks would
-#: take them without end.
+#: Most predictions of events in one interval. A mesh cycle needs some ten predictions. With friction that
+#: sticks, events would follow each other without end.
 _MOST_EVENTS = 64
 #: A Taylor polynomial of second order foretells vibration over this share of a swing of the fastest mode.
 _NEAR = 0.2
-#: Further ahead the nominal speed tells the time of an event, which vibration shifts by less than this; much
-#: more where sliding turns, which depends on rates.
+#: Further ahead the nominal speed tells the time of an event. Vibration shifts this time by less than this
+#: share of a swing. The time at which sliding turns depends on rates, so vibration shifts that time by more.
 _FAR = 0.04
 _FAR_SLIDING = 0.15
 #: Most steps that are taken without exudyn at a time.
@@ -63,21 +64,73 @@ _TABLEAU = np.array(
 #: Column of the tableau with the times of the stages, and its row with the weights of the error.
 _TIME = 6
 _ERROR = 6
+#: Stages of a step, the start of the step included, and the stage at the end of the step.
+_STAGES = 7
+_LAST_STAGE = 6
+#: Row of the accelerations, beside ``COORDINATES`` and ``RATES``, in the states of ``bridge``.
+_ACCELERATIONS = 2
 #: Part of the next step that the error of this one allows, and by what a step may change.
 _SAFETY = 0.9
 _SHRINK = 0.2
 _GROW = 5.0
-#: What is left before an interval's end is bridged if it is no longer than so many ordinary steps.
+#: The rest of an interval is bridged if the rest is no longer than so many ordinary steps.
 _FEW = 3.0
 #: A step this much smaller than an ordinary one is left to exudyn.
 _LEAST = 1e-9
 
 
 class Stages(NamedTuple):
-    """Velocities and accelerations at the stages of one step, (7, 6) each, its start first."""
+    """Velocities and accelerations at the stages of one step, (7, 6) each; the start of the step is first."""
 
     velocity: FloatArray
     acceleration: FloatArray
+
+
+class TeethAndBodies(NamedTuple):
+    """What the accelerations of the gears on springs are computed from.
+
+    packed : the numbers of the machine for compiled code
+    flags : the finite-motion effects that act
+    bodies : BODY (6,) inertia, bearing and load of each coordinate
+    """
+
+    packed: FloatArray
+    flags: int
+    bodies: Records
+
+
+class StepRule(NamedTuple):
+    """How a step is made and judged.
+
+    rtol, atol : relative and absolute tolerance of the error of a step
+    tableau : ``_TABLEAU``; as a constant the tableau would be compiled into unrolled loops
+    """
+
+    rtol: float
+    atol: float
+    tableau: FloatArray
+
+
+class Bridged(NamedTuple):
+    """Outcome of ``bridge``.
+
+    rows : number of rows that are filled
+    step : step to continue with [s]
+    calls : number of force evaluations
+    """
+
+    rows: int
+    step: float
+    calls: int
+
+
+class MotionState(NamedTuple):
+    """State of the machine at one time: time [s], and coordinates, rates and accelerations (size,)."""
+
+    time: float
+    q: FloatArray
+    v: FloatArray
+    a: FloatArray
 
 
 @inner
@@ -116,16 +169,15 @@ def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) ->
 
 
 @inner
-def step_error(
-    stages: Stages, row: FloatArray, h: float, state: FloatArray, rtol: float, atol: float
-) -> float:
-    """Largest error of a step that ends in ``state``, over the error that is allowed."""
+def step_error(stages: Stages, h: float, state: FloatArray, rule: StepRule) -> float:
+    """Largest error of a step of length h [s] that ends in ``state``, over the error that is allowed."""
+    row = rule.tableau[_ERROR]
     worst = 0.0
     for i in range(6):
-        by_place = h * abs(weighted(row, stages.velocity, 7, i))
-        by_speed = h * abs(weighted(row, stages.acceleration, 7, i))
-        worst = max(worst, by_place / (atol + rtol * abs(state[COORDINATES, i])))
-        worst = max(worst, by_speed / (atol + rtol * abs(state[RATES, i])))
+        by_place = h * abs(weighted(row, stages.velocity, _STAGES, i))
+        by_speed = h * abs(weighted(row, stages.acceleration, _STAGES, i))
+        worst = max(worst, by_place / (rule.atol + rule.rtol * abs(state[COORDINATES, i])))
+        worst = max(worst, by_speed / (rule.atol + rule.rtol * abs(state[RATES, i])))
     return worst
 
 
@@ -142,31 +194,26 @@ def bridge(
     ordinary: float,
     times: FloatArray,
     states: FloatArray,
-    packed: FloatArray,
-    flags: int,
-    bodies: Records,
-    rtol: float,
-    atol: float,
-    tableau: FloatArray,
-) -> tuple[int, float, int]:
-    """Steps of DOPRI5 from the first of the times until ``stop``, or until they are of ordinary length.
+    model: TeethAndBodies,
+    rule: StepRule,
+) -> Bridged:
+    """Steps of DOPRI5 from the first of the times until ``stop``, or until the steps are of ordinary length.
 
-    To start exudyn's solver costs as much as three of its steps; behind an event the step size is found here.
+    To start exudyn's solver costs as much as three steps of the solver. Behind an event these steps find the
+    step size.
 
     Parameters
     ----------
-    ordinary : step of exudyn away from events, and the first to try [s]
-    times, states : (n,) ends of the steps [s], (3, n, 6) coordinates, rates, accelerations; the first given
-    packed, flags, bodies : of the machine
-    tableau : ``_TABLEAU``; as a constant it would be compiled into unrolled loops
-
-    Returns
-    -------
-    Number of rows filled, step to go on with [s], number of force evaluations
+    stop : end of the last step [s]
+    ordinary : step of exudyn where no event is near; the first step that is tried [s]
+    times : (n,) ends of the steps [s]; the first is an input
+    states : (3, n, 6) coordinates, rates and accelerations at the ends of the steps; the first is an input
+    model : the machine
+    rule : tolerances and tableau
     """
     state = np.empty((3, 6))
     contacts = np.empty(CONTACTS_SIZE)
-    stages = Stages(np.empty((7, 6)), np.empty((7, 6)))
+    stages = Stages(np.empty((_STAGES, 6)), np.empty((_STAGES, 6)))
     step = ordinary
     rows = 1
     calls = 0
@@ -177,37 +224,37 @@ def bridge(
             break
         equal_steps = math.ceil(remaining / step)
         h = remaining / equal_steps
-        q = states[0, start]
-        v = states[1, start]
+        q = states[COORDINATES, start]
+        v = states[RATES, start]
         stages.velocity[0] = v
-        stages.acceleration[0] = states[2, start]
-        for stage in range(6):
-            stage_state(state, q, v, h, tableau[stage], stage + 1, stages)
+        stages.acceleration[0] = states[_ACCELERATIONS, start]
+        for stage in range(_LAST_STAGE):
+            stage_state(state, q, v, h, rule.tableau[stage], stage + 1, stages)
             calls += 1
-            t = times[start] + h * tableau[stage, _TIME]
-            if tooth_forces(t, state, packed, flags, contacts) < 0:
-                return rows, step, calls
-            set_rates(stages, stage + 1, state, bodies)
-        states[0, rows] = state[COORDINATES]
-        states[1, rows] = state[RATES]
-        states[2, rows] = stages.acceleration[6]
-        error = step_error(stages, tableau[_ERROR], h, state, rtol, atol)
+            t = times[start] + h * rule.tableau[stage, _TIME]
+            if tooth_forces(t, state, model.packed, model.flags, contacts) < 0:
+                return Bridged(rows, step, calls)
+            set_rates(stages, stage + 1, state, model.bodies)
+        states[COORDINATES, rows] = state[COORDINATES]
+        states[RATES, rows] = state[RATES]
+        states[_ACCELERATIONS, rows] = stages.acceleration[_LAST_STAGE]
+        error = step_error(stages, h, state, rule)
         change = step_change(error)
         if error <= 1.0:
             times[rows] = stop if equal_steps == 1 else times[start] + h
             rows += 1
-            # A step that was cut short tells little about a longer one.
+            # A step that was shortened tells little about a longer step.
             step = max(change * h, step) if change >= 1.0 else change * h
         else:
             step = min(change, 1.0) * h
             if not step > _LEAST * ordinary:
                 break
-    return rows, step, calls
+    return Bridged(rows, step, calls)
 
 
 @dataclass(frozen=True)
 class Segment:
-    """Accepted steps of one interval: times (n,), q and v (n, size), and its dense output."""
+    """Accepted steps of one interval and their dense output: times (n,); q, v and a (n, size)."""
 
     times: FloatArray
     q: FloatArray
@@ -221,7 +268,8 @@ class Segment:
         j = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
         h = (self.times[j + 1] - self.times[j])[:, None]
         s = (t - self.times[j])[:, None] / h
-        # Coefficients of s^3, s^4, s^5 from what the Taylor start (q, v, a) leaves at the far end.
+        # Coefficients of s^3, s^4, s^5 from the gap between the Taylor polynomial (q, v, a) and the next
+        # step.
         start = self.q[j]
         speed = h * self.v[j]
         bend = h * h * self.a[j]
@@ -235,9 +283,14 @@ class Segment:
         v = (speed + s * (bend + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h
         return q, v
 
+    @property
+    def end(self) -> MotionState:
+        """State at the last time."""
+        return MotionState(float(self.times[-1]), self.q[-1], self.v[-1], self.a[-1])
+
     @classmethod
     def concatenated(cls, parts: list[Segment]) -> Segment:
-        """Join parts of one interval, each of which starts with the last row of the one before."""
+        """Join the parts of one interval. Every part starts with the last row of the part before."""
         rows = [slice(None)] + [slice(1, None)] * (len(parts) - 1)
         return cls(
             *(
@@ -276,12 +329,12 @@ def integrate(
     clamp: bool,
     visit: Callable[[int, Segment], None],
 ) -> tuple[FloatArray, FloatArray]:
-    """Integrate over consecutive intervals from the state (q, v); returns that at the last edge.
+    """Integrate over consecutive intervals from the state (q, v). Return the state at the last edge.
 
     edges : (m + 1,) ends of the intervals [s]
     clamp : evaluate the nominal phase strictly inside each interval (the edges are switches)
-    visit : called with (interval number, its segment)
-    Raises NumericalError : a force or a state is not finite, or more evaluations of the force than allowed
+    visit : called with the number and the segment of each interval
+    Raises NumericalError : a force or a state is not finite, or the force was evaluated too often
     """
     s = settings(rtol, atol, model.machine.period)
     step = _FIRST_STEP * model.machine.period
@@ -291,12 +344,13 @@ def integrate(
         model.budget.reset()
         segment, step = _interval(model, s, q, v, float(start), float(stop), step, locate=not clamp)
         visit(number, segment)
-        q, v = segment.q[-1], segment.v[-1]
+        q = segment.q[-1]
+        v = segment.v[-1]
     return q, v
 
 
 def keep_inside(model: ExudynModel, start: float, stop: float) -> None:
-    """Let the model evaluate the nominal phase strictly inside an interval, whose ends are switches."""
+    """Let the model evaluate the nominal phase strictly inside an interval between two switches."""
     margin = 1e-12 * model.machine.period
     rolling = model.record.rolling
     rolling.earliest = start + margin
@@ -313,32 +367,43 @@ def _interval(
     step: float,
     locate: bool,
 ) -> tuple[Segment, float]:
-    """Integrate over one interval, from event to event; returns it and a step size to go on with."""
+    """Integrate over one interval, from event to event. Return the segment and a step size to continue with.
+
+    locate : whether the interval is divided at events
+    """
     m = model.machine
     parts = []
-    t = start
     gears = slice(0, 6)
-    a = accelerations(model, np.array([t]), q[None], v[None])[0]
-    # Times in swings of the fastest mode. A Taylor step of second order errs by the square of the radians it
-    # spans, so one to an event so close errs by less than a tenth of rtol.
+    state = MotionState(start, q, v, accelerations(model, np.array([start]), q[None], v[None])[0])
+    # Times in swings of the fastest mode. The error of a Taylor step of second order is the square of the
+    # angle over which the fastest mode swings. So a step to an event this close errs by less than a tenth of
+    # rtol.
     swing = m.period / max(m.vibrations_per_cycle, 1.0)
     close = max(0.05 * np.sqrt(s.timeIntegration.relativeTolerance) * swing, _EXUDYN_END)
-    if not np.isfinite(a).all():
+    if not np.isfinite(state.a).all():
         model.budget.reason = "not finite"
         raise _failure(model, start, stop)
-    bent = False
+    after_event = False
     for _ in range(_MOST_EVENTS if locate else 0):
+        t = state.time
         wait, kind = time_to_event(
-            t, q[gears], v[gears], a[gears], model.packed, model.flags, m.events, _NEAR * swing
+            t,
+            state.q[gears],
+            state.v[gears],
+            state.a[gears],
+            model.packed,
+            model.flags,
+            m.events,
+            _NEAR * swing,
         )
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:
                 break
-            part = _across(model, t, q, v, a, t + wait, beyond)
-            bent = True
+            part = _across(model, state, t + wait, beyond)
+            after_event = True
         else:
-            # Stop short of it by what vibration may shift it: the third order of the Taylor polynomial.
+            # Vibration may shift the event by the third order of the Taylor polynomial: stop so much earlier.
             ahead = wait / swing
             short = max(0.5 * ahead**3, 0.5 * close / swing)
             if ahead >= _NEAR:
@@ -346,97 +411,92 @@ def _interval(
             until = t + wait - swing * min(0.5 * ahead, short)
             if not until < stop:  # or no event at all
                 break
-            part, step = _steps_until(model, s, q, v, a, t, until, step, bent=bent)
-            bent = False
+            part, step = _steps_until(model, s, state, until, step, after_event=after_event)
+            after_event = False
         parts.append(part)
-        t = float(part.times[-1])
-        q = part.q[-1]
-        v = part.v[-1]
-        a = part.a[-1]
-    part, step = _steps_until(model, s, q, v, a, t, stop, step, bent=bent)
+        state = part.end
+    part, step = _steps_until(model, s, state, stop, step, after_event=after_event)
     return Segment.concatenated([*parts, part]), step
 
 
 def _steps_until(
     model: ExudynModel,
     s: exu.SimulationSettings,
-    q: FloatArray,
-    v: FloatArray,
-    a: FloatArray,
-    start: float,
+    state: MotionState,
     stop: float,
     step: float,
     *,
-    bent: bool = False,
+    after_event: bool = False,
 ) -> tuple[Segment, float]:
-    """Integrate over a time without events; returns it and an ordinary step size to go on with.
+    """Integrate from a state over a time without events. Return the segment and an ordinary step size [s].
 
-    ``bent``: an event has just been passed, behind which the step size is not known.
+    after_event : whether the state is just behind an event, where the step size is not known
     """
     parts = []
     first = step
     ti = s.timeIntegration
-    if (bent or stop - start <= _FEW * step) and model.machine.train is None:
-        m = model.machine
-        times = np.full(_BRIDGED + 1, start)
-        states = np.empty((3, _BRIDGED + 1, 6))
-        states[:, 0] = q, v, a
-        rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
-        rows, first, calls = bridge(
-            stop, step, times, states, model.packed, model.flags, m.bodies, rtol, atol, _TABLEAU
-        )
-        model.budget.calls += calls
-        parts = [Segment(times[:rows], *states[:, :rows])]
-        start = float(times[rows - 1])
-        q = states[0, rows - 1]
-        v = states[1, rows - 1]
+    if (after_event or stop - state.time <= _FEW * step) and model.machine.train is None:
+        part, first = _bridged(model, s, state, stop, step)
+        parts.append(part)
+        state = part.end
     atol = ti.absoluteTolerance
     share = 1.0
-    while start < stop:
+    while state.time < stop:
         ti.absoluteTolerance = share * atol
-        parts.append(_run(model, s, q, v, start, stop, first))
+        parts.append(_run(model, s, state, stop, first))
         step = first = _middle_step(parts[-1], step)
-        start = float(parts[-1].times[-1])
-        q = parts[-1].q[-1]
-        v = parts[-1].v[-1]
-        share = 1.5 - share  # where it stands still, the other of a half and the whole
+        state = parts[-1].end
+        share = 1.5 - share  # after a standstill the tolerance is halved; after another it is the whole again
     ti.absoluteTolerance = atol
     return Segment.concatenated(parts), step
 
 
+def _bridged(
+    model: ExudynModel, s: exu.SimulationSettings, state: MotionState, stop: float, step: float
+) -> tuple[Segment, float]:
+    """Steps of ``bridge`` from a state, and the step size to continue with [s]."""
+    ti = s.timeIntegration
+    times = np.full(_BRIDGED + 1, state.time)
+    states = np.empty((3, _BRIDGED + 1, 6))
+    states[:, 0] = state.q, state.v, state.a
+    machine = TeethAndBodies(model.packed, model.flags, model.machine.bodies)
+    rule = StepRule(ti.relativeTolerance, ti.absoluteTolerance, _TABLEAU)
+    bridged = bridge(stop, step, times, states, machine, rule)
+    model.budget.calls += bridged.calls
+    return Segment(times[: bridged.rows], *states[:, : bridged.rows]), bridged.step
+
+
 def _middle_step(part: Segment, default: float) -> float:
-    """Step size from the middle of a run, where neither its start nor its end cut it short."""
+    """Step size from the middle of a run, where neither the start nor the end of the run shortened a step."""
     middle = part.times.size // 2
     return float(part.times[middle] - part.times[middle - 1]) if part.times.size > 3 else default
 
 
-def _across(
-    model: ExudynModel, t: float, q: FloatArray, v: FloatArray, a: FloatArray, event: float, beyond: float
-) -> Segment:
-    """Taylor step from t to an event, and a hair beyond it, where the force is another."""
-    times = np.array([t, event, beyond])
-    h = (times - t)[:, None]
-    states_q = q + h * (v + 0.5 * h * a)
-    states_v = v + h * a
-    states_a = np.repeat(a[None], 3, axis=0)
-    states_a[2:] = accelerations(model, times[2:], states_q[2:], states_v[2:])
+def _across(model: ExudynModel, state: MotionState, event: float, beyond: float) -> Segment:
+    """Taylor step from a state to an event, and just beyond the event, where the force is another."""
+    times = np.array([state.time, event, beyond])
+    h = (times - state.time)[:, None]
+    states_q = state.q + h * (state.v + 0.5 * h * state.a)
+    states_v = state.v + h * state.a
+    states_a = np.repeat(state.a[None], 3, axis=0)
+    states_a[-1:] = accelerations(model, times[-1:], states_q[-1:], states_v[-1:])
     return Segment(times, states_q, states_v, states_a)
 
 
 def _run(
     model: ExudynModel,
     s: exu.SimulationSettings,
-    q: FloatArray,
-    v: FloatArray,
-    start: float,
+    state: MotionState,
     stop: float,
     step: float,
 ) -> Segment:
-    """Run exudyn from start to stop, or to where it stands still.
+    """Run exudyn from a state until ``stop``, or until the run stands still.
 
-    Its error is scaled by atol + rtol max(x, x before), without taking the size of x: at x = -atol/rtol no
-    error is small enough. The steps so far hold; with another atol that place is elsewhere.
+    exudyn scales the error by atol + rtol max(x, x before) and does not take the absolute value of x. So at
+    x = -atol/rtol no error is small enough, and the run stands still. The steps before are valid. With
+    another atol the run stands still at another x.
     """
+    start = state.time
     ti = s.timeIntegration
     system = model.system
     budget = model.budget
@@ -444,8 +504,8 @@ def _run(
     ti.startTime = start
     ti.endTime = stop
     ti.initialStepSize = min(step, stop - start)
-    system.systemData.SetODE2Coordinates(q.tolist(), configuration=exu.ConfigurationType.Initial)
-    system.systemData.SetODE2Coordinates_t(v.tolist(), configuration=exu.ConfigurationType.Initial)
+    system.systemData.SetODE2Coordinates(state.q.tolist(), configuration=exu.ConfigurationType.Initial)
+    system.systemData.SetODE2Coordinates_t(state.v.tolist(), configuration=exu.ConfigurationType.Initial)
     try:
         with quiet():
             finished = system.SolveDynamic(s)
@@ -468,19 +528,19 @@ def _run(
     states_v = states_v[keep]
     states_a = accelerations(model, times, states_q, states_v)
     if times[-1] < stop:
-        # exudyn counts an interval as finished up to 1e-10 s before its end. Left out, that would shift every
-        # later time; a Taylor step over so little is exact to rounding.
-        last = _across(model, float(times[-1]), states_q[-1], states_v[-1], states_a[-1], stop, stop)
-        states_q = np.vstack([states_q, last.q[2:]])
-        states_v = np.vstack([states_v, last.v[2:]])
+        # exudyn takes an interval as finished up to 1e-10 s before its end. Without a step over this rest all
+        # later times would be shifted. A Taylor step over the rest is exact to rounding.
+        last = _across(model, Segment(times, states_q, states_v, states_a).end, stop, stop)
         times = np.append(times, stop)
-        states_a = np.vstack([states_a, last.a[2:]])
+        states_q = np.vstack([states_q, last.q[-1:]])
+        states_v = np.vstack([states_v, last.v[-1:]])
+        states_a = np.vstack([states_a, last.a[-1:]])
     return Segment(times, states_q, states_v, states_a)
 
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
-    """Keep exudyn from writing to the console; what went wrong is in the exception."""
+    """Keep exudyn from writing to the console. The exception says why a run failed."""
     before = exu.config.printToConsole
     exu.config.printToConsole = False
     try:

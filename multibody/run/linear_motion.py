@@ -1,7 +1,8 @@
 """Periodic motion of a pair on shafts with the linear mesh: from the model's own matrices, without exudyn.
 
-The linear mesh acts by the overlap and its rate alone; its wrench is read off the compiled forces. The 2n
-states have a double multiplier +1, the free turn of the train: so one torque must balance.
+The force of the linear mesh depends on the overlap and on the rate of the overlap alone. The compiled forces
+supply the wrench of the mesh. The free turn of the train is a double multiplier +1 of the 2n states, so one
+torque is unknown.
 
 Sources: docs/theory/shafts.md, "The machine"; DOP853 after E. Hairer, S. P. Norsett and G. Wanner, Solving
 Ordinary Differential Equations I (1993), II.5.
@@ -28,8 +29,10 @@ from multibody.contact.records import opened
 _STEP_ANGLE = 1.0
 #: Phases of the mesh cycle closer than this are one.
 _SAME_PHASE = 1e-10
-#: A motion whose equations are conditioned worse sits on a stability boundary.
+#: The speed is on a stability boundary if the condition number of the equations is larger.
 _WORST_CONDITION = 1e13
+#: Stages of DOP853.
+_STAGES = 12
 _A, _B, _C = (np.asarray(x, dtype=float) for x in (DOP853.A, DOP853.B, DOP853.C))
 
 
@@ -52,8 +55,9 @@ class LinearMotion:
 def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     """Find the periodic motion.
 
-    brake : braking torque, so that the driving one balances; None: the driving torque is the machine's
-    Raises NumericalError : the speed sits on a stability boundary
+    brake : braking torque, where the driving torque is unknown; None: the driving torque is the machine's,
+        and the braking torque is unknown
+    Raises NumericalError : the speed is on a stability boundary
     """
     train = machine.train
     assert train is not None
@@ -63,8 +67,11 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     _, _, end = deque(_propagated(machine, start, np.eye(3)), maxlen=1)[0]
     transition = end[:, : 2 * n]
     forced = end[:, 2 * n :]
-    # Columns: the mesh's own forcing with the machine's driving torque, a unit more of it, a unit of brake.
-    unknown = 2 if brake is None else 1
+    # Columns: the mesh and the machine's driving torque, a unit of driving torque more, a unit of brake.
+    more_drive = 1
+    unit_brake = 2
+    by_brake = forced[:, unit_brake]
+    unknown = unit_brake if brake is None else more_drive
     weights = np.array([1.0, 0.0, 0.0 if brake is None else brake])
     scale = state_scale(machine, 1.0)
     turn = train.mass @ train.free_turn
@@ -77,30 +84,33 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
             f"No periodic motion at {rpm:.6g} rpm (condition {condition:.1e}): a multiplier is at +1. "
             "Change the speed slightly or add damping."
         )
-    found = np.linalg.solve(matrix / size, np.append(forced @ weights / scale, 0.0)) / size
-    state = found[:-1] * scale
-    weights[unknown] = found[-1] * machine.torque_pinion
-    torque = machine.torque_pinion + weights[1]
-    return LinearMotion(state, float(torque), float(weights[2]), transition, forced[:, 2])
+    solution = np.linalg.solve(matrix / size, np.append(forced @ weights / scale, 0.0)) / size
+    state = solution[:-1] * scale
+    weights[unknown] = solution[-1] * machine.torque_pinion
+    torque = machine.torque_pinion + weights[more_drive]
+    return LinearMotion(state, float(torque), float(weights[unit_brake]), transition, by_brake)
 
 
 def state_scale(machine: Machine, deflection: float) -> FloatArray:
-    """Sizes of the states in a vibration: a deflection [m], and that over the mesh cycle times 2 pi.
+    """Sizes of the states in a vibration of one swing a mesh cycle, with a deflection [m] as amplitude.
 
-    On shafts of the 2n states, else of the lumped ones, whose first two are angles.
+    On shafts: the 2n states of the train. On springs: the lumped states; the first two are angles.
     """
     radii = machine.base_radii
     lengths = np.full(machine.size, deflection)
     places = machine.train.angles if machine.train else (np.array([0]), np.array([1]))
     for angles, radius in zip(places, radii, strict=True):
-        lengths[angles] *= 1.0 / radius  # an angle that moves the base circle by as much
+        lengths[angles] *= 1.0 / radius  # the angle that moves the base circle by the deflection
     return np.concatenate([lengths, lengths * 2.0 * np.pi / machine.period])
 
 
 def bordered(
     transition: FloatArray, by_torque: FloatArray, turn: FloatArray, scale: FloatArray, torque: float
 ) -> FloatArray:
-    """I - map, bordered by a torque as unknown (over ``torque``) and the free turn as zero, scaled."""
+    """Scaled matrix of a periodic motion: identity less map, bordered by a torque and by the free turn.
+
+    The last unknown is a torque over ``torque``. The last equation sets the free turn to zero.
+    """
     n = turn.size
     matrix = np.zeros((scale.size + 1, scale.size + 1))
     matrix[:-1, :-1] = (np.eye(scale.size) - transition) * scale / scale[:, None]
@@ -122,8 +132,9 @@ def energy_residual(machine: Machine, motion: LinearMotion) -> float:
     for (low, high), steps in itertools.groupby(run, key=lambda step: step[0]):
         rows = list(steps)
         times = np.array([time for _, time, _ in rows])
-        states = np.array([found[:, 0] for _, _, found in rows])
-        q, v = states[:, :n], states[:, n:]
+        states = np.array([state[:, 0] for _, _, state in rows])
+        q = states[:, :n]
+        v = states[:, n:]
         contacts = _contacts(machine, times, q, v, low, high).contacts
         powers = contacts["friction_force"] * contacts["sliding_velocity"]
         powers += (contacts["load"] - contacts["elastic_load"]) * contacts["compression_rate"]
@@ -135,19 +146,23 @@ def energy_residual(machine: Machine, motion: LinearMotion) -> float:
 def _propagated(
     machine: Machine, start: FloatArray, forcing: FloatArray, angle: float = _STEP_ANGLE
 ) -> Iterator[tuple[tuple[float, float], float, FloatArray]]:
-    """Steps over one mesh cycle: the smooth interval that each lies in, its time and the states (2n, m).
+    """Integrate over one mesh cycle. Yield the smooth interval, the time and the states (2n, m) of each step.
 
-    Every interval yields its start, too. ``forcing`` (3, k) has the weights of the three forcings in the last
-    k columns of ``start`` (2n, m).
+    Every smooth interval also yields the states at the start of the interval.
+
+    start : (2n, m) states at the start of the mesh cycle
+    forcing : (3, k) weights of the three forcings in the last k columns of ``start``
+    angle : largest angle by which the fastest mode turns in a step [rad]
     """
     train = machine.train
     period = machine.period
     assert train is not None
-    n, k = train.size, forcing.shape[1]
+    n = train.size
+    k = forcing.shape[1]
     fastest = 2.0 * np.pi * machine.vibrations_per_cycle / period
     springs = train.inverse @ train.stiffness
     dampers = train.inverse @ train.damping
-    reach = train.inverse[:, :6]
+    by_wrench = train.inverse[:, :6]
     row = machine.overlap
     torques = -(train.inverse @ train.torques.T)
     edges = _smooth(machine) * period
@@ -155,21 +170,22 @@ def _propagated(
     for low, high in itertools.pairwise(edges):
         steps = int(np.ceil((high - low) * fastest / angle))
         h = (high - low) / steps
-        at = low + h * (np.arange(steps)[:, None] + _C[:12]).ravel()
+        times = low + h * (np.arange(steps)[:, None] + _C[:_STAGES]).ravel()
         by_overlap, by_rate, constant = (
-            (x @ reach.T).reshape(steps, 12, n) for x in mesh_wrench(machine, at, low, high)
+            (x @ by_wrench.T).reshape(steps, _STAGES, n) for x in mesh_wrench(machine, times, low, high)
         )
-        rates = np.empty((12, *start.shape))
+        rates = np.empty((_STAGES, *start.shape))
         yield (float(low), float(high)), float(low), state
         for step in range(steps):
-            for stage in range(12):
+            for stage in range(_STAGES):
                 y = state + h * np.tensordot(_A[stage, :stage], rates[:stage], 1) if stage else state
-                q, v = y[:n], y[n:]
+                q = y[:n]
+                v = y[n:]
                 force = -(springs @ q) - dampers @ v
                 force += np.outer(by_overlap[step, stage], row @ q[:6])
                 force += np.outer(by_rate[step, stage], row @ v[:6])
-                own = constant[step, stage] + torques[:, 0] * machine.torque_pinion
-                force[:, -k:] += np.stack([own, torques[:, 0], torques[:, 1]], axis=1) @ forcing
+                of_machine = constant[step, stage] + torques[:, 0] * machine.torque_pinion
+                force[:, -k:] += np.stack([of_machine, torques[:, 0], torques[:, 1]], axis=1) @ forcing
                 rates[stage, :n] = v
                 rates[stage, n:] = force
             state = state + h * np.tensordot(_B, rates, 1)
@@ -187,14 +203,14 @@ def _smooth(machine: Machine) -> FloatArray:
 def mesh_wrench(
     machine: Machine, times: FloatArray, low: float, high: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Wrench of the linear mesh per unit overlap, per unit rate of it, and without both, each (k, 6).
+    """Wrenches of the linear mesh, (k, 6) each: per unit overlap, per unit rate of the overlap, without both.
 
     The times (k,) lie in the smooth interval from ``low`` to ``high`` [s].
     """
-    at_rest = np.zeros((times.size, 6))
-    moved = np.zeros((times.size, 6))
-    moved[:, 0] = 1.0
-    states = ((moved, at_rest), (at_rest, moved), (at_rest, at_rest))
+    zero = np.zeros((times.size, 6))
+    unit = np.zeros((times.size, 6))
+    unit[:, 0] = 1.0
+    states = ((unit, zero), (zero, unit), (zero, zero))
     by_overlap, by_rate, constant = (_contacts(machine, times, q, v, low, high).wrenches for q, v in states)
     return by_overlap - constant, by_rate - constant, constant
 

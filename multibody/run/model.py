@@ -1,8 +1,8 @@
 """The exudyn model: two planar rigid bodies in bearings, one massless object that carries the tooth contacts.
 
-Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g), which contacts
-add: so the relative tolerance acts on the vibration. A frame that turns at constant speed about each body's
-own centre of mass adds no inertia terms in the plane.
+Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g). The contacts
+add the nominal rotation, so the relative tolerance acts on the vibration. A frame that turns at constant
+speed about the centre of mass of a body adds no inertia terms in the plane.
 """
 
 from __future__ import annotations
@@ -48,14 +48,14 @@ _WATCHED = 600
 
 @dataclass
 class CallBudget:
-    """Counts force evaluations, so that no run can hang, and remembers why one was stopped.
+    """Counts force evaluations, so no run can hang, and records why a run was stopped.
 
-    limit : most calls allowed in one interval
-    calls, before : calls since the start, and those before the present interval
-    reason : empty, or the last problem met ("not finite", "too many calls", "standstill")
-    look : calls at which the next look is due
-    seen, least : time of the last look, and by how much it must have advanced until the next [s]
-    last : time of the last call, or NaN where its force may not hold any more [s]
+    limit : most calls in one interval
+    calls, before : calls since the start, and calls before the present interval
+    reason : empty, or the last problem ("not finite", "too many calls", "standstill")
+    look : number of calls at the next look at the time
+    seen, least : time of the last look, and least advance of the time until the next look [s]
+    last : time of the last call [s]; NaN: the last force must be computed again
     """
 
     limit: int
@@ -95,7 +95,7 @@ class CallBudget:
 
 @dataclass(eq=False)
 class ExudynModel:
-    """An assembled exudyn system and the buffers its user function writes.
+    """An assembled exudyn system and the buffers of the user function.
 
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
     sensors : numbers of the sensors that store coordinates and velocities at every step: of both gears, or of
@@ -168,31 +168,34 @@ def _sensor(system: exu.MainSystem, body: int, kind: exu.OutputVariableType) -> 
 
 def stored(model: ExudynModel) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Times (n,), coordinates and velocities (n, size) that the sensors stored in the last run."""
-    found = [[np.asarray(model.system.GetSensorStoredData(one)) for one in kind] for kind in model.sensors]
-    times = found[0][0][:, 0]
+    positions, velocities = (
+        [np.asarray(model.system.GetSensorStoredData(sensor)) for sensor in sensors]
+        for sensors in model.sensors
+    )
+    times = positions[0][:, 0]
     train = model.machine.train
     if train is None:
-        return times, found[0][0][:, 1:], found[1][0][:, 1:]
+        return times, positions[0][:, 1:], velocities[0][:, 1:]
     q, v = np.empty((2, times.size, train.size))
-    for to, kind in ((q, found[0]), (v, found[1])):
-        for own, rows in zip(train.places, kind, strict=True):
-            to[:, own] = rows[:, 1:]
+    for states, of_shafts in ((q, positions), (v, velocities)):
+        for places, rows in zip(train.places, of_shafts, strict=True):
+            states[:, places] = rows[:, 1:]
     return times, q, v
 
 
 def _add_shafts(
     system: exu.MainSystem, machine: Machine, train: Train, centres: tuple[tuple[float, float], ...]
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Add both shafts with gears, bearings and torques; returns the nodes of the gears, and the objects.
+    """Add both shafts with gears, bearings and torques. Return the nodes of the gears, and the objects.
 
-    The nodes of the gears come first: so the system's coordinates are those of ``Train``.
+    The nodes of the gears are added first, so the coordinates of the system have the order of ``Train``.
     """
     nodes = tuple(
         int(system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))) for centre in centres
     )
     objects = []
-    for which, (node, shaft) in enumerate(zip(nodes, train.shafts, strict=True)):
-        on = [node]
+    for number, (node, shaft) in enumerate(zip(nodes, train.shafts, strict=True)):
+        body_nodes = [node]
         further = shaft.size - 3
         if further:
             modal = items.NodeGenericODE2(
@@ -201,46 +204,46 @@ def _add_shafts(
                 initialCoordinates=[0.0] * further,
                 initialCoordinates_t=[0.0] * further,
             )
-            on.append(int(system.AddNode(modal)))
+            body_nodes.append(int(system.AddNode(modal)))
         body = items.ObjectGenericODE2(
-            nodeNumbers=on,
+            nodeNumbers=body_nodes,
             massMatrix=shaft.mass,
             stiffnessMatrix=shaft.stiffness,
             dampingMatrix=shaft.damping,
-            **_load_of(machine, train, which),
+            **_load_of(machine, train, number),
         )
         objects.append(int(system.AddObject(body)))
     return nodes, tuple(objects)
 
 
-def _load_of(machine: Machine, train: Train, which: int) -> dict[str, object]:
-    """Force on a shaft by its motor or load: constant, or with ripples a function."""
-    row = train.shafts[which].torque
-    own = train.places[which]
+def _load_of(machine: Machine, train: Train, number: int) -> dict[str, object]:
+    """Force of motor or load on the shaft of the pinion (0) or the gear (1); a function where it ripples."""
+    by_unit_torque = train.shafts[number].torque
+    places = train.places[number]
     state = np.zeros((1, train.size))
 
     def force(_: object, t: float, _item: int, q: list[float], _rates: list[float]) -> FloatArray:
-        state[0, own] = q
-        return np.asarray(-machine.torques(np.array([t]), state)[0, which] * row)
+        state[0, places] = q
+        return np.asarray(-machine.torques(np.array([t]), state)[0, number] * by_unit_torque)
 
     if machine.has_ripples:
         return {"forceUserFunction": force}
-    return {"forceVector": force(None, 0.0, 0, [0.0] * own.size, [])}
+    return {"forceVector": force(None, 0.0, 0, [0.0] * places.size, [])}
 
 
 def _add_gear(
     system: exu.MainSystem,
     ground: int,
     machine: Machine,
-    which: int,
+    number: int,
     centre: tuple[float, float],
     torque: float,
 ) -> int:
-    """Add one gear: node, rigid body, bearing to ground, torque; returns the node."""
+    """Add the pinion (0) or the gear (1): node, rigid body, bearing to ground, torque. Return the node."""
     node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))
     system.AddObject(
         items.ObjectRigidBody2D(
-            mass=float(machine.mass[which]), inertia=float(machine.inertia[which]), nodeNumber=node
+            mass=float(machine.mass[number]), inertia=float(machine.inertia[number]), nodeNumber=node
         )
     )
     # Markers on nodes and coordinates cost exudyn half of what markers on bodies do.
@@ -249,8 +252,8 @@ def _add_gear(
     system.AddObject(
         items.ObjectConnectorCartesianSpringDamper(
             markerNumbers=[at_ground, at_node],
-            stiffness=[*machine.bearing_stiffness[which].tolist(), 0.0],
-            damping=[*machine.bearing_damping[which].tolist(), 0.0],
+            stiffness=[*machine.bearing_stiffness[number].tolist(), 0.0],
+            damping=[*machine.bearing_damping[number].tolist(), 0.0],
         )
     )
     angle = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
@@ -259,10 +262,10 @@ def _add_gear(
 
 
 def _force_function(flags: int, packed: FloatArray, budget: CallBudget) -> Callable[..., list[float]]:
-    """Return the user function of the contact object; it writes into its own buffers.
+    """Return the user function of the contact object. The function writes into buffers of its own.
 
-    It is called some thousand times per mesh cycle, so the two lists it gets are packed into one buffer,
-    twice as fast as by assignment to arrays; exudyn reads a list sooner than an array.
+    exudyn calls the function some thousand times per mesh cycle. So both lists of exudyn are packed into one
+    buffer, which is twice as fast as assignment to arrays. exudyn reads a list faster than an array.
     """
     buffer = bytearray(struct.calcsize("18d"))
     state = np.frombuffer(buffer).reshape(3, 6)
@@ -272,18 +275,18 @@ def _force_function(flags: int, packed: FloatArray, budget: CallBudget) -> Calla
     as_list: Callable[[], list[float]] = wrench.tolist
     last_coordinates: list[float] = []
     last_rates = last_coordinates
-    found = last_coordinates
+    last_forces = last_coordinates
 
     def forces(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
     ) -> list[float]:
-        nonlocal last_coordinates, last_rates, found
+        nonlocal last_coordinates, last_rates, last_forces
         budget.calls += 1
         if budget.calls > budget.look:
             budget.check(t)
         # The last stage of a step is the first of the next.
         if t == budget.last and coordinates == last_coordinates and rates == last_rates:
-            return found
+            return last_forces
         budget.last = t
         last_coordinates = coordinates
         last_rates = rates
@@ -291,8 +294,8 @@ def _force_function(flags: int, packed: FloatArray, budget: CallBudget) -> Calla
         if tooth_forces(t, state, packed, flags, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
-        found = as_list()
-        return found
+        last_forces = as_list()
+        return last_forces
 
     return forces
 

@@ -1,7 +1,7 @@
 """Powers of a multibody motion at instants, and the work of a step: where the driving work goes.
 
-They are computed from contact records (loads, sliding and closing velocities), not from the forces that moved
-the bodies, so a wrong wrench, sign or lever shows up in the power balance.
+The powers are computed from contact records (loads, sliding and closing velocities), not from the forces that
+moved the bodies. So a wrong wrench, sign or lever shows in the power balance.
 
 Sources: docs/theory/multibody.md, "Overlap, wrench and contact point"; the power balance of rigid bodies.
 """
@@ -15,6 +15,7 @@ import numpy as np
 from lumped.typing import FloatArray
 from multibody.contact.kinematics import PATH_WORK
 from multibody.contact.machine import Machine
+from multibody.contact.records import PHI_G, PHI_P, X_G, X_P, Y_G, Y_P
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 
@@ -52,7 +53,7 @@ class Powers(NamedTuple):
 def rotor_speeds(machine: Machine, v: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Actual speeds [rad/s] of the driving and the braked rotor in their running senses, rates (n, size)."""
     rolling = machine.record.rolling
-    turning = v[..., [2, 5]] if machine.train is None else v @ machine.train.torques.T
+    turning = v[..., [PHI_P, PHI_G]] if machine.train is None else v @ machine.train.torques.T
     return rolling.omega_p - turning[..., 0], rolling.omega_g + turning[..., 1]
 
 
@@ -80,10 +81,10 @@ def powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> P
 
 
 def _support_powers(machine: Machine, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What the dampers of the bearings, and those of shafts and couplings take at n states (n,) [W]."""
+    """Power that the dampers of the bearings take, and the dampers of shafts and couplings, (n,) each [W]."""
     train = machine.train
     if train is None:
-        return v[:, [0, 1, 3, 4]] ** 2 @ machine.bearing_damping.ravel(), np.zeros(len(v))
+        return v[:, [X_P, Y_P, X_G, Y_G]] ** 2 @ machine.bearing_damping.ravel(), np.zeros(len(v))
     damping = np.concatenate([shaft.bearing_damping for shaft in train.shafts])
     bearings = np.einsum("kd,kdn->n", damping, (train.bearings @ v.T) ** 2)
     # Gyroscopic terms, which are antisymmetric, take no power.

@@ -119,7 +119,7 @@ def prepare(
     friction_velocity: float | None = None,
     supports: Supports = "springs",
 ) -> Setup:
-    """Build the model and its initial state; arguments as ``simulate``, but for supports that are chosen."""
+    """Build the model and the initial state. Arguments as of ``simulate``; ``supports`` is always stated."""
     one_of("fidelity", fidelity, get_args(Fidelity))
     one_of("supports", supports, get_args(Supports))
     rtol = real_number("rtol", rtol, 1e-12, 1e-3)
@@ -153,8 +153,11 @@ def prepare(
     velocity = 0.0
     reason = "sign of the nominal sliding velocity"
     if flags & kn.SLIDING:
-        asked = friction_velocity
-        velocity, reason = choose_friction_velocity(numbers) if asked is None else (asked, "as given")
+        velocity, reason = (
+            choose_friction_velocity(numbers)
+            if friction_velocity is None
+            else (friction_velocity, "as given")
+        )
     record = numbers.record
     record.friction.reversal_velocity = velocity
     # With a brake near zero the mean torque that holds a relieved mesh may be below zero.
@@ -202,9 +205,9 @@ def _on_springs(
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
     if pair.healthy is not pair:
-        own = cycle_maps.linear_motion(pair, 8, "springs")
-        balance = replace(balance, states=own.states[:1])
-        mean_balance = own.balance(conservative=bool(flags & kn.PATH_WORK))
+        with_unlike_teeth = cycle_maps.linear_motion(pair, 8, "springs")
+        balance = replace(balance, states=with_unlike_teeth.states[:1])
+        mean_balance = with_unlike_teeth.balance(conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]
     numbers = replace(numbers, torque_pinion=torques[0], torque_gear=torques[1])
     static, _ = from_lumped_state(initial_state(system, "static", balance))
@@ -215,7 +218,7 @@ def _on_springs(
 def _on_shafts(
     pair: GearPair, system: LTVSystem, numbers: Machine, flags: int, initial: Initial | ArrayLike
 ) -> _Start:
-    """Loads and initial state of the model's own periodic motion with the linear mesh."""
+    """Loads and initial state of the multibody model's own periodic motion with the linear mesh."""
     train = numbers.train
     assert train is not None
     if not isinstance(initial, str):
@@ -247,18 +250,19 @@ def _on_shafts(
     q, v = motion.state.copy().reshape(2, -1)
     mesh = np.pad(np.outer(numbers.overlap, numbers.overlap), (0, train.size - 6))
     stiffness = train.stiffness + system.cycle.mean_stiffness * mesh
-    # Without this start ripples would push the free train away.
+    # Without this start the ripples would push the free train out of the mean position.
     for ripple in own_ripples(pair, drawn_gears(pair, circles(pair))):
         turning = 1j * ripple.order * (omega_p, omega_g)[ripple.gear]
         dynamic = stiffness + turning * train.damping + turning**2 * train.mass
         torque = ripple.amplitude * np.exp(1j * ripple.phase)
-        moved = np.linalg.solve(dynamic, -torque * train.torques[ripple.gear])
-        q, v = q + moved.real, v + (turning * moved).real
+        amplitude = np.linalg.solve(dynamic, -torque * train.torques[ripple.gear])
+        q = q + amplitude.real
+        v = v + (turning * amplitude).real
     return numbers, q, v, mean_balance, motion
 
 
 def _call_limit(numbers: Machine) -> int:
-    """Most force evaluations of one interval; refuses a speed at which a mesh cycle would take minutes."""
+    """Most force evaluations of one interval. Refuse a speed at which a mesh cycle would take minutes."""
     vibrations = numbers.vibrations_per_cycle
     natural = numbers.rates.natural
     damped = numbers.rates.damped
@@ -291,11 +295,12 @@ _PLACES = 101  # at which the largest coefficient is looked for
 
 
 def choose_friction_velocity(machine: Machine) -> tuple[float, str]:
-    """Choose the velocity over which friction changes its sign [m/s], 0 for the sign function; and say why.
+    """Choose the velocity over which friction changes its sign [m/s], and give the reason. 0: sign function.
 
-    At the pitch point sliding passes zero with a_s = (Omega_p + Omega_g) Omega_p r_bp; friction changes it by
-    a_f = mu N/m_s, 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g, and vibration by up to a_f/(2 zeta). Where
-    less than a_f may be left friction can stick, and sign() has no solution.
+    At the pitch point the sliding velocity passes zero with the acceleration
+    a_s = (Omega_p + Omega_g) Omega_p r_bp. Friction changes this acceleration by a_f = mu N/m_s,
+    1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g, and vibration changes it by up to a_f/(2 zeta). Friction
+    can stick where the rest of the acceleration may be less than a_f; there sign() has no solution.
     """
     packed = machine.packed
     geometry = machine.record.geometry

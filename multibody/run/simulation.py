@@ -65,7 +65,8 @@ class Recorder:
         self.pairs = {
             name: np.zeros((machine.pairs, n)) for name in (*_FIELDS, "contact", "normal_load_back")
         }
-        self.pairs["position"] += geometry.L_XA + ahead + self.advance  # a pair out of contact: nominal
+        # A pair without contact has the nominal position.
+        self.pairs["position"] += geometry.L_XA + ahead + self.advance
         self.stiffness = np.zeros(n)
         self.overlap = np.full(n, np.nan)
 
@@ -91,7 +92,7 @@ class Recorder:
         self._contacts(self.time.size - 1, self.time.size)
 
     def _contacts(self, low: int, high: int) -> None:
-        """Evaluate the contacts at output times low ... high - 1 and sort them into the pairs' slots."""
+        """Evaluate the contacts at output times low ... high - 1, and sort them into the slots of pairs."""
         machine = self.model.machine
         geometry = machine.record.geometry
         part = slice(low, high)
@@ -100,8 +101,8 @@ class Recorder:
             samples = np.flatnonzero(j < states.counts)
             contact = states.contacts[samples, j]
             rows = low + samples
-            # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
-            # takes the slot of the pair that is out of contact.
+            # Whole pitches ahead of the nominal position of the newest pair. A pair that enters early or
+            # leaves late takes the slot of the pair without contact.
             pitches = np.rint((contact["position"] - geometry.L_XA - self.advance[rows]) / geometry.pitch)
             slot = np.mod(machine.ahead - pitches.astype(int), machine.pairs)
             drive = contact["flank"] > 0
@@ -148,16 +149,17 @@ class Recorder:
         """Coordinates, rates, transmission error and bearing forces."""
         machine = self.model.machine
         states = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
-        q, v = self.q[:, :6], self.v[:, :6]
+        q = self.q[:, :6]
+        v = self.v[:, :6]
         values = dict(zip(states, to_lumped_state(q, v).T, strict=True))
         values |= {"dte": q @ machine.overlap, "dte_dot": v @ machine.overlap}
         if machine.train is not None:
             force = machine.train.bearing_force(self.q, self.v)
             names = machine.train.bearing_names
             for gear, name in (("p", "pinion"), ("g", "gear")):
-                own = [i for i, bearing in enumerate(names) if bearing.startswith(name)]
+                of_gear = [i for i, bearing in enumerate(names) if bearing.startswith(name)]
                 for j, axis in enumerate("xy"):
-                    values[f"bearing_force_{axis}_{gear}"] = force[own, j].sum(axis=0)
+                    values[f"bearing_force_{axis}_{gear}"] = force[of_gear, j].sum(axis=0)
             return values
         stiffness = machine.bearing_stiffness
         damping = machine.bearing_damping
@@ -170,7 +172,8 @@ class Recorder:
         return values
 
 
-#: Runs over intervals (m + 1,) and calls with each one's number and segment; the state at the end.
+#: Runs over intervals with the ends (m + 1,), calls a function with the number and the segment of each
+#: interval, and returns the state at the end.
 Run = Callable[[FloatArray, Callable[[int, Segment], None]], tuple[FloatArray, FloatArray]]
 
 
@@ -245,9 +248,9 @@ def record(
     progress: Progress | None = None,
     run: Run | None = None,
 ) -> tuple[xr.Dataset, FloatArray, FloatArray]:
-    """Variables of a run from ``first_cycle`` on, and the state q, v (size,) at its end.
+    """Variables of a run from ``first_cycle`` on, and the state q, v (size,) at the end of the run.
 
-    ``run`` visits the segments of a run that was made; None makes it.
+    run : visits the segments of an earlier run; None: integrate
     """
     period = setup.machine.period
     grid = sample_times(period, samples_per_cycle)
@@ -273,10 +276,17 @@ def record(
 def at_mean_speed(
     pair: GearPair, reference: xr.Dataset, swing: FloatArray, samples: int, settling: int
 ) -> xr.Dataset:
-    """Run that starts as a lumped motion, with the brake torque under which it keeps the mean speed.
+    """Run from the start of a lumped motion, with the brake torque under which the run keeps the mean speed.
 
-    A first run, without ``settling`` cycles, tells by how much the common rotation of the base circles leaves
-    its ``swing`` (k,) [m]. ``reference`` is the lumped motion at the times, ``samples`` a mesh cycle.
+    A first run shows how far the common rotation of the base circles drifts from the swing of the lumped
+    motion. The second run starts without this drift, and with the brake torque that stops the drift.
+
+    Parameters
+    ----------
+    reference : the lumped motion at the output times
+    swing : (k,) common rotation of the base circles in the lumped motion [m]
+    samples : output times in a mesh cycle
+    settling : mesh cycles of the first run from which no drift is read
     """
     names = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
     state = np.array([float(reference[name][0]) for name in names])
@@ -286,24 +296,25 @@ def at_mean_speed(
     mass = float((inertia / radii**2).sum())
     period = setup.machine.period
 
-    def away(motion: xr.Dataset, last: int | None = None) -> FloatArray:
-        turned = np.stack([motion[name].to_numpy()[:last] for name in ("theta_p", "theta_g")])
-        return np.asarray(inertia / radii @ turned / mass - swing[:last], dtype=np.float64)
+    def drift(motion: xr.Dataset, last: int | None = None) -> FloatArray:
+        rotations = np.stack([motion[name].to_numpy()[:last] for name in ("theta_p", "theta_g")])
+        return np.asarray(inertia / radii @ rotations / mass - swing[:last], dtype=np.float64)
 
     def run(place: float, rate: float, brake: float) -> xr.Dataset:
-        turned = np.stack([place / radii, rate / radii], axis=1)
-        q, v = from_lumped_state(state - np.pad(turned, ((0, 4), (0, 0))).T.ravel())
+        rotations = np.stack([place / radii, rate / radii], axis=1)
+        q, v = from_lumped_state(state - np.pad(rotations, ((0, 4), (0, 0))).T.ravel())
         started = replace(setup, q=q, v=v).with_torques(setup.machine.torque_pinion, brake)
         return record(started, (reference.sizes["time"] - 1) // samples, samples)[0]
 
-    off = away(reference, samples + 1)
-    start = float(off[0]), float(off[-1] - off[0]) / period
-    first = run(*start, setup.machine.torque_gear)
+    of_lumped = drift(reference, samples + 1)
+    start = float(of_lumped[0])
+    start_rate = float(of_lumped[-1] - of_lumped[0]) / period
+    first = run(start, start_rate, setup.machine.torque_gear)
     low = settling * samples
     time = period / samples * np.arange(swing.size)
-    bend, rate, place = (float(c) for c in np.polyfit(time[low:], away(first)[low:], 2))
+    bend, rate, place = (float(c) for c in np.polyfit(time[low:], drift(first)[low:], 2))
     brake = setup.machine.torque_gear + 2.0 * bend * mass * float(radii[1])
-    return run(start[0] + place, start[1] + rate, brake).assign_attrs(brake_torque=brake)
+    return run(start + place, start_rate + rate, brake).assign_attrs(brake_torque=brake)
 
 
 _VARIABLES = {
@@ -358,13 +369,13 @@ def speed_sweep(
     table = {name: np.full(speeds.size, np.nan) for name in _VARIABLES}
     state: FloatArray | None = None
     for j, rpm in enumerate(speeds):
-        at = pair.with_({"operating.pinion_speed": float(rpm)})
+        pair_at_speed = pair.with_({"operating.pinion_speed": float(rpm)})
         initial = "periodic" if state is None else state
-        setup = prepare(at, fidelity, initial, effects, rtol, supports="springs")
+        setup = prepare(pair_at_speed, fidelity, initial, effects, rtol, supports="springs")
         run, q, v = record(setup, settle + cycles, samples_per_cycle, first_cycle=settle)
-        # Whole cycles end at the phase they started with, so the deviations carry over as they are.
+        # Whole cycles end at the phase at which they start, so the state is a start at the next speed.
         state = to_lumped_state(q, v)
-        # The last sample is the first of a next cycle: means over whole cycles are without it.
+        # The last sample is the first of the next cycle. Means over whole cycles leave the last sample out.
         dte = run["dte"].to_numpy()[:-1]
         overlap = run["overlap"].to_numpy()[:-1]
         table["dte_rms"][j] = np.std(dte)

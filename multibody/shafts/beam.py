@@ -98,7 +98,7 @@ def shape_functions(order: int, places: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def places_of(order: int, interval: int, count: int) -> IntArray:
-    """Coordinates of one field that live on an interval: both ends, then those inside."""
+    """Numbers of the coordinates of one field on an interval: first both ends, then the inner ones."""
     inside = count + 1 + interval * (order - 1) + np.arange(order - 1)
     return np.concatenate([[interval, interval + 1], inside])
 
@@ -143,15 +143,15 @@ def torsion(intervals: Sequence[Interval], order: int) -> tuple[FloatArray, Floa
     nodes, weights = legendre.leggauss(order + 1)
     twist, slope = shape_functions(order, nodes)
     for i, part in enumerate(intervals):
-        at = places_of(order, i, count)
-        both = np.ix_(at, at)
+        coordinates = places_of(order, i, count)
+        both = np.ix_(coordinates, coordinates)
         polar = 2.0 * part.second_moment
         mass[both] += part.density * polar * 0.5 * part.length * (twist * weights) @ twist.T
         stiffness[both] += part.shear_modulus * polar * 2.0 / part.length * (slope * weights) @ slope.T
     return mass, stiffness
 
 
-#: Largest change of a kept frequency from one order to the next but one, over the highest.
+#: Largest change of a frequency from one order to the next but one, over the highest frequency.
 FREQUENCY_ERROR = 1e-6
 #: Orders that are tried. Beyond the last, a shaft is too long beside the waves of its highest mode.
 _FIRST_ORDER = 4
@@ -160,43 +160,49 @@ _LAST_ORDER = 24
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """One field on few coordinates.
+    """One field of a shaft on few coordinates: the physical coordinate of the gear, and modal coordinates.
 
-    basis : (n, 1 + m) coordinates of the field from the kept one and m modal ones
-    frequencies : (m,) of the modes with the kept coordinate held [rad/s]
+    basis : (n, 1 + m) coordinates of the field from the physical coordinate and m modal coordinates
+    frequencies : (m,) frequencies of the modes with the physical coordinate fixed [rad/s]
     """
 
     basis: FloatArray
     frequencies: FloatArray
 
 
-#: Order -> mass, stiffness and the number of the coordinate that is kept.
+#: Order -> mass, stiffness and the number of the physical coordinate that is retained.
 Matrices = Callable[[int], tuple[FloatArray, FloatArray, int]]
 
 
 def reduce_fields(
     fields: Sequence[Matrices], highest: float, modal_masses: Sequence[float]
 ) -> tuple[tuple[Reduced, ...], int, float]:
-    """Raise the order of all fields of a shaft until modes up to ``highest`` [rad/s] stand; reduce them.
+    """Raise the order of all fields of a shaft until the modes up to ``highest`` [rad/s] no longer change.
 
-    ``modal_masses`` give modal coordinates the size of the physical one. Returns the fields, the order of the
-    polynomials, and the largest change of a frequency by its last increase, over the highest.
+    modal_masses : give the modal coordinates of each field the size of the physical coordinate
+
+    Returns
+    -------
+    The reduced fields, the order of the polynomials, and the largest change of a frequency by the last
+    increase of the order, over the highest frequency.
     """
     before = [_clamped(matrices(_FIRST_ORDER), highest)[0] for matrices in fields]
     for order in range(_FIRST_ORDER + 2, _LAST_ORDER + 1, 2):
         numbers = [matrices(order) for matrices in fields]
-        found = [_clamped(one, highest) for one in numbers]
+        modes_of_fields = [_clamped(one, highest) for one in numbers]
         change = [
             float(np.abs(old - new).max(initial=0.0)) / highest if old.size == new.size else np.inf
-            for old, (new, _) in zip(before, found, strict=True)
+            for old, (new, _) in zip(before, modes_of_fields, strict=True)
         ]
         if max(change) < FREQUENCY_ERROR:
             reduced = (
                 _reduced(one, frequencies, modes * math.sqrt(size))
-                for one, (frequencies, modes), size in zip(numbers, found, modal_masses, strict=True)
+                for one, (frequencies, modes), size in zip(
+                    numbers, modes_of_fields, modal_masses, strict=True
+                )
             )
             return tuple(reduced), order, max(change)
-        before = [frequencies for frequencies, _ in found]
+        before = [frequencies for frequencies, _ in modes_of_fields]
     raise NumericalError(
         f"The modes of a shaft up to {highest / (2.0 * np.pi):.4g} Hz do not stand at order {_LAST_ORDER}: "
         "it is very long or thin. Shorten it, or make it thicker."
@@ -204,12 +210,12 @@ def reduce_fields(
 
 
 def _clamped(numbers: tuple[FloatArray, FloatArray, int], highest: float) -> tuple[FloatArray, FloatArray]:
-    """Frequencies up to the highest, and modes (n - 1, m), with the kept coordinate held."""
-    mass, stiffness, kept = numbers
-    inside = np.delete(np.arange(mass.shape[0]), kept)
+    """Frequencies up to the highest, and modes (n - 1, m), with the physical coordinate fixed."""
+    mass, stiffness, physical = numbers
+    inside = np.delete(np.arange(mass.shape[0]), physical)
     both = np.ix_(inside, inside)
-    # Of the inverse problem the modes that are wanted are the largest: rounding by the smallest intervals, in
-    # which vibration would be fastest, then stays in those that are not.
+    # In the inverse problem the wanted modes have the largest eigenvalues. The smallest intervals, in which
+    # vibration would be fastest, then bring rounding into the other modes alone.
     inverse, modes = eigh(mass[both], stiffness[both], subset_by_value=(highest**-2, np.inf))
     frequencies = 1.0 / np.sqrt(inverse[::-1])
     return frequencies, modes[:, ::-1] * frequencies
@@ -218,11 +224,11 @@ def _clamped(numbers: tuple[FloatArray, FloatArray, int], highest: float) -> tup
 def _reduced(
     numbers: tuple[FloatArray, FloatArray, int], frequencies: FloatArray, modes: FloatArray
 ) -> Reduced:
-    """Static deflection under a unit displacement of the kept coordinate, beside the modes."""
-    _, stiffness, kept = numbers
-    inside = np.delete(np.arange(stiffness.shape[0]), kept)
+    """Add the static deflection under a unit displacement of the physical coordinate to the modes."""
+    _, stiffness, physical = numbers
+    inside = np.delete(np.arange(stiffness.shape[0]), physical)
     basis = np.zeros((stiffness.shape[0], 1 + frequencies.size))
-    basis[kept, 0] = 1.0
-    basis[inside, 0] = -solve(stiffness[np.ix_(inside, inside)], stiffness[inside, kept], assume_a="pos")
+    basis[physical, 0] = 1.0
+    basis[inside, 0] = -solve(stiffness[np.ix_(inside, inside)], stiffness[inside, physical], assume_a="pos")
     basis[inside, 1:] = modes
     return Reduced(basis, frequencies)

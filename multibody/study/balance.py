@@ -1,6 +1,6 @@
 """Power balance of a multibody run: where the driving work goes.
 
-Its powers are those of ``multibody.run.powers``, which do not read the forces that moved the bodies.
+The powers come from ``multibody.run.powers``, which does not read the forces that moved the bodies.
 
 Sources: docs/theory/multibody.md, "Overlap, wrench and contact point"; the power balance of rigid bodies.
 """
@@ -22,6 +22,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 from multibody.contact.kinematics import TIP_CONTACT
+from multibody.contact.records import X_G, X_P, Y_G, Y_P
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 from multibody.run.powers import Powers, rotor_speeds, work
@@ -30,9 +31,10 @@ from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 if TYPE_CHECKING:
     import xarray as xr
 
-#: A step over less than the first share of the mesh cycle leads across an event. So does one over less than
-#: the second in which the number of contacts changes, where contact begins with a load: a jump that was not
-#: predicted, as where soft bearings move it far or friction sticks, shrinks the step.
+#: A step over less than the first share of the mesh cycle leads across an event. Where contact begins with a
+#: load, a step over less than the second share also leads across an event, if the number of contacts changes
+#: in the step. The integrator shrinks such a step at a jump that was not predicted: soft bearings shift the
+#: jump far, or friction sticks.
 _HAIR = 1e-11
 _SHRUNK = 1e-6
 
@@ -89,7 +91,7 @@ def power_balance(
 ) -> PowerBalance:
     """Power balance of a run; arguments as ``multibody.simulate``.
 
-    It is computed on springs alone: a pair with shafts needs ``supports="springs"``.
+    The balance is computed on springs alone: a pair with shafts needs ``supports="springs"``.
     The powers are integrated over every step of the integrator by four-point Gauss quadrature on its dense
     output.
     """
@@ -148,7 +150,8 @@ def balance_of(setup: Setup, cycles: int) -> PowerBalance:
         totals[:] += work(setup.model, segment)
         hair = _HAIR * setup.machine.period
         across = np.flatnonzero(leads_across(segment))
-        first_of, last_of = np.diff(across, prepend=-2) > 1, np.diff(across, append=segment.times.size) > 1
+        first_of = np.diff(across, prepend=-2) > 1
+        last_of = np.diff(across, append=segment.times.size) > 1
         before = np.maximum(segment.times[across[first_of]] - hair, segment.times[0])
         after = segment.times[across[last_of] + 1]
         jumps.append(float((energy(segment, after) - energy(segment, before)).sum()))
@@ -178,6 +181,6 @@ def _stored(model: ExudynModel, q: FloatArray, v: FloatArray) -> float:
     """Kinetic energy and elastic energy of the bearings [J]."""
     m = model.machine
     omega_p, omega_g = rotor_speeds(m, v)
-    kinetic = m.mass[0] * (v[0] ** 2 + v[1] ** 2) + m.mass[1] * (v[3] ** 2 + v[4] ** 2)
+    kinetic = m.mass[0] * (v[X_P] ** 2 + v[Y_P] ** 2) + m.mass[1] * (v[X_G] ** 2 + v[Y_G] ** 2)
     kinetic += float(m.inertia[0] * omega_p**2 + m.inertia[1] * omega_g**2)
-    return float(0.5 * (kinetic + m.bearing_stiffness.ravel() @ q[[0, 1, 3, 4]] ** 2))
+    return float(0.5 * (kinetic + m.bearing_stiffness.ravel() @ q[[X_P, Y_P, X_G, Y_G]] ** 2))

@@ -1,4 +1,4 @@
-"""Why the exact model differs from the lumped one: its finite-motion effects, switched one at a time.
+"""Why the exact model differs from the lumped model: finite-motion effects, switched one at a time.
 
 Sources: docs/theory/multibody.md, "Effects".
 """
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _SAMPLES = 128
-#: The shares that are stated err by as much.
+#: Relative tolerance of the runs. The shares have an error of this size.
 _RTOL = 1e-7
 _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
 _KINDS = {"alone": "by this cause", "without": "all causes but this"}
@@ -34,26 +34,25 @@ def attribution(
 ) -> xr.Dataset:
     """How much each finite-motion effect changes the periodic motion, and the momentary load in friction.
 
-    Each motion has the brake torque that balances it: in a run from the same state every effect that changes
-    the losses would also let the pair drift, and the phase with it.
+    Each motion has the brake torque that balances this motion. In runs from one state every effect that
+    changes the losses would also let the speed of the pair drift, and the phase with the speed.
 
     Parameters
     ----------
     pair : a validated gear pair
-    supports : "springs" or "shafts", as of ``multibody.simulate``; by default the shafts of a pair that has
-        them
+    supports : "springs" or "shafts", as of ``multibody.simulate``; by default shafts for a pair with shafts
     progress : called with the finished fraction
 
     Returns
     -------
     xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change by one cause, and
-    ``without``, the largest change when all causes but this one act; both over the peak to peak of the
-    motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
-    difference: the effects that act by default. The attribute ``largest`` names the cause of this difference
-    that changes the transmission error most. "friction_load" stands below "all": it is no part of the
-    difference. A quantity that does not move without effects (y_p without friction) is NaN.
+    ``without``, the largest change when all causes but this cause act. Both are over the peak to peak of the
+    motion without effects. Cause "all" is the whole difference from the lumped model, by all effects that act
+    by default. The attribute ``largest`` names the cause with the largest change of the transmission error.
+    "friction_load" is below "all", because this cause is no part of the difference. A quantity that does not
+    move without effects (y_p without friction) is NaN.
 
-    Every exact motion includes "contact": where the actual flanks meet, and unilateral.
+    Every exact motion includes "contact": unilateral contact of the actual flanks.
     ``alone`` of another cause is the change of the motion with "contact". The ``without`` of "contact" is
     NaN, because teeth would then pull over a gap.
 
@@ -66,7 +65,7 @@ def attribution(
     orbits: dict[frozenset[str], tuple[Orbit, xr.Dataset]] = {}
 
     def motion(effects: set[str], near: set[str] | None = None) -> xr.Dataset:
-        """Motion with these effects, looked for from that with the effects ``near``."""
+        """Motion with these effects. The search starts from the motion with the effects ``near``."""
         names = frozenset(effects)
         if names not in orbits:
             start = None if near is None else orbits[frozenset(near)][0]
@@ -78,8 +77,10 @@ def attribution(
     every = set(default_effects(form_of(pair)))
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
     contact = groups["contact"] & every
-    parts = {cause: own & every for cause, own in groups.items() if own & every}
-    asked_for = {c: own for c, own in groups.items() if not any(EFFECTS[name].forms for name in own)}
+    parts = {cause: names & every for cause, names in groups.items() if names & every}
+    asked_for = {
+        cause: names for cause, names in groups.items() if not any(EFFECTS[name].forms for name in names)
+    }
     groups = parts | {"all": every} | asked_for
     base = motion(set())
     if needs_pull(pair, base):
@@ -90,11 +91,11 @@ def attribution(
     touching = motion(contact, set())
     motion(every, contact)
     table = {kind: np.full((len(groups), len(_QUANTITIES)), np.nan) for kind in _KINDS}
-    for row, (cause, own) in enumerate(groups.items()):
-        start = base if contact <= own else touching
-        runs = {"alone": (motion(contact | own, contact), start)}
-        if own <= every - contact or cause == "all":
-            runs["without"] = (motion(every - own, every), base)
+    for row, (cause, names) in enumerate(groups.items()):
+        start = base if contact <= names else touching
+        runs = {"alone": (motion(contact | names, contact), start)}
+        if names <= every - contact or cause == "all":
+            runs["without"] = (motion(every - names, every), base)
         for kind, (run, reference) in runs.items():
             for column, name in enumerate(_QUANTITIES):
                 swing = float(np.ptp(base[name].to_numpy()))

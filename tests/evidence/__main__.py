@@ -14,9 +14,9 @@ def main(arguments: list[str] | None = None) -> int:
     keys = parser.parse_args(arguments).kinds
     if unknown := [key for key in keys if key not in KINDS]:
         parser.error(f"no such kind: {', '.join(unknown)}")
-    found = figures(keys or KINDS)
+    results = figures(keys or KINDS)
     failed = 0
-    for kind in found["kinds"]:
+    for kind in results["kinds"]:
         print(kind["title"])
         for row in kind["checks"]:
             fails = not abs(row["value"] - row.get("theory", 0.0)) <= row["limit"]
@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
             mark = "  FAILS" if fails else ""
             print(f"  {row['value']:9.3g}  limit {row['limit']:7.1g}  {row['subject']}{mark}")
     if not keys:
-        TARGET.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        TARGET.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
         print(f"Wrote {TARGET}.")
     return int(failed > 0)
 

@@ -26,8 +26,8 @@ class Check:
 
 def rows(subject: str, exact: str, limit: float, values: ArrayLike) -> Check:
     """Largest relative difference between numbers (rows, 2): found, and what they must be."""
-    found, wanted = np.asarray(values, dtype=float).T
-    error = np.max(np.abs(found - wanted) / np.maximum(np.abs(wanted), 1e-300))
+    computed, wanted = np.asarray(values, dtype=float).T
+    error = np.max(np.abs(computed - wanted) / np.maximum(np.abs(wanted), 1e-300))
     return Check(subject, exact, float(error), limit)
 
 

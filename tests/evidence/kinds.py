@@ -44,19 +44,19 @@ OF_PAIRS: Mapping[str, tuple[str, Callable[[GearPair], Iterable[Check]]]] = {
 
 def worst(compute: Callable[[GearPair], Iterable[Check]]) -> list[Check]:
     """Checks of a kind on all gear pairs, each where it uses most of its limit."""
-    found: dict[str, Check] = {}
+    worst_checks: dict[str, Check] = {}
     for pair in gear_pairs():
         for check in compute(pair):
-            known = found.get(check.subject)
-            if known is None or use(check) > use(known):
-                found[check.subject] = check
-    return list(found.values())
+            earlier = worst_checks.get(check.subject)
+            if earlier is None or use(check) > use(earlier):
+                worst_checks[check.subject] = check
+    return list(worst_checks.values())
 
 
 def use(check: Check) -> float:
     """Share of its limit; infinite where the check does not pass a limit of zero."""
-    away = abs(check.value - (check.theory or 0.0))
-    return away / check.limit if check.limit else float("inf") if away else 0.0
+    difference = abs(check.value - (check.theory or 0.0))
+    return difference / check.limit if check.limit else float("inf") if difference else 0.0
 
 
 def joined(*functions: Callable[[], Iterable[Check]]) -> list[Check]:

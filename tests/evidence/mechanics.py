@@ -151,9 +151,10 @@ def _averaged(pair: GearPair) -> Check:
 
 
 def _sharing() -> Check:
-    """Three springs of unequal stiffness and error, solved by hand: the third stays apart.
+    """Springs of unequal stiffness and error, solved by hand.
 
-    Then two that move each other by 1e-9 m/N: late by 1 um the second helps, by 4.5 um it is pushed away.
+    First three springs: the third spring does not touch. Then two springs that move each other by 1e-9 m/N:
+    with an error of 1 um the second spring carries a load; with 4.5 um the second spring does not touch.
     """
     results = share_load([2e8, 1e8, 3e8], [0.0, 2e-6, 1.0], 1000.0)
     delta = (1000.0 + 1e8 * 2e-6) / 3e8
@@ -199,8 +200,8 @@ def _efficiency_error(pair: GearPair) -> float:
 
 def _brake_error(pair: GearPair) -> float:
     """The braking power against the driving one less friction at nominal sliding (loaded: all losses)."""
-    found = steady_state(pair, samples_per_cycle=8).attrs
-    braking = float(found["brake_torque"]) * pair.geometry.omega_gear
+    attributes = steady_state(pair, samples_per_cycle=8).attrs
+    braking = float(attributes["brake_torque"]) * pair.geometry.omega_gear
     motion, weights = _motion(pair)
     driving = motion.pinion_torque * pair.geometry.omega_pinion
     taken = -float(motion.values["friction_power_nominal"].sum(axis=0) @ weights)
@@ -219,15 +220,15 @@ def _all_losses(pair: GearPair) -> float:
 def _powers_error(pair: GearPair) -> float:
     """Losses by place, and the energy residual, against those with the levers of the multibody model."""
     motion, weights = _motion(pair)
-    found = mean_powers(periodic_cycle(pair, 8))
+    powers = mean_powers(periodic_cycle(pair, 8))
     wanted = losses(motion.system, machine(pair), motion.time, motion.states, weights)
     pairs = (
-        (found.sliding, wanted["friction"]),
-        (found.tooth_dampers, wanted["mesh_damping"]),
-        (found.bearings, wanted["bearings"]),
-        (found.energy_residual, -wanted["mesh_stiffness"]),
+        (powers.sliding, wanted["friction"]),
+        (powers.tooth_dampers, wanted["mesh_damping"]),
+        (powers.bearings, wanted["bearings"]),
+        (powers.energy_residual, -wanted["mesh_stiffness"]),
     )
-    return max(abs(one - other) for one, other in pairs) / found.driving
+    return max(abs(one - other) for one, other in pairs) / powers.driving
 
 
 def _motion(pair: GearPair) -> tuple[PeriodicSolution, FloatArray]:

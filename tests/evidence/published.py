@@ -102,21 +102,21 @@ def published(pair: GearPair) -> Iterator[Check]:
 
 def missed_values() -> list[str]:
     """Formulas with published numbers that the program does not reproduce, and the model."""
-    found = []
+    missed = []
     for name, formulas in FORMULAS.items():
         module = importlib.import_module(name)
         shown = {test.name.rpartition(".")[2]: test for test in doctest.DocTestFinder().find(module)}
         for formula in sorted(formulas):
             test = shown.get(formula)
             if test is None or not test.examples:
-                found.append(f"{formula}: no number")
+                missed.append(f"{formula}: no number")
                 continue
             if doctest.DocTestRunner(verbose=False).run(test, out=lambda text: None).failed:
-                found.append(f"{formula}: lumped")
+                missed.append(f"{formula}: lumped")
             stated = next(one.want.strip() for one in reversed(test.examples) if one.want)
             if formula in OWN and f"{OWN[formula]():.{len(stated.partition('.')[2])}f}" != stated:
-                found.append(f"{formula}: multibody")
-    return found
+                missed.append(f"{formula}: multibody")
+    return missed
 
 
 def _tooth() -> Check:
@@ -140,7 +140,7 @@ def _compliances(pair: GearPair) -> Check:
     """The stiffness of the energy method from the parts of each tooth, put together again."""
     g = pair.geometry
     xi = np.linspace(g.L_XA, g.L_XD, 9)
-    found = pair_compliance(pair, xi).stiffness
+    stiffness = pair_compliance(pair, xi).stiffness
     load = pair.operating.pinion_torque / (g.base_radius_pinion * g.face_width)
     moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
     ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
@@ -156,5 +156,5 @@ def _compliances(pair: GearPair) -> Check:
         root = profile.root_radius
         half = profile.root_half_angle
         total += foundation_compliance(profile.base_radius, root, half, angle, e, nu)
-    error = float(np.abs(found * total / g.face_width - 1.0).max())
+    error = float(np.abs(stiffness * total / g.face_width - 1.0).max())
     return Check("energy method", "its parts, of both teeth and their contact, added up again", error, 1e-9)

@@ -159,19 +159,19 @@ def better(found: xr.Dataset, name: str, machines: int | None = None) -> float:
 
 def row(case: Case) -> dict[str, Any]:
     """Shares of one case, by both programs."""
-    found = spurcheck.compare(*case.variants, samples=SAMPLES)
+    comparison = spurcheck.compare(*case.variants, samples=SAMPLES)
     shares, refused = plain(case, PLAIN, SEED)
     rows = {
         name: {
-            "given": found[f"{name}_given"].to_numpy().tolist(),
-            "compare": float(found["better"].sel(result=name, variant="B", other="A")),
-            "first": better(found, name, FEW),
+            "given": comparison[f"{name}_given"].to_numpy().tolist(),
+            "compare": float(comparison["better"].sel(result=name, variant="B", other="A")),
+            "first": better(comparison, name, FEW),
             "plain": shares[name],
         }
         for name in RESULTS
     }
-    return {"key": case.key, "text": case.text, "inputs": found.sizes["input"], "refused": refused} | {
-        "contact_lost": found["contact_lost"].to_numpy().tolist(),
+    return {"key": case.key, "text": case.text, "inputs": comparison.sizes["input"], "refused": refused} | {
+        "contact_lost": comparison["contact_lost"].to_numpy().tolist(),
         "results": rows,
     }
 
@@ -190,8 +190,8 @@ def main(arguments: list[str] | None = None) -> int:
     for case in cases():
         if options.keys and case.key not in options.keys:
             continue
-        rows[case.key] = found = row(case)
-        for name, shares in found["results"].items():
+        rows[case.key] = entry = row(case)
+        for name, shares in entry["results"].items():
             points = 100.0 * abs(shares["compare"] - shares["plain"])
             wrong += points > LIMIT
             words = "".join(f"{key} {100.0 * shares[key]:5.1f}  " for key in ("compare", "first", "plain"))

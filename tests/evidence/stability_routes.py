@@ -27,9 +27,9 @@ _PLACES = 25
 def stability_routes(pair: GearPair) -> Iterator[Check]:
     """Monodromy matrix and compiled multipliers against the flow map; the blocks; the misfit."""
     flow = multibody.monodromy(pair, fidelity="linear", rtol=1e-8)
-    whole = monodromy(gear_pair_system(pair, "elastic"), rtol=1e-9)
+    elastic = monodromy(gear_pair_system(pair, "elastic"), rtol=1e-9)
     rates = np.concatenate([np.ones(5), np.full(5, pair.geometry.mesh_period / (2.0 * np.pi))])
-    a, b = (matrix * rates[:, None] / rates for matrix in (whole.matrix, flow.matrix))
+    a, b = (matrix * rates[:, None] / rates for matrix in (elastic.matrix, flow.matrix))
     error = float(np.linalg.norm(a - b) / np.linalg.norm(b))
     yield Check("monodromy matrix", "the multibody model's flow map; over its norm", error, 1e-5)
     compiled = fast_multipliers(gear_block(pair)).multipliers[0]
@@ -39,7 +39,7 @@ def stability_routes(pair: GearPair) -> Iterator[Check]:
     exact = "that of the flow map; over its largest coefficient"
     yield Check("characteristic polynomial of the compiled multipliers", exact, error, 1e-5)
     block = gear_pair_multipliers(pair, rtol=1e-9)
-    gap = np.abs(whole.multipliers[:, None] - block.multipliers[None, :]).min(axis=1)
+    gap = np.abs(elastic.multipliers[:, None] - block.multipliers[None, :]).min(axis=1)
     # Close multipliers spread the error of the matrix, 1e-9, by its root at worst.
     exact = "those of the ten states; absolute"
     yield Check("multipliers by blocks, those of y in closed form", exact, float(gap.max()), 1e-6)

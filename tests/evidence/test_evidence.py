@@ -36,10 +36,10 @@ def test_what_is_no_number_fails():
 
 
 def test_the_stored_figures_have_every_kind_and_pass():
-    found = json.loads(TARGET.read_text(encoding="utf-8"))
-    assert found.keys() == {"date", "source_sha256", "kinds", "faults", "sound_pairs"}
-    assert [kind["key"] for kind in found["kinds"]] == list(KINDS)
-    checks = [Check(**row) for kind in found["kinds"] for row in kind["checks"]]
+    stored = json.loads(TARGET.read_text(encoding="utf-8"))
+    assert stored.keys() == {"date", "source_sha256", "kinds", "faults", "sound_pairs"}
+    assert [kind["key"] for kind in stored["kinds"]] == list(KINDS)
+    checks = [Check(**row) for kind in stored["kinds"] for row in kind["checks"]]
     assert len(checks) > 60
     assert failing(checks) == []
     assert TARGET.stat().st_size < 20_000
@@ -85,8 +85,8 @@ def test_frames_of_a_bored_pair():
     for one in (free, rim, shaft, strain):
         assert one.mean < one.alone
     # Another program, at another load: 1.151 / 1.085 free, 1.088 / 0.990 and 0.931 / 0.789 held.
-    found = [getattr(one, name) for one in (free, rim, shaft) for name in ("alone", "mean")]
-    assert found == pytest.approx([1.151, 1.085, 1.088, 0.990, 0.931, 0.789], rel=0.035)
+    values = [getattr(one, name) for one in (free, rim, shaft) for name in ("alone", "mean")]
+    assert values == pytest.approx([1.151, 1.085, 1.088, 0.990, 0.931, 0.789], rel=0.035)
 
 
 def test_refining_brings_every_solution_down_to_its_limit(pair):

@@ -143,10 +143,13 @@ def _relief(pair: GearPair) -> Iterator[Check]:
         return
     xi = _inside(pair)
     p = machine(pair.with_({"mesh.relief": "static"})).record
-    own = np.array([relief_at(p, x, 0.0, 0.0)[0] for x in xi])
+    multibody = np.array([relief_at(p, x, 0.0, 0.0)[0] for x in xi])
     scale = float(sum(r.amount for r in reliefs))
     yield rows(
-        "relief of both flanks", _OWN, 1e-9, np.stack([relief_error(pair, xi), own], axis=1) / scale + 1.0
+        "relief of both flanks",
+        _OWN,
+        1e-9,
+        np.stack([relief_error(pair, xi), multibody], axis=1) / scale + 1.0,
     )
 
 
@@ -220,7 +223,10 @@ class _Mesh:
         return approaches, tilt
 
     def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
+        """Loads of pairs, and compressions of the pairs without the part that neighbours take.
+
+        The pair that is farthest behind comes first.
+        """
         stiffness = np.array([table_value(self.machine.stiffness_table, xi) for xi in places])
         pairs = np.zeros(places.size, PAIR)
         pairs["position"] = places
@@ -349,7 +355,7 @@ def _feet(half: float, apart: float, poisson: float) -> FloatArray:
     couple = np.sin(x) / (half - np.sin(half) * np.cos(half))
     radial = np.array([np.sin(x) / (2 * half), np.cos(x) / (2 * half), -couple * np.cos(x)]) * weight
     across = np.array([np.cos(x) / (2 * half), -np.sin(x) / (2 * half), couple * np.sin(x)]) * weight
-    found = np.zeros((3, 3))
+    motions = np.zeros((3, 3))
     for n, ring in enumerate(_rings(poisson)):
         share = 1.0 / np.pi if n else 0.5 / np.pi
         even = share * np.array([radial @ np.cos(n * x), across @ np.sin(n * x)])
@@ -357,10 +363,10 @@ def _feet(half: float, apart: float, poisson: float) -> FloatArray:
         (up, turn) = ring @ even
         (up_odd, turn_odd) = ring @ odd
         there = n * (x + apart)
-        moved = np.outer(np.cos(there), up) + np.outer(np.sin(there), up_odd)
-        turned = np.outer(np.sin(there), turn) - np.outer(np.cos(there), turn_odd)
-        found += radial @ moved + across @ turned
-    return found
+        displacement = np.outer(np.cos(there), up) + np.outer(np.sin(there), up_odd)
+        rotation = np.outer(np.sin(there), turn) - np.outer(np.cos(there), turn_odd)
+        motions += radial @ displacement + across @ rotation
+    return motions
 
 
 @lru_cache(maxsize=4)
@@ -379,7 +385,7 @@ def _rings(poisson: float) -> FloatArray:
     zero = np.zeros((m, m))
     plane = 1.0 / (1.0 - poisson**2)
     shear = 0.5 / (1.0 + poisson)
-    found = np.zeros((_HARMONICS + 1, 2, 2))
+    compliances = np.zeros((_HARMONICS + 1, 2, 2))
     for n in range(_HARMONICS + 1):
         hoop = np.hstack([one, n * one])  # r times the strains, of (u_r, u_t)
         stretch = np.hstack([d, zero])
@@ -394,6 +400,6 @@ def _rings(poisson: float) -> FloatArray:
         rows[m - 1], rows[2 * m - 1] = np.eye(2 * m)[[m - 1, 2 * m - 1]]
         right = np.zeros((2 * m, 2))
         right[0, 0] = right[m, 1] = 1.0
-        found[n] = np.linalg.solve(rows, right)[[0, m]]
-    found[0, :, 1] = found[0, 1] = 0.0
-    return found
+        compliances[n] = np.linalg.solve(rows, right)[[0, m]]
+    compliances[0, :, 1] = compliances[0, 1] = 0.0
+    return compliances

@@ -39,12 +39,12 @@ class Agreement:
 
     Attributes
     ----------
-    quantity, unit, long_name : what is compared; at fidelity "exact" of tooth forces the sum over the pairs
+    quantity, unit, long_name : the compared quantity; tooth forces at "exact" are sums over the pairs
     fidelity : "linear" or "exact"
     difference : largest difference over ``scale``; of y at fidelity "exact" see ``_off_line``
-    scale : peak to peak of the lumped history, or what stands for it (``_scale``), in ``unit``
+    scale : peak to peak of the lumped history, or a larger scale (``_scale``), in ``unit``
     peak_to_peak, peak_to_peak_multibody : of both histories, in ``unit``
-    limit, reason : largest ``difference`` that passes, and why
+    limit, reason : largest ``difference`` within the limit, and the reason for the limit
     """
 
     quantity: str
@@ -60,7 +60,7 @@ class Agreement:
 
     @property
     def within(self) -> bool:
-        """Whether the difference is within its limit; one that is not a number is not."""
+        """Whether the difference is within the limit. NaN is not within the limit."""
         return self.difference <= self.limit
 
     @property
@@ -71,18 +71,19 @@ class Agreement:
 
 
 def is_constant(values: FloatArray, driver: FloatArray | float = 0.0) -> bool:
-    """Whether a history varies by no more than rounding: measures relative to its span then mean nothing.
+    """Whether a history varies by rounding alone. A difference relative to the variation then means nothing.
 
-    ``driver`` is the history of a quantity whose rounding moves it.
+    driver : history of a quantity that drives this history, so that rounding of the driver moves the history
     """
-    own, other = (float(np.abs(x).max()) for x in (values, driver))
-    return bool(np.ptp(values) <= max(_CONSTANT * own, _DRIVEN * other, np.finfo(float).tiny))
+    size = float(np.abs(values).max())
+    size_of_driver = float(np.abs(driver).max())
+    return bool(np.ptp(values) <= max(_CONSTANT * size, _DRIVEN * size_of_driver, np.finfo(float).tiny))
 
 
 def off_switch_samples(pair: GearPair, time: FloatArray, margin: float = _SWITCH_MARGIN) -> BoolArray:
-    """Which times [s] (k,) lie clear of every switch of the nominal mesh cycle, starts of cycles included.
+    """Whether each time [s] (k,) lies clear of every switch of the nominal mesh cycle and of its start.
 
-    ``margin`` is in mesh cycles.
+    margin : least distance from a switch, in mesh cycles
     """
     cycle = MeshCycle.of(pair.healthy)
     phase = np.mod(time / cycle.period, 1.0)
@@ -98,9 +99,12 @@ def agreement(
     reference: xr.Dataset,
     limit: tuple[float, str],
 ) -> Agreement:
-    """Compare one quantity of a multibody motion with the lumped one at the same times; none may be infinite.
+    """Compare one quantity of a multibody motion with the quantity of the lumped motion at the same times.
 
-    ``pair``: whose switches are left out; ``limit``: see ``verdict.limit_of``.
+    pair : times near the switches of this pair are left out
+    candidate, reference : the multibody motion and the lumped motion
+    limit : the result of ``verdict.limit_of``: largest difference within the limit, and the reason
+    Raises NumericalError : a value is not finite
     """
     exact = fidelity == "exact"
 
@@ -143,29 +147,32 @@ def agreement(
     )
 
 
-def _scale(quantity: str, dte: FloatArray, own: FloatArray) -> float:
-    """What a quantity's difference at "exact" is measured by where it swings less.
+def _scale(quantity: str, dte: FloatArray, history: FloatArray) -> float:
+    """Least scale of the difference of a quantity at "exact", in the unit of the quantity.
 
-    A centre moves with the changing part of its load alone, so away from resonance it hardly swings: along
-    the line of action its displacement is a part of the transmission error. A slow pair carries its static
-    load whatever its teeth do: the load swings as inertia does, with the square of the speed. It is measured
-    by the force that bends the teeth by the swing of the transmission error, at most by the static force.
+    A gear centre moves with the changing part of the bearing load alone, so away from resonance the centre
+    hardly swings. Along the line of action the displacement of the centre is a part of the transmission
+    error, and the swing of the transmission error is the scale. The normal load of a slow pair is the static
+    load: the load swings with the forces of inertia, which grow with the square of the speed. The scale of
+    the load is the force that bends the teeth by the swing of the transmission error, and at most the static
+    force.
     """
     swing = float(np.ptp(dte))
     if quantity in ("x_p", "x_g"):
         return swing
     if quantity == "normal_load":
-        return float(own.mean()) * min(swing / abs(float(dte.mean())), 1.0)
+        return float(history.mean()) * min(swing / abs(float(dte.mean())), 1.0)
     return 0.0
 
 
 def _off_line(difference: FloatArray, swing: float, static: float) -> float:
-    """Difference of a motion off the line of action: of its vibration or of its mean, the larger share.
+    """Difference of a motion across the line of action: of the vibration or of the mean, the larger share.
 
-    The vibration is measured by the swing of y. The mean is no vibration: it is the bearing's deflection by
-    the mean of friction and of the force of corners, the same at any speed, while above resonance y swings
-    the less the faster the pair runs. It is what friction in approach and in recess leave of each other, so
-    it is measured by ``static``: the deflection by the friction force's swing, or its own mean, if larger.
+    The scale of the vibration is the swing of y. The mean of y is no vibration: it is the deflection of the
+    bearing by the mean of the friction force and of the force of tip corners. This mean is the same at any
+    speed, but above resonance the swing of y falls with the speed. The mean of the friction force is the
+    difference of friction in approach and in recess. So the scale of the mean is ``static``: the deflection
+    by the swing of the friction force, or the mean of y, if larger.
     """
     mean = float(difference.mean())
     return max(float(np.abs(difference - mean).max()) / swing, abs(mean) / max(swing, static))

@@ -53,22 +53,21 @@ class CrossCheck:
 
     Attributes
     ----------
-    pair : the gear pair, without shafts; of teeth that differ counted from the first tooth of the cycles that
-        were run
+    pair : the gear pair, without shafts; unlike teeth are counted from the first tooth of the computed cycles
     agreements : one per quantity and fidelity
-    lumped : dataset of the lumped model that "exact" is compared with
+    lumped : dataset of the lumped model, with which "exact" is compared
     multibody : fidelity -> dataset of the multibody model, at the same times
-    periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
+    periodic : whether "exact" is a periodic motion, repeated over the times, and not a run
     conservation : conservation laws, checked on both models
-    stiffness : stiffness of a tooth pair, its change with the load and the coupling of neighbours, which both
-        models read from one place, against second values
+    stiffness : stiffness of a tooth pair, change of the stiffness with the load and coupling of neighbours,
+        against second values, because both models read these quantities from one place
     powers : model -> power of ``power_balance.POWERS`` and "driving" -> mean over the mesh cycle [W]
-    orbit : the lumped motion with loss of contact that is compared; None where teeth push all the time, or
-        where no stable one of one mesh cycle is found
-    loss : power that both motions lose at "exact"; None where the multibody motion does not repeat
-    pulling : why a motion is compared in which teeth pull; empty where it is not
-    variant : the same of a variation of the pair in which nothing is symmetric; None where it was not asked
-        for, or where no variation is sound
+    orbit : the compared lumped motion with loss of contact; None where teeth push all the time, or
+        where no stable motion of one mesh cycle is found
+    loss : lost power of both motions at "exact"; None where the multibody motion does not repeat
+    pulling : why a motion in which teeth pull is compared; empty where teeth push
+    variant : cross-check of a variation of the pair in which nothing is symmetric; None where the caller does
+        not want the variant, or where no variation is sound
     """
 
     pair: GearPair
@@ -96,7 +95,7 @@ class CrossCheck:
 
     @property
     def failures(self) -> tuple[Judgement, ...]:
-        """What does not hold: a check of the program, not of the model."""
+        """Judgements beyond the limit. These are faults of the program, not of the model."""
         return tuple(j for j in self.judgements if not j.within)
 
     @property
@@ -119,7 +118,7 @@ class CrossCheck:
         return tuple(a for a in self.agreements if a.fidelity == fidelity)
 
     def worst(self, fidelity: Fidelity) -> Agreement:
-        """Agreement that uses most of its limit."""
+        """Agreement with the largest difference over the limit."""
         return max(self.of(fidelity), key=lambda a: a.difference / a.limit)
 
 
@@ -136,32 +135,35 @@ def crosscheck(
 ) -> CrossCheck:
     """Compare the lumped model with the multibody model of the same pair in periodic motion.
 
-    At fidelity "linear" the equations are the same: both models start from the lumped periodic solution and
-    the whole history is compared; any difference beyond integration error is a fault of the program. At
-    "exact" the model's own periodic motion is compared, with the brake torque that balances its own losses:
-    under the lumped one it would drift, and the phase with it. It is compared with the prediction on springs,
-    whose contact follows the momentary load. The largest difference over the peak to peak of the lumped
-    motion is the answer, and the difference of the power that both lose; beyond its limit the lumped model is
-    not accurate enough. Where the linear motion is unstable, or the exact model has no periodic motion near
-    it, the end of a run from the lumped motion is shown and not judged. Where the linear motion needs teeth
-    that pull, the equations of "linear" are those with unilateral contact and the tangents of the static load
-    (``floquet.periodic_orbit``); "exact" is compared with that motion where no prediction is near it.
+    At fidelity "linear" the equations are the same. Both models start from the lumped periodic solution, and
+    the whole history is compared. A difference beyond integration error is a fault of the program.
 
-    Both models read the stiffness of a tooth pair, its change with the load and the coupling of neighbouring
-    pairs from one place. These are compared with second values (``stiffness_agreement``); a difference beyond
-    its limit is a fault of the program too.
+    At "exact" the periodic motion of the multibody model is compared with the prediction on springs, whose
+    contact follows the momentary load. The brake torque balances the losses of the multibody motion. (Under
+    the brake torque of the lumped motion the speed would drift, and the phase with the speed.) The results
+    are the largest difference over the peak to peak of the lumped motion, and the difference of the lost
+    powers. Where one of these is beyond its limit, the lumped model is not accurate enough.
+
+    Where the linear motion is unstable, or the exact model has no periodic motion near the lumped motion, the
+    end of a run from the lumped motion is shown and not judged. Where the linear motion needs teeth that
+    pull, the equations of "linear" are those with unilateral contact and the tangents of the static load
+    (``floquet.periodic_orbit``), and "exact" is compared with this motion if no prediction is near.
+
+    Both models read the stiffness of a tooth pair, the change of the stiffness with the load and the coupling
+    of neighbouring pairs from one place. These are compared with second values (``stiffness_agreement``). A
+    difference beyond its limit is a fault of the program too.
 
     Parameters
     ----------
-    pair : a validated gear pair. Of teeth that differ "exact" compares both models over a revolution of up to
-        64 mesh cycles, else over 6 round the tooth with the largest load; the same equations and the
-        conservation laws are those of the twin with like teeth
+    pair : a validated gear pair. With unlike teeth "exact" compares both models over a revolution of up to 64
+        mesh cycles; in longer revolutions over 6 mesh cycles round the tooth with the largest load. Fidelity
+        "linear" and the conservation laws then check the twin with like teeth
     cycles : mesh cycles to simulate, 6 to 100000
-    samples_per_cycle : output times per mesh cycle, at least 32; more are compared where the fastest mode
-        swings so fast that these would not show it
+    samples_per_cycle : output times per mesh cycle, at least 32. Where the fastest mode is too fast for this
+        number, more times are compared
     fidelities : of the multibody model, out of ``FIDELITIES``; without "exact" the verdict is "not checked"
-    limit : largest difference that agrees, over the peak to peak, of the transmission error, the tooth load
-        and the motions along the line of action; that of what friction drives is 0.2
+    limit : largest difference, over the peak to peak, at which the transmission error, the tooth load and the
+        motions along the line of action agree; for quantities driven by friction the limit is 0.2
     variant : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
     supports : "springs", on which alone both models are compared; needed for a pair with shafts
     progress : called with the finished fraction
@@ -181,10 +183,10 @@ def crosscheck(
     chosen = some_of("fidelities", fidelities, FIDELITIES)
     if not chosen or len(set(chosen)) != len(chosen):
         raise refuse("fidelities", ", ".join(chosen), "at least one, each once", "Correct the list.")
-    given = on_springs(load_gear_pair(pair), supports, "crosscheck")
-    pair = given.healthy
-    other = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
-    share = 0.75 if other is not None else 1.0
+    with_unlike_teeth = on_springs(load_gear_pair(pair), supports, "crosscheck")
+    pair = with_unlike_teeth.healthy
+    varied = asymmetric_variant(pair) if variant and len(fidelities) == len(FIDELITIES) else None
+    share = 0.75 if varied is not None else 1.0
 
     def part(low: float, high: float) -> Progress:
         def tell(fraction: float, stage: str = "", /) -> None:
@@ -193,35 +195,33 @@ def crosscheck(
 
         return tell
 
-    found = _compared(pair, cycles, samples_per_cycle, fidelities, limit, part(0.0, share))
-    if given is not pair:
-        found = _with_own_teeth(found, given, samples_per_cycle, limit)
-    if other is None:
-        return found
+    check = _compared(pair, cycles, samples_per_cycle, fidelities, limit, part(0.0, share))
+    if with_unlike_teeth is not pair:
+        check = _with_own_teeth(check, with_unlike_teeth, samples_per_cycle, limit)
+    if varied is None:
+        return check
     try:
-        return replace(
-            found,
-            variant=_compared(other, _VARIANT_CYCLES, _VARIANT_SAMPLES, fidelities, limit, part(share, 1.0)),
-        )
+        of_variant = _compared(varied, _VARIANT_CYCLES, _VARIANT_SAMPLES, fidelities, limit, part(share, 1.0))
     except SpurcheckError:  # a model refuses the variant or cannot compute it
-        return found
+        return check
+    return replace(check, variant=of_variant)
 
 
-def _with_own_teeth(found: CrossCheck, pair: GearPair, samples: int, limit: float) -> CrossCheck:
-    """The cross-check of the twin with like teeth, its "exact" replaced by that of the pair itself."""
-    if "exact" not in found.multibody:
-        return replace(found, pair=pair)
+def _with_own_teeth(check: CrossCheck, pair: GearPair, samples: int, limit: float) -> CrossCheck:
+    """Replace "exact" in the cross-check of the twin with like teeth by "exact" of the unlike teeth."""
+    if "exact" not in check.multibody:
+        return replace(check, pair=pair)
     pair, reference, exact = both_motions(pair, samples)
     agreements = [
         agreement(pair, quantity, "exact", exact, reference, limit_of(quantity, "exact", limit))
         for quantity in QUANTITIES
     ]
     return replace(
-        found,
+        check,
         pair=pair,
-        agreements=(*found.of("linear"), *agreements),
+        agreements=(*check.of("linear"), *agreements),
         lumped=reference,
-        multibody={**found.multibody, "exact": exact},
+        multibody={**check.multibody, "exact": exact},
         periodic=True,
         orbit=None,
         loss=sliding_agreement(reference, exact),
@@ -237,8 +237,8 @@ def _compared(
     limit: float,
     progress: Progress,
 ) -> CrossCheck:
-    """The cross-check without the variant; where both motions repeat, two cycles tell as much as many."""
-    # So many times as many samples as asked for, that the vibration is seen.
+    """The cross-check of one pair with like teeth, without the variant."""
+    # A multiple of the requested samples, so that the samples show the fastest vibration.
     numbers = machine(pair)
     every = -int(-_PER_SWING * numbers.vibrations_per_cycle // samples_per_cycle)
     samples = every * samples_per_cycle
@@ -248,11 +248,11 @@ def _compared(
         return lambda fraction, stage="", /: progress((done + fraction) / runs)
 
     orbit, pulling = unilateral_orbit(pair)
-    own = None
+    weighted = None
     if orbit is None:
-        own = lumped_motion(pair)
-        # Where mu(xi) is steep the periodic solution may be off by some 1e-6, which a run from it forgets.
-        stable = own[0].spectral_radius <= UNSTABLE
+        weighted = lumped_motion(pair)
+        # Where mu(xi) is steep the periodic solution may err by some 1e-6. The error decays in a run.
+        stable = weighted.motion.spectral_radius <= UNSTABLE
         reference = lumped.simulate(
             pair,
             cycles,
@@ -269,14 +269,14 @@ def _compared(
     results: dict[Fidelity, xr.Dataset] = {}
     exact: xr.Dataset | None = None
     for done, fidelity in enumerate(fidelities, 1):
-        one = None
-        # At "linear" without contact loss a run shows more: the history, not only the motion it settles to.
+        periodic = None
+        # At "linear" without contact loss a run shows more than the periodic motion: the whole history.
         if stable and (fidelity == "exact" or orbit is not None):
-            one = periodic_motion(pair, fidelity, samples, rtol[fidelity], orbit)
+            periodic = periodic_motion(pair, fidelity, samples, rtol[fidelity], orbit)
         if fidelity == "exact":
-            exact = one
-        if one is not None:
-            results[fidelity] = repeated(one, cycles)
+            exact = periodic
+        if periodic is not None:
+            results[fidelity] = repeated(periodic, cycles)
             part(done)(1.0)
             continue
         results[fidelity] = multibody.simulate(
@@ -302,7 +302,7 @@ def _compared(
             agreement(pair, quantity, fidelity, a, b, limit_of(quantity, fidelity, limit))
             for quantity in QUANTITIES
         ]
-    checks, powers = conservation(pair, numbers, cycle, results, own, periodic=exact is not None)
+    checks, powers = conservation(pair, numbers, cycle, results, weighted, periodic=exact is not None)
     return CrossCheck(
         pair=pair,
         agreements=tuple(agreements),

@@ -1,8 +1,8 @@
 """Conservation laws that every motion of a gear pair obeys, as checks on both models.
 
-No check compares a variable with itself: levers, bodies and bearings are those that the multibody model works
-out from the parameter file, also where the lumped motion is checked. No limit depends on how far the models
-are apart, so each check can fail whatever the exact motion is.
+No check compares a variable with itself: the multibody model computes levers, bodies and bearings from the
+parameter file, and the checks of the lumped motion use these too. No limit depends on the difference of the
+models, so each check can fail whatever the exact motion is.
 
 Sources: the power balance of rigid bodies; docs/theory/multibody.md, "Conservation".
 """
@@ -10,13 +10,14 @@ Sources: the power balance of rigid bodies; docs/theory/multibody.md, "Conservat
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import cast
+from typing import NamedTuple, cast
 
 import numpy as np
 import xarray as xr
 
 import multibody
 from lumped import GearPair
+from lumped.model.equations import COORDINATES, THETA_G, THETA_P, X_P
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import fastest_frequency
 from lumped.model.results import corner_force, response
@@ -33,7 +34,7 @@ from validation.cross_check.verdict import Judgement
 
 Powers = Mapping[str, Mapping[str, float]]
 
-#: Power -> what it is in words. Their sum is the driving power.
+#: Power -> the power in words. The sum of these powers is the driving power.
 POWERS: Mapping[str, str] = {
     "braking": "taken by the brake",
     "friction": "sliding friction of the teeth",
@@ -43,8 +44,9 @@ POWERS: Mapping[str, str] = {
 }
 #: Gauss's rule of a panel.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-#: Panels of the quadrature in a mesh cycle, at least, and largest angle of the fastest vibration in a panel
-#: [rad]: Gauss's rule with four nodes then leaves some 1e-12 of a power, which swings twice as fast.
+#: Least number of panels of the quadrature in a mesh cycle, and largest angle of the fastest vibration in a
+#: panel [rad]. A power swings twice as fast as the vibration. The error of Gauss's rule with four nodes is
+#: then some 1e-12 of the power.
 _PANELS = 160
 _PANEL_ANGLE = 0.7
 #: Rounding of a product of a coefficient and a velocity over the largest one.
@@ -55,8 +57,8 @@ _PHASES = 256
 _SHARES = 1e-8
 #: Laws that several checks of one model stand for.
 _FAMILIES = ("action and reaction", "mean bearing load", "power ")
-#: Share of the driving power that the integration may lose at each fidelity: ten times its relative tolerance
-#: for every one of the ten steps or so of the fastest vibration.
+#: Share of the driving power that the integration may lose at each fidelity. The fastest vibration takes
+#: about ten steps, and each step may lose the relative tolerance: so this is ten times the tolerance.
 _INTEGRATION: Mapping[str, float] = {"lumped": 1e-8, "linear": 1e-8, "exact": 1e-6}
 
 
@@ -65,16 +67,21 @@ def conservation(
     m: Machine,
     reference: xr.Dataset,
     runs: Mapping[Fidelity, xr.Dataset],
-    own: tuple[PeriodicSolution, FloatArray] | None,
+    weighted: WeightedMotion | None,
     *,
     periodic: bool,
 ) -> tuple[tuple[Judgement, ...], Powers]:
-    """Check both models; return the checks, and model -> power -> mean over the mesh cycle [W].
+    """Check both models. Return the checks, and model -> power -> mean over the mesh cycle [W].
 
-    ``m`` has the pair's numbers as the multibody model derives them. ``reference`` is the lumped periodic
-    motion over one mesh cycle without its end, ``runs`` fidelity -> multibody motion over whole cycles with
-    the last end, ``periodic`` whether "exact" repeats. ``own`` is what ``lumped_motion`` returns; None
-    with loss of contact, and powers are those of "exact" alone.
+    Parameters
+    ----------
+    pair : the gear pair
+    m : the numbers of the pair as the multibody model derives them
+    reference : the lumped periodic motion over one mesh cycle, without the end of the cycle
+    runs : fidelity -> multibody motion over whole cycles, with the end of the last cycle
+    weighted : the lumped motion with the weights of a quadrature; None with loss of contact, where only
+        "exact" has powers
+    periodic : whether the motion at "exact" repeats
     """
     samples = reference.sizes["time"]
     motions = {"lumped": reference} | {
@@ -82,30 +89,30 @@ def conservation(
     }
     powers: dict[str, Mapping[str, float]] = {}
     histories = _mesh_histories(pair, reference)
-    if own is not None:
-        powers["lumped"] = lumped_powers(own[0], m, own[1])
-        histories = _mesh_histories(pair, own[0].values)  # on both sides of every jump
+    if weighted is not None:
+        powers["lumped"] = lumped_powers(weighted, m)
+        histories = _mesh_histories(pair, weighted.motion.values)  # on both sides of every jump
     for fidelity in runs:
-        if periodic if fidelity == "exact" else own is not None:
+        if periodic if fidelity == "exact" else weighted is not None:
             rtol = 1e-8 if fidelity == "exact" else 1e-10
             balance = multibody.motion_balance(pair, motions[fidelity], rtol)
             powers[fidelity] = multibody_powers(balance, m.period)
     variation = tuple(float(np.abs(np.diff(h, append=h[:1])).sum()) for h in histories)
-    found = []
+    checks = []
     for name, motion in motions.items():
-        found.append(_friction_takes_power(m, name, runs.get(cast(Fidelity, name), motion)))
+        checks.append(_friction_takes_power(m, name, runs.get(cast(Fidelity, name), motion)))
         if name != "exact" or periodic:
-            found += _action_and_reaction(m, name, motion)
+            checks += _action_and_reaction(m, name, motion)
         if name != "exact":
-            found += _mean_bearing_loads(m, name, motion, pair, variation)
-    found += _load_over_stiffness(pair, m)
-    for name, one in powers.items():
-        found += _first_law(name, one)
+            checks += _mean_bearing_loads(m, name, motion, pair, variation)
+    checks += _load_over_stiffness(pair, m)
+    for name, of_model in powers.items():
+        checks += _first_law(name, of_model)
     if "linear" in powers and "lumped" in powers:
-        found += _same_powers(powers["lumped"], powers["linear"])
+        checks += _same_powers(powers["lumped"], powers["linear"])
     if "exact" in powers and contact_of(pair).conservative:
         exact = powers["exact"]
-        found.append(
+        checks.append(
             Judgement(
                 "conservation: energy of the contact, exact",
                 abs(exact["mesh_stiffness"]) / exact["driving"],
@@ -114,18 +121,28 @@ def conservation(
                 "of the integration",
             )
         )
-    return tuple(found), powers
+    return tuple(checks), powers
 
 
-def lumped_motion(pair: GearPair) -> tuple[PeriodicSolution, FloatArray]:
-    """Lumped periodic motion at the times of ``quadrature``, and their weights."""
+class WeightedMotion(NamedTuple):
+    """Lumped periodic motion at the times of ``quadrature``, and the weights (k,) of these times."""
+
+    motion: PeriodicSolution
+    weights: FloatArray
+
+
+def lumped_motion(pair: GearPair) -> WeightedMotion:
+    """Lumped periodic motion of a pair at the times of ``quadrature``."""
     system = LTVSystem.of(pair, "full", supports="springs")
     times, weights = quadrature(system)
-    return periodic_solution(system, times, estimate_error=False), weights
+    return WeightedMotion(periodic_solution(system, times, estimate_error=False), weights)
 
 
 def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
-    """Times in the mesh cycle and their weights, which sum to one; in no panel a law is two polynomials."""
+    """Times (k,) in the mesh cycle and weights (k,). The sum of the weights is one.
+
+    Every law is one polynomial in each panel.
+    """
     angle = fastest_frequency(system) * system.period
     even = np.linspace(0.0, system.period, max(_PANELS, int(np.ceil(angle / _PANEL_ANGLE))) + 1)
     marks = np.union1d(system.cycle.breaks, even)
@@ -136,50 +153,55 @@ def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
     return times, (0.5 * width * _WEIGHTS).ravel() / system.period
 
 
-def lumped_powers(motion: PeriodicSolution, machine: Machine, weights: FloatArray) -> dict[str, float]:
-    """Mean powers of the lumped periodic motion at the times of ``quadrature``: "driving" and ``POWERS`` [W].
+def lumped_powers(weighted: WeightedMotion, machine: Machine) -> dict[str, float]:
+    """Mean powers of the lumped periodic motion: "driving" and ``POWERS`` [W].
 
-    ``machine`` has the pair's numbers as the multibody model derives them.
+    machine : the numbers of the pair as the multibody model derives them
     """
-    p = machine.record
-    found = losses(motion.system, machine, motion.time, motion.states, weights)
-    return found | {
-        "driving": motion.pinion_torque * float(p.rolling.omega_p + weights @ motion.states[:, 6]),
-        "braking": motion.brake_torque * float(p.rolling.omega_g + weights @ motion.states[:, 7]),
+    motion, weights = weighted
+    rolling = machine.record.rolling
+    rates = motion.states[:, len(COORDINATES) :]
+    driving = float(rolling.omega_p + weights @ rates[:, THETA_P])
+    braking = float(rolling.omega_g + weights @ rates[:, THETA_G])
+    return losses(motion.system, machine, motion.time, motion.states, weights) | {
+        "driving": motion.pinion_torque * driving,
+        "braking": motion.brake_torque * braking,
     }
 
 
 def losses(
     system: LTVSystem, machine: Machine, times: FloatArray, states: FloatArray, weights: FloatArray
 ) -> dict[str, float]:
-    """Mean powers of what a lumped motion loses [W], from (k,) times, (k, 12) states and (k,) weights."""
+    """Mean powers that a lumped motion loses [W], from times (k,), states (k, 12) and weights (k,)."""
     p = machine.record
     values = response(system, times, states)
     pairs = system.cycle.sample(times)
-    rates = states[:, 6:]
+    rates = states[:, len(COORDINATES) :]
+    theta_p, theta_g, x_p, x_g, y_p, y_g = rates.T
     place = values["position"]
-    sliding = (p.rolling.omega_p + rates[:, 0]) * place
-    sliding -= (p.rolling.omega_g + rates[:, 1]) * (p.geometry.L_XY - place) + rates[:, 4] - rates[:, 5]
-    closing = (
-        p.geometry.radius_p * rates[:, 0] - p.geometry.radius_g * rates[:, 1] + rates[:, 2] - rates[:, 3]
-    )
-    # A tip corner closes by less than the gears approach; damping holds that factor once.
+    sliding = (p.rolling.omega_p + theta_p) * place
+    sliding -= (p.rolling.omega_g + theta_g) * (p.geometry.L_XY - place) + y_p - y_g
+    closing = p.geometry.radius_p * theta_p - p.geometry.radius_g * theta_g + x_p - x_g
+    # A tip corner closes by less than the gears approach. The damping contains this factor once.
     share = 1.0 if pairs.closing is None else pairs.closing
     damping = np.sum(share * pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
-    corners = corner_force(values, pairs) * (rates[:, 5] - rates[:, 4])
+    corners = corner_force(values, pairs) * (y_g - y_p)
     bearings = machine.bearing_damping.T.ravel()  # x_p, x_g, y_p, y_g
     return {
         "friction": float(weights @ np.sum(values["friction_force"] * sliding, axis=0)),
-        "bearings": float(weights @ (rates[:, 2:] ** 2 @ bearings)),
+        "bearings": float(weights @ (rates[:, X_P:] ** 2 @ bearings)),
         "mesh_damping": float(weights @ damping),
         "mesh_stiffness": float(weights @ (values["normal_load"].sum(axis=0) * closing - damping - corners)),
     }
 
 
 def multibody_powers(balance: multibody.PowerBalance, period: float) -> dict[str, float]:
-    """The same of a multibody run over one mesh cycle; what it stored counts as driving power less [W]."""
-    found = {name: float(getattr(balance, name)) / period for name in POWERS}
-    return found | {"driving": (balance.driving - balance.kinetic) / period}
+    """Mean powers of a multibody run over one mesh cycle: "driving" and ``POWERS`` [W].
+
+    The power that the bodies and bearings store is taken off the driving power.
+    """
+    mean = {name: float(getattr(balance, name)) / period for name in POWERS}
+    return mean | {"driving": (balance.driving - balance.kinetic) / period}
 
 
 def residual(powers: Mapping[str, float]) -> float:
@@ -188,7 +210,7 @@ def residual(powers: Mapping[str, float]) -> float:
 
 
 def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
-    """Of each law and model the check that uses most of its limit, for a short table."""
+    """The check with the largest value over the limit, for each law and model. For a short table."""
     groups: dict[tuple[str, str], Judgement] = {}
     for check in checks:
         law, model = check.check.removeprefix("conservation: ").rsplit(", ", 1)
@@ -202,7 +224,7 @@ def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
 def _mesh_histories(
     pair: GearPair, motion: Mapping[str, FloatArray] | xr.Dataset
 ) -> tuple[FloatArray, FloatArray]:
-    """Moment of friction about the pinion, and the force on it off the line of action, of all pairs."""
+    """Sums over all pairs: moment of friction about the pinion, and force on the pinion across the line."""
     load, force, place = (np.asarray(motion[name]) for name in ("normal_load", "friction_force", "position"))
     tilt = contact_of(pair).elements(pair).tilt
     across = force
@@ -228,9 +250,9 @@ def _friction_takes_power(m: Machine, name: str, motion: xr.Dataset) -> Judgemen
 
 
 def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
-    """A stiffness of the whole mesh is load over transmission error: both models must give that error back.
+    """A stiffness of the whole mesh is load over transmission error. Both models must return this error.
 
-    Nothing to check with the stiffness of a tooth pair.
+    With the stiffness of a tooth pair there is nothing to check.
     """
     table = pair.mesh.stiffness
     if not isinstance(table, TableStiffness) or not table.whole_mesh:
@@ -238,21 +260,21 @@ def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
     p = m.record
     static = static_transmission_error(pair, phases=_PHASES)
     phase = static["phase"].to_numpy()
-    given = stiffness_factor(pair) * table.total(pair.geometry, phase)
+    stated = stiffness_factor(pair) * table.total(pair.geometry, phase)
     force = m.torque_pinion / p.geometry.radius_p
-    # Not at A and D themselves, on which rounding decides whether a pair is there.
+    # Between the phases: at A and D themselves rounding decides whether a pair is in contact.
     between = phase + 0.5 / _PHASES
     place = p.geometry.L_XA + p.geometry.pitch * (between[:, None] + np.arange(m.pairs))
     stiffness = np.array([[table_value(m.stiffness_table, xi) for xi in row] for row in place])
     second = np.where(place < p.geometry.L_XD, stiffness, 0.0).sum(axis=1)
     errors = {
-        "lumped": (static["transmission_error"].to_numpy()[0], force / given),
+        "lumped": (static["transmission_error"].to_numpy()[0], force / stated),
         "exact": (
             force / second,
             force / (stiffness_factor(pair) * table.total(pair.geometry, between)),
         ),
     }
-    limit = _SHARES * float(given.max() / given.min())
+    limit = _SHARES * float(stated.max() / stated.min())
     return [
         Judgement(
             f"conservation: load over stiffness of the whole mesh, {name}",
@@ -268,35 +290,40 @@ def _load_over_stiffness(pair: GearPair, m: Machine) -> list[Judgement]:
 def _action_and_reaction(m: Machine, name: str, motion: xr.Dataset) -> list[Judgement]:
     """The teeth push both gears alike: the momentum of both changes by their bearing forces alone."""
     time = motion["time"].to_numpy()
-    found = []
+    checks = []
     for j, axis in enumerate("xy"):
         momentum, work, coarse = (np.zeros(time.size) for _ in range(3))
         scale = 0.0
         for i, gear in enumerate("pg"):
             x, v = (motion[f"{axis}_{gear}{suffix}"].to_numpy() for suffix in ("", "_dot"))
-            k, c = m.bearing_stiffness[i, j], m.bearing_damping[i, j]
+            k = m.bearing_stiffness[i, j]
+            c = m.bearing_damping[i, j]
             momentum += m.mass[i] * (v - v[0]) + c * (x - x[0])
             work += k * _integral(time, x, v)
             coarse += k * _integral(time, x, v, 2)
             scale = max(scale, k * float(np.abs(x).max()) * m.period)
         # Without friction nothing moves off the line of action: then the load is the scale.
         scale = max(scale, 1e-6 * m.torque_pinion / m.record.geometry.radius_p * m.period)
-        off = float(np.abs(momentum + work)[::2].max()) / scale  # where the coarser one tells the error
+        # At every second time the coarser quadrature tells the error.
+        residual_impulse = float(np.abs(momentum + work)[::2].max()) / scale
         error = float(np.abs(coarse - work)[::2].max()) / scale
-        found.append(
+        checks.append(
             Judgement(
                 f"conservation: action and reaction {axis}, {name}",
-                off,
+                residual_impulse,
                 error + 1e-6,
                 "momentum of both gears against the impulse of their bearings, over the largest bearing "
                 "force times the mesh cycle; limit: what twice the step changes in the quadrature",
             )
         )
-    return found
+    return checks
 
 
 def _integral(time: FloatArray, x: FloatArray, v: FloatArray, every: int = 1) -> FloatArray:
-    """Integral of x from the first time on, by Hermite's cubic, (k,); a coarser one is held between."""
+    """Integral (k,) of x from the first time on, by Hermite's cubic over every second, third ... time.
+
+    Between these times the integral stays constant.
+    """
     t = time[::every]
     y = x[::every]
     rate = v[::every]
@@ -311,8 +338,9 @@ def _mean_bearing_loads(
 ) -> list[Judgement]:
     """Mean moments of the pinion, and mean forces of each gear off the line of action.
 
-    The mean of N even samples of a periodic history is off by no more than its variation over N.
-    ``variation`` is that of both ``_mesh_histories``.
+    The mean of N even samples of a periodic history errs by at most the variation of the history over N.
+
+    variation : variations of both ``_mesh_histories``
     """
     p = m.record
     k_p, k_g = m.bearing_stiffness
@@ -339,7 +367,7 @@ def _mean_bearing_loads(
 
 
 def _missed(motion: xr.Dataset, name: str) -> float:
-    """What even times can miss of the mean of a displacement: step^2/8 times the variation of its rate."""
+    """Largest error of the mean of a displacement at even times: step^2/8 times the variation of the rate."""
     rate = motion[f"{name}_dot"].to_numpy()
     time = motion["time"].to_numpy()
     step = float(time[1] - time[0])
@@ -354,9 +382,9 @@ def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:
         "driving power less brake, friction, bearings, damping of the teeth and the work of the change "
         "of stiffness and profile, over the driving power; limit: the error of the integration",
     )
-    if (
-        name != "lumped"
-    ):  # each power of "linear" is the lumped one; "exact" keeps this law and that of friction
+    # Each power of "linear" is compared with the lumped power. At "exact" the first law and the law of
+    # friction leave no other efficiency.
+    if name != "lumped":
         return [law]
     efficiency = powers["braking"] / powers["driving"]
     outside = max(efficiency - 1.0, 0.0 if efficiency > 0.0 else 1.0 - efficiency, 0.0)
@@ -364,11 +392,12 @@ def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:
     return [law, Judgement(f"conservation: efficiency, {name}", outside, _INTEGRATION[name], text)]
 
 
-def _same_powers(own: Mapping[str, float], linear: Mapping[str, float]) -> list[Judgement]:
+def _same_powers(lumped: Mapping[str, float], linear: Mapping[str, float]) -> list[Judgement]:
+    """At "linear" every power equals the power of the lumped model."""
     return [
         Judgement(
             f"conservation: power {power}, linear",
-            abs(linear[power] - own[power]) / own["driving"],
+            abs(linear[power] - lumped[power]) / lumped["driving"],
             _INTEGRATION["linear"],
             f"power {text} of both models, difference over the driving power; the same equations: only "
             "integration error may remain",

@@ -27,13 +27,13 @@ _REASON = (
 
 @dataclass(frozen=True)
 class LossAgreement:
-    """Mean powers that are lost in both motions.
+    """Mean lost powers of both motions.
 
     Attributes
     ----------
     lumped, multibody : place of ``validation.prediction.motion.PLACES`` -> mean power lost there [W]
-    limit : largest ``difference`` that agrees
-    input_power : driving power, whose rounding is no loss [W]
+    limit : largest ``difference`` within the limit
+    input_power : driving power [W]; rounding of the driving power is no loss
     """
 
     lumped: Mapping[str, float]
@@ -53,9 +53,9 @@ class LossAgreement:
 
     @property
     def difference(self) -> float:
-        """Difference of both totals over that of the lumped motion; infinite where only one model loses.
+        """Difference of both totals over the total of the lumped motion; infinite if only one model loses.
 
-        Losses below ``_NO_LOSS`` of the driving power are what the integration leaves.
+        A loss below ``_NO_LOSS`` of the driving power is an error of the integration.
         """
         apart = abs(self.total_multibody - self.total)
         scale = max(self.total, _NO_LOSS * self.input_power)
@@ -63,7 +63,7 @@ class LossAgreement:
 
     @property
     def within(self) -> bool:
-        """Whether the difference is within its limit; one that is not a number is not."""
+        """Whether the difference is within the limit. NaN is not within the limit."""
         return self.difference <= self.limit
 
     @property
@@ -73,16 +73,16 @@ class LossAgreement:
 
 
 def loss_agreement(pair: GearPair, lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement | None:
-    """Compare the losses that a motion of each model carries; None where one of them carries none."""
-    own = losses_of(lumped)
-    other = losses_of(multibody)
+    """Compare the losses in the attributes of both motions. None: a motion has no losses there."""
+    lost = losses_of(lumped)
+    lost_multibody = losses_of(multibody)
     power = pair.operating.pinion_torque * pair.geometry.omega_pinion
-    return LossAgreement(own, other, input_power=power) if own and other else None
+    return LossAgreement(lost, lost_multibody, input_power=power) if lost and lost_multibody else None
 
 
 def sliding_agreement(lumped: xr.Dataset, multibody: xr.Dataset) -> LossAgreement:
-    """Compare what sliding takes over the same times, where a run of teeth that differ does not repeat."""
-    own, other = (
+    """Compare the loss by sliding over the same times. Runs of unlike teeth do not repeat."""
+    lost, lost_multibody = (
         {"sliding": -float(run["friction_power"].sum("pair").mean())} for run in (lumped, multibody)
     )
-    return LossAgreement(own, other)
+    return LossAgreement(lost, lost_multibody)

@@ -22,15 +22,15 @@ from lumped.typing import FloatArray
 from validation.cross_check.agreement import COMPANION, Fidelity, is_constant
 from validation.cross_check.verdict import SAME_EQUATIONS
 
-#: Tolerances of the integrations: far below the limits they are used to check, where a motion has an ordinary
-#: size: the smallest limit over the deflection, as a share of that of the transmission error.
+#: Tolerances of the integrations for motions of ordinary size: far below the limits of the checks. The size
+#: is the smallest limit over the deflection, as a share of the limit of the transmission error.
 _RTOL: Mapping[str, float] = {"linear": 1e-9, "exact": 1e-8}
 _ORDINARY = 0.2
-#: Most by which the first is tightened for a smaller motion.
+#: Smallest factor of the tolerance at "linear" for a smaller motion.
 _TIGHTER = 0.001
-#: Velocity over which friction changes its sign where the integrator cannot follow the model's own one [m/s].
+#: Velocity over which friction changes its sign where the integrator fails with the model's choice [m/s].
 _BLUNT = 0.01
-#: Change of the peak to peak by momentary loads, at most, that is still the same motion.
+#: Largest change of the peak to peak by momentary loads at which the motion is still the same.
 _NEAR = 0.25
 #: Effects of the multibody model where contact is lost.
 CONTACT_LOSS: Mapping[Fidelity, Mapping[str, bool] | Sequence[str]] = {
@@ -42,11 +42,11 @@ _ADVICE = "More torque or damping, or another speed, keeps the teeth in contact.
 
 
 def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
-    """The stable motion of one mesh cycle with loss of contact that the multibody model is compared with.
+    """The stable motion of one mesh cycle with loss of contact with which the multibody model is compared.
 
-    None where the teeth of the linear motion push all the time, or where no such motion is found: neither
-    near the linear motion, nor where a run settles that starts there. Then the second value says why a motion
-    is compared in which teeth pull; else it is empty.
+    None: the teeth of the linear motion push all the time, or no stable motion of one mesh cycle is found.
+    The search starts near the linear motion; then a run from the linear motion settles. Where no motion is
+    found, the second value says why a motion in which teeth pull is compared. Else the second value is empty.
     """
     motion = lumped.steady_state(pair, supports="springs", samples_per_cycle=512)
     least = -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
@@ -68,10 +68,12 @@ def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
 
 
 def settled_orbit(pair: GearPair) -> GearOrbit:
-    """The motion with unilateral contact, tangents and dampers those of the static load, that a run comes to.
+    """The motion with unilateral contact to which a run settles.
 
-    It is the one that Newton's method finds from the linear motion, if that is stable; else the one to which
-    a run settles. A NumericalError says that the motion does not repeat, or does not stay bounded.
+    Tangents and dampers belong to the static load. Newton's method starts from the linear motion. If the
+    result is not stable, a run is computed until the run settles.
+
+    Raises NumericalError : the motion does not repeat, or does not stay bounded
     """
     with suppress(NumericalError):
         orbit = floquet.periodic_orbit(pair)
@@ -87,24 +89,27 @@ def settled_orbit(pair: GearPair) -> GearOrbit:
 
 
 def momentary_motion(pair: GearPair, linear: xr.Dataset, samples: int) -> xr.Dataset | None:
-    """The lumped motion by momentary load over one mesh cycle, on springs; None where none is near the other.
+    """The lumped motion by momentary load over one mesh cycle, on springs; None: no motion near ``linear``.
 
-    ``linear`` has the tangents and dampers of the static load.
+    linear : the lumped motion with tangents and dampers of the static load
     """
     with suppress(NumericalError):
-        found = lumped.steady_state(pair, contact="unilateral", supports="springs", samples_per_cycle=samples)
-        swings = float(np.ptp(found["dte"].to_numpy())), float(np.ptp(linear["dte"].to_numpy()))
-        if found.attrs["period_cycles"] == 1 and abs(swings[0] - swings[1]) <= _NEAR * swings[1]:
-            return found
+        motion = lumped.steady_state(
+            pair, contact="unilateral", supports="springs", samples_per_cycle=samples
+        )
+        swing = float(np.ptp(motion["dte"].to_numpy()))
+        linear_swing = float(np.ptp(linear["dte"].to_numpy()))
+        if motion.attrs["period_cycles"] == 1 and abs(swing - linear_swing) <= _NEAR * linear_swing:
+            return motion
     return None
 
 
 def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]:
     """Relative tolerances of "linear" and "exact" for histories (quantity -> one mesh cycle).
 
-    An integrator errs in proportion to the deflection. The limits at fidelity "linear" are shares of the peak
-    to peak, which above the resonances is a thousandth of the deflection and less, and smallest off the line
-    of action. So the tolerance follows the smallest limit.
+    The error of an integrator is proportional to the deflection. The limits at fidelity "linear" are shares
+    of the peak to peak. Above the resonances the peak to peak is a thousandth of the deflection and less, and
+    it is smallest across the line of action. So the tolerance follows the smallest limit.
     """
     deflection = abs(float(np.mean(values["dte"])))
     limits = [
@@ -120,11 +125,13 @@ def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]
 def periodic_motion(
     pair: GearPair, fidelity: Fidelity, samples: int, rtol: float, orbit: GearOrbit | None
 ) -> xr.Dataset | None:
-    """Motion of the multibody model over one mesh cycle; None where there is none near the lumped one.
+    """Motion of the multibody model over one mesh cycle. None: no motion near the lumped motion.
 
-    ``orbit`` is the lumped motion with contact loss, if there is one; then flanks touch where they meet, also
-    with relief. Where the model cannot go on with its own change of the sign of friction a blunter one is
-    tried.
+    The integrator may fail where friction changes its sign. Then the search is repeated with a change of sign
+    over a larger velocity.
+
+    orbit : the lumped motion with contact loss, if there is one; then flanks touch where they meet, also with
+        relief
     """
     for velocity in (None, _BLUNT):
         try:
@@ -144,7 +151,7 @@ def periodic_motion(
 
 
 def repeated(cycle: xr.Dataset, cycles: int) -> xr.Dataset:
-    """A motion of one mesh cycle, its end left out, over several cycles, the last end included."""
+    """Repeat a motion of one mesh cycle over several cycles. The end of the last cycle is added."""
     samples = cycle.sizes["time"]
     period = float(cycle["time"][1]) * cycle.sizes["time"]
     number = np.arange(cycles * samples + 1)

@@ -1,4 +1,4 @@
-"""The cross-check of teeth that differ: both models over a revolution, or over cycles round the worst tooth.
+"""The cross-check of unlike teeth: both models over a revolution, or over mesh cycles round the worst tooth.
 
 Sources: docs/theory/teeth.md, "In the multibody model".
 """
@@ -17,14 +17,15 @@ from lumped.model.tooth_laws import ToothLaws, mesh_tables
 from lumped.schema.meeting_teeth import period_of
 from multibody.run.simulation import at_mean_speed
 
-#: Longest period that is compared as a whole, cycles of a window, and cycles in which a start is forgotten.
+#: Longest period that is compared as a whole, compared cycles of a longer period, and cycles before these, in
+#: which the motion settles.
 _WHOLE = 64
 _WINDOW = 6
 _FORGOTTEN = 10
 
 
 def worst_cycle(pair: GearPair) -> int:
-    """Mesh cycle with the largest static load of a tooth in the period, of faulty teeth if there are."""
+    """Mesh cycle with the largest static load of a tooth in the period; of a faulty tooth if there is one."""
     sharing = lumped.static_sharing(pair, samples_per_cycle=32)
     load = sharing["normal_load"].to_numpy()
     faulty = np.zeros(load.shape, dtype=bool)
@@ -37,8 +38,8 @@ def worst_cycle(pair: GearPair) -> int:
 def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr.Dataset]:
     """Lumped and multibody motion of the same cycles at the same times.
 
-    Returned first is the pair whose teeth are counted from the first of the cycles that are run: the
-    multibody model starts from the lumped motion, and the first cycles are not compared.
+    The first returned value is the pair with the teeth counted from the first cycle of both runs. The
+    multibody model starts from the lumped motion, and the first ``_FORGOTTEN`` cycles are not compared.
     """
     period = period_of(pair)
     compared = period if period <= _WHOLE else _WINDOW
@@ -54,10 +55,10 @@ def both_motions(pair: GearPair, samples: int) -> tuple[GearPair, xr.Dataset, xr
     number = np.arange((_FORGOTTEN + compared) * samples + 1)
     reference = motion.isel(time=number % motion.sizes["time"])
     time = reference["time"].to_numpy()[1] * np.arange(number.size)
-    # What friction adds over many turns of a free train is no phase of the lumped contact.
+    # Friction turns the free train further over many turns; this part is no phase of the lumped contact.
     system = LTVSystem.of(pair.healthy, "full", supports="springs")
     followed = swing(swinging(mesh_tables(ToothLaws(pair), 1.0, 1), system), time)
     exact = at_mean_speed(pair, reference, followed, samples, _FORGOTTEN // 2)
-    kept = slice(_FORGOTTEN * samples, None)
-    exact = exact.isel(time=kept)
-    return pair, reference.isel(time=kept).assign_coords(time=exact["time"]), exact
+    settled = slice(_FORGOTTEN * samples, None)
+    exact = exact.isel(time=settled)
+    return pair, reference.isel(time=settled).assign_coords(time=exact["time"]), exact

@@ -1,8 +1,8 @@
-"""Stiffness of a tooth pair, its change with the load and the coupling of neighbours against second values.
+"""Stiffness of a tooth pair, change of the stiffness with the load, and coupling: against second values.
 
-Both models read these quantities from ``lumped.path_of_contact``, so no comparison of motions can find them
-wrong. The second values are those of ``multibody.elasticity.pair``, which shares no code with
-``lumped.stiffness``. A row says what its second value stands on: a formula coded a second time is evidence
+Both models read these quantities from ``lumped.path_of_contact``, so no comparison of motions can show a
+fault in these quantities. The second values come from ``multibody.elasticity.pair``, and share no code with
+``lumped.stiffness``. Each row names the source of the second value. A formula coded a second time is evidence
 against faults of coding alone, because both codes have one source.
 
 Sources: docs/theory/elasticity.md, "What checks the stiffness of a pair".
@@ -82,10 +82,10 @@ class StiffnessAgreement:
     ----------
     quantity : "stiffness", "shape", "softening" or "neighbours"
     long_name : the quantity in words
-    source : what the second value stands on
-    difference : largest difference as a share; of what, ``reason`` says
-    size : largest second value, in the same share
-    limit, reason : largest ``difference`` that passes, and why
+    source : source of the second value
+    difference : largest difference as a share; ``reason`` names the whole
+    size : largest second value, as a share of the same whole
+    limit, reason : largest ``difference`` within the limit, and the reason for the limit
     """
 
     quantity: str
@@ -98,7 +98,7 @@ class StiffnessAgreement:
 
     @property
     def within(self) -> bool:
-        """Whether the difference is within its limit. A difference that is not a number is not within."""
+        """Whether the difference is within the limit. NaN is not within the limit."""
         return self.difference <= self.limit
 
     @property

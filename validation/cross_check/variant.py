@@ -1,7 +1,7 @@
-"""The asymmetric variant of a gear pair: nothing of it is alike on both gears.
+"""The asymmetric variant of a gear pair: both gears and all bearings of the variant are unlike.
 
 A pair whose pinion, gear and bearings are alike cannot show swapped bearings, a lever of the wrong gear or a
-mirrored drawing. Its variant has other tooth numbers, profile shifts, densities and roughnesses on both gears
+mirrored drawing. The variant has other tooth numbers, profile shifts, densities and roughnesses on both gears
 and four unlike bearings; law, stiffness model, lubricant and torque stay.
 """
 
@@ -47,10 +47,10 @@ def asymmetric_variant(pair: GearPair) -> GearPair | None:
 
 
 def prediction_holds(pair: GearPair) -> bool:
-    """Whether the lumped motion holds by its own numbers: it is stable, and teeth in contact touch and press.
+    """Whether the lumped motion is possible: the motion is stable, and teeth in contact touch and press.
 
-    Teeth that approach each other may press by damping before they touch: in the lumped model alone. In the
-    loaded contact, where a pair begins and ends its contact gradually, all pairs together must press.
+    In the lumped model alone, damping may press teeth that approach each other before they touch. In loaded
+    contact, where a pair begins and ends contact gradually, all pairs together must press.
     """
     motion = periodic_cycle(pair, _SAMPLES)
     pairs = motion.system.cycle.sample(motion.time)
@@ -61,8 +61,8 @@ def prediction_holds(pair: GearPair) -> bool:
 
 
 def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
-    """Changes of fields, the boldest first."""
-    own = pair.to_mapping()
+    """Changes of fields; the first changes most fields."""
+    fields = pair.to_mapping()
     plain: dict[str, Any] = {"name": f"{pair.name[:70]}, variant", "operating.brake_torque": "balanced"}
     plain["mesh.damping_ratio"] = max(_DAMPING, pair.mesh.damping_ratio)
     for place, (stiffness, damping) in _BEARINGS.items():
@@ -72,7 +72,7 @@ def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
         ratio = max(_DAMPING, getattr(bearing, f"{axis}_damping_ratio")) * damping
         plain[f"bearings.{gear}.{axis}_damping_ratio"] = min(ratio, 2.0)
     for gear, density, roughness in (("pinion", 0.9, 1.3), ("gear", 1.1, 0.8)):
-        plain[f"{gear}.density"] = own[gear].get("density", 7850.0) * density
+        plain[f"{gear}.density"] = fields[gear].get("density", 7850.0) * density
         plain[f"{gear}.roughness"] = getattr(pair, gear).roughness * 1e6 * roughness
     teeth = {
         "pinion.teeth": pair.pinion.teeth + 1,
@@ -81,7 +81,7 @@ def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
         "gear.profile_shift": pair.profile_shifts[1] - 0.03,
         "centre_distance": None,
     }
-    given, relieved = (
+    without_tips, without_reliefs = (
         {
             f"{g}.{n}": None
             for g in ("pinion", "gear")
@@ -90,7 +90,7 @@ def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
         }
         for names in (("addendum", "tip_diameter", "tip_alteration"), ("tip_relief", "root_relief"))
     )
-    yield plain | teeth | given
-    if relieved:
-        yield plain | teeth | given | relieved
+    yield plain | teeth | without_tips
+    if without_reliefs:
+        yield plain | teeth | without_tips | without_reliefs
     yield plain

@@ -1,4 +1,4 @@
-"""What the cross-check decides: single checks against their limits, and the verdict on all of them."""
+"""Decisions of the cross-check: single checks against limits, and the verdict on all checks."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Judgement:
-    """A value against the largest one that passes; ``check`` is as "variant: same equations: dte"."""
+    """A value against a limit. ``check`` is the name of the check, as "variant: same equations: dte"."""
 
     check: str
     value: float
@@ -43,7 +43,7 @@ class Judgement:
 
     @property
     def within(self) -> bool:
-        """Whether it passes; a value that is not a number does not."""
+        """Whether the value is within the limit. NaN is not within the limit."""
         return self.value <= self.limit
 
 
@@ -72,7 +72,7 @@ SAME_EQUATIONS: Mapping[str, float] = MappingProxyType(
 def limit_of(quantity: str, fidelity: str, limit: float = LOAD_LIMIT) -> tuple[float, str]:
     """Limit of the largest difference over the peak to peak of a quantity at a fidelity, and why.
 
-    ``limit`` is that of quantities that the tooth load drives, at "exact".
+    limit : limit at "exact" of the quantities that the tooth load drives
     """
     by_friction = quantity in _BY_FRICTION
     if fidelity == "linear":

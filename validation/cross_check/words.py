@@ -33,9 +33,10 @@ MEASURES = (
     "it, and the mean off the line of action by the deflection under the friction force, where these are "
     "larger."
 )
-#: Swing of the rotation, over the base pitch, from which on it is named where teeth differ.
+#: Smallest swing of the rotation, over the base pitch, that the text names where teeth differ.
 _TURNS = 0.01
-#: Effect of the exact model -> what it is, and what to do. What both leave is where the teeth touch.
+#: Effect of the exact model -> the effect in words, and what to do. Beside both only the place of contact is
+#: left.
 _SWITCHED = {
     "rotation_phase": (
         "the free shafts turn to and fro by {turn} of a base pitch, and the contact moves with them",
@@ -58,15 +59,15 @@ def failed_checks(check: CrossCheck, most: int = 3) -> str:
 
 
 def _failed(judgement: Judgement) -> str:
-    """One check that fails; a difference of the motions in words."""
+    """A failed check in words."""
     check = judgement.check.removeprefix("variant: ")
     kind, _, name = check.partition(": ")
     if kind != "same equations":
         return f"{judgement.check} {number(judgement.value, 2)}, limit {number(judgement.limit, 2)}"
-    of = " of its asymmetric variant" if check != judgement.check else ""
+    variant = " of its asymmetric variant" if check != judgement.check else ""
     value = percent(judgement.value)
     limit = percent(judgement.limit)
-    return f"{NAMES[name]}{of} {value} off with the same equations, limit {limit}"
+    return f"{NAMES[name]}{variant} {value} off with the same equations, limit {limit}"
 
 
 def same_equations(check: CrossCheck) -> str:
@@ -80,42 +81,42 @@ def same_equations(check: CrossCheck) -> str:
 
 
 def loss_difference(check: CrossCheck) -> str:
-    """How much power the multibody model loses beside the lumped one; empty where that is not known."""
+    """Lost power of the multibody model beside the lumped model. Empty: the loss is not known."""
     loss = check.loss
     if loss is None:
         return ""
-    own, other = (quantity(value, "W", 3) for value in (loss.total, loss.total_multibody))
+    lost, lost_multibody = (quantity(value, "W", 3) for value in (loss.total, loss.total_multibody))
     place = "by sliding " if set(loss.lumped) == {"sliding"} else ""
     verb = "agrees" if loss.within else "does not agree"
     return (
-        f"It loses {other} {place}beside {own}, which {verb}: {share(loss.difference)}, limit "
+        f"It loses {lost_multibody} {place}beside {lost}, which {verb}: {share(loss.difference)}, limit "
         f"{percent(loss.limit)}."
     )
 
 
 def whole_difference(check: CrossCheck) -> str:
-    """How much the exact model differs: in the transmission error, and in what uses most of its limit."""
+    """Difference of the exact model: transmission error, and quantity with the largest share of a limit."""
     dte = next(a for a in check.of("exact") if a.quantity == "dte")
     worst = check.worst("exact")
-    (own, other), swings = (
-        [quantity(value, a.unit, 3) for value in (a.peak_to_peak, a.peak_to_peak_multibody)]
-        for a in (dte, worst)
-    )
-    whole = (
-        f"The transmission error of the multibody model is {other} peak to peak beside {own}, and differs by "
-        f"at most {share(dte.difference)} of that"
+    lumped = quantity(dte.peak_to_peak, dte.unit, 3)
+    multibody = quantity(dte.peak_to_peak_multibody, dte.unit, 3)
+    error = (
+        f"The transmission error of the multibody model is {multibody} peak to peak beside {lumped}, and "
+        f"differs by at most {share(dte.difference)} of that"
     )
     if worst.quantity == "dte":
-        return f"{whole}, limit {percent(dte.limit)}."
+        return f"{error}, limit {percent(dte.limit)}."
     name = NAMES[worst.quantity]
     limit = percent(worst.limit)
-    return f"{whole}; {name}, {swings[1]} beside {swings[0]}, by {share(worst.difference)}, limit {limit}."
+    lumped = quantity(worst.peak_to_peak, worst.unit, 3)
+    multibody = quantity(worst.peak_to_peak_multibody, worst.unit, 3)
+    return f"{error}; {name}, {multibody} beside {lumped}, by {share(worst.difference)}, limit {limit}."
 
 
 def cause_of_difference(check: CrossCheck) -> str:
-    """The effect that explains most of the difference in what uses most of its limit.
+    """The effect behind most of the difference, for the quantity with the largest share of a limit.
 
-    Where teeth differ, a swing of the free shafts that is large beside the base pitch; else empty.
+    With unlike teeth: a swing of the free shafts, if the swing is large beside the base pitch; else empty.
     """
     g = check.pair.geometry
     turn = float(np.ptp(check.multibody["exact"]["theta_p"].to_numpy())) * g.base_radius_pinion / g.base_pitch
@@ -126,12 +127,12 @@ def cause_of_difference(check: CrossCheck) -> str:
         )
         return f"{swings}, which the lumped contact follows to first order.{more}" if turn > _TURNS else ""
     worst = check.worst("exact")
-    left = {effect: _without(check, worst.quantity, effect) for effect in _SWITCHED}
-    effect = min(left, key=lambda name: left[name])
-    if left[effect] > 0.5 * worst.difference:
+    remaining = {effect: _without(check, worst.quantity, effect) for effect in _SWITCHED}
+    effect = min(remaining, key=lambda name: remaining[name])
+    if remaining[effect] > 0.5 * worst.difference:
         return f"No effect alone explains half of it. {_CONTACT}"
     words, more = _SWITCHED[effect]
-    rest = f"Without it the {NAMES[worst.quantity]} differs by {share(left[effect])}.{more}"
+    rest = f"Without it the {NAMES[worst.quantity]} differs by {share(remaining[effect])}.{more}"
     return f"Most of it comes from one effect: {words.format(turn=percent(turn))}. {rest}"
 
 

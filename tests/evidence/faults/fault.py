@@ -28,13 +28,13 @@ class Fault:
 
 def _read(group: str) -> tuple[Fault, ...]:
     file = Path(__file__).with_name("catalogue") / f"{group.replace(' ', '_')}.toml"
-    found = []
+    faults = []
     rows = tomllib.loads(file.read_text(encoding="utf-8"))
     common = rows.pop("on", {})
     for key, row in rows.items():
         on = common | row.pop("on", {}) | dict.fromkeys(row.pop("without", ()))
-        found.append(Fault(key, on=on, **row))
-    return tuple(found)
+        faults.append(Fault(key, on=on, **row))
+    return tuple(faults)
 
 
 #: Group in words -> its faults.

@@ -30,7 +30,7 @@ FELT = 0.01
 
 def quantities(pair: GearPair) -> dict[str, FloatArray]:
     """Every group of numbers by name; a group that cannot be computed is left out."""
-    found: dict[str, FloatArray] = {}
+    values: dict[str, FloatArray] = {}
     for compute in (
         _path,
         _motion,
@@ -42,10 +42,10 @@ def quantities(pair: GearPair) -> dict[str, FloatArray]:
     ):
         with np.errstate(all="ignore"):
             try:
-                found |= compute(pair)
+                values |= compute(pair)
             except (NumericalError, ParameterError, ArithmeticError, np.linalg.LinAlgError):
                 continue
-    return found
+    return values
 
 
 def change(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> tuple[float, str]:
@@ -120,19 +120,19 @@ def _path(pair: GearPair) -> dict[str, FloatArray]:
 def _motion(pair: GearPair) -> dict[str, FloatArray]:
     """Periodic motion and transient on springs, transmission error at rest."""
     motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES, supports="springs")
-    found = _numbers(motion, "motion") | _attributes(motion, "motion", "mesh_efficiency", "brake_torque")
-    found["share of power lost"] = 1.0 - found["motion mesh_efficiency"]
+    values = _numbers(motion, "motion") | _attributes(motion, "motion", "mesh_efficiency", "brake_torque")
+    values["share of power lost"] = 1.0 - values["motion mesh_efficiency"]
     run = lumped.simulate(pair, 2, samples_per_cycle=SAMPLES, supports="springs")
-    found |= _numbers(run[["dte", "x_p", "theta_g_dot"]], "transient")
+    values |= _numbers(run[["dte", "x_p", "theta_g_dot"]], "transient")
     still = lumped.static_transmission_error(pair)
-    return found | _numbers(still, "at rest")
+    return values | _numbers(still, "at rest")
 
 
 def _report(pair: GearPair) -> dict[str, FloatArray]:
     """Arithmetic of the report."""
     prediction = predicted(pair)
     static = dataclasses.asdict(quasi_static_losses(pair))
-    found = {
+    values = {
         "speed": np.array([operating_rpm(pair)]),
         "static load": np.array([prediction.static_force]),
         **{name: np.array([value]) for name, value in prediction.numbers.items()},
@@ -141,7 +141,7 @@ def _report(pair: GearPair) -> dict[str, FloatArray]:
         "natural frequencies": np.array([mode.natural_frequency for mode in modes(pair)]),
         "resonant speeds": np.array([mode.resonant_speed for mode in modes(pair)]),
     }
-    return found | {f"quasi-static {name}": np.array([value]) for name, value in static.items()}
+    return values | {f"quasi-static {name}": np.array([value]) for name, value in static.items()}
 
 
 def _stability(pair: GearPair) -> dict[str, FloatArray]:

@@ -34,12 +34,12 @@ _QUICK = ("budget", "unstable_speeds", "same_equations", "outside")
 @cache
 def checks() -> dict[str, Callable[[Written], None]]:
     """Name -> check of a written report."""
-    found = {}
+    failures = {}
     for module in _MODULES:
         for name, value in vars(importlib.import_module(f"tests.validation.reporting.{module}")).items():
             if name.startswith("test_") and list(inspect.signature(value).parameters) == ["written"]:
-                found[name] = value
-    return found
+                failures[name] = value
+    return failures
 
 
 def seen_by(fault: Fault | None, pairs: Iterable[str] = PAIRS) -> tuple[str, ...]:
@@ -50,8 +50,8 @@ def seen_by(fault: Fault | None, pairs: Iterable[str] = PAIRS) -> tuple[str, ...
     for name in pairs:
         sound(name)
         with contextlib.nullcontext() if fault is None else applied(fault):
-            if found := tuple(_failing(name, fault)):
-                return found
+            if failing := tuple(_failing(name, fault)):
+                return failing
     return ()
 
 

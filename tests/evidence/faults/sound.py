@@ -61,9 +61,9 @@ def _varied(base: GearPair, rng: random.Random) -> GearPair:
         "operating.pinion_torque": base.operating.pinion_torque * rng.uniform(0.3, 1.5),
     }
     for gear in ("pinion", "gear"):
-        for way in ("loa", "oloa"):
-            fields[f"bearings.{gear}.{way}_stiffness"] = 1e8 * 10.0 ** rng.uniform(-0.3, 1.0)
-            fields[f"bearings.{gear}.{way}_damping_ratio"] = rng.uniform(0.02, 0.1)
+        for direction in ("loa", "oloa"):
+            fields[f"bearings.{gear}.{direction}_stiffness"] = 1e8 * 10.0 ** rng.uniform(-0.3, 1.0)
+            fields[f"bearings.{gear}.{direction}_damping_ratio"] = rng.uniform(0.02, 0.1)
     if rng.random() < 0.5:  # gears of other sizes, meshing without backlash but for the thinning
         shifts = {f"{gear}.profile_shift": rng.uniform(0.0, 0.3) for gear in ("pinion", "gear")}
         teeth = {f"{gear}.teeth": rng.randint(20, 60) for gear in ("pinion", "gear")}
@@ -89,8 +89,8 @@ def sound_pairs(
     seconds = sum(row["seconds"] for row in rows) / max(len(rows), 1)
     print(", ".join(f"{n} {name}" for name, n in sorted(verdicts.items())) + f"; {seconds:.2g} s per pair")
     if output is not None:
-        known = json.loads(output.read_text(encoding="utf-8")) if output.exists() else []
-        named = {row["name"]: row for row in [*known, *rows]}
+        earlier = json.loads(output.read_text(encoding="utf-8")) if output.exists() else []
+        named = {row["name"]: row for row in [*earlier, *rows]}
         output.write_text(json.dumps(list(named.values()), indent=1) + "\n", encoding="utf-8")
     return int(verdicts["fails"] > 0)
 

@@ -113,7 +113,7 @@ def test_the_sound_program_keeps_every_relation_of_a_report(number):
 @pytest.mark.slow
 @pytest.mark.parametrize("pair", ["calm", "lost"])
 def test_a_sound_report_passes_and_faults_in_it_are_seen(pair):
-    """Two faults of those that show on both pairs, others at every change of the code."""
+    """Two of the faults that show on both pairs. Every change of the code selects other faults."""
     assert seen_by(None, [pair]) == ()
     both = [key for key in REPORT_FAULTS if key.startswith(("order_", "force_", "axis_", "csv_"))]
     both.remove("force_least")  # where contact is lost, the least of both is zero
@@ -123,9 +123,9 @@ def test_a_sound_report_passes_and_faults_in_it_are_seen(pair):
 
 
 def test_every_fault_of_the_report_is_seen():
-    found = stored("report_faults.json")
-    assert set(found) == set(REPORT_FAULTS)
-    assert [key for key, checks in found.items() if not checks] == []
+    results = stored("report_faults.json")
+    assert set(results) == set(REPORT_FAULTS)
+    assert [key for key, checks in results.items() if not checks] == []
 
 
 def test_the_stored_table_is_of_these_faults_and_misses_none():

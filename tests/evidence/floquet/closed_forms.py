@@ -56,8 +56,8 @@ def constant_error(n: int, rtol: float = 1e-11, method: str = "gauss") -> float:
     """|M - exp(A T)|/|exp(A T)| of n states with random constant coefficients."""
     A = np.random.default_rng(7).normal(size=(n, n)) - 0.5 * np.eye(n)
     exact = expm(2.0 * A)
-    found = monodromy(PeriodicSystem(lambda t: A, 2.0), rtol, method=method).matrix
-    return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
+    computed = monodromy(PeriodicSystem(lambda t: A, 2.0), rtol, method=method).matrix
+    return float(np.linalg.norm(computed - exact) / np.linalg.norm(exact))
 
 
 def check_closed_forms() -> Iterator[Check]:

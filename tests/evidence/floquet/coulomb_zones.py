@@ -57,7 +57,8 @@ class CoulombGearPair:
     def gains(self) -> FloatArray:
         """Total mesh stiffness in each of the three pieces over its mean without friction, (3,).
 
-        Two pairs, one in approach and one in recess; one in approach; one in recess.
+        First piece: a pair in approach and a pair in recess. Second: a pair in approach. Third: a pair in
+        recess.
         """
         m = self.friction * float(np.tan(self.pressure_angle))
         approach, recess = (1.0 - m, 1.0 + m) if self.sign == "reversing" else (1.0 + m, 1.0 + m)

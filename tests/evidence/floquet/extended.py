@@ -146,10 +146,10 @@ def random_pair(rng: np.random.Generator) -> GearPair:
 def stress_test(count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Largest error, bound and ratio of error to bound of the multipliers of random gear pairs.
 
-    Each computed multiplier is matched with one of the reference so that the sum of the distances is least.
+    Computed multipliers are matched with the reference multipliers so that the sum of the distances is least.
     """
     rng = np.random.default_rng(seed)
-    found = []
+    results = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # random pairs leave the ranges of the laws
         for _ in range(count):
@@ -161,6 +161,6 @@ def stress_test(count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArr
             error = distance[linear_sum_assignment(distance)]
             # LAPACK's own error in the eigenvalues of the reference is no error of ours.
             ratio = np.maximum(error - _LAPACK, 0.0) / ours.errors[0]
-            found.append((error.max(), ours.errors[0].max(), ratio.max()))
-    error, bound, excess = np.array(found).T
+            results.append((error.max(), ours.errors[0].max(), ratio.max()))
+    error, bound, excess = np.array(results).T
     return error, bound, excess

@@ -19,7 +19,7 @@ from lumped.typing import BoolArray, FloatArray
 def meissner(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> PeriodicSystem:
     """Return x'' + (delta + epsilon s) x = 0 with s = 1 in the first half of the period and -1 in the second.
 
-    At the switches A is not a number, so that a propagator that asks for it there is found out.
+    At the switches A is not a number, so that a propagator that evaluates A at a switch fails the check.
     """
 
     def A(t: FloatArray) -> FloatArray:

@@ -44,8 +44,8 @@ def pytest_runtest_logstart(nodeid: str) -> None:
     """Give a test its limit: the system ends the process where it is passed, in compiled code too."""
     _say("start", nodeid)
     _begun.append(_used())
-    own = sum(os.times()[:2])
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(own + MOST_OF_ONE), resource.RLIM_INFINITY))
+    seconds = sum(os.times()[:2])
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(seconds + MOST_OF_ONE), resource.RLIM_INFINITY))
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:

@@ -44,8 +44,8 @@ class Mutant:
 
 def files(root: Path) -> list[str]:
     """Return path from the root -> file, for all files of a tree from which lines may be drawn."""
-    found = (path.relative_to(root).as_posix() for name in WEIGHTS for path in (root / name).rglob("*.py"))
-    return sorted(file for file in found if not file.startswith(LEFT_OUT))
+    paths = (path.relative_to(root).as_posix() for name in WEIGHTS for path in (root / name).rglob("*.py"))
+    return sorted(file for file in paths if not file.startswith(LEFT_OUT))
 
 
 def draw(root: Path, count: int, seed: int, only: str = "") -> list[Mutant]:
@@ -56,8 +56,8 @@ def draw(root: Path, count: int, seed: int, only: str = "") -> list[Mutant]:
     counts = {name: int(share) for name, share in shares.items()}
     for name in sorted(shares, key=lambda one: counts[one] - shares[one])[: count - sum(counts.values())]:
         counts[name] += 1
-    known = files(root)
-    parts = ([file for file in known if file.startswith(f"{name}/")] for name in WEIGHTS)
+    paths = files(root)
+    parts = ([file for file in paths if file.startswith(f"{name}/")] for name in WEIGHTS)
     return [
         one
         for part, number in zip(parts, counts.values(), strict=True)
@@ -72,12 +72,12 @@ def _first(root: Path, among: list[str], count: int, seed: int) -> list[Mutant]:
         source = (root / file).read_text(encoding="utf-8")
         for key, line, changes in _lines(file, source):
             lines[_digest(seed, key)] = (key, file, line, changes, source)
-    found: list[Mutant] = []
+    mutants: list[Mutant] = []
     for rank in sorted(lines):
-        if len(found) == count:
+        if len(mutants) == count:
             break
-        found += _mutant(*lines[rank], seed)
-    return found
+        mutants += _mutant(*lines[rank], seed)
+    return mutants
 
 
 def _lines(file: str, source: str) -> Iterator[tuple[str, int, list[Mutation]]]:

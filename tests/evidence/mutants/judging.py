@@ -190,7 +190,7 @@ class Court:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and all processes that it has started. Workers would outlive a parent that was ended."""
+    """End a process and its whole process group. Otherwise workers would outlive the parent process."""
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     process.wait()

@@ -46,9 +46,9 @@ class Nearest:
         def rank(test: str) -> tuple[bool, int, str]:
             return Path(test).stem != f"test_{Path(file).stem}", distance.get(_module(Path(test)), _FAR), test
 
-        own = sorted(self._folder(Path(file)), key=rank)
-        others = [test for test in self.tests if test not in own and _module(Path(test)) in distance]
-        return own, sorted(others, key=rank)
+        of_folder = sorted(self._folder(Path(file)), key=rank)
+        others = [test for test in self.tests if test not in of_folder and _module(Path(test)) in distance]
+        return of_folder, sorted(others, key=rank)
 
     def _folder(self, file: Path) -> list[str]:
         """Tests of the folder of a file. For a file directly in a package: tests beside the folders."""
@@ -68,13 +68,13 @@ def _module(file: Path) -> str:
 
 def _imports(path: Path, root: Path) -> set[str]:
     """Modules that a file imports, at the top or inside functions, completely or by name."""
-    found = set()
+    names = set()
     package = path.relative_to(root).parent.parts
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             before = package[: len(package) + 1 - node.level] if node.level else ()
             base = ".".join([*before, *([node.module] if node.module else [])])
-            found |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
-    return found
+            names |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
+    return names

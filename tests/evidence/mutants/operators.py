@@ -54,9 +54,9 @@ class Mutation:
 
 def mutations(source: str) -> list[Mutation]:
     """Return every change that the operators make to a source, by place."""
-    found = _Finder(source)
-    found.visit(ast.parse(source))
-    return sorted(found.changes, key=lambda one: (one.start, one.end, one.operator, one.new))
+    finder = _Finder(source)
+    finder.visit(ast.parse(source))
+    return sorted(finder.changes, key=lambda one: (one.start, one.end, one.operator, one.new))
 
 
 def differs(source: str, other: str) -> bool:

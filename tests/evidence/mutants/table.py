@@ -27,8 +27,8 @@ def row(mutant: Mutant, verdict: Verdict) -> Row:
 
 def arguments(source: Path = ARGUMENTS) -> dict[tuple[str, str, str], str]:
     """File, line before and line after -> why the change is no fault. Lines may move: no number enters."""
-    found = tomllib.loads(source.read_text(encoding="utf-8")).get("harmless", [])
-    return {(one["file"], one["before"], one["after"]): one["why"] for one in found}
+    entries = tomllib.loads(source.read_text(encoding="utf-8")).get("harmless", [])
+    return {(one["file"], one["before"], one["after"]): one["why"] for one in entries}
 
 
 def argued(rows: Iterable[Row], known: Mapping[tuple[str, str, str], str] | None = None) -> list[Row]:
@@ -95,9 +95,9 @@ class Stored:
 
 def _write(target: Path, text: str) -> None:
     """Write a file that appears when it is complete."""
-    fresh = target.with_name(f"{target.name}.new")
-    fresh.write_text(text, encoding="utf-8")
-    os.replace(fresh, target)
+    temporary = target.with_name(f"{target.name}.new")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, target)
 
 
 def library_digest(root: Path) -> str:

@@ -58,9 +58,9 @@ def reference_model() -> Iterator[Check]:
     )
     yield rows("mass of all presets by the outline", exact, 0.03, mass)
     yield rows("inertia of all presets by the outline", exact, 0.1, inertia)
-    found = frozen_modes(PAIR)
-    frozen = found["lumped frozen"]
-    linear = found["exudyn linear"]
+    modes = frozen_modes(PAIR)
+    frozen = modes["lumped frozen"]
+    linear = modes["exudyn linear"]
     # exudyn differentiates numerically.
     both = np.stack([linear.ravel(), frozen.ravel()], axis=1)
     yield rows("natural frequencies and damping ratios by exudyn, mesh frozen", "those of A(t)", 1e-6, both)
@@ -72,9 +72,11 @@ _POINTS = 400
 
 @dataclass(frozen=True)
 class Blank:
-    """One gear body: mass [kg] and inertia [kg m^2] of its outline and as the simulations take them.
+    """One gear body: mass [kg] and inertia [kg m^2] by the outline, and the values of the simulations.
 
-    ``error`` is that of both outline values by the polygon, relative.
+    mass, inertia : by the outline
+    error : relative error of both outline values by the polygon
+    taken_mass, taken_inertia : values of the simulations
     """
 
     mass: float
@@ -93,13 +95,13 @@ def blanks(pair: GearPair) -> tuple[Blank, Blank]:
     for i, (gear, base, tip) in enumerate(sides):
         coarse, fine = (_integrals(half_tooth(pair, i, base, tip, n)) for n in (_POINTS, 2 * _POINTS))
         # The polygon errs by the square of its steps: a third of the change is left in the finer one.
-        left = (fine - coarse) / 3.0
-        area, polar = 2.0 * gear.teeth * (fine + left)
+        error_left = (fine - coarse) / 3.0
+        area, polar = 2.0 * gear.teeth * (fine + error_left)
         hole = math.pi * (0.5 * gear.bore) ** 2
         area = area - hole
         polar = polar - 0.5 * hole * (0.5 * gear.bore) ** 2
         weight = gear.density * gear.face_width
-        error = float(np.abs(left / fine).max())
+        error = float(np.abs(error_left / fine).max())
         result.append(
             Blank(float(weight * area), float(weight * polar), error, float(mass[i]), float(inertia[i]))
         )
@@ -174,7 +176,7 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
     mobility = p.geometry.radius_p**2 / numbers.inertia[0] + p.geometry.radius_g**2 / numbers.inertia[1]
     omega = np.sqrt(k.sum() * mobility)
     ratio = pair.mesh.damping_ratio * share
-    found = [_decay("mesh", fixed, q, omega, ratio, numbers.overlap)]
+    decays = [_decay("mesh", fixed, q, omega, ratio, numbers.overlap)]
     table = numbers.stiffness_table.copy()
     table[:, 2:] = 0.0
     free = replace(numbers, packed=with_block(numbers.packed, "stiffness", table))
@@ -186,8 +188,8 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
             q[3 * i + j] = _AMPLITUDE
             read[3 * i + j] = 1.0
             omega = np.sqrt(free.bearing_stiffness[i, j] / free.mass[i])
-            found.append(_decay(f"{name} {axis}", free, q, omega, ratios[j], read))
-    return tuple(found)
+            decays.append(_decay(f"{name} {axis}", free, q, omega, ratios[j], read))
+    return tuple(decays)
 
 
 def _frozen(numbers: Machine) -> Machine:
@@ -284,9 +286,9 @@ def _at_rest(model: ExudynModel, time: float, q: FloatArray, scale: float) -> Fl
         a[2] = (state[[2, 5]] - q[[2, 5]]) * inertia @ rigid / (scale * inertia @ rigid**2)
         return np.asarray(a, dtype=np.float64)
 
-    found = root(residual, np.zeros(6), tol=1e-13)
-    assert np.abs(residual(found.x)).max() < _AT_REST, "no rest at this phase: take one away from a switch"
-    return np.asarray(q + scale * found.x / lengths, dtype=np.float64)
+    solution = root(residual, np.zeros(6), tol=1e-13)
+    assert np.abs(residual(solution.x)).max() < _AT_REST, "no rest at this phase: take one away from a switch"
+    return np.asarray(q + scale * solution.x / lengths, dtype=np.float64)
 
 
 def linearised(model: ExudynModel, q: FloatArray) -> ComplexArray:

@@ -78,16 +78,16 @@ def test_the_wrench_is_minus_the_gradient_of_the_energy(name, flank):
     worst = []
     pressing = []
     for t, q in states(numbers, 150, flank):
-        wrench, found = contact(numbers, t, q)
-        pressing += np.unique(found["flank"][found["load"] > 0.0]).tolist()
+        wrench, contacts = contact(numbers, t, q)
+        pressing += np.unique(contacts["flank"][contacts["load"] > 0.0]).tolist()
         step = np.diag(2e-9 / length)
         up, down = (
             np.array([contact(numbers, t, q + s * one)[1]["energy"].sum() for one in step])
             for s in (1.0, -1.0)
         )
-        scale = max(found["load"].sum(), 1.0)
+        scale = max(contacts["load"].sum(), 1.0)
         worst.append(np.abs((wrench + (up - down) / (4e-9 / length)) / length).max() / scale)
-        xi = found["position"]
+        xi = contacts["position"]
         beyond += np.any((xi < numbers.record.geometry.L_XA) | (xi > numbers.record.geometry.L_XD))
     # Central differences: a curvature of some 1/um over 2 nm, and kinks (first touch, ends of the path).
     assert np.quantile(worst, 0.9) < 1e-6
@@ -102,11 +102,11 @@ def test_action_is_reaction_in_force_and_moment(name, flank):
     p = numbers.record
     p.pair_law.damping = 30.0
     for t, q in states(numbers, 40, flank):
-        w, found = contact(numbers, t, q, np.random.default_rng(1).normal(size=6) * 0.01)
+        w, contacts = contact(numbers, t, q, np.random.default_rng(1).normal(size=6) * 0.01)
         px, py = p.geometry.centre_p_x + q[0], p.geometry.centre_p_y + q[1]
         gx, gy = p.geometry.centre_g_x + q[3], p.geometry.centre_g_y + q[4]
         moment = w[2] + w[5] + px * w[1] - py * w[0] + gx * w[4] - gy * w[3]
-        scale = max(found["load"].sum(), 1.0)
+        scale = max(contacts["load"].sum(), 1.0)
         assert np.abs(w[:2] + w[3:5]).max() <= 1e-13 * scale  # 0 where deviations keep the teeth apart
         assert abs(moment) <= 1e-12 * scale * p.geometry.radius_p
 
@@ -135,29 +135,29 @@ def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond)
 @pytest.mark.parametrize("which", ["pinion", "gear"])
 @pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
 def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(which, beyond):
-    """Whatever the corner does, the flank it touches has its normal on its own base circle."""
+    """The normal of the flank that a corner touches is a tangent of the base circle of this flank."""
     numbers = machine(PAIRS["parabolic"])
     p = numbers.record
     radii = numbers.base_radii
     tips = np.array([p.geometry.tip_p, p.geometry.tip_g])
     length = p.geometry.L_XY + 1e-5
-    own = 0 if which == "pinion" else 1
-    rho = np.full(2, length - tips[own] - beyond)
-    rho[own] = tips[own] + beyond
+    number = 0 if which == "pinion" else 1
+    rho = np.full(2, length - tips[number] - beyond)
+    rho[number] = tips[number] + beyond
     line = kn.Line(1.0, 0.0, length, kn.DRIVE, *radii)
     wrench = np.zeros(6)
     found = kn.corners_at(line, *rho, tuple(tips), (0.0, 0.0))
     kn.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
     kn.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
-    turn = beyond / radii[own]  # of the corner, from where it leaves the line of action
-    along = radii[own] * np.sin(turn) + tips[own] * np.cos(turn)
-    off = radii[own] * (1.0 - np.cos(turn)) + tips[own] * np.sin(turn)
-    corner = np.array([length - along, off] if own else [along, -off])
+    turn = beyond / radii[number]  # of the corner, from where it leaves the line of action
+    along = radii[number] * np.sin(turn) + tips[number] * np.cos(turn)
+    distance = radii[number] * (1.0 - np.cos(turn)) + tips[number] * np.sin(turn)
+    corner = np.array([length - along, distance] if number else [along, -distance])
     centres = np.array([[0.0, -radii[0]], [length, radii[1]]])
     for (fx, fy, moment), (x, y) in zip(wrench.reshape(2, 3), corner - centres, strict=True):
         assert np.hypot(fx, fy) == pytest.approx(1.0, rel=1e-12)
         assert moment == pytest.approx(x * fy - y * fx, rel=1e-10)
-    assert wrench[5 - 3 * own] == pytest.approx(radii[1 - own], rel=1e-12)
+    assert wrench[5 - 3 * number] == pytest.approx(radii[1 - number], rel=1e-12)
 
 
 def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alone():
@@ -172,25 +172,28 @@ def test_a_damper_dissipates_takes_hold_with_the_load_and_leaves_the_energy_alon
         v = rng.normal(size=6) * 0.3
         v[[2, 5]] /= p.geometry.radius_p
         still = contact(numbers, t, q)[1]
-        found = contact(numbers, t, q, v)[1]
+        contacts = contact(numbers, t, q, v)[1]
         for field in ("elastic_load", "energy"):
-            assert np.array_equal(found[field], still[field])
-        by_damper = found["load"] - found["elastic_load"]
-        share = found["elastic_load"] / full
-        assert np.all(by_damper * found["compression_rate"] >= 0.0)
-        assert found["load"].min(initial=0.0) >= 0.0
-        whole = p.pair_law.damping * np.sqrt(found["stiffness"]) * np.abs(found["compression_rate"])
-        assert np.all(np.abs(by_damper) <= np.minimum(1.0, 3.0 * share**2) * whole * (1.0 + 1e-12))
+            assert np.array_equal(contacts[field], still[field])
+        by_damper = contacts["load"] - contacts["elastic_load"]
+        share = contacts["elastic_load"] / full
+        assert np.all(by_damper * contacts["compression_rate"] >= 0.0)
+        assert contacts["load"].min(initial=0.0) >= 0.0
+        full_force = (
+            p.pair_law.damping * np.sqrt(contacts["stiffness"]) * np.abs(contacts["compression_rate"])
+        )
+        assert np.all(np.abs(by_damper) <= np.minimum(1.0, 3.0 * share**2) * full_force * (1.0 + 1e-12))
         seen |= {"gradual"} if np.any((share > 0.0) & (share < 0.5)) else set()
-        seen |= {"clipped"} if np.any((share > 0.0) & (found["load"] == 0.0)) else set()
+        seen |= {"clipped"} if np.any((share > 0.0) & (contacts["load"] == 0.0)) else set()
     assert seen == {"gradual", "clipped"}
 
 
 @pytest.mark.parametrize(("name", "flank"), FLANKS)
 def test_a_damper_takes_from_the_bodies_what_its_own_compression_does_on_it(name, flank):
-    """It follows the rate of the compression, along whose gradient it pushes: relief, corners, lengths.
+    """A damper follows the rate of the compression, and pushes along the gradient of the compression.
 
-    So its wrench times the velocities of the bodies, with their rotation, is minus the sum of N_d p'.
+    The compression contains relief, corners and lengths. So the wrench of the dampers times the velocities of
+    the bodies, with the rotation, is minus the sum of N_d p'.
     """
     elastic, numbers = (machine(PAIRS[name].with_(mesh__damping_ratio=ratio), ALL) for ratio in (0.0, 0.1))
     p = numbers.record
@@ -200,15 +203,15 @@ def test_a_damper_takes_from_the_bodies_what_its_own_compression_does_on_it(name
     running = np.array([0.0, 0.0, -p.rolling.omega_p, 0.0, 0.0, p.rolling.omega_g])
     for t, q in states(numbers, 150, flank):
         v = rng.normal(size=6) * ([2.0, 2.0, 0.03 / p.geometry.radius_p] * 2)
-        (without, _), (wrench, found) = (contact(one, t, q, v) for one in (elastic, numbers))
-        by_damper = found["load"] - found["elastic_load"]
-        taken = (by_damper * found["compression_rate"]).sum()
+        (without, _), (wrench, contacts) = (contact(one, t, q, v) for one in (elastic, numbers))
+        by_damper = contacts["load"] - contacts["elastic_load"]
+        taken = (by_damper * contacts["compression_rate"]).sum()
         assert (wrench - without) @ (v + running) == pytest.approx(-taken, rel=1e-9, abs=1e-9)
         ends = [contact(numbers, t + s, q + s * v)[1] for s in (h, -h)]
-        if len(ends[0]) == len(ends[1]) == len(found):
+        if len(ends[0]) == len(ends[1]) == len(contacts):
             rate = (ends[0]["compression"] - ends[1]["compression"]) / (2 * h)
-            assert found["compression_rate"] == pytest.approx(rate, rel=1e-5, abs=1e-5)
-        xi = found["position"][found["load"] > 0.0]
+            assert contacts["compression_rate"] == pytest.approx(rate, rel=1e-5, abs=1e-5)
+        xi = contacts["position"][contacts["load"] > 0.0]
         beyond += np.any((xi < p.geometry.L_XA) | (xi > p.geometry.L_XD))
     assert beyond >= WITH_CORNERS[name]
 
@@ -284,7 +287,7 @@ def test_slow_gears_speed_up_and_slow_down_with_their_own_deflection():
 
 
 def loads_of(compression, stiffness, couplings, law, pulls=0):
-    """Loads of pairs that move each other; with ``pulls`` 1 they cannot lose contact."""
+    """Loads of pairs that move each other. With ``pulls`` 1 the pairs cannot lose contact."""
     pairs = np.zeros(len(compression), PAIR)
     pairs["compression"] = compression
     pairs["stiffness"] = stiffness
@@ -311,14 +314,14 @@ def test_neighbours_share_the_load_in_both_models(softening):
         law["apart"] = -1.0  # neighbours may bring any pair into contact
         theirs = Mesh(np.full(n, 0.015), w, stiffness=k, gap=-pressed, **law).loads(0.0)
         assert loads == pytest.approx(theirs, rel=1e-11, abs=1e-9)
-        left = pressed - w @ loads
+        compressions = pressed - w @ loads
         touch = loads > 0.0
-        own = [
+        multibody_loads = [
             elastic_load(one, stiffness, ContactLaw(softening, nominal))
-            for one, stiffness in zip(left, k, strict=True)
+            for one, stiffness in zip(compressions, k, strict=True)
         ]
-        assert loads[touch] == pytest.approx(np.array(own)[touch], rel=1e-10)
-        assert np.all(left[~touch] <= 1e-20)
+        assert loads[touch] == pytest.approx(np.array(multibody_loads)[touch], rel=1e-10)
+        assert np.all(compressions[~touch] <= 1e-20)
         seen.add((n, int(touch.sum())))
     assert {(4, 1), (4, 3), (4, 4), (2, 1)} <= seen
 

@@ -153,9 +153,9 @@ def test_with_all_effects_off_it_is_the_lumped_equations(name, contact):
     forces = accelerations(setup.model, motion.time, q, v) * setup.machine.bodies["inertia"]
     radii = setup.machine.base_radii
     units = np.array([1.0, 1.0, 1.0 / radii[0], 1.0, 1.0, 1.0 / radii[1]])
-    off = (forces - lumped_forces(setup, motion, pair)) * units
+    errors = (forces - lumped_forces(setup, motion, pair)) * units
     static = setup.machine.torque_pinion / setup.machine.record.geometry.radius_p
-    assert np.abs(off).max() < 1e-12 * static
+    assert np.abs(errors).max() < 1e-12 * static
 
 
 #: Error of the lumped model's polynomials, which carry the law there.
@@ -178,18 +178,18 @@ def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
 
 def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
     """Law V where its film thresholds lie on the path, law II at its bounds, and law III with none."""
-    found = 0
+    compared = 0
     for name, changes in (
         ("heavily_relieved_under_load", {}),
         ("rack_25_degrees_always_pushing", {"friction__maximum": 0.05}),
         ("contact_ratio_2_3_on_shafts", {}),
     ):
         at = prescribed(name).with_(**changes)
-        own = machine(at).switches
+        switches = machine(at).switches
         theirs = lumped.mesh_cycle(at).edges[:-1]
-        np.testing.assert_allclose(own, theirs / lumped.geometry(at).mesh_period, rtol=0.0, atol=1e-9)
-        found += own.size
-    assert found > 10
+        np.testing.assert_allclose(switches, theirs / lumped.geometry(at).mesh_period, rtol=0.0, atol=1e-9)
+        compared += switches.size
+    assert compared > 10
 
 
 def test_the_momentary_load_is_an_effect_of_its_own():
@@ -223,8 +223,8 @@ def test_the_contact_of_a_faster_machine_rolls_and_slides_as_at_that_speed():
     state[0, 5] = -6e-5 / p.geometry.radius_g  # presses the flanks
     state[1, [2, 5]] = -0.5 * p.rolling.omega_p, 0.5 * p.rolling.omega_g
     count = contact_forces(0.3 * numbers.period, state, numbers.packed, flags, contacts)
-    found = opened_contacts(contacts)[:count]
-    expected = lumped.mesh_elements(faster).friction(found["position"])
-    nominal = lumped.mesh_elements(pair).friction(found["position"])
-    np.testing.assert_allclose(found["friction_coefficient"], expected, rtol=0.0, atol=FIT)
+    records = opened_contacts(contacts)[:count]
+    expected = lumped.mesh_elements(faster).friction(records["position"])
+    nominal = lumped.mesh_elements(pair).friction(records["position"])
+    np.testing.assert_allclose(records["friction_coefficient"], expected, rtol=0.0, atol=FIT)
     assert (np.abs(expected - nominal) > 5e-4).all()

@@ -22,7 +22,7 @@ from tests.unlike_pairs import unlike_pair
 
 
 def jumps(name):
-    """Stiffness and the sign of friction jump; at one speed, so that one size of vibrations fits all."""
+    """A pair with jumps of stiffness and of friction. All pairs have one speed and vibrations of one size."""
     changes = {"mesh.relief": "ignored", "friction.law": "coulomb", "friction.coefficient": 0.05}
     changes |= {"operating.pinion_speed": 6000.0}
     return unlike_pair(name).with_(changes)

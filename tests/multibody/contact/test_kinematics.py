@@ -25,8 +25,8 @@ def random_pose(teeth, rng, flank):
 
 def line_of_action(teeth, pose, flank):
     base_sum = teeth.radius_p + teeth.radius_g
-    along, off = pose[3:5] - pose[:2]
-    return kin.line_of_action(along, off - base_sum, 0.0, base_sum, flank)
+    along, across = pose[3:5] - pose[:2]
+    return kin.line_of_action(along, across - base_sum, 0.0, base_sum, flank)
 
 
 def line_of(teeth, pose, flank):
@@ -79,14 +79,14 @@ def test_whole_machine_may_turn_and_shift(teeth, rng, flank):
         beta = rng.uniform(-3, 3)
         shift = rng.uniform(-1, 1, 2)
         turn = np.array([[math.cos(beta), -math.sin(beta)], [math.sin(beta), math.cos(beta)]])
-        moved = pose.copy()
-        moved[:2] = turn @ pose[:2] + shift
-        moved[3:5] = turn @ pose[3:5] + shift
-        moved[[2, 5]] += beta
+        shifted = pose.copy()
+        shifted[:2] = turn @ pose[:2] + shift
+        shifted[3:5] = turn @ pose[3:5] + shift
+        shifted[[2, 5]] += beta
         w = wrench(teeth, pose, flank, 100.0, 5.0)
-        w_moved = wrench(teeth, moved, flank, 100.0, 5.0)
+        w_moved = wrench(teeth, shifted, flank, 100.0, 5.0)
         # Angles of 20 rad carry rounding of 4e-15 rad, some 1e-16 m.
-        assert overlap(teeth, moved, flank) == pytest.approx(overlap(teeth, pose, flank), abs=2e-15)
+        assert overlap(teeth, shifted, flank) == pytest.approx(overlap(teeth, pose, flank), abs=2e-15)
         np.testing.assert_allclose(turn @ w[:2], w_moved[:2], atol=1e-11)
         np.testing.assert_allclose(w[[2, 5]], w_moved[[2, 5]], atol=1e-11)
 

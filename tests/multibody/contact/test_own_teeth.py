@@ -42,16 +42,16 @@ def test_first_law_holds_with_own_gaps_eccentric_base_circles_cracks_and_ripples
     balance = multibody.power_balance(pair, cycles=4, initial=start)
     assert abs(balance.residual) < 1e-8 * balance.driving
     # A ripple at the actual angle of its shaft does the work A/n sin(n theta + phase).
-    given = run.attrs
+    attributes = run.attrs
     rates = (pair.geometry.omega_pinion, pair.geometry.omega_gear)
     for name, torque, rate, work in (
-        ("theta_p", given["pinion_torque"], rates[0], balance.driving),
-        ("theta_g", given["brake_torque"], rates[1], balance.braking),
+        ("theta_p", attributes["pinion_torque"], rates[0], balance.driving),
+        ("theta_g", attributes["brake_torque"], rates[1], balance.braking),
     ):
-        turned = (rate * run.time + run[name])[[0, -1]].values
-        ripple = np.diff(0.4 * np.sin(5.0 * turned + np.radians(30.0)))[0]
+        angles = (rate * run.time + run[name])[[0, -1]].values
+        ripple = np.diff(0.4 * np.sin(5.0 * angles + np.radians(30.0)))[0]
         # Both are runs at a relative tolerance of 1e-8.
-        assert work == pytest.approx(torque * np.diff(turned)[0] + ripple, rel=1e-8), name
+        assert work == pytest.approx(torque * np.diff(angles)[0] + ripple, rel=1e-8), name
 
 
 @pytest.mark.parametrize("which", [0, 1])

@@ -34,23 +34,23 @@ def drawings():
 def test_both_models_cut_the_same_gears(drawing):
     teeth, module, changes = drawing
     pair = new_pair(teeth, module, 20.0, 1000.0, 30.0, changes)
-    own = circles(pair)
+    drawn = circles(pair)
     g = pair.geometry
     assert profile_shifts(pair) == pytest.approx(pair.profile_shifts, abs=1e-11)
-    for found, expected in (
-        (own.tip_pinion, g.tip_radius_pinion), (own.tip_gear, g.tip_radius_gear),
-        (own.centre_distance, g.centre_distance), (root_radius(pair, 0), g.root_radius_pinion),
+    for value, expected in (
+        (drawn.tip_pinion, g.tip_radius_pinion), (drawn.tip_gear, g.tip_radius_gear),
+        (drawn.centre_distance, g.centre_distance), (root_radius(pair, 0), g.root_radius_pinion),
         (root_radius(pair, 1), g.root_radius_gear),
     ):  # fmt: skip
-        assert found == pytest.approx(expected, rel=1e-12)
+        assert value == pytest.approx(expected, rel=1e-12)
 
 
 def test_altered_tips_are_those_of_the_file():
     pair = unlike_pair(
         "contact_ratio_1_1_large_shifts"
     )  # its file says 0 where the clearance asks for -0.57 mm
-    own = circles(pair)
-    assert 2e3 * own.tip_pinion == pytest.approx(4.0 * (15 + 2 * 0.74 + 2 * 0.75), rel=1e-12)
+    drawn = circles(pair)
+    assert 2e3 * drawn.tip_pinion == pytest.approx(4.0 * (15 + 2 * 0.74 + 2 * 0.75), rel=1e-12)
     shorter = circles(pair.with_({"gear.tip_alteration": -0.1}))
-    assert 1e3 * (own.tip_gear - shorter.tip_gear) == pytest.approx(0.1, rel=1e-9)
-    assert math.isclose(own.tip_pinion, shorter.tip_pinion, rel_tol=1e-15)
+    assert 1e3 * (drawn.tip_gear - shorter.tip_gear) == pytest.approx(0.1, rel=1e-9)
+    assert math.isclose(drawn.tip_pinion, shorter.tip_pinion, rel_tol=1e-15)

@@ -52,12 +52,12 @@ def test_ctrl_c_stops_a_run():
 
 @pytest.mark.parametrize("which", [1, 2])
 def test_coordinates_or_rates_alone_that_are_not_finite_are_seen(monkeypatch, which):
-    whole = multibody.run.integration.stored
+    stored = multibody.run.integration.stored
 
     def spoilt(model):
-        found = [np.array(one) for one in whole(model)]
-        found[which][-1, 0] = np.nan
-        return tuple(found)
+        arrays = [np.array(one) for one in stored(model)]
+        arrays[which][-1, 0] = np.nan
+        return tuple(arrays)
 
     monkeypatch.setattr("multibody.run.integration.stored", spoilt)
     with pytest.raises(lumped.NumericalError, match="not finite"):
@@ -107,9 +107,9 @@ def test_a_repeated_state_is_evaluated_again_in_a_new_run():
 
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
 def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
-    """The stiffness is finite but for a stretch that a tooth pair passes at 0.3 to 0.5 of the mesh cycle.
+    """The stiffness is not finite where a tooth pair is at 0.3 to 0.5 of the mesh cycle.
 
-    The run must stop at that force, and not when somebody looks at its states.
+    The run must stop at the first force that is not finite, not when the states are read afterwards.
     """
     setup = prepare(PAIR.with_(friction__law="none"), fidelity=fidelity)
     machine = setup.machine
@@ -229,10 +229,10 @@ def test_an_interrupted_command_leaves_no_half_written_file(moment, tmp_path, mo
 
         monkeypatch.setattr("multibody.run.integration._run", run)
     else:
-        own = Path.write_bytes
+        write_bytes = Path.write_bytes
 
         def write(path, content):
-            own(path, bytes(content)[:100])
+            write_bytes(path, bytes(content)[:100])
             raise KeyboardInterrupt
 
         monkeypatch.setattr(Path, "write_bytes", write)

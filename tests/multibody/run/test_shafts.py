@@ -77,8 +77,8 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
         rolling.earliest = start + 1e-12 * m.period
         rolling.latest = stop - 1e-12 * m.period
         state = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=1e-9, atol=1e-13).y[:, -1]
-    found, q, v = run
-    span = float(np.ptp(found["dte"].to_numpy()))
+    motion, q, v = run
+    span = float(np.ptp(motion["dte"].to_numpy()))
     units = state_scale(m, 1.0)[:n]
     # 9e-4 nm in a prototype; here both integrators stay below 1e-7 of the motion.
     assert np.abs(q - state[:n]).max() < 1e-6 * span
@@ -105,8 +105,9 @@ def test_a_ripple_is_that_of_motor_or_load_in_both_models(shaft, order, other):
 
 
 def test_gears_are_discs_on_shafts_that_turn_against_each_other(setup):
-    """Overhung or not, a gear that moves out in x tilts as one that moves out in y: the gyroscopic moment
-    between both has the sign of the rotation. The pinion turns clockwise.
+    """The gyroscopic moment between both planes has the sign of the rotation. The pinion turns clockwise.
+
+    A gear that moves along x tilts like a gear that moves along y, overhung or not.
     """
     train = setup.machine.train
     m = setup.machine
@@ -152,13 +153,13 @@ def stiff(pair):
     share = np.sqrt(body.effective_mass / heavier.effective_mass)
     springs = springs.with_(mesh__damping_ratio=pair.mesh.damping_ratio * share)
     for name in ("pinion", "gear"):
-        given = getattr(pair.bearings, name)
+        bearing_of_pair = getattr(pair.bearings, name)
         mass = getattr(heavier, f"mass_{name}")
         half = {}
         for axis in ("loa", "oloa"):
-            k = getattr(given, f"{axis}_stiffness")
+            k = getattr(bearing_of_pair, f"{axis}_stiffness")
             half[f"{axis}_stiffness"] = 0.5 * k
-            half[f"{axis}_damping"] = getattr(given, f"{axis}_damping_ratio") * np.sqrt(k * mass)
+            half[f"{axis}_damping"] = getattr(bearing_of_pair, f"{axis}_damping_ratio") * np.sqrt(k * mass)
         bearings = [half | {"position": position} for position in (5, 25)]
         tables[name] = {
             "segments": [{"length": 30, "diameter": 40}],
@@ -187,12 +188,12 @@ def test_both_models_see_the_same_pair_on_shafts(run):
     that are kept are the same. Two-node elements leave some 1e-9 of the frequencies. Both read k from plane
     finite elements.
     """
-    found = run[0].isel(time=slice(None, -1))
+    multibody_motion = run[0].isel(time=slice(None, -1))
     lumped_run = lumped.steady_state(PAIR, supports="shafts", samples_per_cycle=64)
-    assert found.attrs["brake_torque"] == pytest.approx(lumped_run.attrs["brake_torque"], rel=1e-9)
+    assert multibody_motion.attrs["brake_torque"] == pytest.approx(lumped_run.attrs["brake_torque"], rel=1e-9)
     for name in ("dte", "x_p", "y_p", "x_g", "y_g", "normal_load", "bearing_force", "bearing_force_y_g"):
         span = float(np.ptp(lumped_run[name].to_numpy()))
-        assert float(np.abs(found[name] - lumped_run[name].to_numpy()).max()) < 1e-6 * span, name
+        assert float(np.abs(multibody_motion[name] - lumped_run[name].to_numpy()).max()) < 1e-6 * span, name
 
 
 def test_on_shafts_too_the_brake_of_the_loaded_form_supplies_every_loss():
@@ -206,17 +207,18 @@ def test_on_shafts_too_the_brake_of_the_loaded_form_supplies_every_loss():
 
 
 def test_finite_motions_on_shafts_fall_with_torque():
-    """The exact periodic motion, found from the own linear map, differs from the lumped one by what the
-    deflections do to the geometry: a fourth of it at a fourth of the torque, over the range.
+    """The exact periodic motion differs from the lumped motion by the change of the geometry by deflections.
+
+    At a fourth of the torque the difference over the swing is a fourth.
     """
     differences = []
     for torque in (16.0, 4.0):
         pair = PAIR.with_(operating__pinion_torque=torque, mesh__stiffness={"model": "rectangular"})
         exact = multibody.steady_state(pair, supports="shafts", samples_per_cycle=64)
-        flat = lumped.steady_state(pair, supports="shafts", samples_per_cycle=64)
+        linear = lumped.steady_state(pair, supports="shafts", samples_per_cycle=64)
         assert exact.attrs["closure"] < 1e-7
-        away = np.abs(exact["dte"].to_numpy() - flat["dte"].to_numpy()).max()
-        differences.append(float(away / np.ptp(flat["dte"].to_numpy())))
+        difference = np.abs(exact["dte"].to_numpy() - linear["dte"].to_numpy()).max()
+        differences.append(float(difference / np.ptp(linear["dte"].to_numpy())))
     assert 1e-3 < differences[1] < 1e-2
     assert differences[0] / differences[1] == pytest.approx(4.0, rel=0.02)
 

@@ -42,18 +42,18 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
     monkeypatch.setattr("multibody.study.causes.needs_pull", lambda pair, motion: False)
     causes_of = {form: set(default_effects(form)) for form in ("prescribed", "loaded")}
     for form, every in causes_of.items():
-        found = multibody.attribution(JUMPS.with_(mesh__contact=form)).sel(quantity="x_p")
+        shares = multibody.attribution(JUMPS.with_(mesh__contact=form)).sel(quantity="x_p")
         total = sum(MADE_UP[name] for name in every)
-        assert list(found["cause"].values[-2:]) == ["all", "friction_load"]  # which is no part of it
-        assert set(CAUSES) - set(found["cause"].values) == ({"path_work"} if form == "prescribed" else set())
-        for cause in found["cause"].values:
+        assert list(shares["cause"].values[-2:]) == ["all", "friction_load"]  # which is no part of it
+        assert set(CAUSES) - set(shares["cause"].values) == ({"path_work"} if form == "prescribed" else set())
+        for cause in shares["cause"].values:
             group = {name for name in EFFECTS if EFFECTS[name].cause == cause}
-            own = total if cause == "all" else sum(MADE_UP[n] for n in group & (every | {"friction_load"}))
-            without = total - own if cause in ("all", "sliding_velocity", "path_work") else np.nan
-            expected = np.abs([own, without]) / 10.0
-            at = found.sel(cause=cause)
+            change = total if cause == "all" else sum(MADE_UP[n] for n in group & (every | {"friction_load"}))
+            without = total - change if cause in ("all", "sliding_velocity", "path_work") else np.nan
+            expected = np.abs([change, without]) / 10.0
+            at = shares.sel(cause=cause)
             np.testing.assert_allclose([at["alone"], at["without"]], expected, err_msg=cause)
-        assert found.attrs["largest"] == "contact" if form == "loaded" else "sliding_velocity"
+        assert shares.attrs["largest"] == "contact" if form == "loaded" else "sliding_velocity"
 
 
 OWN = tomllib.loads(new_pair_text("own", {

@@ -70,7 +70,7 @@ def test_without_path_work_and_tip_contact_the_balance_needs_a_source(name):
 
 @pytest.mark.parametrize("name", LIKE_TEETH)
 def test_the_balance_of_the_linear_mesh_in_the_loaded_form_closes(name):
-    """Its springs follow the tangent's error its dampers the gap; with Hertz's contact these differ."""
+    """The springs follow the error of the tangent, the dampers the gap. With Hertz's contact these differ."""
     balance = multibody.power_balance(unlike_pair(name), 3, fidelity="linear", rtol=1e-11, supports="springs")
     assert abs(balance.residual) < 1e-10 * balance.driving
     # Work that goes into no energy, ten thousand times the residual: stiffness varies along each path.
@@ -99,9 +99,9 @@ def test_the_balance_of_a_periodic_motion_has_its_own_brake_torque_and_stores_no
     pair = unlike_pair(name)
     motion = multibody.steady_state(pair, supports="springs")
     g = pair.geometry
-    found = multibody.motion_balance(pair, motion, 1e-10)
+    balance = multibody.motion_balance(pair, motion, 1e-10)
     # A motion that closes to 1e-8 has the nominal mean speed; the torques of both models differ by more.
-    assert found.braking == pytest.approx(
+    assert balance.braking == pytest.approx(
         motion.attrs["brake_torque"] * g.omega_gear * g.mesh_period, rel=1e-9
     )
-    assert abs(found.kinetic) < 1e-6 * found.friction
+    assert abs(balance.kinetic) < 1e-6 * balance.friction

@@ -75,10 +75,10 @@ def test_each_effect_acts_where_its_physics_is_and_nowhere_else(effect):
         start = np.zeros(12)
         start[0] = -5e-6 / pair.geometry.base_radius_pinion  # apart, so that loss of contact can act
         acts = effect in default_effects(pair.mesh.contact)
-        turned, run = (
+        deflected, run = (
             multibody.simulate(pair, 3, effects={effect: on}, initial=start) for on in (not acts, acts)
         )
-        return difference(turned, run, "dte")
+        return difference(deflected, run, "dte")
 
     there, elsewhere = WHERE_IT_ACTS[effect]
     assert change(there) > 1e-3  # clearance, the least, changes 0.3 %; a run errs by 1e-7
@@ -96,20 +96,21 @@ def test_steady_state_attracts():
     setup = prepare(pair, initial=start, rtol=1e-9)
     run, _, _ = record(setup.with_torques(setup.machine.torque_pinion, steady.attrs["brake_torque"]), 80, 64)
     swing = float(np.ptp(steady["dte"].to_numpy()))
-    off = [
+    distances = [
         float(np.abs(run["dte"].to_numpy()[rows] - steady["dte"].to_numpy()).max()) / swing
         for rows in (slice(0, 64), slice(-65, -1))
     ]
-    assert off[0] > 0.1
+    assert distances[0] > 0.1
     # The free rotation is neutral: it keeps what friction did to it meanwhile, a slow shift of the phase.
-    assert off[1] < 0.02 * off[0]
+    assert distances[1] < 0.02 * distances[0]
 
 
 @pytest.mark.parametrize("stiffness", ["rectangular", "parabolic"])
 def test_periodic_motion_is_found_where_friction_holds_the_teeth(stiffness):
-    """There the lumped monodromy matrix is far from the own one, and iterating with it alone fails.
+    """Here the lumped monodromy matrix is far from the matrix of the multibody model.
 
-    Corrected along its way it closes the cycle to ten times rtol, in some ten cycles.
+    An iteration with the lumped matrix alone fails. Broyden's method corrects the matrix in every step, and
+    closes the cycle to ten times rtol in some ten cycles.
     """
     pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
         mesh__contact="prescribed", friction__law="benedict_kelley", mesh__stiffness={"model": stiffness}

@@ -42,15 +42,15 @@ def test_the_multibody_model_has_the_same_periodic_motion(name, effects):
         samples_per_cycle=256,
     )
     for name in ("dte", "x_p", "x_g", "y_p", "y_g", "bearing_force_y_p"):
-        own = orbit.motion[name].values
-        assert run[name].values == pytest.approx(own, abs=1e-6 * np.ptp(own)), name
+        expected = orbit.motion[name].values
+        assert run[name].values == pytest.approx(expected, abs=1e-6 * np.ptp(expected)), name
     loads = orbit.motion.normal_load.values
     assert run.normal_load.values == pytest.approx(loads, abs=1e-6 * loads.max())
     assert run.attrs["brake_torque"] == pytest.approx(orbit.brake_torque, rel=1e-6)
 
 
 def test_motions_of_two_cycles_are_found_too(pair_beyond):
-    """An unstable one, to which no run comes; it is that of one cycle at half the speed."""
+    """The motion is unstable, so no run settles to this motion. At half the speed it repeats every cycle."""
     start = np.zeros(12)
     start[0] = 1e-4 / pair_beyond.geometry.base_radius_pinion
     single = floquet.periodic_orbit(pair_beyond.with_({"operating.pinion_speed": 9500.0}), start=start)
@@ -61,14 +61,14 @@ def test_motions_of_two_cycles_are_found_too(pair_beyond):
     run = multibody.steady_state(
         pair, fidelity="linear", effects=["contact_loss"], initial=orbit.states[0], cycles=2
     )
-    own = orbit.motion.dte.values
-    assert run.dte.values[::2] == pytest.approx(own, abs=1e-6 * np.ptp(own))
+    expected = orbit.motion.dte.values
+    assert run.dte.values[::2] == pytest.approx(expected, abs=1e-6 * np.ptp(expected))
     with pytest.raises(ParameterError, match="at most contact_loss"):
         multibody.steady_state(pair, fidelity="linear", effects=["entry_shift"])
 
 
 def test_the_multibody_sweep_measures_the_mean_over_whole_cycles(pair_beyond):
-    """The root mean square is that of the periodic motion; it was 6e-4 off with one sample too many."""
+    """The root mean square is that of the periodic motion. One sample too many gave an error of 6e-4."""
     orbit = floquet.periodic_orbit(pair_beyond)
     sweep = multibody.speed_sweep(
         pair_beyond,
@@ -96,16 +96,16 @@ def test_back_sides_strike_as_in_the_multibody_model(name):
     )
     state = np.zeros(10)
     state[1] = start[2]
-    own = unilateral_system(pair, form="back_side").run(
+    lumped_run = unilateral_system(pair, form="back_side").run(
         state, period, 3, run.attrs["brake_torque"], samples=np.arange(64) / 64
     )
     for j, variable in enumerate(("x_p", "x_g", "y_p", "y_g"), 1):
         wanted = run[variable].values[:-1]
-        assert own.states[:, j] == pytest.approx(wanted, abs=1e-8 * np.ptp(wanted)), variable
+        assert lumped_run.states[:, j] == pytest.approx(wanted, abs=1e-8 * np.ptp(wanted)), variable
     back = run.normal_load_back.sum("pair").values[:-1]
     drive = run.sizes["pair"]
     assert back.max() > 1000.0
-    assert own.loads[:, drive:].sum(axis=1) == pytest.approx(back, abs=1e-6 * back.max())
+    assert lumped_run.loads[:, drive:].sum(axis=1) == pytest.approx(back, abs=1e-6 * back.max())
 
 
 @pytest.fixture(scope="module")

@@ -26,28 +26,28 @@ def test_progress_goes_on_while_the_variant_is_checked(check, told):
 
 def test_the_exact_model_is_compared_in_a_periodic_motion_of_its_own(check):
     assert check.periodic
-    lumped_torque, own = (d.attrs["brake_torque"] for d in (check.lumped, check.multibody["exact"]))
-    assert 1e-8 < abs(own / lumped_torque - 1.0) < 1e-5  # its friction takes another power
+    lumped_torque, exact_torque = (d.attrs["brake_torque"] for d in (check.lumped, check.multibody["exact"]))
+    assert 1e-8 < abs(exact_torque / lumped_torque - 1.0) < 1e-5  # its friction takes another power
 
 
 def test_the_difference_is_that_of_the_motions_over_the_peak_to_peak(check):
     last = slice(-129, None)
-    own, other = (d.isel(time=last) for d in (check.lumped, check.multibody["exact"]))
-    keep = off_switch_samples(check.pair, own["time"].to_numpy())
-    found = {a.quantity: a for a in check.of("exact")}
+    reference, other = (d.isel(time=last) for d in (check.lumped, check.multibody["exact"]))
+    keep = off_switch_samples(check.pair, reference["time"].to_numpy())
+    agreements = {a.quantity: a for a in check.of("exact")}
     for name in ("dte", "x_p", "y_g"):
-        a, b = (motion[name].to_numpy()[keep] for motion in (other, own))
+        a, b = (motion[name].to_numpy()[keep] for motion in (other, reference))
         swing = np.ptp(b)
         if name == "x_p":  # a part of the transmission error, which measures it where it is larger
-            swing = max(swing, np.ptp(own["dte"].to_numpy()))
+            swing = max(swing, np.ptp(reference["dte"].to_numpy()))
         mean = (a - b).mean() if name == "y_g" else 0.0  # small beside the vibration here
-        assert found[name].difference == pytest.approx(np.abs(a - b - mean).max() / swing, rel=1e-12)
-        assert found[name].peak_to_peak_multibody == pytest.approx(np.ptp(a), rel=1e-12)
+        assert agreements[name].difference == pytest.approx(np.abs(a - b - mean).max() / swing, rel=1e-12)
+        assert agreements[name].peak_to_peak_multibody == pytest.approx(np.ptp(a), rel=1e-12)
     # Rectangular stiffness: one tooth force jumps by all of itself where the entry moves. The sum is judged,
     # more than 2 % of a cycle from the switches.
-    keep = off_switch_samples(check.pair, own["time"].to_numpy(), 0.02)
-    a, b = (motion["normal_load"].to_numpy().sum(axis=0)[keep] for motion in (other, own))
-    assert found["normal_load"].difference == pytest.approx(np.abs(a - b).max() / np.ptp(b), rel=1e-12)
+    keep = off_switch_samples(check.pair, reference["time"].to_numpy(), 0.02)
+    a, b = (motion["normal_load"].to_numpy().sum(axis=0)[keep] for motion in (other, reference))
+    assert agreements["normal_load"].difference == pytest.approx(np.abs(a - b).max() / np.ptp(b), rel=1e-12)
 
 
 def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run_and_not_judged(pair, monkeypatch):
@@ -55,31 +55,31 @@ def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run_and_not_judg
         raise lumped.NumericalError("no motion")
 
     monkeypatch.setattr(multibody, "steady_state", fail)
-    found = crosscheck(pair, cycles=12, samples_per_cycle=32, variant=False)
-    assert not found.periodic
-    assert found.verdict is Verdict.NOT_CHECKED
-    own = found.multibody["exact"].attrs["brake_torque"]
-    assert own == pytest.approx(found.lumped.attrs["brake_torque"], rel=1e-12)
+    result = crosscheck(pair, cycles=12, samples_per_cycle=32, variant=False)
+    assert not result.periodic
+    assert result.verdict is Verdict.NOT_CHECKED
+    brake_torque = result.multibody["exact"].attrs["brake_torque"]
+    assert brake_torque == pytest.approx(result.lumped.attrs["brake_torque"], rel=1e-12)
 
 
 def test_an_unstable_motion_is_not_judged_because_no_pair_stays_in_it(pair, monkeypatch):
     monkeypatch.setattr(comparison, "unilateral_orbit", lambda pair: (None, "why"))  # as where it beats
     unstable = pair.with_({"operating.pinion_speed": 17000, "mesh.damping_ratio": 0.0})
-    found = crosscheck(unstable, cycles=6, samples_per_cycle=32, variant=False)
-    assert not found.periodic
-    assert found.pulling == "why"
-    assert found.verdict is Verdict.NOT_CHECKED
+    result = crosscheck(unstable, cycles=6, samples_per_cycle=32, variant=False)
+    assert not result.periodic
+    assert result.pulling == "why"
+    assert result.verdict is Verdict.NOT_CHECKED
 
 
 def test_without_the_exact_model_nothing_is_checked(pair):
-    found = crosscheck(pair, cycles=6, samples_per_cycle=32, fidelities=("linear",), variant=False)
-    assert found.failures == ()
-    assert found.verdict is Verdict.NOT_CHECKED
+    result = crosscheck(pair, cycles=6, samples_per_cycle=32, fidelities=("linear",), variant=False)
+    assert result.failures == ()
+    assert result.verdict is Verdict.NOT_CHECKED
 
 
 def test_pairs_without_friction_agree_though_nothing_moves_off_the_line_of_action(pair):
-    found = crosscheck(pair.with_({"friction.law": "none"}), cycles=12, samples_per_cycle=64, variant=False)
-    for a in found.agreements:
+    result = crosscheck(pair.with_({"friction.law": "none"}), cycles=12, samples_per_cycle=64, variant=False)
+    for a in result.agreements:
         if a.quantity in ("y_p", "y_g", "friction_force"):
             assert a.within
 
@@ -125,17 +125,17 @@ def test_limits_do_not_depend_on_the_motion_and_a_gate_sets_the_first():
 
 
 def test_a_tighter_limit_turns_the_verdict(pair, check):
-    found = crosscheck(pair, cycles=6, samples_per_cycle=128, limit=0.02, variant=False)
+    result = crosscheck(pair, cycles=6, samples_per_cycle=128, limit=0.02, variant=False)
     assert check.verdict is Verdict.AGREES
-    assert found.verdict is Verdict.DIFFERS
-    told = f"{whole_difference(found)} {cause_of_difference(found)}".replace("\u00a0", " ")
-    assert "peak to peak beside" in told
-    assert "limit 2 %" in told
-    far = dataclasses.replace(found, agreements=_with(found.agreements, "exact", "y_p", difference=9.2))
+    assert result.verdict is Verdict.DIFFERS
+    text = f"{whole_difference(result)} {cause_of_difference(result)}".replace("\u00a0", " ")
+    assert "peak to peak beside" in text
+    assert "limit 2 %" in text
+    far = dataclasses.replace(result, agreements=_with(result.agreements, "exact", "y_p", difference=9.2))
     assert "m, by 9.2 times, limit 20" in whole_difference(far).replace("\u00a0", " ")
-    assert told.endswith("momentary load and the centres.")
-    unlike = found.pair.with_({"pinion.deviations": {"index": [1.0] + [0.0] * 27}})
-    assert cause_of_difference(dataclasses.replace(found, pair=unlike)) == ""
+    assert text.endswith("momentary load and the centres.")
+    unlike = result.pair.with_({"pinion.deviations": {"index": [1.0] + [0.0] * 27}})
+    assert cause_of_difference(dataclasses.replace(result, pair=unlike)) == ""
 
 
 @pytest.mark.parametrize(
@@ -152,31 +152,31 @@ def test_a_tighter_limit_turns_the_verdict(pair, check):
 def test_the_effect_that_is_named_takes_the_difference_with_it(given, quantity, words, left):
     settings = {"cycles": 6, "samples_per_cycle": 128, "fidelities": ("exact",), "variant": False}
     of_springs = {"mesh.stiffness.model": "energy", "law": "xu_kahraman", "bearings.stiffness": 1e8}
-    found = crosscheck(new_pair(*given, of_springs), **settings)
-    worst = found.worst("exact")
-    assert (found.verdict, worst.quantity) == (Verdict.DIFFERS, quantity)
-    told = cause_of_difference(found).replace("\u00a0", " ")
-    assert words in told
-    name, _, rest = told.partition("Without it the ")[2].partition(" differs by ")
+    result = crosscheck(new_pair(*given, of_springs), **settings)
+    worst = result.worst("exact")
+    assert (result.verdict, worst.quantity) == (Verdict.DIFFERS, quantity)
+    text = cause_of_difference(result).replace("\u00a0", " ")
+    assert words in text
+    name, _, rest = text.partition("Without it the ")[2].partition(" differs by ")
     assert name == NAMES[quantity]
     assert float(rest.partition(" %")[0]) < 100.0 * left < 25.0 * worst.difference
     if quantity == "dte":
         inertia = {
-            f"{g}.inertia": 10.0 * getattr(bodies(found.pair), f"inertia_{g}") for g in ("pinion", "gear")
+            f"{g}.inertia": 10.0 * getattr(bodies(result.pair), f"inertia_{g}") for g in ("pinion", "gear")
         }
-        heavy = crosscheck(found.pair.with_(inertia), **settings)
+        heavy = crosscheck(result.pair.with_(inertia), **settings)
         assert heavy.of("exact")[0].difference < 0.2 * worst.difference
 
 
 def test_a_failure_is_told_with_value_and_limit(check):
     wrong = dataclasses.replace(check, agreements=_with(check.agreements, "linear", "y_p", difference=0.73))
-    told = failed_checks(wrong).replace("\u00a0", " ")
-    assert told == "pinion y 73 % off with the same equations, limit 0.001 %"
+    text = failed_checks(wrong).replace("\u00a0", " ")
+    assert text == "pinion y 73 % off with the same equations, limit 0.001 %"
     [failure] = wrong.failures
     assert (failure.check, failure.value, failure.limit) == ("same equations: y_p", 0.73, 1e-5)
     broken = dataclasses.replace(check.conservation[0], value=1.0)
-    told = failed_checks(dataclasses.replace(check, conservation=(broken,)))
-    assert told.startswith("conservation: friction takes power, lumped 1, limit")
+    text = failed_checks(dataclasses.replace(check, conservation=(broken,)))
+    assert text.startswith("conservation: friction takes power, lumped 1, limit")
 
 
 @pytest.mark.parametrize("arguments", [
@@ -205,16 +205,16 @@ def test_what_symmetry_hides_is_seen_by_the_asymmetric_variant(pair, monkeypatch
     """The default pair has equal bearings: swapped ones change nothing but in the variant."""
     true = periodic_system.structure
     monkeypatch.setattr(periodic_system, "structure", lambda *a, **k: _swapped(true(*a, **k)))
-    found = crosscheck(pair, **QUICK)
-    assert found.verdict is Verdict.FAILS
-    assert all(failure.check.startswith("variant: ") for failure in found.failures)
+    result = crosscheck(pair, **QUICK)
+    assert result.verdict is Verdict.FAILS
+    assert all(failure.check.startswith("variant: ") for failure in result.failures)
 
 
 def test_a_sound_pair_and_its_variant_obey_the_conservation_laws(check):
     assert check.failures == ()
     assert check.variant is not None
-    for found in (check, check.variant):
-        checks = [j.check for j in found.conservation]
+    for result in (check, check.variant):
+        checks = [j.check for j in result.conservation]
         assert len(set(checks)) == len(checks) > 25
     pinion, gear = check.variant.pair.bearings.pinion, check.variant.pair.bearings.gear
     values = [getattr(b, f"{axis}_stiffness") for b in (pinion, gear) for axis in ("loa", "oloa")]
@@ -231,7 +231,8 @@ def test_vibration_that_reverses_sliding_is_no_wrong_sign(check):
 
 def test_a_variant_that_loses_contact_is_not_taken(pair):
     slow = pair.with_({"operating.pinion_torque": 5.0, "operating.pinion_speed": 8500.0})
-    found = asymmetric_variant(slow)
+    variant = asymmetric_variant(slow)
     assert (
-        found is None or float(lumped.steady_state(found, samples_per_cycle=64)["normal_load"].min()) >= 0.0
+        variant is None
+        or float(lumped.steady_state(variant, samples_per_cycle=64)["normal_load"].min()) >= 0.0
     )

@@ -34,8 +34,8 @@ def gears(pinion, gear, *shift):
 
 
 def running(speed, torque, law, viscosity=None):
-    found = {"operating.pinion_speed": speed, "operating.pinion_torque": torque, "friction.law": law}
-    return found if viscosity is None else found | {"lubricant.viscosity": viscosity}
+    changes = {"operating.pinion_speed": speed, "operating.pinion_torque": torque, "friction.law": law}
+    return changes if viscosity is None else changes | {"lubricant.viscosity": viscosity}
 
 
 def stiffness(model, **more):
@@ -106,23 +106,23 @@ def test_the_variant_of_a_pair_with_a_change_of_regime_is_not_refused():
 
 def own(teeth, module, width, speed, torque, *more):
     """A pair as ``spurcheck init --teeth`` makes it, on equal springs, without friction at C."""
-    given = {
+    sizes = {
         "teeth": teeth, "mesh.stiffness.model": "rectangular", "basic_rack.module": module,
         "gears.face_width": width, "operating.pinion_speed": speed, "operating.pinion_torque": torque,
         "bearings.stiffness": 1e8, "friction.law": "xu_kahraman",
     }  # fmt: skip
-    pair = lumped.load_gear_pair(tomllib.loads(new_pair_text("own", given)))
+    pair = lumped.load_gear_pair(tomllib.loads(new_pair_text("own", sizes)))
     return pair.with_({key: value for one in more for key, value in one.items()})
 
 
 def test_a_motion_small_beside_its_deflection_is_integrated_more_tightly():
     """Far above the resonances y moves by 1/6000 of the deflection, by which the integrators' errors go."""
     changes = shifts(0.305, -0.102) | {"mesh.contact": "prescribed", "lubricant.viscosity": 12.0}
-    found = crosscheck(
+    result = crosscheck(
         own("81/84", 2.0, 21.6, 11586.9, 1320.0, changes), cycles=6, samples_per_cycle=64, variant=False
     )
-    assert found.failures == ()
-    settings = found.multibody["linear"].attrs["settings"]
+    assert result.failures == ()
+    settings = result.multibody["linear"].attrs["settings"]
     assert float(settings.partition("rtol=")[2].partition(",")[0]) < 1e-10
 
 
@@ -138,9 +138,9 @@ FREE = {"friction.law": "none", "mesh.stiffness.model": "parabolic"}
     own("26/90", 6.0, 66.0, 3020.0, 155.0, ENERGY),
 ], ids=["sixty swings in a cycle", "momentum by few samples", "a change in the last step"])  # fmt: skip
 def test_a_variant_with_fast_swings_is_not_refused(pair):
-    found = crosscheck(asymmetric_variant(pair), cycles=6, samples_per_cycle=64, variant=False)
-    assert found.failures == ()
-    assert found.lumped.sizes["time"] == found.multibody["exact"].sizes["time"] == 6 * 64 + 1
+    result = crosscheck(asymmetric_variant(pair), cycles=6, samples_per_cycle=64, variant=False)
+    assert result.failures == ()
+    assert result.lumped.sizes["time"] == result.multibody["exact"].sizes["time"] == 6 * 64 + 1
 
 
 def test_no_tooth_enters_unseen_where_friction_holds_the_teeth():
@@ -160,11 +160,11 @@ def test_no_tooth_enters_unseen_where_friction_holds_the_teeth():
 def test_backs_that_strike_are_named_as_the_reason_why_a_pulling_motion_is_compared():
     more = shifts(0.391, 0.185) | {"friction.law": "V", "mesh.contact": "prescribed"}
     more |= {"pinion.tip_alteration": 0.0, "gear.tip_alteration": 0.0}  # at its full contact ratio it pulls
-    wide = own("52/90", 2.5, 27.3, 797.6, 69.2, more)
-    orbit, pulling = unilateral_orbit(wide)
+    with_backlash = own("52/90", 2.5, 27.3, 797.6, 69.2, more)
+    orbit, pulling = unilateral_orbit(with_backlash)
     assert orbit is not None
     assert pulling == ""
-    orbit, pulling = unilateral_orbit(wide.with_({"mesh.backlash": 0.0}))
+    orbit, pulling = unilateral_orbit(with_backlash.with_({"mesh.backlash": 0.0}))
     assert orbit is None
     assert "the backs of the teeth strike" in pulling
 
@@ -183,15 +183,15 @@ def test_backs_that_strike_are_named_as_the_reason_why_a_pulling_motion_is_compa
     (own("39/108", 1.5, 9.7, 497.0, 23.86, ENERGY), "normal_load", 0.1),
 ], ids=["x", "y", "y of corners", "load"])  # fmt: skip
 def test_a_small_swing_is_no_difference_of_the_models(pair, quantity, share):
-    """Over its own swing the difference is large; over what it stands for it is small."""
-    found = crosscheck(pair, cycles=6, samples_per_cycle=128, variant=False)
-    motions = [m.isel(time=slice(-129, None)) for m in (found.multibody["exact"], found.lumped)]
+    """The difference is large over the swing of the quantity, and small over the scale of the cross-check."""
+    result = crosscheck(pair, cycles=6, samples_per_cycle=128, variant=False)
+    motions = [m.isel(time=slice(-129, None)) for m in (result.multibody["exact"], result.lumped)]
     keep = off_switch_samples(pair, motions[1]["time"].to_numpy(), 0.02)
     a, b = (np.atleast_2d(m[quantity].to_numpy()).sum(axis=0)[keep] for m in motions)
     assert np.abs(a - b).max() > share * np.ptp(b)
-    assert found.verdict.word == "agrees"
-    assert next(one for one in found.of("exact") if one.quantity == quantity).difference < 0.05
+    assert result.verdict.word == "agrees"
+    assert next(one for one in result.of("exact") if one.quantity == quantity).difference < 0.05
     # The same motion with another vibration off the line of action, however small it is, is told.
     if quantity == "y_g":
-        turned = motions[0].assign(y_g=2.0 * motions[1]["y_g"].mean() - motions[1]["y_g"])
-        assert not agreement(pair, "y_g", "exact", turned, motions[1], limit_of("y_g", "exact")).within
+        mirrored = motions[0].assign(y_g=2.0 * motions[1]["y_g"].mean() - motions[1]["y_g"])
+        assert not agreement(pair, "y_g", "exact", mirrored, motions[1], limit_of("y_g", "exact")).within

@@ -15,10 +15,10 @@ QUICK = {"cycles": 6, "samples_per_cycle": 64}
 
 
 def apart(pair, share):
-    """Largest difference of the exact DTE from that of the prediction, over its peak to peak, every length of
-    the flanks times a share.
+    """Largest difference of the exact DTE from the predicted DTE, over the peak to peak of the prediction.
 
-    Torque, relief and backlash are such lengths: without finite motions nothing else would change.
+    The lengths at the flanks are multiplied by ``share``: torque (by the deflection), relief and backlash.
+    Without finite motions the difference would not change.
     """
     sizes = {
         "operating.pinion_torque": pair.operating.pinion_torque,
@@ -28,21 +28,22 @@ def apart(pair, share):
         if (relief := getattr(pair, name).tip_relief) is not None:
             sizes[f"{name}.tip_relief.amount"] = 1e6 * relief.amount
     small = pair.with_({field: share * size for field, size in sizes.items()})
-    own = predicted(small).cycle["dte"].to_numpy()
-    exact = multibody.steady_state(small, samples_per_cycle=own.size)["dte"].to_numpy()[: own.size]
-    return float(np.abs(exact - own).max() / np.ptp(own))
+    dte = predicted(small).cycle["dte"].to_numpy()
+    exact = multibody.steady_state(small, samples_per_cycle=dte.size)["dte"].to_numpy()[: dte.size]
+    return float(np.abs(exact - dte).max() / np.ptp(dte))
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_loaded_form_and_the_exact_contact_differ_by_finite_motions_alone(name):
-    """Their share falls with every length, also with unilateral contact; a wrong stiffness stays.
+    """The difference by finite motions falls with the lengths at the flanks, also with unilateral contact.
 
-    Without friction, which vibration turns, and whose turns do not fall with the lengths.
+    The difference by a wrong stiffness would stay. There is no friction: vibration reverses friction, and
+    these reversals do not fall with the lengths.
     """
     pair = unlike_pair(name).with_(friction__law="none")
-    whole = apart(pair, 0.25)
-    assert whole < 0.03
-    assert apart(pair, 0.0625) < 0.45 * whole
+    difference = apart(pair, 0.25)
+    assert difference < 0.03
+    assert apart(pair, 0.0625) < 0.45 * difference
 
 
 @pytest.fixture(scope="module")

@@ -50,11 +50,15 @@ def test_a_wrong_speed_of_the_gear_in_the_lumped_model_is_seen(monkeypatch):
 def test_a_difference_of_the_losses_alone_is_the_verdict_and_is_said():
     check = checked("contact_ratio_2_3_on_shafts")
     more = {place: 1.06 * lost for place, lost in check.loss.lumped.items()}
-    off = dataclasses.replace(check, loss=LossAgreement(check.loss.lumped, more))
-    assert off.loss.difference == pytest.approx(0.06, rel=1e-12)
-    assert (off.loss.limit, off.loss.within, off.verdict) == (LOSS_LIMIT, False, Verdict.DIFFERS)
-    said = loss_difference(off).replace("\N{NO-BREAK SPACE}", " ")
-    assert "199 W beside 188 W, which does not agree: 6 %, limit 5 %" in said
+    differing = dataclasses.replace(check, loss=LossAgreement(check.loss.lumped, more))
+    assert differing.loss.difference == pytest.approx(0.06, rel=1e-12)
+    assert (differing.loss.limit, differing.loss.within, differing.verdict) == (
+        LOSS_LIMIT,
+        False,
+        Verdict.DIFFERS,
+    )
+    text = loss_difference(differing).replace("\N{NO-BREAK SPACE}", " ")
+    assert "199 W beside 188 W, which does not agree: 6 %, limit 5 %" in text
 
 
 def test_without_losses_both_models_agree_and_a_loss_in_one_alone_does_not():

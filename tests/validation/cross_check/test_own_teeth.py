@@ -95,8 +95,8 @@ HALVES = {
 def test_ripple_and_own_tip_relief_are_in_both_models_and_a_wrong_one_is_seen(difference, name):
     # With motor and brake: bare discs swing by 0.5 mm under this ripple, and the models differ by 2 %.
     right, wrong = HALVES[name]
-    held = {"pinion.inertia": 0.06, "gear.inertia": 0.02, "friction.coefficient": 0.06}
-    changes = own(1.0, **{"mesh.first_teeth": [5, 24]}) | held | right
+    steady = {"pinion.inertia": 0.06, "gear.inertia": 0.02, "friction.coefficient": 0.06}
+    changes = own(1.0, **{"mesh.first_teeth": [5, 24]}) | steady | right
     apart, swing, _ = difference(changes)
     assert apart < 0.01 * swing
     for fault, change in wrong.items():

@@ -183,12 +183,12 @@ def test_a_wrong_stiffness_is_seen(key):
 def test_finite_elements_without_the_gear_body_are_seen(name, monkeypatch):
     pair = with_model(load_gear_pair(name), "finite elements")
     elastic = second_values.elastic_pair(pair)
-    whole = finite_elements.self_compliance
+    with_body = finite_elements.self_compliance
 
     def without_body(pair, teeth, xi):
         gears = ((elastic.pinion, xi), (elastic.gear, elastic.circles.tangent - xi))
         bodies = sum(second_values._foot_motion(gear, 0, length, length) for gear, length in gears)
-        return whole(pair, teeth, xi) - bodies / elastic.face_width
+        return with_body(pair, teeth, xi) - bodies / elastic.face_width
 
     monkeypatch.setattr(finite_elements, "self_compliance", without_body)
     assert "stiffness" in beyond(pair)
@@ -196,13 +196,13 @@ def test_finite_elements_without_the_gear_body_are_seen(name, monkeypatch):
 
 def test_a_path_that_is_run_through_backwards_is_seen_by_the_shape(monkeypatch):
     """Of finite elements the size has a wide limit; the shape tells a mirrored path of unlike gears."""
-    whole = finite_elements.self_compliance
+    forwards = finite_elements.self_compliance
     pair = with_model(unlike_pair("contact_ratio_1_1_large_shifts"), "finite elements")
     g = pair.geometry
     monkeypatch.setattr(
         finite_elements,
         "self_compliance",
-        lambda pair, teeth, xi: whole(pair, teeth, g.L_XA + g.L_XD - xi),
+        lambda pair, teeth, xi: forwards(pair, teeth, g.L_XA + g.L_XD - xi),
     )
     assert beyond(pair) & {"shape", "stiffness"}
 

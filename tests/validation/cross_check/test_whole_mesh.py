@@ -29,16 +29,16 @@ def whole(name, stiffness=wave):
 
 def judged(pair, numbers=None):
     """Model -> the judgement of its load over stiffness."""
-    found = laws._load_over_stiffness(pair, machine(pair) if numbers is None else numbers)
-    return {one.check.removeprefix(LAW): one for one in found}
+    judgements = laws._load_over_stiffness(pair, machine(pair) if numbers is None else numbers)
+    return {one.check.removeprefix(LAW): one for one in judgements}
 
 
 @pytest.mark.parametrize("name", UNLIKE)
 @pytest.mark.parametrize("stiffness", [2.3e8, wave], ids=["constant", "curve"])
 def test_both_models_give_the_stiffness_back(name, stiffness):
-    found = judged(whole(name, stiffness))
-    assert set(found) == {"lumped", "exact"}
-    assert all(one.within for one in found.values())
+    judgements = judged(whole(name, stiffness))
+    assert set(judgements) == {"lumped", "exact"}
+    assert all(one.within for one in judgements.values())
 
 
 def test_the_stiffness_factor_is_part_of_it():
@@ -52,9 +52,9 @@ def test_a_curve_of_one_tooth_pair_has_no_such_law():
 def test_contact_beyond_the_curve_is_caught(monkeypatch):
     pair = whole("rack_25_degrees_always_pushing")
     monkeypatch.setattr(transmission_error, "_extended", lambda pair, extended: True)
-    found = judged(pair)
-    assert not found["lumped"].within
-    assert found["exact"].within
+    judgements = judged(pair)
+    assert not judgements["lumped"].within
+    assert judgements["exact"].within
 
 
 def test_relief_that_counts_twice_is_caught(monkeypatch):
@@ -78,15 +78,15 @@ def test_another_stiffness_of_the_second_model_is_caught(fault):
     elif fault == "late":
         table[:, :2] += 1e-7
     wrong = replace(right, table=table, pairs=1 if fault == "one pair" else right.pairs)
-    found = judged(pair, wrong)
-    assert found["lumped"].within
-    assert not found["exact"].within
+    judgements = judged(pair, wrong)
+    assert judgements["lumped"].within
+    assert not judgements["exact"].within
 
 
 @pytest.mark.parametrize("stiffness", [2.3e8, wave], ids=["constant", "curve"])
 def test_both_models_agree_on_the_motion(stiffness):
     """Without friction nothing but the stiffness acts: a constant one leaves no vibration and no loss."""
     pair = whole("rack_25_degrees_always_pushing", stiffness).with_(friction__law="none")
-    found = crosscheck(pair, cycles=6, samples_per_cycle=64, variant=False, supports="springs")
-    assert found.verdict is Verdict.AGREES, [*found.failures, found.worst("exact")]
-    assert sum(one.check.startswith(LAW) for one in found.judgements) == 2
+    result = crosscheck(pair, cycles=6, samples_per_cycle=64, variant=False, supports="springs")
+    assert result.verdict is Verdict.AGREES, [*result.failures, result.worst("exact")]
+    assert sum(one.check.startswith(LAW) for one in result.judgements) == 2
