@@ -12,7 +12,7 @@ import multibody
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import geometry, load_gear_pair, simulate, steady_state
 from lumped.errors import LawRangeWarning, SpurcheckError
-from multibody.contact.kinematics import mesh_phase
+from multibody.contact.kinematics import Side, Turn, mesh_phase
 
 #: Longest time that any analysis of any pair may take here [s]; ordinary ones take well under one.
 SECONDS = 60.0
@@ -163,7 +163,9 @@ def test_an_answer_or_a_refusal(within, name, analysis):
 def test_the_phase_of_the_mesh_stays_within_a_pitch_after_any_number_of_turns(turns):
     # The loop over the pairs in contact adds pitches to the phase: a phase far outside would never end it.
     pitch = 9.373e-3
-    rho, _ = mesh_phase(1.2, 30e-3, 2 * math.pi * turns, 0.3, 0.0, 41e-3, 41e-3, pitch, 0.1, 0.2, 1.0)
+    side = Side(flank=1.0, radius_p=41e-3, radius_g=41e-3, pitch=pitch, chi=0.1, overlap=0.2)
+    turn = Turn(psi=1.2, grown=30e-3, phi_p=2 * math.pi * turns, phi_g=0.3, rolled=0.0)
+    rho, _ = mesh_phase(side, turn)
     assert 0.0 <= rho <= pitch
 
 

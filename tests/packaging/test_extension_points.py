@@ -24,7 +24,7 @@ from lumped.friction.base import FrictionLaw
 LAW = FrictionLaw(
     name="rising",
     label="rising",
-    signed=lambda xi, path, settings: 0.05 * np.sign(xi - path.L_XP) + 0.1 * (xi - path.L_XP) / path.L_XY,
+    formula=lambda xi, path, settings: 0.05 * np.sign(xi - path.L_XP) + 0.1 * (xi - path.L_XP) / path.L_XY,
     switches=lambda path, settings: [path.L_XP],
 )
 """,

@@ -220,7 +220,7 @@ def predict(pair: AnyPair, *, supports: Supports | None = None) -> Prediction:
 def dynamic_factor(pair: AnyPair, *, supports: Supports | None = None) -> float:
     """Return the dynamic factor of ``predict``: largest mesh force over the static mesh force [-].
 
-    Arguments and errors as for ``predict``.
+    Arguments (``pair``, ``supports``) and errors as for ``predict``.
     """
     return predict(pair, supports=supports).dynamic_factor
 
