@@ -28,7 +28,7 @@ from numba.core.serialize import dumps
 
 from lumped.cache import cache_folder, cores, read_whole, write_whole
 from lumped.kernel_stamps import UnknownDependencyError, compiled_behind, described, stamp_of
-from lumped.linked_code import LinkedCompiler
+from lumped.linked_code import LinkedCompiler, refuse_calls_from_python
 
 F = TypeVar("F", bound=Callable[..., Any])
 Part = TypeVar("Part")
@@ -57,13 +57,14 @@ def compiled(function: Any = None, /, **options: Any) -> Any:
 
 
 def _compiled(function: Callable[..., Any], /, **options: Any) -> Any:
-    files = _KernelFiles
-    if options.get("no_cpython_wrapper"):
+    linked = options.get("no_cpython_wrapper", False)
+    if linked:
         options["pipeline_class"] = LinkedCompiler
-        files = _NoFiles
     dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
     if not numba.config.DISABLE_JIT:
-        dispatcher._cache = files(dispatcher)
+        dispatcher._cache = _NoFiles(dispatcher) if linked else _KernelFiles(dispatcher)
+        if linked:
+            refuse_calls_from_python(dispatcher)
     return dispatcher
 
 

@@ -69,3 +69,16 @@ class LinkedCompiler(CompilerBase):  # type: ignore[misc]
         pipeline.add_pass_after(_IntoLinkedCode, AnnotateTypes)
         pipeline.finalize()
         return [pipeline]
+
+
+def refuse_calls_from_python(dispatcher: Any) -> None:
+    """Make a call from Python an error with a reason. Without this a call would jump to address 0."""
+
+    def refuse(*arguments: Any, **keywords: Any) -> None:
+        raise TypeError(f"{dispatcher.py_func.__qualname__} is compiled as a part of its callers alone")
+
+    def leave_out(*overload: Any) -> None:
+        """Numba would enter the address of the code here, and jump there when Python calls."""
+
+    dispatcher._compile_for_args = refuse
+    dispatcher._insert = leave_out
