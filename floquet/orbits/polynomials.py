@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled
 from lumped.typing import FloatArray
 
 _SAMPLES = 8
@@ -22,7 +22,7 @@ def value(c: FloatArray, s: float) -> float:
     return total
 
 
-@compiled(nogil=True)
+@called
 def slope(c: FloatArray, s: float) -> float:
     total = 0.0
     for j in range(c.size - 1, 0, -1):
@@ -30,7 +30,7 @@ def slope(c: FloatArray, s: float) -> float:
     return total
 
 
-@compiled(nogil=True)
+@called
 def value_and_slope(c: FloatArray, s: float) -> tuple[float, float]:
     total = 0.0
     rate = 0.0
@@ -40,7 +40,7 @@ def value_and_slope(c: FloatArray, s: float) -> tuple[float, float]:
     return total, rate
 
 
-@compiled(nogil=True)
+@called
 def shift(c: FloatArray, s: float, out: FloatArray) -> None:
     """Coefficients of c(s + x) in powers of x."""
     n = c.size
@@ -116,7 +116,7 @@ def crossing(c: FloatArray, h: float, sign: float) -> float:
     return 2.0 * h
 
 
-@compiled(nogil=True)
+@called
 def _root(c: FloatArray, low: float, high: float, sign: float, above: float, below: float) -> float:
     """Zero of a polynomial between low and high, by Newton's method with bisection.
 
@@ -139,7 +139,7 @@ def _root(c: FloatArray, low: float, high: float, sign: float, above: float, bel
     return s
 
 
-@compiled(nogil=True)
+@called
 def extremes(c: FloatArray, h: float, low: float, high: float) -> tuple[float, float]:
     """Smallest and largest value: ``low`` and ``high``, widened by the values of a polynomial on [0, h]."""
     least, most = bounds(c, h)

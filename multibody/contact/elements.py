@@ -36,7 +36,7 @@ class ContactLaw(NamedTuple):
     nominal_force: float
 
 
-@inlined
+@uncounted
 def contact_law(machine: Record, flags: int) -> ContactLaw:
     """The law of a machine; without the effect of Hertz's contact every pair is a linear spring."""
     law = machine.pair_law
@@ -53,7 +53,7 @@ def polynomial(piece: FloatArray, s: float) -> tuple[float, float]:
     return value, slope
 
 
-@uncounted
+@inner
 def table_value_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
     """Value of a piecewise polynomial at xi, and its slope. Beyond its ends the value stays constant.
 

@@ -117,7 +117,7 @@ def reduced_radius(rho_p: float, rho_g: float) -> float:
     return max(rho_p, least) * max(rho_g, least) / (rho_p + rho_g)
 
 
-@uncounted
+@inner
 def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float, w: float) -> int:
     """Which formula is in force: a number that changes where the coefficient jumps or has a kink."""
     law = f.law
@@ -131,7 +131,7 @@ def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float
     return int(law)
 
 
-@uncounted
+@inner
 def magnitude(
     f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float, distance: float, w: float
 ) -> float:

@@ -63,6 +63,7 @@ from multibody.contact.records import (
     machine_of,
     opened_contacts,
     table_of,
+    uncounted,
 )
 from multibody.contact.tooth_pairs import (
     WAYS,
@@ -249,7 +250,7 @@ def pairs_near_contact(
     return count
 
 
-@inner
+@uncounted
 def set_couplings(count: int, pairs: Records, machine: Record) -> None:
     """Write how far the load of each pair moves each other one. The newest, furthest behind, comes first."""
     for i in range(count):

@@ -197,14 +197,14 @@ def line_rates(line: Line, rates: GearRates, flags: int) -> tuple[float, float]:
     return psi_rate, line.flank * radii * psi_rate - (line.ex * rates.vx + line.ey * rates.vy)
 
 
-@uncounted
+@inner
 def overlap_rate(line: Line, vx: float, vy: float, omega_p: float, omega_g: float) -> float:
     """Rate of the overlap [m/s]; (vx, vy) is the velocity of the pinion's centre relative to the gear's."""
     turning = line.radius_p * omega_p + line.radius_g * omega_g
     return line.ex * vx + line.ey * vy - line.flank * turning
 
 
-@uncounted
+@inner
 def sliding_velocity(
     line: Line, vx: float, vy: float, omega_p: float, omega_g: float, arm_p: float, arm_g: float
 ) -> float:
@@ -272,7 +272,7 @@ def corner_gap(
     return corner_off(beyond, tip, length, radius, mate)
 
 
-@uncounted
+@inner
 def corner_off(
     beyond: float, tip: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float]:

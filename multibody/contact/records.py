@@ -18,6 +18,7 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.path_function import FIT_DEGREE
 from lumped.typing import FloatArray
+from multibody.contact.views import as_records
 
 #: One record of a dtype below, or an array of records. Type checkers know no fields of records.
 Record = Any
@@ -245,13 +246,13 @@ CONTACTS_SIZE = 2 * MAX_PAIRS * CONTACT_SIZE
 @expanded
 def machine_of(packed: FloatArray) -> Records:
     """MACHINE (1,), a view."""
-    return packed[:MACHINE_SIZE].view(MACHINE)
+    return as_records(packed[:MACHINE_SIZE], MACHINE)
 
 
 @expanded
 def contacts_of(packed: FloatArray) -> Records:
     """CONTACT (n,), a view of a flat array."""
-    return packed.view(CONTACT)
+    return as_records(packed, CONTACT)
 
 
 @expanded
@@ -269,19 +270,19 @@ def table_of(packed: FloatArray, block: Record) -> FloatArray:
 @expanded
 def teeth_of(packed: FloatArray, block: Record) -> Records:
     """A block as TOOTH (z,), a view."""
-    return block_of(packed, block).view(TOOTH)
+    return as_records(block_of(packed, block), TOOTH)
 
 
 @expanded
 def faults_of(packed: FloatArray, block: Record) -> Records:
     """A block as FAULT (n,), a view."""
-    return block_of(packed, block).view(FAULT)
+    return as_records(block_of(packed, block), FAULT)
 
 
 @expanded
 def ripples_of(packed: FloatArray, block: Record) -> Records:
     """A block as RIPPLE (n,), a view."""
-    return block_of(packed, block).view(RIPPLE)
+    return as_records(block_of(packed, block), RIPPLE)
 
 
 def opened(packed: FloatArray) -> Record:

@@ -245,6 +245,49 @@ def test_code_that_calls_older_code_is_not_stored(package: Path, run: Run, tmp_p
     assert not list((tmp_path / "cache").rglob("late-*.kernel"))
 
 
+LINKED = CALLED.replace("@compiled\n", "@compiled(no_cpython_wrapper=True)\n")
+
+
+def test_edits_of_linked_code_are_noticed_and_it_is_stored_in_its_callers(
+    package: Path, run: Run, tmp_path: Path
+) -> None:
+    _write(package, called=LINKED)
+    assert [run(), run()] == [(2.0, 0), (2.0, 1)]
+    assert [path.name[:2] for path in (tmp_path / "cache").rglob("*.kernel")] == ["f-"]
+    _write(package, called=LINKED.replace("2.0", "3.0"))
+    assert [run(), run()] == [(3.0, 0), (3.0, 1)]
+
+
+def test_code_that_calls_older_linked_code_is_not_stored(package: Path, run: Run, tmp_path: Path) -> None:
+    called = "FACTOR = 2.0\n@compiled(no_cpython_wrapper=True)\ndef times(x):\n    return FACTOR * x"
+    late = "@compiled\ndef late(x):\n    return times(x)"
+    first = "@compiled\ndef f(x):\n    return times(x)"
+    _write(package, called=called, caller=f"from pkg.called import times\n{first}\n{late}")
+    assert run() == (2.0, 0)
+    _write(package, called=called.replace("2.0", "3.0"))
+    importlib.reload(sys.modules["pkg.called"])
+    assert sys.modules["pkg.caller"].late(1.0) == 2.0
+    assert not list((tmp_path / "cache").rglob("late-*.kernel"))
+
+
+def test_linked_code_works_in_a_process_that_finds_its_caller_on_the_disk(package: Path, run: Run) -> None:
+    """The caller raises: for this its code looks for Python objects, one for each function."""
+    check = "def checked(x):\n    if x > 2.0:\n        raise ValueError(x)\n    return x"
+    caller = "from pkg.called import checked\n@compiled\ndef f(x):\n    return checked(x)"
+    _write(package, called=f"@compiled(no_cpython_wrapper=True)\n{check}", caller=caller)
+    assert [run(), run()] == [(1.0, 0), (1.0, 1)]
+    with pytest.raises(ValueError, match="3"):
+        sys.modules["pkg.caller"].f(3.0)
+
+
+def test_python_cannot_call_linked_code(package: Path, run: Run) -> None:
+    _write(package, called=LINKED)
+    run()  # which calls double, not half
+    for name in ("double", "half"):
+        with pytest.raises(TypeError, match=f"{name} is compiled as a part of its callers alone"):
+            getattr(sys.modules["pkg.called"], name)(1.0)
+
+
 def test_options_are_noticed() -> None:
     def double(x: float) -> float:
         return 2.0 * x

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.rank_one.kernels.eigenvalues import eigenvalues
-from lumped.compiler import compiled
+from lumped.compiler import compiled, inlined
 from lumped.typing import ComplexArray, FloatArray
 
 _EPS = 2.220446049250313e-16
@@ -67,7 +67,7 @@ class EntryBounds(NamedTuple):
     images: ComplexArray
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _shift(A: FloatArray, shift: complex, out: ComplexArray) -> float:
     """Out = A - shift I; returns the sum of |A_ij|."""
     scale = 0.0
@@ -79,7 +79,7 @@ def _shift(A: FloatArray, shift: complex, out: ComplexArray) -> float:
     return scale
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _exchange_for_pivot(factors: Factors, k: int) -> float:
     """Exchange row k with the row of the largest element of column k below; the size of that element."""
     LU = factors.LU
@@ -100,14 +100,14 @@ def _exchange_for_pivot(factors: Factors, k: int) -> float:
     return largest
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _inverse(c: complex) -> complex:
     """1/c; faster than a careful complex division."""
     square = c.real * c.real + c.imag * c.imag
     return complex(c.real / square, -c.imag / square)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _factorise(factors: Factors, tiny: float) -> None:
     """LU factorisation in place; a pivot below ``tiny`` is replaced by it, for A - shift I is singular."""
     LU = factors.LU
@@ -124,7 +124,7 @@ def _factorise(factors: Factors, tiny: float) -> None:
                 LU[i, j] -= factor * LU[k, j]
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _solve_upper(LU: ComplexArray, x: ComplexArray) -> None:
     """Replace x by U^-1 x."""
     n = x.size
@@ -134,7 +134,7 @@ def _solve_upper(LU: ComplexArray, x: ComplexArray) -> None:
         x[i] *= LU[i, i]
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _solve_transposed(factors: Factors, y: ComplexArray) -> None:
     """Replace y by (A - shift I)^-T y: solve with U^T, then with L^T, then exchange the rows back."""
     LU = factors.LU
@@ -152,7 +152,7 @@ def _solve_transposed(factors: Factors, y: ComplexArray) -> None:
         y[factors.pivots[k]] = element
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _scale_to_each_other(x: ComplexArray, y: ComplexArray) -> None:
     """Scale unit vectors x and y to y^T x = 1 and |x| = |y|; x becomes nan if the vectors are orthogonal."""
     n = x.size
@@ -170,7 +170,7 @@ def _scale_to_each_other(x: ComplexArray, y: ComplexArray) -> None:
         x[0] = math.nan
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _null_vectors(A: FloatArray, shift: complex, factors: Factors, x: ComplexArray, y: ComplexArray) -> None:
     """Right and left null vectors x, y (n,) of A - shift I, y^T x = 1, |x| = |y|.
 
@@ -189,7 +189,7 @@ def _null_vectors(A: FloatArray, shift: complex, factors: Factors, x: ComplexArr
     _scale_to_each_other(x, y)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _normalise(x: ComplexArray) -> None:
     """Scale x to length one."""
     square = 0.0
@@ -206,7 +206,7 @@ def _normalise(x: ComplexArray) -> None:
         x[i] *= factor
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _find_partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
     """Index of the conjugate of each eigenvalue; conjugates stand side by side."""
     for p in range(values.size):
@@ -221,7 +221,7 @@ def _find_partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None
             partner[p - 1] = p
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _eigenvectors(A: FloatArray, values: ComplexArray, factors: Factors, vectors: Eigenvectors) -> None:
     """Approximate right and left eigenvectors, once for each conjugate pair of eigenvalues."""
     n = A.shape[0]
@@ -236,13 +236,13 @@ def _eigenvectors(A: FloatArray, values: ComplexArray, factors: Factors, vectors
             _null_vectors(A, values[p], factors, right[p], left[p])
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _modulus(z: complex) -> float:
     """|z|, rounded up a little: faster than a careful abs where nothing overflows."""
     return math.sqrt(z.real * z.real + z.imag * z.imag) * (1.0 + 4.0 * _EPS) + 1e-150
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _row_norm(rows: ComplexArray, i: int) -> float:
     square = 0.0
     for j in range(rows.shape[1]):
@@ -250,7 +250,7 @@ def _row_norm(rows: ComplexArray, i: int) -> float:
     return math.sqrt(square)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _frobenius(A: FloatArray) -> float:
     squares = 0.0
     for i in range(A.shape[0]):
@@ -259,7 +259,7 @@ def _frobenius(A: FloatArray) -> float:
     return math.sqrt(squares)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _images(A: FloatArray, vectors: Eigenvectors, images: ComplexArray) -> None:
     """Rows A x of the right eigenvectors."""
     n = A.shape[0]
@@ -277,7 +277,7 @@ def _images(A: FloatArray, vectors: Eigenvectors, images: ComplexArray) -> None:
             images[p, i] = complex(real, imaginary)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _bound_row(
     i: int, values: ComplexArray, vectors: Eigenvectors, size: float, delta: float, bounds: EntryBounds
 ) -> float:
@@ -305,7 +305,7 @@ def _bound_row(
     return row_sum
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _conjugate_row(i: int, partner: npt.NDArray[np.int64], bounds: EntryBounds) -> None:
     """Bounds on row i of a conjugate eigenvalue: those of row i - 1 with conjugate columns exchanged."""
     bounds.residual_rows[i] = bounds.residual_rows[i - 1]
@@ -313,7 +313,7 @@ def _conjugate_row(i: int, partner: npt.NDArray[np.int64], bounds: EntryBounds) 
         bounds.entries[i, j] = bounds.entries[i - 1, partner[j]]
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _add_inverse(q: float, bounds: EntryBounds) -> None:
     """Add what (I - R)^-1 makes of a column: q_i/(1 - q) times its largest entry."""
     n = bounds.residual_rows.size
@@ -326,7 +326,7 @@ def _add_inverse(q: float, bounds: EntryBounds) -> None:
             bounds.entries[i, j] = entry * (1.0 + 1e-12)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _entry_bounds(
     A: FloatArray, values: ComplexArray, vectors: Eigenvectors, delta: float, bounds: EntryBounds
 ) -> float:

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import math
 
-from lumped.compiler import compiled
+from lumped.compiler import called
 from lumped.typing import ComplexArray, FloatArray
 
 _EPS = 2.220446049250313e-16
 _MAX_SWEEPS = 60
 
 
-@compiled(_nrt=False)
+@called
 def _hessenberg(A: FloatArray, u: FloatArray) -> None:
     """Reduce A (n, n) to upper Hessenberg form in place by Householder reflections; u (n,) is scratch."""
     n = A.shape[0]
@@ -54,7 +54,7 @@ def _hessenberg(A: FloatArray, u: FloatArray) -> None:
             A[i, k] = 0.0
 
 
-@compiled(_nrt=False)
+@called
 def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> None:
     """One implicit double-shift QR sweep on rows lo..hi; the shifts have this sum and product."""
     x = H[lo, lo] * H[lo, lo] + H[lo, lo + 1] * H[lo + 1, lo] - sum_ * H[lo, lo] + product
@@ -99,7 +99,7 @@ def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> No
             z = H[k + 3, k] if k + 3 <= hi else 0.0
 
 
-@compiled(_nrt=False)
+@called
 def eigenvalues(A: FloatArray, values: ComplexArray, scratch: FloatArray) -> bool:
     """Eigenvalues of A (overwritten); conjugate pairs stand side by side. False: no convergence.
 

@@ -28,7 +28,7 @@ from floquet.rank_one.kernels.simd import (
     total,
     zero,
 )
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled, inlined
 from lumped.typing import FloatArray
 
 MAX_TERMS = 64
@@ -246,7 +246,7 @@ class Workspace(NamedTuple):
     unit: FloatArray
 
 
-@compiled(_nrt=False)
+@called
 def norm(row: FloatArray) -> float:
     """Euclidean norm of a vector."""
     total = 0.0
@@ -280,7 +280,7 @@ def most_steps(n: int) -> int:
     return min(MAX_STEPS, _MATRIX_ENTRIES // (n * n))
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def _norms_of(problem: Problem) -> Norms:
     m = problem.v.size
     v_over_omega = np.zeros(m)
@@ -290,7 +290,7 @@ def _norms_of(problem: Problem) -> Norms:
     return Norms(deflection, norm(problem.v), norm(problem.reference) * deflection)
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def _equation_for(problem: Problem) -> StepEquation:
     m = problem.v.size
     coordinates = max(m, 3)
@@ -311,7 +311,7 @@ def _equation_for(problem: Problem) -> StepEquation:
     )
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def workspace_for(problem: Problem) -> Workspace:
     """Allocate the workspace of one thread."""
     m = problem.v.size
@@ -349,7 +349,7 @@ def workspace_for(problem: Problem) -> Workspace:
 # forceinline: a call that is not inlined passes every number of all arrays of its tuples, up to 80 ns.
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def load_constant_part(problem: Problem, T: float, work: Workspace) -> ConstantPart:
     """Write C + G/T of a point, and bound the constant part of A.
 
@@ -372,7 +372,7 @@ def load_constant_part(problem: Problem, T: float, work: Workspace) -> ConstantP
     )
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _row_norm(poly: FloatArray, j: int) -> float:
     """Norm of poly[j], zero beyond its coordinates."""
     squares = zero()
@@ -381,7 +381,7 @@ def _row_norm(poly: FloatArray, j: int) -> float:
     return math.sqrt(total(squares))
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _weighted_sum(
     polys: FloatArray, i: int, degree: int, weights: FloatArray, factor: float, out: FloatArray
 ) -> None:
@@ -394,7 +394,7 @@ def _weighted_sum(
             store(out, (j, c), row)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _over_part(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
     """Out = factor times poly in the time of one of ``parts`` equal parts of the piece.
 
@@ -417,7 +417,7 @@ def _over_part(poly: FloatArray, degree: int, part: int, parts: int, factor: flo
             power /= parts
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def load_piece(problem: Problem, i: int, point: Point, constant: ConstantPart, work: Workspace) -> Piece:
     """Write the gains of a point over piece i, the weighted sums of their parts, and bound them."""
     zeta = abs(point.zeta)
@@ -459,7 +459,7 @@ def load_piece(problem: Problem, i: int, point: Point, constant: ConstantPart, w
     )
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def load_step(
     problem: Problem, piece: Piece, constant: ConstantPart, part: int, parts: int, h: float, work: Workspace
 ) -> int:
@@ -484,7 +484,7 @@ def load_step(
     return _majorant_of_two_gains(piece, constant_part, h, work.norms, equation)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _majorant_of_one_gain(
     piece: Piece, constant_part: float, h: float, norms: Norms, equation: StepEquation
 ) -> int:
@@ -499,7 +499,7 @@ def _majorant_of_one_gain(
     return int(piece.w_degree)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _majorant_of_two_gains(
     piece: Piece, constant_part: float, h: float, norms: Norms, equation: StepEquation
 ) -> int:

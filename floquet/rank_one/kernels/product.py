@@ -26,7 +26,7 @@ from floquet.rank_one.kernels.simd import (
     total,
     zero,
 )
-from lumped.compiler import compiled
+from lumped.compiler import compiled, inlined
 from lumped.typing import FloatArray
 
 BLOCKS = 34
@@ -37,7 +37,7 @@ _SLACK = 1.0 + 1e-11  # covers the rounding of a bound itself
 _FLOOR = 1e-150  # squares of smaller numbers may underflow
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def frobenius(rows: FloatArray) -> float:
     """Bound on the Frobenius norm of a matrix, also where squares of its entries underflow."""
     n = rows.shape[0]
@@ -48,7 +48,7 @@ def frobenius(rows: FloatArray) -> float:
     return math.sqrt(total(squares)) + _FLOOR
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def copy(source: FloatArray, out: FloatArray) -> None:
     """Out = the first rows of source, as many as out has."""
     n = out.shape[0]
@@ -57,7 +57,7 @@ def copy(source: FloatArray, out: FloatArray) -> None:
             store(out, (i, c), load(source, (i, c)))
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
     """Out = left @ right."""
     n = left.shape[0]
@@ -69,7 +69,7 @@ def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
             store(out, (i, c), row)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _pivot_row(A: FloatArray, k: int, small: float) -> int:
     """Row of the pivot of column k: row k, or the row of the largest element below where A[k, k] is small."""
     pivot = k
@@ -80,7 +80,7 @@ def _pivot_row(A: FloatArray, k: int, small: float) -> int:
     return pivot
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _exchange_rows(A: FloatArray, i: int, k: int) -> None:
     """Exchange rows i and k of A (n, lanes)."""
     for c in range(0, A.shape[1], LANES):
@@ -89,7 +89,7 @@ def _exchange_rows(A: FloatArray, i: int, k: int) -> None:
         store(A, (k, c), row)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _eliminate(A: FloatArray, inverse: FloatArray, k: int, factor: float) -> None:
     """Scale row k by a factor, and subtract multiples of row k that clear column k of A in all other rows.
 
@@ -112,7 +112,7 @@ def _eliminate(A: FloatArray, inverse: FloatArray, k: int, factor: float) -> Non
                 store(inverse, (i, c), plus(multiple, pivot_row_of_inverse, load(inverse, (i, c))))
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def invert(A: FloatArray, unit: FloatArray, scratch: FloatArray, out: FloatArray) -> None:
     """Out = inverse of A by Gauss-Jordan elimination with row pivots; not finite where A is singular.
 
@@ -154,7 +154,7 @@ def divide(
     return size, residual
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def gram(A: FloatArray, out: FloatArray) -> None:
     """Out = A^T A."""
     n = A.shape[0]
@@ -166,7 +166,7 @@ def gram(A: FloatArray, out: FloatArray) -> None:
             store(out, (i, c), row)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def spectral(A: FloatArray, square: FloatArray) -> float:
     """Bound on the 2-norm: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
 
@@ -231,7 +231,7 @@ class ProductWorkspace(NamedTuple):
     product: FloatArray
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def steps_for(most: int, n: int, lanes: int) -> Steps:
     """Allocate the steps of one period."""
     matrices = aligned_empty(most * n * lanes).reshape((most, n, lanes))
@@ -253,7 +253,7 @@ def product_workspace(most: int, n: int, lanes: int) -> ProductWorkspace:
     return ProductWorkspace(blocks, np.empty(most), aligned_rows(n, lanes))
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _multiply_steps(steps: Steps, count: int, work: ProductWorkspace, flow: FloatArray) -> None:
     """Flow = product of the steps, first step first; bounds on the norm before each step."""
     n = flow.shape[0]
@@ -265,7 +265,7 @@ def _multiply_steps(steps: Steps, count: int, work: ProductWorkspace, flow: Floa
         copy(work.product, flow)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _add_step(steps: Steps, k: int, count: int, blocks: Blocks, product: FloatArray) -> int:
     """Add step k as a block of rank 0 to ``count`` blocks, and join blocks of equal rank; the new count."""
     copy(steps.matrices[k], blocks.matrices[count])
@@ -279,7 +279,7 @@ def _add_step(steps: Steps, k: int, count: int, blocks: Blocks, product: FloatAr
     return last + 1
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _join_blocks(blocks: Blocks, last: int, product: FloatArray) -> None:
     """Replace the last two blocks A and B by A B: its error is a e_B + e_A b + e_A e_B + n eps a b."""
     n = product.shape[0]
@@ -294,7 +294,7 @@ def _join_blocks(blocks: Blocks, last: int, product: FloatArray) -> None:
     blocks.ranks[last - 1] += 1
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _extend_tail(blocks: Blocks, last: int, product: FloatArray) -> None:
     """Multiply the tail A of the blocks before the last one by the last block B, and bound size and error."""
     n = product.shape[0]

@@ -155,7 +155,7 @@ def least(typing: Any, x: Any, y: Any) -> Any:
 # twice as long to move.
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def aligned_empty(size: int) -> FloatArray:
     """Array (size,) of any values."""
     block = np.empty(size + LANES)
@@ -163,7 +163,7 @@ def aligned_empty(size: int) -> FloatArray:
     return block[first : first + size]
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def aligned_matrices(count: int, rows: int, lanes: int) -> FloatArray:
     """Zeros (count, rows, lanes)."""
     zeros = aligned_empty(count * rows * lanes)
@@ -171,7 +171,7 @@ def aligned_matrices(count: int, rows: int, lanes: int) -> FloatArray:
     return zeros.reshape((count, rows, lanes))
 
 
-@compiled()
+@compiled(no_cpython_wrapper=True)
 def aligned_rows(rows: int, lanes: int) -> FloatArray:
     """Zeros (rows, lanes)."""
     zeros = aligned_empty(rows * lanes)

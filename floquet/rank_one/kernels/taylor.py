@@ -44,8 +44,11 @@ from floquet.rank_one.kernels.product import (
     steps_for,
 )
 from floquet.rank_one.kernels.simd import LANES, aligned_empty, aligned_rows, load, plus, scaled, store, zero
-from lumped.compiler import compiled
+from lumped.compiler import compiled, inlined
 from lumped.typing import FloatArray
+
+#: The same as ``inlined``; a product and a sum may become one instruction with one rounding.
+contracted = compiled(fastmath={"contract"}, _nrt=False, forceinline=True, no_cpython_wrapper=True)
 
 _U = 0.5 * 2.220446049250313e-16
 _BOUND_SLACK = 1.0 + 1e-6  # covers the rounding of the bound on a step, and of the number of terms above all
@@ -59,37 +62,37 @@ class _Three(NamedTuple):
     third: Any
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _load_three(coefficients: FloatArray, k: int) -> _Three:
     return _Three(load(coefficients, (k, 0)), load(coefficients, (k, 1)), load(coefficients, (k, 2)))
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _store_three(coefficients: FloatArray, k: int, x: _Three) -> None:
     store(coefficients, (k, 0), x.first)
     store(coefficients, (k, 1), x.second)
     store(coefficients, (k, 2), x.third)
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _dot(row: FloatArray, x: _Three) -> Any:
     """Scalar product of a row of three numbers with x."""
     return plus(row[2], x.third, plus(row[1], x.second, scaled(row[0], x.first)))
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _scale_each(factors: FloatArray, x: _Three) -> _Three:
     """Each coordinate of x times a factor."""
     return _Three(scaled(factors[0], x.first), scaled(factors[1], x.second), scaled(factors[2], x.third))
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _scale_all(factor: float, x: _Three) -> _Three:
     """All coordinates of x times the same factor."""
     return _Three(scaled(factor, x.first), scaled(factor, x.second), scaled(factor, x.third))
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _add_feedback(gain: FloatArray, deflection: Any, total: _Three) -> _Three:
     """Total + gain times the deflection; the gain has three coordinates."""
     return _Three(
@@ -99,7 +102,7 @@ def _add_feedback(gain: FloatArray, deflection: Any, total: _Three) -> _Three:
     )
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _add_power(polynomial: FloatArray, i: int, deflection: Any, total: _Three) -> _Three:
     """Total + coefficient i of the gain times the deflection."""
     return _Three(
@@ -109,7 +112,7 @@ def _add_power(polynomial: FloatArray, i: int, deflection: Any, total: _Three) -
     )
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _add_row(row: FloatArray, i: int, factor: float, x: _Three, total: Any) -> Any:
     """Total + factor times row i of a matrix times x."""
     partial = plus(factor * row[i, 0], x.first, total)
@@ -117,7 +120,7 @@ def _add_row(row: FloatArray, i: int, factor: float, x: _Three, total: Any) -> A
     return plus(factor * row[i, 2], x.third, partial)
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _add_matrix(matrix: FloatArray, factor: float, x: _Three, total: _Three) -> _Three:
     """Total + factor times a 3 x 3 matrix times x."""
     return _Three(
@@ -127,7 +130,7 @@ def _add_matrix(matrix: FloatArray, factor: float, x: _Three, total: _Three) -> 
     )
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _add_older(polynomial: FloatArray, degree: int, history: FloatArray, k: int, total: _Three) -> _Three:
     """Total + the convolution of a gain with a series at power k, without the newest value of the series."""
     for i in range(min(degree, k), 0, -1):
@@ -135,7 +138,7 @@ def _add_older(polynomial: FloatArray, degree: int, history: FloatArray, k: int,
     return total
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _expand_three(equation: StepEquation, piece: Piece, terms: int, h: float, series: Series) -> None:
     """Fill the Taylor coefficients of eta up to power terms + 1, of three coordinates, from those of 0 and 1.
 
@@ -173,7 +176,7 @@ def _expand_three(equation: StepEquation, piece: Piece, terms: int, h: float, se
         next_deflection = _dot(equation.v, velocity)
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _convolved(polynomial: FloatArray, degree: int, q: int, history: FloatArray, k: int, total: Any) -> Any:
     """Total + the convolution of coordinate q of a gain with a series at power k."""
     for i in range(min(degree, k), -1, -1):
@@ -181,7 +184,7 @@ def _convolved(polynomial: FloatArray, degree: int, q: int, history: FloatArray,
     return total
 
 
-@compiled(fastmath={"contract"}, _nrt=False)
+@compiled(fastmath={"contract"}, _nrt=False, no_cpython_wrapper=True)
 def _expand_many(equation: StepEquation, piece: Piece, terms: int, h: float, series: Series) -> None:
     """`_expand_three` for any number of coordinates, eight columns after the other.
 
@@ -224,7 +227,7 @@ def _expand_many(equation: StepEquation, piece: Piece, terms: int, h: float, ser
             deflection = next_deflection
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _start_at_unit_states(problem: Problem, work: Workspace, h: float) -> None:
     """Unit initial states x = (omega eta, eta') in the first 2m columns: coefficients of powers 0 and 1."""
     m = problem.v.size
@@ -243,7 +246,7 @@ class _PowerSums(NamedTuple):
     odd_rate: Any
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _power_sums(eta: FloatArray, q: int, c: int, terms: int) -> _PowerSums:
     """Sums of coordinate q in eight columns from c on, smallest terms first.
 
@@ -268,7 +271,7 @@ def _power_sums(eta: FloatArray, q: int, c: int, terms: int) -> _PowerSums:
     return _PowerSums(even, odd, even_rate, odd_rate)
 
 
-@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+@contracted
 def _sum_at_ends(problem: Problem, terms: int, h: float, work: Workspace) -> None:
     """Energy coordinates at both ends of the step, u = 1 and u = -1."""
     m = problem.v.size
@@ -299,7 +302,7 @@ class _MajorantSums(NamedTuple):
     exponential: float
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _majorant_sums(work: Workspace, degree: int, h: float, exponential: float) -> _MajorantSums:
     total = 0.0
     by_modulus = 2.0 * h * work.norms.reference
@@ -309,7 +312,7 @@ def _majorant_sums(work: Workspace, degree: int, h: float, exponential: float) -
     return _MajorantSums(degree, total, by_modulus, exponential)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _rounding_of_ends(m: int, piece: Piece, sums: _MajorantSums) -> float:
     """Bound on the rounding of the flows to both ends: sqrt(2m) u e^g(1) (N g~ + sum a_j + 10).
 
@@ -321,7 +324,7 @@ def _rounding_of_ends(m: int, piece: Piece, sums: _MajorantSums) -> float:
     return _U * math.sqrt(2.0 * m) * sums.exponential * (roundings * sums.by_modulus + sums.total + 10.0)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _misfit_of_part(piece: Piece, part: int, parts: int, h: float) -> float:
     """Bound on the integral of the error of A over one of ``parts`` steps of a piece.
 
@@ -335,7 +338,7 @@ def _misfit_of_part(piece: Piece, part: int, parts: int, h: float) -> float:
     return misfit
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _growth_of_half(constant: ConstantPart, sums: _MajorantSums, h: float) -> float:
     """Bound on the factor by which half of a step lets a state grow, in either direction of time.
 
@@ -345,7 +348,7 @@ def _growth_of_half(constant: ConstantPart, sums: _MajorantSums, h: float) -> fl
     return math.exp(sums.total + h * (constant.drive - constant.size)) * (1.0 + 1e-12)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _error_of_step(size: float, residual: float, error_of_ends: float, misfit: float, growth: float) -> float:
     """PROVEN bound on the error of the flow P over a step, in the 2-norm.
 
@@ -361,7 +364,7 @@ def _error_of_step(size: float, residual: float, error_of_ends: float, misfit: f
     return error + misfit * (growth * growth * exp_of_misfit)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _expand(problem: Problem, piece: Piece, terms: int, h: float, work: Workspace) -> None:
     """Taylor series of a step, and its sums at both ends."""
     _start_at_unit_states(problem, work, h)
@@ -372,7 +375,7 @@ def _expand(problem: Problem, piece: Piece, terms: int, h: float, work: Workspac
     _sum_at_ends(problem, terms, h, work)
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _steps_of_piece(
     problem: Problem, piece: Piece, constant: ConstantPart, limits: Limits, work: Workspace, first: int,
     steps: Steps,
@@ -405,7 +408,7 @@ def _steps_of_piece(
     return parts
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def steps_of_period(problem: Problem, point: Point, limits: Limits, work: Workspace, steps: Steps) -> int:
     """Write all steps of one period at one point, and bounds on the errors of the steps.
 
@@ -452,7 +455,7 @@ def propagate_points(
     return -1
 
 
-@compiled(_nrt=False, forceinline=True)
+@inlined
 def _sharp_two_norm(A: FloatArray, square: FloatArray, fourth: FloatArray, eighth: FloatArray) -> float:
     """Bound on the 2-norm: |A|^8 <= |(A^T A)^4|_F, too large by at most the 16th root of n."""
     gram(A, square)
