@@ -28,7 +28,7 @@ from numba.core.serialize import dumps
 
 from lumped.cache import cache_folder, cores, read_whole, write_whole
 from lumped.kernel_stamps import UnknownDependencyError, compiled_behind, described, stamp_of
-from lumped.linked_code import LinkedCompiler, refuse_calls_from_python
+from lumped.linked_code import LINKING_IS_KNOWN, LinkedCompiler, refuse_calls_from_python
 
 F = TypeVar("F", bound=Callable[..., Any])
 Part = TypeVar("Part")
@@ -57,7 +57,7 @@ def compiled(function: Any = None, /, **options: Any) -> Any:
 
 
 def _compiled(function: Callable[..., Any], /, **options: Any) -> Any:
-    linked = options.get("no_cpython_wrapper", False)
+    linked = options.get("no_cpython_wrapper", False) and LINKING_IS_KNOWN
     if linked:
         options["pipeline_class"] = LinkedCompiler
     dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)

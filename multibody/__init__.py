@@ -1,4 +1,8 @@
-"""Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
+"""Independent multibody reference of a spur gear pair in exudyn, at two fidelities.
+
+What the multibody model reads from ``lumped``, and what else checks each entry, is the table of decision 1 in
+docs/contributing/decisions.md; ``tests/docs/test_decisions.py`` compares the table with the imports.
+"""
 
 from multibody.run.effects import EFFECTS
 from multibody.run.flow_map import FlowMap, monodromy, steady_state

@@ -26,9 +26,8 @@ from floquet.orbits.records import (
     Request,
     Series,
     SystemTables,
-    called,
-    inlined,
 )
+from lumped.compiler import called, inlined
 from lumped.typing import FloatArray, IntArray
 
 #: Part of a step by which two events at one instant may differ.

@@ -27,14 +27,12 @@ from floquet.orbits.records import (
     Request,
     Series,
     SystemTables,
-    called,
-    inlined,
     new_contacts,
     new_laws,
     new_series,
 )
 from floquet.orbits.taylor import move_to_end, shift_laws, step_size, taylor_coefficients
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled, inlined
 from lumped.typing import FloatArray, IntArray
 
 _GAUSS_NODES, _GAUSS_WEIGHTS = (np.ascontiguousarray(a) for a in np.polynomial.legendre.leggauss(12))

@@ -12,12 +12,6 @@ import numpy as np
 from lumped.compiler import compiled
 from lumped.typing import BoolArray, FloatArray, IntArray
 
-#: Of functions that only other kernels call, and that allocate nothing. A function that Python can call takes
-#: longer to compile.
-called = compiled(_nrt=False, no_cpython_wrapper=True)
-#: The same for formulas of one coefficient or step: calls would take a tenth of the time.
-inlined = compiled(_nrt=False, no_cpython_wrapper=True, forceinline=True)
-
 #: States of a contact. The contact does not exist in this piece of the cycle:
 ABSENT = -1
 #: The flanks do not touch.
@@ -29,7 +23,7 @@ CLOSED = 2
 
 #: How a propagation ended.
 FINISHED = 0
-#: The motion is no longer finite.
+#: The motion grows beyond all numbers: a step or a state is not finite.
 GREW = 1
 #: More than `MOST_EVENTS` a cycle.
 TOO_MANY_EVENTS = 2

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from floquet.orbits.branch import Family, Limits
-from floquet.orbits.records import LinearPart, SystemTables, inlined
+from floquet.orbits.records import LinearPart, SystemTables
 from floquet.orbits.system import ContactSystem
-from lumped.compiler import compiled
+from lumped.compiler import compiled, inlined
 from lumped.typing import BoolArray, FloatArray
 
 #: Steps in a period of the fastest natural motion.

@@ -20,8 +20,8 @@ from floquet.orbits.records import (
     LinearPart,
     Request,
     Series,
-    inlined,
 )
+from lumped.compiler import inlined
 from lumped.typing import FloatArray, IntArray
 
 

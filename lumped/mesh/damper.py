@@ -17,7 +17,8 @@ from typing import overload
 
 import numpy as np
 
-from lumped.mesh.records import ContactLaw, Record, inlined
+from lumped.compiler import inlined
+from lumped.mesh.records import ContactLaw, Record
 from lumped.typing import FloatArray
 
 #: The whole damper of a pair acts where the pair carries this share of the mean load.

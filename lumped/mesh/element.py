@@ -16,7 +16,8 @@ from __future__ import annotations
 
 import math
 
-from lumped.mesh.records import ContactLaw, Record, Records, called, inlined
+from lumped.compiler import called, inlined
+from lumped.mesh.records import ContactLaw, Record, Records
 from lumped.mesh.tip_corners import end_of_flanks, flank_end_gap, start_of_flanks
 from lumped.typing import FloatArray
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled, inlined
 from lumped.mesh.linear import (
     SWITCHES,
     Instant,
@@ -26,7 +26,6 @@ from lumped.mesh.linear import (
     linear_of_step,
     node_of,
 )
-from lumped.mesh.records import called, inlined
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.typing import FloatArray, IntArray
 

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled, inlined
 from lumped.mesh.damper import acting_damping
 from lumped.mesh.element import in_contact, rolling_rate, static_approach, write_elastic_loads
 from lumped.mesh.records import (
@@ -32,9 +32,7 @@ from lumped.mesh.records import (
     Record,
     Records,
     add_force,
-    called,
     clear_force,
-    inlined,
     record,
 )
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import compiled, inlined
 from lumped.mesh.element import write_elastic_loads
-from lumped.mesh.records import Record, Records, inlined, record
+from lumped.mesh.records import Record, Records, record
 from lumped.mesh.tables import CyclePairs, MeshTables, fill_steps
 from lumped.mesh.unilateral_force import MeshForce, unilateral_force
 from lumped.typing import FloatArray

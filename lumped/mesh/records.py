@@ -12,13 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
-
-#: Decorator of functions that only kernels call and that allocate nothing. numba then counts no references,
-#: which would take most of the time, and makes no wrapper for Python, which would double the compile time.
-inlined = compiled(_nrt=False, forceinline=True, no_cpython_wrapper=True)
-#: The same decorator for a function with several callers in one kernel: a copy for each would compile slowly.
-called = compiled(_nrt=False, no_cpython_wrapper=True)
+from lumped.compiler import inlined
 
 #: One record, or an array of records, of a dtype below.
 Record = Any

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import compiled, inlined
 from lumped.mesh.damper import damper_share
 from lumped.mesh.element import static_approach, write_elastic_loads, write_gap
-from lumped.mesh.records import CONTACT, LINE, PAIR, ContactLaw, Record, Records, inlined
+from lumped.mesh.records import CONTACT, LINE, PAIR, ContactLaw, Record, Records
 from lumped.mesh.tip_corners import FlankEnd, flank_end_gap, place_pair, tip_minus_edge
 from lumped.typing import FloatArray
 

@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.mesh.records import CONTACT, LINE, PAIR, ContactLaw, Record, Records, inlined, record
+from lumped.compiler import inlined
+from lumped.mesh.records import CONTACT, LINE, PAIR, ContactLaw, Record, Records, record
 from lumped.mesh.tip_corners import place_pair
 from lumped.typing import FloatArray, IntArray
 

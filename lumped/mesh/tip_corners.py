@@ -13,7 +13,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from lumped.mesh.records import ContactLaw, Record, called, inlined
+from lumped.compiler import called, inlined
+from lumped.mesh.records import ContactLaw, Record
 
 
 class FlankEnd(NamedTuple):

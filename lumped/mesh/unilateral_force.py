@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from lumped.compiler import inlined
 from lumped.mesh.damper import acting_damping, damper_power
 from lumped.mesh.element import in_contact, rolling_rate
-from lumped.mesh.records import ContactLaw, Record, Records, inlined
+from lumped.mesh.records import ContactLaw, Record, Records
 from lumped.typing import FloatArray
 
 

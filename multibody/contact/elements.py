@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lumped.compiler import called, inlined
 from lumped.typing import FloatArray
 from multibody.contact.kinematics import CONTACT_LAW
-from multibody.contact.records import Record, Records, inlined, inner, uncounted
+from multibody.contact.records import Record, Records, uncounted
 
 #: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the mean
 #: load. Acting at once it would make the load jump by c times the speed of approach at the first touch.
@@ -36,7 +37,7 @@ class ContactLaw(NamedTuple):
     nominal_force: float
 
 
-@uncounted
+@inlined
 def contact_law(machine: Record, flags: int) -> ContactLaw:
     """The law of a machine; without the effect of Hertz's contact every pair is a linear spring."""
     law = machine.pair_law
@@ -53,13 +54,13 @@ def polynomial(piece: FloatArray, s: float) -> tuple[float, float]:
     return value, slope
 
 
-@inner
+@called
 def table_value_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
     """Value of a piecewise polynomial at xi, and its slope. Beyond its ends the value stays constant.
 
     A row per piece: left end, right end, coefficients, highest power of (xi - left) first.
     """
-    low = int(np.int64(0))
+    low = int(np.int64(0))  # of a literal 0 numba would compile the callees again
     high = table.shape[0] - 1
     x = min(max(xi, table[low, 0]), table[high, 1])
     while low < high:
@@ -135,7 +136,7 @@ def stored_energy(load: float, stiffness: float, slope: float, law: ContactLaw) 
     return stored - 0.5 * law.softening * (load * load * rise - 0.5 * ends), along
 
 
-@inner
+@called
 def two_loads(one: Record, other: Record, coupling: float, law: ContactLaw) -> tuple[float, float]:
     """Loads of two tooth pairs that touch and move each other [N].
 
@@ -167,7 +168,7 @@ def two_loads(one: Record, other: Record, coupling: float, law: ContactLaw) -> t
     return load_one, load_other
 
 
-@inner
+@called
 def _newton_equations(count: int, pairs: Records, law: ContactLaw) -> None:
     """Write derivatives and residual of p_i = N_i c_i + sum_j w_ij N_j into each pair."""
     for i in range(count):
@@ -185,7 +186,7 @@ def _newton_equations(count: int, pairs: Records, law: ContactLaw) -> None:
         pair.residual = residual
 
 
-@inner
+@called
 def _eliminate(count: int, pairs: Records) -> None:
     """Gauss's elimination below the diagonal; the matrix is symmetric and positive definite."""
     for i in range(count):
@@ -198,7 +199,7 @@ def _eliminate(count: int, pairs: Records) -> None:
             below.residual -= share * pivot.residual
 
 
-@inner
+@called
 def _many_loads(count: int, pairs: Records, law: ContactLaw) -> None:
     """Loads of more than two pairs that touch, by Newton's steps from the present loads of the pairs."""
     for _ in range(_MOST_STEPS):
@@ -218,7 +219,7 @@ def _many_loads(count: int, pairs: Records, law: ContactLaw) -> None:
             break
 
 
-@inner
+@called
 def _loads_of_touching(count: int, pairs: Records, law: ContactLaw) -> None:
     """Write the loads of the pairs that touch."""
     number = 0
@@ -240,7 +241,7 @@ def _loads_of_touching(count: int, pairs: Records, law: ContactLaw) -> None:
         _many_loads(count, pairs, law)
 
 
-@inner
+@called
 def _change_touching(count: int, pairs: Records) -> bool:
     """Release pairs that would pull, and add pairs that would overlap. Return whether a pair changed."""
     changed = False
@@ -250,7 +251,7 @@ def _change_touching(count: int, pairs: Records) -> bool:
         for j in range(count):
             own_compression -= pair.couplings[j] * pairs[j].elastic_load
         if pair.touches:
-            if pair.elastic_load <= 0.0 and not pair.pulls:
+            if pair.elastic_load <= 0.0 and not pair.may_pull:
                 pair.touches = 0
                 pair.elastic_load = 0.0
                 changed = True
@@ -272,7 +273,7 @@ def shared_loads(count: int, pairs: Records, law: ContactLaw) -> None:
         pair = pairs[i]
         pair.elastic_load = 0.0
         pair.touches = 0
-        if pair.stiffness > 0.0 and (pair.pulls or pair.compression > 0.0):
+        if pair.stiffness > 0.0 and (pair.may_pull or pair.compression > 0.0):
             pair.touches = 1
             pair.elastic_load = pair.stiffness * pair.compression
     for _ in range(2 * count + 1):
@@ -315,7 +316,7 @@ def relief_at(machine: Record, xi: float, own_p: float, own_g: float) -> tuple[f
     return error, slope
 
 
-@inner
+@called
 def coupling_at(machine: Record, apart: int, xi: float) -> tuple[float, float]:
     """Motion of a pair by a unit load on another one [m/N], and its slope over xi [1/N].
 

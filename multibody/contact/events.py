@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
@@ -42,7 +42,6 @@ from multibody.contact.records import (
     Record,
     Records,
     contacts_of,
-    inner,
     machine_of,
 )
 
@@ -126,14 +125,14 @@ def _change(law: PathFunction, j: int, step: float) -> float:
     return total / largest if largest > 0.0 else 0.0
 
 
-@inner
+@called
 def edge_reach(gap: float, edge: float, length: float, radius: float) -> float:
     """About how far back from an edge a gap is closed [m], to the leading order of ``corner_off``."""
     bend = (edge / radius) ** 2 * (1.0 / edge + 1.0 / (length - edge))
     return math.sqrt(2.0 * max(gap, 0.0) / bend)
 
 
-@inner
+@called
 def let_go(gap: float, stiffness: float, line: Line, rates: GearRates, machine: Record, flags: int) -> float:
     """How far beyond D the pinion's tip corner, the flanks pressed by ``gap``, lets go [m].
 
@@ -174,7 +173,7 @@ class Neighbours(NamedTuple):
     number: int
 
 
-@inner
+@called
 def moved_by_neighbours(position: float, neighbours: Neighbours, machine: Record) -> float:
     """How much of the approach of a pair at a position xi the loads of other pairs take [m]."""
     pitch = machine.geometry.pitch
@@ -199,7 +198,7 @@ class CornerReach(NamedTuple):
     gap: float
 
 
-@inner
+@called
 def reach_before_start(mesh: MeshPosition, neighbours: Neighbours, machine: Record) -> CornerReach:
     """Where the gear's tip corner first touches, before A.
 
@@ -216,7 +215,7 @@ def reach_before_start(mesh: MeshPosition, neighbours: Neighbours, machine: Reco
     return CornerReach(beyond, gap)
 
 
-@inner
+@called
 def reach_behind_end(
     event: Record, mesh: MeshPosition, rates: GearRates, neighbours: Neighbours, machine: Record, flags: int
 ) -> CornerReach:
@@ -236,7 +235,7 @@ def reach_behind_end(
     return CornerReach(beyond, gap)
 
 
-@inner
+@called
 def distance_to_start(mesh: MeshPosition, reach: CornerReach, machine: Record, flags: int) -> float:
     """Distance to where a pair enters contact [m]. Undercut of the pinion may end its flank before.
 
@@ -253,7 +252,7 @@ def distance_to_start(mesh: MeshPosition, reach: CornerReach, machine: Record, f
     return float(start - mesh.rho)
 
 
-@inner
+@called
 def distance_to_end(mesh: MeshPosition, reach: CornerReach, machine: Record, flags: int) -> float:
     """Distance to where a pair leaves contact [m]. Undercut of the gear may end its flank before.
 
@@ -270,7 +269,7 @@ def distance_to_end(mesh: MeshPosition, reach: CornerReach, machine: Record, fla
     return float(end - mesh.rho)
 
 
-@inner
+@called
 def distance_to_sliding(place: float, mesh: MeshPosition, rates: GearRates, machine: Record) -> float:
     """Distance to where the contact slides as fast as the nominal motion does at a place xi [m].
 
@@ -286,7 +285,7 @@ def distance_to_sliding(place: float, mesh: MeshPosition, rates: GearRates, mach
     return float((sought - slide) / (rates.omega_g - rates.omega_p))
 
 
-@inner
+@called
 def distance_to_event(
     event: Record, t: float, state: FloatArray, machine: Record, flags: int, neighbours: Neighbours
 ) -> float:
@@ -312,7 +311,7 @@ def distance_to_event(
     return float(event.place - mesh.xi)
 
 
-@inner
+@called
 def nearest_event(
     t: float, state: FloatArray, machine: Record, flags: int, events: Records, neighbours: Neighbours
 ) -> tuple[float, int]:
@@ -328,7 +327,7 @@ def nearest_event(
     return shortest, number
 
 
-@inner
+@called
 def continued(state: FloatArray, q: FloatArray, v: FloatArray, a: FloatArray, wait: float) -> None:
     """Write coordinates and rates into ``state`` as a Taylor polynomial continues them over a time [s]."""
     for j in range(6):

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lumped.compiler import called
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
@@ -23,7 +24,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact.elements import table_value
 from multibody.contact.kinematics import FRICTION_LOAD, SLIDING
-from multibody.contact.records import Record, inner, machine_of, opened, table_of, uncounted
+from multibody.contact.records import Record, machine_of, opened, table_of, uncounted
 
 #: Codes of the laws, by their names in parameter files.
 LAWS = {
@@ -117,7 +118,7 @@ def reduced_radius(rho_p: float, rho_g: float) -> float:
     return max(rho_p, least) * max(rho_g, least) / (rho_p + rho_g)
 
 
-@inner
+@called
 def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float, w: float) -> int:
     """Which formula is in force: a number that changes where the coefficient jumps or has a kink."""
     law = f.law
@@ -131,7 +132,7 @@ def branch(f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float
     return int(law)
 
 
-@inner
+@called
 def magnitude(
     f: Record, sliding: float, rolling: float, rho_p: float, rho_g: float, distance: float, w: float
 ) -> float:
@@ -174,7 +175,7 @@ class SurfaceMotion(NamedTuple):
     rho_g: float
 
 
-@inner
+@called
 def friction_size(
     machine: Record, table: FloatArray, surface: SurfaceMotion, distance: float, load: float
 ) -> float:
@@ -189,7 +190,7 @@ def friction_size(
     return float(mu)
 
 
-@inner
+@called
 def at_edge(machine: Record, xi: float) -> float:
     """Position at which a law is evaluated [m]: xi, or the edge of an undercut where xi lies beyond it."""
     geometry = machine.geometry
@@ -200,7 +201,7 @@ def at_edge(machine: Record, xi: float) -> float:
     return xi
 
 
-@inner
+@called
 def nominal_surface(machine: Record, xi: float) -> SurfaceMotion:
     """Motion of the surfaces in the nominal motion with the contact at xi; the sliding without its sign."""
     rolling = machine.rolling
@@ -209,7 +210,7 @@ def nominal_surface(machine: Record, xi: float) -> SurfaceMotion:
     return SurfaceMotion(sliding, rolling.omega_p * xi + rolling.omega_g * rho_g, xi, rho_g)
 
 
-@inner
+@called
 def friction_of_nominal_motion(machine: Record, table: FloatArray, xi: float) -> float:
     """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
     xi = at_edge(machine, xi)

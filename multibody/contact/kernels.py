@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled, inlined
 from lumped.typing import FloatArray, IntArray
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import (
@@ -58,12 +58,9 @@ from multibody.contact.records import (
     Record,
     Records,
     contacts_of,
-    inlined,
-    inner,
     machine_of,
     opened_contacts,
     table_of,
-    uncounted,
 )
 from multibody.contact.tooth_pairs import (
     WAYS,
@@ -125,7 +122,7 @@ class TeethMotion(NamedTuple):
     arcs: TurnedArcs
 
 
-@inner
+@called
 def side_motion(
     t: float, q: FloatArray, rates: GearRates, machine: Record, flags: int, flank: float
 ) -> SideMotion:
@@ -148,7 +145,7 @@ def like_teeth(machine: Record) -> OwnPair:
     return OwnPair(0.0, 0.0, 0.0, 0.0, machine.geometry.tip_p, machine.geometry.tip_g, 0.0, 0.0)
 
 
-@inner
+@called
 def set_corner_gap(
     pair: Record, side: SideMotion, machine: Record, own: OwnPair, error: float, error_slope: float
 ) -> bool:
@@ -186,7 +183,7 @@ def set_corner_slopes(pair: Record, corners: Corners) -> None:
     pair.corner_by_length = corners.by_length
 
 
-@inner
+@called
 def set_gap(pair: Record, side: SideMotion, machine: Record, flags: int, own: OwnPair) -> bool:
     """Write compression, its rate and the slopes of the gap into a pair at ``pair.position``.
 
@@ -211,7 +208,7 @@ def set_gap(pair: Record, side: SideMotion, machine: Record, flags: int, own: Ow
     return True
 
 
-@inner
+@called
 def set_stiffness(pair: Record, stiffness: FloatArray, own: OwnPair) -> None:
     """Write the stiffness of a pair, softened by the faults of its teeth, and its slope over xi."""
     k, slope = table_value_and_slope(stiffness, pair.position)
@@ -220,7 +217,7 @@ def set_stiffness(pair: Record, stiffness: FloatArray, own: OwnPair) -> None:
     pair.stiffness_slope = share * share * (slope - k * k * own.compliance_slope)
 
 
-@inner
+@called
 def pairs_near_contact(
     side: SideMotion, machine: Record, flags: int, tables: Tables, motion: TeethMotion, work: Workspace
 ) -> int:
@@ -229,7 +226,7 @@ def pairs_near_contact(
     pairs = work.pairs
     position = side.position
     own = like_teeth(machine)
-    count = int(np.int64(0))
+    count = int(np.int64(0))  # of a literal 0 numba would compile the callees again
     for candidate in range(engaged(position, machine, flags, arms)):
         pair = pairs[count]
         rho_p = arms[candidate, 0]
@@ -242,7 +239,7 @@ def pairs_near_contact(
             own = tooth_pair(machine, motion.teeth, numbers, pair.position)
         if not set_gap(pair, side, machine, flags, own):
             continue
-        pair.pulls = 0 if flags & kn.CONTACT_LOSS or pair.beyond else 1
+        pair.may_pull = 0 if flags & kn.CONTACT_LOSS or pair.beyond else 1
         if rho_p > own.tip_p or rho_g > own.tip_g:
             pair.beyond = 1
         set_stiffness(pair, tables.stiffness, own)
@@ -250,7 +247,7 @@ def pairs_near_contact(
     return count
 
 
-@uncounted
+@called
 def set_couplings(count: int, pairs: Records, machine: Record) -> None:
     """Write how far the load of each pair moves each other one. The newest, furthest behind, comes first."""
     for i in range(count):
@@ -263,7 +260,7 @@ def set_couplings(count: int, pairs: Records, machine: Record) -> None:
             pairs[j].coupling_slopes[i] = slope
 
 
-@inner
+@called
 def set_elastic_loads(count: int, pairs: Records, machine: Record, coupled: bool, law: ContactLaw) -> None:
     """Write the load of each pair without its damper."""
     if coupled:
@@ -273,7 +270,7 @@ def set_elastic_loads(count: int, pairs: Records, machine: Record, coupled: bool
     for i in range(count):
         pair = pairs[i]
         load = elastic_load(pair.compression, pair.stiffness, law)
-        pair.elastic_load = load if pair.pulls else max(load, 0.0)
+        pair.elastic_load = load if pair.may_pull else max(load, 0.0)
 
 
 class MovedByNeighbours(NamedTuple):
@@ -323,7 +320,7 @@ def surface_motion(pair: Record, side: SideMotion) -> SurfaceMotion:
     return SurfaceMotion(sliding, line.flank * rolling, arm_p, arm_g)
 
 
-@inner
+@called
 def add_contact_wrench(
     wrench: FloatArray, pair: Record, side: SideMotion, flags: int, surface: SurfaceMotion, contact: Record
 ) -> None:
@@ -338,7 +335,7 @@ def add_contact_wrench(
         add_gradient(wrench, line, by_p, by_g, normal * pair.corner_by_length)
 
 
-@inner
+@called
 def set_contact(
     contact: Record,
     pair: Record,
@@ -383,7 +380,7 @@ def set_friction(
     contact.sliding_velocity = surface.sliding
 
 
-@inner
+@called
 def add_side(
     side: SideMotion,
     machine: Record,
@@ -402,7 +399,7 @@ def add_side(
     coupled = machine.coupling_count > 0 and (flags & kn.NEIGHBOURS) != 0
     set_elastic_loads(count, pairs, machine, coupled, law)
     back_side = side.position.line.flank < 0.0 and (flags & kn.CONTACT_LOSS) != 0
-    written = int(np.int64(0))
+    written = int(np.int64(0))  # of a literal 0 numba would compile the callees again
     for i in range(count):
         pair = pairs[i]
         neighbours = moved_by_neighbours(i, count, pairs, coupled)
@@ -421,12 +418,13 @@ def add_side(
 def contact_forces(
     t: float, state: FloatArray, packed: FloatArray, flags: int, flat_contacts: FloatArray
 ) -> int:
-    """Wrench of all tooth contacts and one record per contact at time t [s].
+    """Wrench of tooth contacts and torque ripples on the gears at time t [s], and a record of each contact.
 
     Parameters
     ----------
     state : (3, 6) deviations from nominal position and rotation [m, rad], their rates, and the wrench, which
-        is written: (Fx, Fy, M) of pinion and gear [N, N m]; one array, for each costs Python time
+        is written: (Fx, Fy, M) of pinion and gear [N, N m]. It is one array, because each argument takes
+        time in the call from Python
     packed, flags : numbers of the machine, see ``records``, and effect switches of ``kinematics``
     flat_contacts : receives the CONTACT records, drive flank first; back sides only when pressed
 
@@ -435,14 +433,18 @@ def contact_forces(
     Number of contacts, or -1 when a force is not finite
     """
     work = Workspace(np.empty(MAX_PAIRS, PAIR), np.empty((MAX_PAIRS, 2)), np.empty((3, 6)))
-    return forces_with(t, state, packed, flags, contacts_of(flat_contacts), work)
+    return write_forces(t, state, packed, flags, contacts_of(flat_contacts), work)
 
 
-@inner
-def forces_with(
+@called
+def write_forces(
     t: float, state: FloatArray, packed: FloatArray, flags: int, contacts: Records, work: Workspace
 ) -> int:
-    """``contact_forces`` in given memory."""
+    """Write wrench and contacts of ``contact_forces``, with the memory of a workspace.
+
+    With teeth that differ, contacts and moments are first of the centres of the base circles, which eccentric
+    gears move, and then of the axes.
+    """
     machine = machine_of(packed)[0]
     blocks = machine.blocks
     tables = Tables(table_of(packed, blocks.stiffness), table_of(packed, blocks.friction))
@@ -456,7 +458,7 @@ def forces_with(
         q = work.base_circles[COORDINATES]
         v = work.base_circles[RATES]
     rates = gear_rates(machine, v)
-    written = int(np.int64(0))
+    written = int(np.int64(0))  # of a literal 0 numba would compile the callees again
     for number in range(2 if flags & kn.BACK_SIDE else 1):
         flank = DRIVE if number == 0 else COAST
         side = side_motion(t, q, rates, machine, flags, flank)

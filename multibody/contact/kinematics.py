@@ -12,19 +12,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from lumped.compiler import called
 from lumped.typing import FloatArray
-from multibody.contact.records import (
-    MAX_PAIRS,
-    PHI_G,
-    PHI_P,
-    X_G,
-    X_P,
-    Y_G,
-    Y_P,
-    Record,
-    inner,
-    uncounted,
-)
+from multibody.contact.records import MAX_PAIRS, PHI_G, PHI_P, X_G, X_P, Y_G, Y_P, Record, uncounted
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
 ROTATION_PHASE = 1
@@ -170,7 +160,7 @@ class GearRates(NamedTuple):
     omega_g: float
 
 
-@inner
+@called
 def gear_rates(machine: Record, v: FloatArray) -> GearRates:
     """Velocities of the gears from the rates v (6,) of (x_p, y_p, phi_p, x_g, y_g, phi_g)."""
     rolling = machine.rolling
@@ -184,7 +174,7 @@ def gear_rates(machine: Record, v: FloatArray) -> GearRates:
     )
 
 
-@inner
+@called
 def line_rates(line: Line, rates: GearRates, flags: int) -> tuple[float, float]:
     """Rates of the angle psi [rad/s] and of the length L [m/s] of the line of action.
 
@@ -197,14 +187,14 @@ def line_rates(line: Line, rates: GearRates, flags: int) -> tuple[float, float]:
     return psi_rate, line.flank * radii * psi_rate - (line.ex * rates.vx + line.ey * rates.vy)
 
 
-@inner
+@called
 def overlap_rate(line: Line, vx: float, vy: float, omega_p: float, omega_g: float) -> float:
     """Rate of the overlap [m/s]; (vx, vy) is the velocity of the pinion's centre relative to the gear's."""
     turning = line.radius_p * omega_p + line.radius_g * omega_g
     return line.ex * vx + line.ey * vy - line.flank * turning
 
 
-@inner
+@called
 def sliding_velocity(
     line: Line, vx: float, vy: float, omega_p: float, omega_g: float, arm_p: float, arm_g: float
 ) -> float:
@@ -272,7 +262,7 @@ def corner_gap(
     return corner_off(beyond, tip, length, radius, mate)
 
 
-@inner
+@called
 def corner_off(
     beyond: float, tip: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float]:
@@ -354,7 +344,7 @@ class Corners(NamedTuple):
     by_length: float
 
 
-@inner
+@called
 def end_of_flank(
     rho: float, tip: float, mate_rho: float, edge: float, length: float, radius: float, mate: float
 ) -> tuple[float, float, float, float]:
@@ -412,7 +402,7 @@ class MeshPosition(NamedTuple):
     xi: float
 
 
-@inner
+@called
 def mesh_position(t: float, q: FloatArray, machine: Record, flags: int, flank: float) -> MeshPosition:
     """Line of action of one side of the teeth, and the place of the teeth on it, at time t [s].
 
@@ -439,7 +429,7 @@ def mesh_position(t: float, q: FloatArray, machine: Record, flags: int, flank: f
     return MeshPosition(line, delta, rho, xi)
 
 
-@inner
+@called
 def engaged(mesh: MeshPosition, machine: Record, flags: int, arms: FloatArray) -> int:
     """Find the tooth pairs in contact: on the actual flanks; without entry shift on the nominal path.
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from lumped.compiler import called
 from lumped.typing import FloatArray
 from multibody.contact import kinematics as kn
 from multibody.contact.elements import relief_at, table_value, table_value_and_slope
@@ -24,7 +25,6 @@ from multibody.contact.records import (
     Y_P,
     Record,
     contacts_of,
-    inner,
     machine_of,
     table_of,
     uncounted,
@@ -66,7 +66,7 @@ class LinearForce(NamedTuple):
     apart: float
 
 
-@inner
+@called
 def tabulated_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPair:
     """Laws of a pair with loaded contact, linear about the static state."""
     blocks = machine.blocks
@@ -84,7 +84,7 @@ def tabulated_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPair
     )
 
 
-@inner
+@called
 def prescribed_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPair:
     """Laws of a pair with prescribed contact: it touches from A to D, with its relief as error."""
     error, slope = relief_at(machine, xi, 0.0, 0.0)
@@ -93,7 +93,7 @@ def prescribed_pair(packed: FloatArray, machine: Record, xi: float) -> LinearPai
     return LinearPair(stiffness, stiffness_slope, damping, error, slope, slope, 0.0, 1.0)
 
 
-@inner
+@called
 def add_linear_wrench(wrench: FloatArray, machine: Record, xi: float, force: LinearForce) -> None:
     """Add the force of a pair to the wrench of pinion and gear, with nominal arms."""
     geometry = machine.geometry
@@ -105,7 +105,7 @@ def add_linear_wrench(wrench: FloatArray, machine: Record, xi: float, force: Lin
     wrench[PHI_G] += geometry.radius_g * force.normal + (geometry.L_XY - xi) * force.friction
 
 
-@inner
+@called
 def linear_path_force(
     pair: LinearPair,
     compression: float,
@@ -125,7 +125,7 @@ def linear_path_force(
     return path - force.apart * y_rate / speed
 
 
-@inner
+@called
 def first_position(t: float, machine: Record, start: float) -> float:
     """Position of the tooth pair next behind ``start`` on the path in the nominal motion at time t [m]."""
     geometry = machine.geometry
@@ -201,7 +201,7 @@ def linear_forces(
     return count if math.isfinite(total) else -1
 
 
-@inner
+@called
 def nominal_sliding(machine: Record, v: FloatArray, xi: float) -> float:
     """Sliding velocity at xi with the rates v of the gears and nominal arms [m/s]."""
     rolling = machine.rolling

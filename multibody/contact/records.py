@@ -37,12 +37,9 @@ MOST_RELIEFS = 4
 #: Columns of a piece of a piecewise polynomial: left end, right end, coefficients, highest power first.
 PIECE_COLUMNS = FIT_DEGREE + 3
 
-#: Decorators of functions that allocate nothing: counting references to arrays would take a third of a call.
-#: ``inner`` is for functions that compiled code alone calls, ``inlined`` for short ones; a wrapper for Python
-#: would take as long to compile as the function. None of them may return an array to Python.
+#: Of functions that allocate nothing: counting references to arrays would take a third of a call. None of
+#: them may return an array to Python. ``called`` and ``inlined`` are the same without a wrapper for Python.
 uncounted = compiled(_nrt=False)
-inner = compiled(_nrt=False, no_cpython_wrapper=True)
-inlined = compiled(_nrt=False, no_cpython_wrapper=True, forceinline=True)
 #: For functions that return views of an array: their lines stand in the place of each call.
 expanded = compiled(inline="always")
 
@@ -201,7 +198,7 @@ PAIR = record(
     equation=(_F, (MAX_PAIRS,)),  # in the search for the loads: derivatives of its compression by the loads
     residual=_F,  # what is left of its equation, then the step of its load
     beyond=_I,  # 1: beyond a tip or an edge, where only pressed teeth touch
-    pulls=_I,  # 1: the pair cannot lose contact
+    may_pull=_I,  # 1: the pair cannot lose contact, and its load may be negative
     touches=_I,  # 1: the pair touches, in the search for the loads
 )
 #: One tooth pair in contact at one instant.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from lumped.compiler import called
 from lumped.typing import FloatArray
 from multibody.contact.records import (
     COORDINATES,
@@ -19,7 +20,6 @@ from multibody.contact.records import (
     Records,
     expanded,
     faults_of,
-    inner,
     machine_of,
     ripples_of,
     teeth_of,
@@ -83,7 +83,7 @@ class FaultEffect(NamedTuple):
     gap: float
 
 
-@inner
+@called
 def set_base_circle_motion(machine: Record, t: float, state: FloatArray, motion: FloatArray) -> None:
     """Write rows of (x, y, phi) of pinion and gear: state of the base circles' centres, rates, and ways.
 
@@ -113,7 +113,7 @@ def set_base_circle_motion(machine: Record, t: float, state: FloatArray, motion:
         motion[RATES, y] -= sense * along * rate
 
 
-@inner
+@called
 def moments_about_axes(ways: FloatArray, wrench: FloatArray) -> None:
     """Make the moments about the base circles' centres those about the axes, ``ways`` (6,) from the axes."""
     for x in (0, 3):
@@ -150,7 +150,7 @@ def own_teeth_of(packed: FloatArray) -> OwnTeeth:
     )
 
 
-@inner
+@called
 def turned_arcs(machine: Record, t: float, q: FloatArray) -> TurnedArcs:
     """Arcs of the base circles at time t and coordinates q (6,)."""
     geometry = machine.geometry
@@ -176,7 +176,7 @@ def teeth_of_pair(
     return TeethOfPair(pinion, gear)
 
 
-@inner
+@called
 def fault_effect(fault: Record, radius: float, place: float, sense: float) -> FaultEffect:
     """What a fault adds at a place of its flank [m]; ``sense`` is d(place)/d(xi), 0 beyond the flank.
 

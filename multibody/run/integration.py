@@ -21,12 +21,12 @@ from typing import NamedTuple
 import exudyn as exu
 import numpy as np
 
-from lumped.compiler import compiled
+from lumped.compiler import called, compiled
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 from multibody.contact.events import SLIDING, time_to_event
 from multibody.contact.kernels import tooth_forces
-from multibody.contact.records import CONTACTS_SIZE, COORDINATES, RATES, WRENCH, Records, inner
+from multibody.contact.records import CONTACTS_SIZE, COORDINATES, RATES, WRENCH, Records
 from multibody.run.model import ExudynModel, accelerations, stored
 
 #: Smallest step over the mesh cycle. With a larger floor the solver hangs where friction changes sign: the
@@ -133,7 +133,7 @@ class MotionState(NamedTuple):
     a: FloatArray
 
 
-@inner
+@called
 def weighted(weights: FloatArray, rates: FloatArray, count: int, i: int) -> float:
     """Sum of the rates of coordinate i at the first stages, by their weights."""
     total = 0.0
@@ -142,7 +142,7 @@ def weighted(weights: FloatArray, rates: FloatArray, count: int, i: int) -> floa
     return total
 
 
-@inner
+@called
 def stage_state(
     state: FloatArray, q: FloatArray, v: FloatArray, h: float, row: FloatArray, count: int, stages: Stages
 ) -> None:
@@ -156,7 +156,7 @@ def stage_state(
         state[RATES, i] = v[i] + h * weighted(row, stages.acceleration, count, i)
 
 
-@inner
+@called
 def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) -> None:
     """Write velocities and accelerations of a stage, by the wrench of the teeth and the bearings."""
     for i in range(6):
@@ -168,7 +168,7 @@ def set_rates(stages: Stages, stage: int, state: FloatArray, bodies: Records) ->
         stages.acceleration[stage, i] = force / body.inertia
 
 
-@inner
+@called
 def step_error(stages: Stages, h: float, state: FloatArray, rule: StepRule) -> float:
     """Largest error of a step of length h [s] that ends in ``state``, over the error that is allowed."""
     row = rule.tableau[_ERROR]
@@ -181,7 +181,7 @@ def step_error(stages: Stages, h: float, state: FloatArray, rule: StepRule) -> f
     return worst
 
 
-@inner
+@called
 def step_change(error: float) -> float:
     """Factor for the next step after a step with this error over the allowed one."""
     change = _SAFETY * error**-0.2 if error > 0.0 else _GROW

@@ -292,7 +292,7 @@ def loads_of(compression, stiffness, couplings, law, pulls=0):
     pairs["compression"] = compression
     pairs["stiffness"] = stiffness
     pairs["couplings"][:, : len(compression)] = couplings
-    pairs["pulls"] = pulls
+    pairs["may_pull"] = pulls
     shared_loads(len(compression), pairs, law)
     return pairs["elastic_load"]
 
