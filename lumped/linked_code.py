@@ -18,8 +18,8 @@ from numba.core.typed_passes import AnnotateTypes
 
 #: Start of the names under which compiled code finds Python objects, one for each function.
 _ENVIRONMENT = "_ZN08NumbaEnv"
-#: Steps of numba that linked code replaces. They are no part of its public interface: of a numba without one of
-#: them every function gets its machine code, which is slower and else the same.
+#: Steps of numba that linked code replaces. They are no part of its public interface: with a numba that lacks
+#: one of them every function gets its own machine code, which compiles more slowly and computes the same.
 _STEPS = ("_optimize_final_module", "_finalize_final_module", "_verify_declare_only_symbols")
 LINKING_IS_KNOWN = all(hasattr(JITCodeLibrary, step) for step in (*_STEPS, "_finalize_dynamic_globals"))
 

@@ -140,7 +140,9 @@ def _add_loads(load: FloatArray, states: IntArray, step: float, polynomial: Floa
     polynomial[:] = 0.0
     for i in range(states.size):
         if states[i] == CLOSED:
-            for j in range(polynomial.size - 1):
+            for j in range(
+                polynomial.size - 1
+            ):  # the last coefficient of a load is 0, see taylor_coefficients
                 polynomial[j] += load[i, j, 0]
     summary.least_load = extremes(polynomial, step, summary.least_load, math.inf)[0]
 

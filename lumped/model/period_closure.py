@@ -1,6 +1,6 @@
 """Where a period is closed: the state at the start of a period for which nothing is left at the end.
 
-The lumped model closes a period at three places:
+The lumped model has three ways to a periodic motion:
 
 - ``balanced_start``, here, solves the linear equations of a linear motion. The motion of like teeth
   (``lumped.model.steady``) and of teeth that differ (``lumped.model.cycle_maps``) start from its result.

@@ -239,6 +239,8 @@ def pairs_near_contact(
             own = tooth_pair(machine, motion.teeth, numbers, pair.position)
         if not set_gap(pair, side, machine, flags, own):
             continue
+        # Here ``beyond`` is that of a tip corner in contact. Without corners a pair beyond a tip may still
+        # pull, as its neighbours may. ``add_side`` leaves such a pair out where it is not compressed.
         pair.may_pull = 0 if flags & kn.CONTACT_LOSS or pair.beyond else 1
         if rho_p > own.tip_p or rho_g > own.tip_g:
             pair.beyond = 1
