@@ -152,6 +152,11 @@ def compared_places(elastic: ElasticPair, phases: int) -> FloatArray:
     return np.asarray(place[place < drawn.end - _ENDS * drawn.pitch], dtype=np.float64)
 
 
+def _factor_on_stiffness(pair: GearPair) -> float:
+    """Factor of the file on the stiffness of a tooth pair: the fields of the schema, without ``lumped``."""
+    return pair.mesh.stiffness_factor
+
+
 def pair_compliance(elastic: ElasticPair, place: FloatArray, load: float) -> FloatArray:
     """Compliance of one tooth pair under a load [N], at places on the line of action [m/N].
 
@@ -169,7 +174,7 @@ def pair_compliance(elastic: ElasticPair, place: FloatArray, load: float) -> Flo
     else:
         number = model.pair_stiffness
         stiffness = np.full(place.shape, single_stiffness(elastic.pair) if number is None else number)
-    return np.asarray(1.0 / (elastic.pair.mesh.stiffness_factor * stiffness), dtype=np.float64)
+    return np.asarray(1.0 / (_factor_on_stiffness(elastic.pair) * stiffness), dtype=np.float64)
 
 
 def changes_with_load(elastic: ElasticPair) -> bool:
@@ -196,7 +201,7 @@ def neighbour_motion(elastic: ElasticPair, pitches: int, place: FloatArray) -> F
     motion = _foot_motion(elastic.pinion, pitches, place, place + distance)
     # The line of the gear's base tangent counts from Y: the pair ahead has the smaller length.
     motion = motion + _foot_motion(elastic.gear, pitches, tangent - place - distance, tangent - place)
-    return np.asarray(motion / (elastic.face_width * elastic.pair.mesh.stiffness_factor), dtype=np.float64)
+    return np.asarray(motion / (elastic.face_width * _factor_on_stiffness(elastic.pair)), dtype=np.float64)
 
 
 def width_over_depth(elastic: ElasticPair, place: FloatArray) -> float:
