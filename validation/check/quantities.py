@@ -1,0 +1,85 @@
+"""Quantities of another model's curves: names, SI units, and how each quantity is read from a motion of ours.
+
+A quantity bears the name of the result variable that it measures, such as ``dte`` or ``bearing_force_x_p``.
+The ending ``_dot`` is a rate, ``_ddot`` is an acceleration. Signs are those of the results, see
+docs/reference/names.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that a channel of another model can hold.
+
+    Attributes
+    ----------
+    name : name of the quantity
+    unit : SI unit
+    words : plain name
+    variable : result variable from which the quantity is read
+    derivative : number of derivatives in time from ``variable`` to the quantity
+    of_tooth_pair : whether the quantity belongs to one tooth pair, which the channel must name
+    summed : whether the quantity is the sum of ``variable`` over all tooth pairs
+    has_mean : whether the mean value is defined: angles have no zero, and the mean of a rate is 0
+    """
+
+    name: str
+    unit: str
+    words: str
+    variable: str
+    derivative: int = 0
+    of_tooth_pair: bool = False
+    summed: bool = False
+    has_mean: bool = True
+
+
+def _quantities() -> Iterator[Quantity]:
+    """All quantities, the transmission error first."""
+    motions = [
+        Quantity("dte", "m", "transmission error", "dte"),
+        *(
+            Quantity(f"theta_{end}", "rad", f"rotation of the {gear} about its nominal rotation",
+                     f"theta_{end}", has_mean=False)
+            for end, gear in GEARS
+        ),
+        *(
+            Quantity(f"{axis}_{end}", "m", f"displacement of the {gear} {line}", f"{axis}_{end}")
+            for axis, line in LINES for end, gear in GEARS
+        ),
+    ]  # fmt: skip
+    yield from motions
+    for derivative, ending, word in ((1, "_dot", "rate"), (2, "_ddot", "acceleration")):
+        for motion in motions:
+            yield replace(
+                motion,
+                name=motion.name + ending,
+                unit=f"{motion.unit}/s" + ("^2" if derivative == 2 else ""),
+                words=f"{word} of the {motion.words}",
+                derivative=derivative,
+                has_mean=False,
+            )
+    yield Quantity("mesh_force", "N", "mesh force, all tooth pairs together", "normal_load", summed=True)
+    yield Quantity("friction", "N", "friction force, all tooth pairs together", "friction_force", summed=True)
+    yield Quantity("normal_load", "N", "normal load of a tooth pair", "normal_load", of_tooth_pair=True)
+    yield Quantity(
+        "friction_force", "N", "friction force of a tooth pair", "friction_force", of_tooth_pair=True
+    )
+    for axis, line in LINES:
+        for end, gear in GEARS:
+            name = f"bearing_force_{axis}_{end}"
+            yield Quantity(name, "N", f"bearing force on the {gear} {line}", name)
+    yield Quantity("mesh_torque_p", "N*m", "torque of the mesh against the pinion", "theta_p", derivative=2)
+    yield Quantity("mesh_torque_g", "N*m", "torque of the mesh against the gear", "theta_g", derivative=2)
+    yield Quantity("mesh_stiffness", "N/m", "mesh stiffness", "mesh_stiffness")
+
+
+GEARS = (("p", "pinion"), ("g", "gear"))
+LINES = (("x", "along the line of action"), ("y", "across the line of action"))
+#: Name -> quantity.
+QUANTITIES = {quantity.name: quantity for quantity in _quantities()}
+#: Labels of tooth pairs: B follows A one pitch later.
+PAIR_LABELS = "ABCDEFGH"
