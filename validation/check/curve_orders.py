@@ -1,0 +1,189 @@
+"""Complex mesh orders of another model's curves, and of a motion of ours at the same orders.
+
+A channel of one tooth pair is taken over the mesh cycles of each engagement, one for each place of a tooth
+pair in the motion. The orders of such a channel are therefore fractions of mesh orders. Teeth that differ
+have the orders of both shafts too.
+
+Sources: docs/how_to/check_your_model.md, "Orders".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from lumped.errors import refuse
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+from validation.check.curves import Channel
+from validation.check.motion_curves import MotionCurves
+from validation.check.quantities import PAIR_LABELS
+from validation.signals.complex_orders import ComplexOrders, complex_orders, orders_of_period
+
+#: Most mesh orders that are compared.
+MESH_ORDERS = 12
+#: Orders of each shaft, and of the sidebands of each mesh order, for teeth that differ.
+_SHAFT_ORDERS = 3
+#: Most mesh orders for each different phase of the samples.
+_PER_PHASE = 0.3
+#: Number of phases of a mesh cycle that count as different.
+_DIFFERENT = 1000
+#: Least samples for each fitted number.
+_PER_NUMBER = 4
+#: Samples of a motion in a mesh cycle for the orders of a tooth pair.
+_SAMPLES = 512
+#: Mesh cycles in a bin of the search for the coarse shift.
+BIN = 1.0 / 32.0
+
+
+class ChannelOrders(NamedTuple):
+    """A channel of another model by its complex orders."""
+
+    channel: Channel
+    orders: ComplexOrders
+
+
+def resolved_orders(cycles: FloatArray, period: int = 1, most: int = MESH_ORDERS) -> int:
+    """Return the number of mesh orders that samples at these mesh cycles resolve.
+
+    Parameters
+    ----------
+    cycles : (k,) mesh cycles of the samples
+    period : mesh cycles in a period of the signal
+    most : largest number
+    """
+    # Samples that are no whole number in a mesh cycle fill in its phases.
+    phases = np.unique(np.round(_DIFFERENT * cycles) % _DIFFERENT).size
+    enough = (cycles.size / _PER_NUMBER - 1.0) / (2 * period)
+    return int(max(min(most, _PER_PHASE * phases, enough), 0.0))
+
+
+def compared_orders(
+    pair: GearPair, cycles: FloatArray, mesh_cycles: int, most: int = MESH_ORDERS
+) -> FloatArray:
+    """Return the orders (m,) at which curves of the whole mesh are compared, in mesh orders.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    cycles : (k,) mesh cycles of the samples
+    mesh_cycles : mesh cycles in the period of our motion; the orders are whole numbers over ``mesh_cycles``
+    most : largest mesh order
+
+    Raises
+    ------
+    ParameterError : the samples do not resolve a single mesh order
+    """
+    count = resolved_orders(cycles, most=most)
+    if count < 1:
+        allowed = "several samples in each mesh cycle"
+        raise refuse("theirs", f"{cycles.size} samples", allowed, "Sample faster, or longer.")
+    orders = np.arange(1.0, count + 1.0)
+    if pair.healthy is pair or mesh_cycles == 1:
+        return orders
+    extra = [
+        mesh_order + sign * number / teeth
+        for teeth in (pair.pinion.teeth, pair.gear.teeth)
+        # Half a turn more than one turn tells a shaft order from the mean.
+        if np.ptp(cycles) >= 1.5 * teeth
+        for mesh_order in range(count + 1)
+        for number in range(1, _SHAFT_ORDERS + 1)
+        for sign in (-1, 1)
+        if mesh_order + sign * number / teeth > 0.0
+    ]
+    # Orders of both shafts that are equal count once.
+    every = np.round(np.concatenate([orders, extra]) * mesh_cycles) / mesh_cycles
+    return np.unique(every)
+
+
+def orders_of_channel(
+    channel: Channel, cycles: FloatArray, orders: FloatArray, motion: MotionCurves, shift: float
+) -> ComplexOrders:
+    """Return the complex orders of a channel.
+
+    Parameters
+    ----------
+    channel : the channel
+    cycles : (k,) mesh cycles of its samples
+    orders : (m,) to fit for a channel of the whole mesh
+    motion : motion of ours, which says when a tooth pair is in contact
+    shift : mesh cycles from the moment when pair A was at A to mesh cycle 0 of the samples; only a channel of
+        a tooth pair depends on it
+
+    Raises
+    ------
+    ParameterError : too few samples, or a tooth pair that the samples never show in contact
+    """
+    if channel.tooth_pair is None:
+        period = motion.mesh_cycles if orders.size and (orders % 1.0).any() else 1
+        values = channel.values if channel.kind.has_mean else _without_ramp(cycles, channel.values)
+        return complex_orders(cycles, values, orders, period=period)
+    period = motion.ahead.size
+    first = int(motion.ahead.min())
+    if motion.recurrence < period:
+        action = "Count the mesh cycles until the same labelled pair is in contact again."
+        raise refuse("recurrence", motion.recurrence, f">= {period}", action)
+    since = motion.age(cycles + shift, channel.tooth_pair)
+    inside = since < first + period
+    most = resolved_orders(cycles[inside], period)
+    if most < 1:
+        allowed = f"curves in which pair {channel.tooth_pair} is in contact for many samples"
+        refused = f"{np.count_nonzero(inside)} samples in contact"
+        raise refuse(f"channel {channel.name}", refused, allowed, "Give more; check pair and recurrence.")
+    passed = cycles[inside] + shift - PAIR_LABELS.index(channel.tooth_pair) - first
+    engagement = np.floor(passed / motion.recurrence).astype(np.int64)
+    # Less the shift, so that one shift puts our motion in the phase of every channel.
+    fractions = np.arange(1, most * period + 1) / period
+    return complex_orders(
+        since[inside] - shift, channel.values[inside], fractions, period=period, blocks=engagement
+    )
+
+
+def orders_of_motion(motion: MotionCurves, channel: Channel, like: ComplexOrders) -> ComplexOrders:
+    """Return the orders of a motion of ours at the orders ``like`` of a channel."""
+    if channel.tooth_pair is None:
+        every = motion.orders(channel.quantity, int(np.ceil(like.orders.max())))
+        places = np.round(like.orders * motion.mesh_cycles).astype(np.int64) - 1
+        selected = np.isin(np.arange(every.orders.size), places)
+        return every.only(selected)
+    phases = np.arange(_SAMPLES * like.period) / _SAMPLES
+    label = PAIR_LABELS[0]  # all labels have the same life
+    # The end of the period is before A.
+    phases -= like.period * (phases >= int(motion.ahead.min()) + like.period)
+    values = motion.at(channel.quantity, phases, label)
+    return orders_of_period(values, round(like.orders.size / like.period), like.period)
+
+
+def coarse_shift(channels: Sequence[Channel], cycles: FloatArray, motion: MotionCurves) -> float:
+    """Return the shift with the best correlation, to a bin; 0 for channels without tooth pairs."""
+    if all(channel.tooth_pair is None for channel in channels):
+        return 0.0
+    count = round(motion.recurrence / BIN)
+    index = np.floor(np.mod(cycles, motion.recurrence) / BIN).astype(np.int64) % count
+    filled = np.maximum(np.bincount(index, minlength=count), 1)
+    total = np.zeros(count)
+    middles = (np.arange(count) + 0.5) * BIN
+    for channel in channels:
+        mean = np.bincount(index, weights=channel.values - channel.values.mean(), minlength=count) / filled
+        model = motion.at(channel.quantity, middles, channel.tooth_pair)
+        model = model - model.mean()
+        size = float(np.linalg.norm(mean) * np.linalg.norm(model))
+        if size > 0.0:
+            total += np.fft.irfft(np.fft.rfft(mean).conj() * np.fft.rfft(model), count) / size
+    return float(total.argmax()) * BIN
+
+
+def _without_ramp(cycles: FloatArray, values: FloatArray) -> FloatArray:
+    """Values less the straight line between the means of the first and the last whole mesh cycle.
+
+    A rotation that includes the nominal rotation is a ramp. A least-squares line would bend to the vibration.
+    """
+    whole = np.floor(cycles[-1] - cycles[0])
+    if whole < 2.0:
+        return values
+    first = cycles < cycles[0] + 1.0
+    last = cycles >= cycles[-1] - 1.0
+    rise = (values[last].mean() - values[first].mean()) / (cycles[last].mean() - cycles[first].mean())
+    return np.asarray(values - rise * (cycles - cycles[0]))

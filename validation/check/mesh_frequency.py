@@ -1,0 +1,180 @@
+"""The mesh frequency that the samples of another model show, beside the mesh frequency of the pair.
+
+The mesh frequency is the frequency whose first orders carry most of the variation. The search is over a
+factor on the frequency of the pair: near 1, and near the factors by which users mistake speeds and times.
+
+Sources: docs/how_to/check_your_model.md, "Period".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, IntArray
+from validation.check.curves import Channel, Curves
+
+#: Largest difference between the mesh frequency of the samples and that of the pair without a word.
+SAME = 0.005
+#: Mesh orders by which the mesh frequency is found.
+_FIRST = 6
+#: Trials in a wave of the last of these orders.
+_TRIALS = 4.0
+#: Mesh cycles of the first search; later searches take four times as many each.
+_SHORT = 64.0
+#: The orders must carry this share more at another frequency than at that of the pair.
+_BETTER = 1e-3
+#: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
+_MOST = 0.5
+_TIMES = 4.0
+#: Fewest mesh cycles that tell one frequency from another.
+_FEWEST = 1.5
+
+
+class Frequency(NamedTuple):
+    """The mesh frequency of the samples.
+
+    Attributes
+    ----------
+    factor : mesh frequency of the samples over that of the pair
+    cause : what mistakes the frequency, a key of ``mistaken_factors``; empty: the frequency is that of the
+        pair
+    """
+
+    factor: float
+    cause: str
+
+
+def mistaken_factors(pair: GearPair) -> dict[str, float]:
+    """Return mistakes of speed or time, and the factor of each on the mesh frequency."""
+    ratio = pair.gear.teeth / pair.pinion.teeth
+    factors = {
+        "the speed is that of the gear": ratio,
+        "the pinion turns at the speed of the gear": 1.0 / ratio,
+        "rpm were taken for rad/s": 30.0 / math.pi,
+        "rad/s were taken for rpm": math.pi / 30.0,
+        "turns per second were taken for rad/s": 1.0 / (2.0 * math.pi),
+        "rad/s were taken for turns per second": 2.0 * math.pi,
+        "times are in milliseconds": 1e-3,
+        "times are in microseconds": 1e-6,
+        "times are a thousandth of seconds": 1e3,
+    }
+    return {cause: factor for cause, factor in factors.items() if abs(factor - 1.0) > SAME}
+
+
+def nominal_cycles(curves: Curves, pair: GearPair) -> FloatArray:
+    """Return the mesh cycles (k,) of the samples at the mesh frequency of the pair, from 0 on."""
+    cycles = curves.places
+    if curves.abscissa == "time":
+        cycles = curves.places / pair.geometry.mesh_period
+    return np.asarray(cycles - cycles[0], dtype=np.float64)
+
+
+def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> Frequency:
+    """Return the mesh frequency of the samples.
+
+    Curves over mesh cycles, and curves too short to tell one frequency from another, have that of the pair.
+
+    Parameters
+    ----------
+    curves : curves at one speed
+    pair : the gear pair at this speed
+    mistakes : whether the frequencies of ``mistaken_factors`` are searched too
+    """
+    carried = _Carried.of(curves, pair)
+    if curves.abscissa != "time" or carried is None:
+        return Frequency(1.0, "")
+    trials = mistaken_factors(pair) if mistakes else {}
+    near = carried.refined(1.0) if carried.reach >= _FEWEST else 1.0
+    at_pair = carried(near, carried.reach)
+    best = Frequency(near, "")
+    for cause, factor in trials.items():
+        if not _FEWEST <= carried.reach * factor <= carried.samples / 4.0:
+            continue
+        trial = carried.refined(factor)
+        most = carried(trial, carried.reach)
+        # Multiples of the true frequency carry a part of the orders, fractions carry all of them.
+        if most > _MOST and most > _TIMES * max(at_pair, 1e-3) and not _is_multiple(trial, best):
+            best, at_pair = Frequency(trial, cause), most / _TIMES
+    return best
+
+
+def _is_multiple(trial: float, best: Frequency) -> bool:
+    """Whether a trial that is a fraction of the frequency of a mistake only repeats that mistake."""
+    return bool(best.cause) and trial < best.factor
+
+
+@dataclass(frozen=True, eq=False)
+class _Carried:
+    """Share of the variation that the first mesh orders carry, over a factor on the mesh frequency."""
+
+    cycles: FloatArray
+    values: FloatArray
+    orders: IntArray
+
+    @classmethod
+    def of(cls, curves: Curves, pair: GearPair) -> _Carried | None:
+        """Return the share for the channels that belong to no tooth pair. None: no channel varies."""
+        values = [channel.values for channel in _of_whole_mesh(curves) if np.ptp(channel.values) > 0.0]
+        if not values:
+            return None
+        cycles = nominal_cycles(curves, pair)
+        trend = np.polynomial.polynomial.polyfit(cycles, np.stack(values).T, 1)
+        flat = np.stack(values) - np.polynomial.polynomial.polyval(cycles, trend)
+        return cls(cycles, flat, np.arange(1, _FIRST + 1))
+
+    @property
+    def reach(self) -> float:
+        """Mesh cycles of the samples, at the frequency of the pair."""
+        return float(self.cycles[-1])
+
+    @property
+    def samples(self) -> int:
+        """Number of samples."""
+        return int(self.cycles.size)
+
+    def __call__(self, factor: float, length: float) -> float:
+        """Return the mean share of all channels over the first ``length`` mesh cycles."""
+        count = int(np.searchsorted(self.cycles, length, side="right"))
+        part = self.values[:, :count] - self.values[:, :count].mean(axis=1, keepdims=True)
+        power = np.maximum(np.sum(part**2, axis=1), 1e-300)
+        first = np.exp(-2j * np.pi * factor * self.cycles[:count])
+        power_of_orders = sum(np.abs(part @ first**m) ** 2 for m in self.orders)
+        return float(np.mean(2.0 * power_of_orders / (count * power)))
+
+    def refined(self, factor: float) -> float:
+        """Return the factor near ``factor`` with the largest share, else ``factor`` itself."""
+        reach = self.reach * factor
+        if reach * SAME * _TRIALS < 0.5:
+            return factor
+        best = factor
+        width = SAME * factor
+        length = min(_SHORT, reach)
+        while True:
+            best, width = self._strongest(best, width, length / factor)
+            if length >= reach:
+                break
+            length = min(4.0 * length, reach)
+        fine = minimize_scalar(
+            lambda trial: -self(float(trial), self.reach), bounds=(best - width, best + width),
+            method="bounded", options={"xatol": 1e-3 * width},
+        )  # fmt: skip
+        better = -float(fine.fun) > (1.0 + _BETTER) * self(factor, self.reach)
+        return float(fine.x) if better else factor
+
+    def _strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
+        """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""
+        step = 1.0 / (_TRIALS * float(self.orders[-1]) * length)
+        trials = about + step * np.arange(-np.floor(width / step), np.floor(width / step) + 1)
+        return float(trials[int(np.argmax([self(float(trial), length) for trial in trials]))]), step
+
+
+def _of_whole_mesh(curves: Curves) -> Sequence[Channel]:
+    """The channels that belong to no tooth pair."""
+    return [channel for channel in curves.channels if channel.tooth_pair is None]

@@ -1,0 +1,158 @@
+"""A periodic motion of ours, read as the quantities of another model: values by mesh cycles, complex orders.
+
+A motion is a dataset of ``lumped.steady_state`` or ``multibody.steady_state`` at equal steps over its period,
+which is one mesh cycle or several. Mesh cycles count from the moment at which tooth pair A is at point A.
+
+Sources: docs/theory/equations.md, "Frame", for the mesh phase.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from lumped.errors import refuse
+from lumped.schema.bodies import bodies_of
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, IntArray
+from validation.check.quantities import PAIR_LABELS, QUANTITIES, Quantity
+from validation.signals.complex_orders import ComplexOrders, orders_of_period
+
+
+class _Life(NamedTuple):
+    """A quantity of a tooth pair over the mesh cycles ``age`` since the pair was at A."""
+
+    age: FloatArray
+    values: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class MotionCurves:
+    """A periodic motion of a gear pair, by mesh cycles.
+
+    Attributes
+    ----------
+    pair : the gear pair
+    motion : dataset at equal steps over ``mesh_cycles``
+    mesh_cycles : mesh cycles in the period of the motion
+    recurrence : mesh cycles after which the same labelled tooth pair is in contact again
+    """
+
+    pair: GearPair
+    motion: xr.Dataset
+    mesh_cycles: int
+    recurrence: int
+
+    def has(self, quantity: str) -> bool:
+        """Return whether the motion contains a quantity."""
+        return QUANTITIES[quantity].variable in self.motion
+
+    def samples(self, quantity: str) -> FloatArray:
+        """Return a quantity at the times of the motion, (n,), or (pair, n) for a quantity of tooth pairs."""
+        kind = QUANTITIES[quantity]
+        if not self.has(quantity):
+            allowed = ", ".join(name for name in QUANTITIES if self.has(name))
+            raise refuse("channel", quantity, allowed, "Leave the channel out.")
+        values = np.asarray(self.motion[kind.variable].to_numpy(), dtype=np.float64)
+        if kind.summed:
+            values = values.sum(axis=0)
+        if kind.derivative:
+            values = self._derivative(values, kind.derivative)
+        if quantity.startswith("mesh_torque"):
+            values = self._mesh_torque(kind, values)
+        return values
+
+    def mean_cycle(self) -> MotionCurves:
+        """Return the motion averaged over the mesh cycles of its period."""
+        size = self.motion.sizes["time"] // self.mesh_cycles
+        first = self.motion.isel(time=slice(0, size))
+        for name, variable in self.motion.data_vars.items():
+            if "time" in variable.dims and name != "position":
+                values = variable.to_numpy()[..., : self.mesh_cycles * size]
+                by_cycle = values.reshape(*values.shape[:-1], self.mesh_cycles, size)
+                first[name] = first[name].copy(data=by_cycle.mean(axis=-2))
+        return MotionCurves(self.pair, first, 1, self.recurrence)
+
+    def age(self, cycles: ArrayLike, label: str) -> FloatArray:
+        """Return the mesh cycles since the labelled pair was last at A; negative before A.
+
+        With loaded contact pairs touch before A.
+        """
+        since = np.mod(np.asarray(cycles, dtype=float) - PAIR_LABELS.index(label), self.recurrence)
+        before_contact = self.recurrence + self.life[0]
+        return np.asarray(np.where(since >= before_contact, since - self.recurrence, since), dtype=np.float64)
+
+    @cached_property
+    def ahead(self) -> IntArray:
+        """Whole base pitches from the pair at A at the start to each tooth pair of the motion.
+
+        With loaded contact pairs touch before A and behind D, so the last number is negative.
+        """
+        g = self.pair.geometry
+        place = self.motion["position"].to_numpy()[:, 0] - g.L_XA
+        return np.asarray(np.round(place / g.base_pitch), dtype=np.int64)
+
+    @property
+    def life(self) -> tuple[float, float]:
+        """First and last mesh cycle since A at which a tooth pair can carry load.
+
+        With loaded contact the life is longer than the path from A to D.
+        """
+        if self.pair.mesh.contact == "loaded":
+            return float(self.ahead.min()), float(self.ahead.max()) + 1.0
+        return 0.0, self.pair.geometry.contact_ratio
+
+    def at(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
+        """Return a quantity [SI] at mesh cycles; ``label``: tooth pair of a quantity of tooth pairs.
+
+        Between samples the value is interpolated linearly.
+        """
+        if label is None:
+            values = self.samples(quantity)
+            grid = np.arange(values.size) * (self.mesh_cycles / values.size)
+            within = np.mod(np.asarray(cycles, dtype=float), self.mesh_cycles)
+            return np.asarray(np.interp(within, grid, values, period=self.mesh_cycles), dtype=np.float64)
+        age = self.age(cycles, label)
+        first, last = self.life
+        life = self._life(quantity)
+        inside = (age >= first) & (age < last)
+        return np.asarray(np.where(inside, np.interp(age, life.age, life.values), 0.0), dtype=np.float64)
+
+    def orders(self, quantity: str, mesh_orders: int) -> ComplexOrders:
+        """Return the complex orders of a quantity of the whole mesh, up to a mesh order."""
+        return orders_of_period(self.samples(quantity), mesh_orders, self.mesh_cycles)
+
+    def _life(self, quantity: str) -> _Life:
+        """Quantity of a tooth pair over its life. A tooth pair n pitches ahead is n mesh cycles after A."""
+        values = self.samples(quantity)
+        grid = np.arange(values.shape[1]) / values.shape[1]
+        by_age = np.argsort(self.ahead)
+        age = (self.ahead[by_age][:, None] + grid).ravel()
+        first, last = self.life
+        inside = (age >= first) & (age < last)
+        return _Life(age[inside], values[by_age].ravel()[inside])
+
+    def _derivative(self, values: FloatArray, times: int) -> FloatArray:
+        """Derivative in time of periodic samples (..., n), by their Fourier series."""
+        duration = self.mesh_cycles * self.pair.geometry.mesh_period
+        rates = 2j * np.pi * np.fft.rfftfreq(values.shape[-1], duration / values.shape[-1])
+        return np.asarray(np.fft.irfft(np.fft.rfft(values) * rates**times, values.shape[-1]))
+
+    def _mesh_torque(self, kind: Quantity, acceleration: FloatArray) -> FloatArray:
+        """Torque of the mesh against a gear, T - J theta'', positive in mean. On springs only.
+
+        The torque on the pinion is the constant drive torque less J theta''; on the gear the mesh drives: the
+        torque is J theta'' plus the brake torque, with the sign of the gear's nominal rotation.
+        """
+        if self.pair.shafts is not None:
+            allowed = "any other quantity for a pair on shafts"
+            raise refuse("channel", kind.name, allowed, "Leave the channel out; give mesh_force.")
+        bodies = bodies_of(self.pair)
+        if kind.name.endswith("_p"):
+            return float(self.motion.attrs["pinion_torque"]) - bodies.inertia_pinion * acceleration
+        return float(self.motion.attrs["brake_torque"]) + bodies.inertia_gear * acceleration

@@ -1,0 +1,110 @@
+"""Curves of another model, prepared for the comparison with motions of ours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+from validation.check.curve_orders import ChannelOrders, coarse_shift, compared_orders, orders_of_channel
+from validation.check.curves import Channel, Curves
+from validation.check.mesh_frequency import Frequency, mesh_frequency, nominal_cycles
+from validation.check.misfit import Misfit, misfit_of
+from validation.check.motion_curves import MotionCurves
+from validation.check.settled import Settled, settled
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """The curves of another model of a pair, and our motion of that pair.
+
+    Attributes
+    ----------
+    pair : the gear pair, at the speed and torque of the curves
+    curves : the curves
+    motion : our motion of the pair
+    frequency : mesh frequency of the curves over that of the pair, and what mistakes it
+    given_shift : mesh cycles from the moment when pair A was at A to the first sample, where the user states
+        them; None: the shift is searched
+    """
+
+    pair: GearPair
+    curves: Curves
+    motion: MotionCurves
+    frequency: Frequency
+    given_shift: float | None = None
+
+    @classmethod
+    def of(cls, pair: GearPair, curves: Curves, motion: MotionCurves, shift: float | None = None) -> Problem:
+        """Return the problem of curves and a motion, with the mesh frequency that the curves show."""
+        frequency = mesh_frequency(curves, pair, mistakes=curves.role == "model")
+        return cls(pair, curves, motion, frequency, shift)
+
+    @cached_property
+    def cycles(self) -> FloatArray:
+        """(k,) mesh cycles of all samples, from 0 on, at the mesh frequency of the curves."""
+        return np.asarray(nominal_cycles(self.curves, self.pair) * self.frequency.factor)
+
+    @cached_property
+    def settled(self) -> Settled:
+        """How far the curves have settled, and which samples are compared."""
+        return settled(self.curves, self.cycles, self.motion.mesh_cycles)
+
+    @property
+    def means(self) -> bool:
+        """Whether means are compared: sensors have no zero."""
+        return self.curves.role == "model"
+
+    @cached_property
+    def orders(self) -> FloatArray:
+        """(m,) orders at which channels of the whole mesh are compared."""
+        return compared_orders(self.pair, self.cycles[self.settled.used], self.motion.mesh_cycles)
+
+    @cached_property
+    def coarse_shift(self) -> float | None:
+        """Shift to a bin, which channels of tooth pairs need; None: no channel of a tooth pair."""
+        if all(channel.tooth_pair is None for channel in self.curves.channels):
+            return None
+        return coarse_shift(self.curves.channels, self.cycles, self.motion)
+
+    @cached_property
+    def theirs(self) -> tuple[ChannelOrders, ...]:
+        """The channels by their orders, of the settled samples."""
+        return self.orders_of(self.curves.channels)
+
+    @cached_property
+    def misfit(self) -> Misfit:
+        """Misfit of the curves and our motion of the pair."""
+        return self.misfit_with(self.motion)
+
+    def orders_of(self, channels: Iterable[Channel]) -> tuple[ChannelOrders, ...]:
+        """Return channels, with samples at the times of the curves, by their orders."""
+        used = self.settled.used
+        shift = self.given_shift if self.given_shift is not None else self.coarse_shift or 0.0
+        return tuple(
+            ChannelOrders(
+                channel,
+                orders_of_channel(
+                    replace(channel, values=channel.values[used]),
+                    self.cycles[used],
+                    self.orders,
+                    self.motion,
+                    shift,
+                ),
+            )
+            for channel in channels
+        )
+
+    def misfit_with(self, motion: MotionCurves, theirs: tuple[ChannelOrders, ...] | None = None) -> Misfit:
+        """Return the misfit of channels (by default those of the curves) and another motion of ours."""
+        return misfit_of(
+            self.theirs if theirs is None else theirs,
+            motion,
+            shift=self.given_shift,
+            near=self.coarse_shift,
+            means=self.means,
+        )

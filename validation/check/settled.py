@@ -1,0 +1,86 @@
+"""The settled part of another model's curves: has the motion reached its period?
+
+Sources: docs/how_to/check_your_model.md, "Settled".
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lumped.typing import BoolArray, FloatArray
+from validation.check.curves import Channel, Curves
+from validation.signals.complex_orders import complex_orders
+
+#: Orders by which two blocks of cycles are compared.
+_ORDERS = 6
+#: Samples for each fitted number of a block.
+_PER_NUMBER = 4
+#: A change above this many standard deviations of the noise is no noise.
+_NOISE = 4.0
+#: Most cycles that are compared: more cycles only take time.
+_MOST_CYCLES = 64
+
+
+class Settled(NamedTuple):
+    """How far a motion has settled.
+
+    Attributes
+    ----------
+    change : change of the orders between the last two blocks of cycles, over the motion; 0 below the noise;
+        NaN: the curves are too short to tell
+    used : (k,) samples that are compared: the last half of the curves, in whole cycles
+    cycles : number of whole cycles of the curves
+    """
+
+    change: float
+    used: BoolArray
+    cycles: int
+
+
+def settled(curves: Curves, cycles: FloatArray, period: int) -> Settled:
+    """Return how far a motion has settled, and which samples are compared.
+
+    Parameters
+    ----------
+    curves : the curves
+    cycles : (k,) mesh cycles of their samples, from 0 on
+    period : mesh cycles in the period of the motion
+    """
+    whole = _whole_cycles(cycles) // period
+    if curves.role == "measurement" or whole < 2:
+        return Settled(np.nan, np.ones(cycles.size, dtype=bool), whole)
+    per_cycle = cycles.size / max(float(np.ptp(cycles)), 1e-300)
+    enough = int(np.ceil(_PER_NUMBER * (2 * _ORDERS + 1) / per_cycle))
+    block = period * -(-enough // period)
+    change = np.nan
+    if 2 * block <= whole * period:
+        channels = [channel for channel in curves.channels if channel.tooth_pair is None]
+        changes = [_change(channel, cycles, block) for channel in channels]
+        change = float(np.sqrt(np.mean(np.square(changes)))) if changes else np.nan
+    last = period * min(max(whole // 2, 1), max(_MOST_CYCLES // period, 1))
+    return Settled(change, cycles > cycles[-1] - last + 1e-9, whole)
+
+
+def _whole_cycles(cycles: FloatArray) -> int:
+    """Number of whole cycles that the samples span; a last sample short of the end by a step counts."""
+    step = float(np.median(np.diff(cycles)))
+    return int(np.floor(float(np.ptp(cycles)) + 1.01 * step))
+
+
+def _change(channel: Channel, cycles: FloatArray, block: int) -> float:
+    """Change of the orders of a channel from the last but one block of cycles to the last one."""
+    end = cycles[-1]
+    orders = np.arange(1.0, _ORDERS + 1.0)
+    fits = []
+    for number in (2, 1):
+        inside = (cycles > end - number * block + 1e-9) & (cycles <= end - (number - 1) * block + 1e-9)
+        fits.append(complex_orders(cycles[inside], channel.values[inside], orders))
+    before, after = fits
+    size = max(before.size, after.size)
+    if size <= 0.0:
+        return 0.0
+    noise = float(np.sqrt(np.trace(before.covariance) + np.trace(after.covariance)))
+    difference = float(np.linalg.norm(after.values - before.values))
+    return difference / size if difference > _NOISE * noise else 0.0
