@@ -225,13 +225,34 @@ def common_shift(
         return -float((product @ np.exp(2j * np.pi * order * shift)).real)
 
     period = max(one.period for one, _, _ in pairs)
-    step = 1.0 / (_TRIALS * max(float(order.max()), 1.0))
-    centre, reach = near or (0.5 * period, 0.5 * period)
-    trials = centre + step * np.arange(-np.ceil(reach / step), np.ceil(reach / step) + 1)
-    best = float(trials[np.argmin([less(float(shift)) for shift in trials])])
+    if near is None:
+        trials, step = _trials_of_period(order, product, period)
+        best = float(trials[np.argmin([less(float(shift)) for shift in trials])])
+    else:
+        step = 1.0 / (_TRIALS * max(float(order.max()), 1.0))
+        centre, reach = near
+        trials = centre + step * np.arange(-np.ceil(reach / step), np.ceil(reach / step) + 1)
+        best = float(trials[np.argmin([less(float(shift)) for shift in trials])])
     fine = minimize_scalar(less, bounds=(best - step, best + step), method="bounded", options={"xatol": 1e-9})
     shift = float(fine.x) if fine.fun <= less(best) else best
     return shift if near else float(np.mod(shift, period))
+
+
+def _trials_of_period(order: FloatArray, product: ComplexArray, period: int) -> tuple[FloatArray, float]:
+    """Return the best trial shifts of a whole period, and the distance of two trials.
+
+    The correlation at all trials at once is a Fourier sum, because every order is a whole number over the
+    period.
+    """
+    number = np.round(order * period).astype(np.int64)
+    count = int(2 ** np.ceil(np.log2(_TRIALS * max(int(number.max()), 1))))
+    amplitudes = np.zeros(count // 2 + 1, dtype=complex)
+    np.add.at(amplitudes, number, product)
+    correlation = np.fft.irfft(amplitudes, count)
+    step = period / count
+    # Rounding of the sum could swap trials that are equally good.
+    best = np.flatnonzero(correlation >= correlation.max() - 1e-9 * np.abs(correlation).max())
+    return np.asarray(step * best, dtype=np.float64), step
 
 
 def misfit(
