@@ -14,7 +14,7 @@ from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
 from lumped.schema.files import preset_text
 from lumped.schema.pair import field_at
-from tests.validation.measurements.test_import import TEXT as RECORD
+from tests.validation.records.test_import import TEXT as RECORD
 from validation.measurements import load_measurement
 from validation.studies import Study, load_study
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from lumped.arguments import real_number
 from lumped.labelling import labelled_dataset, provenance
+from lumped.model.periodic_system import Supports, with_supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.check.curves import Curves
@@ -101,8 +102,12 @@ class Check:
         columns = {
             "quantity": ([row.channel.channel.quantity for row in rows], "1", "quantity"),
             "units": ([row.channel.channel.kind.unit for row in rows], "1", "SI unit of the channel"),
-            "theirs": ([row.channel.orders.peak_to_peak for row in rows], _BY_CHANNEL, "their peak to peak"),
-            "ours": ([row.ours.peak_to_peak for row in rows], _BY_CHANNEL, "our peak to peak"),
+            "their_peak_to_peak": (
+                [row.channel.orders.peak_to_peak for row in rows],
+                _BY_CHANNEL,
+                "their peak to peak",
+            ),
+            "our_peak_to_peak": ([row.ours.peak_to_peak for row in rows], _BY_CHANNEL, "our peak to peak"),
             "their_mean": ([row.channel.orders.mean for row in rows], _BY_CHANNEL, "their mean"),
             "our_mean": ([row.ours.mean for row in rows], _BY_CHANNEL, "our mean"),
             "misfit": ([row.total for row in rows], "1", "misfit of orders and mean"),
@@ -121,7 +126,9 @@ class Check:
         return labelled_dataset(
             {name: ("channel", values, unit, words) for name, (values, unit, words) in columns.items()},
             {"channel": ([row.channel.channel.name for row in rows], "1", "channel")},
-            provenance(self.pair) | {"shift": self.problem.misfit.shift, "misfit": self.misfit},
+            provenance(self.pair)
+            | {name: self.problem.motion.motion.attrs[name] for name in ("teeth", "contact", "supports")}
+            | {"shift": self.problem.misfit.shift, "misfit": self.misfit},
         )
 
 
@@ -132,6 +139,7 @@ def check(
     limit: float = LIMIT,
     explain: bool = True,
     budget: float = BUDGET,
+    supports: Supports | None = None,
 ) -> Check:
     """Check curves of another model, or a measured record, against both programs.
 
@@ -142,12 +150,18 @@ def check(
     limit : misfit up to which the curves agree; 0.05 is 5 %
     explain : whether explanations of a difference are searched
     budget : processor time of this search [s]
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``; by default
+        the shafts of a pair that has them
+
+    Returns
+    -------
+    Check: ``verdict``, ``misfit``, ``channels``, ``explanations``
 
     Raises
     ------
     ParameterError : curves that cannot be read or compared; the text says what to change
     """
-    gear_pair = load_gear_pair(pair)
+    gear_pair = with_supports(load_gear_pair(pair), supports)
     allowed = real_number("limit", limit, 0.0, 1.0, above=True, action="Give a share: 5 % is 0.05.")
     seconds = real_number("budget", budget, 0.0, unit="s")
     if not isinstance(theirs, Curves):

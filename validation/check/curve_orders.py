@@ -99,7 +99,12 @@ def compared_orders(
 
 
 def orders_of_channel(
-    channel: Channel, cycles: FloatArray, orders: FloatArray, motion: MotionCurves, shift: float
+    channel: Channel,
+    cycles: FloatArray,
+    orders: FloatArray,
+    motion: MotionCurves,
+    shift: float,
+    most_orders: int = MESH_ORDERS,
 ) -> ComplexOrders:
     """Return the complex orders of a channel.
 
@@ -111,6 +116,7 @@ def orders_of_channel(
     motion : motion of ours, which says when a tooth pair is in contact
     shift : mesh cycles from the moment when pair A was at A to mesh cycle 0 of the samples; only a channel of
         a tooth pair depends on it
+    most_orders : largest mesh order of a channel of a tooth pair
 
     Raises
     ------
@@ -127,7 +133,7 @@ def orders_of_channel(
         raise refuse("recurrence", motion.recurrence, f">= {period}", action)
     since = motion.age(cycles + shift, channel.tooth_pair)
     inside = since < first + period
-    most = resolved_orders(cycles[inside], period)
+    most = resolved_orders(cycles[inside], period, most_orders)
     if most < 1:
         allowed = f"curves in which pair {channel.tooth_pair} is in contact for many samples"
         refused = f"{np.count_nonzero(inside)} samples in contact"

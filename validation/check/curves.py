@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from lumped.errors import refuse
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.quantities import PAIR_LABELS, QUANTITIES, Quantity
 
@@ -105,6 +106,15 @@ class Curves:
             raise refuse(self.abscissa, refused, "increasing values", "Sort or cut the curves.")
         for channel in self.channels:
             _check(channel, self.places.size)
+
+    def at(self, pair: GearPair) -> GearPair:
+        """Return the pair at the stated speed and torque; what is not stated remains that of the pair."""
+        changes: dict[str, str] = {}
+        if self.pinion_speed is not None:
+            changes["operating.pinion_speed"] = f"{float(self.pinion_speed)!r} rad/s"
+        if self.pinion_torque is not None:
+            changes["operating.pinion_torque"] = f"{float(self.pinion_torque)!r} N*m"
+        return pair.with_(changes) if changes else pair
 
     def of_quantity(self, quantity: str) -> tuple[Channel, ...]:
         """Return the channels of a quantity."""

@@ -33,6 +33,8 @@ _BETTER = 1e-3
 #: A mistaken speed or time must carry this share of the variation, and this many times as much as the pair's.
 _MOST = 0.5
 _TIMES = 4.0
+#: Another speed of a record is searched within this share of the stated speed.
+_FAR = 0.05
 #: Fewest mesh cycles that tell one frequency from another.
 _FEWEST = 1.5
 
@@ -105,6 +107,21 @@ def mesh_frequency(curves: Curves, pair: GearPair, *, mistakes: bool = True) -> 
     return best
 
 
+def shown_speed(curves: Curves, pair: GearPair) -> float | None:
+    """Return the speed that the samples show over that of the pair, where it differs by 0.5 to 5 %.
+
+    None: the mesh orders of the pair's own speed carry more than a quarter of what any other speed carries.
+    """
+    carried = _Carried.of(curves, pair)
+    if carried is None or curves.abscissa != "time":
+        return None
+    length = min(_SHORT, carried.reach)
+    other, _ = carried.strongest(1.0, _FAR, length)
+    near, _ = carried.strongest(1.0, SAME, length)
+    most = carried(other, length)
+    return other if most > _MOST and most > _TIMES * carried(near, length) else None
+
+
 def _is_multiple(trial: float, best: Frequency) -> bool:
     """Whether a trial that is a fraction of the frequency of a mistake only repeats that mistake."""
     return bool(best.cause) and trial < best.factor
@@ -157,7 +174,7 @@ class _Carried:
         width = SAME * factor
         length = min(_SHORT, reach)
         while True:
-            best, width = self._strongest(best, width, length / factor)
+            best, width = self.strongest(best, width, length / factor)
             if length >= reach:
                 break
             length = min(4.0 * length, reach)
@@ -168,7 +185,7 @@ class _Carried:
         better = -float(fine.fun) > (1.0 + _BETTER) * self(factor, self.reach)
         return float(fine.x) if better else factor
 
-    def _strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
+    def strongest(self, about: float, width: float, length: float) -> tuple[float, float]:
         """Return the factor with the largest share, within ``about`` +- ``width``; then the step."""
         step = 1.0 / (_TRIALS * float(self.orders[-1]) * length)
         trials = about + step * np.arange(-np.floor(width / step), np.floor(width / step) + 1)

@@ -21,12 +21,12 @@ from lumped.labelling import source_hash
 from lumped.model.periodic_system import Supports, with_supports
 from lumped.outcomes import Absent, Outcome
 from lumped.typing import Progress
+from validation.check.record.channel_comparison import Record
+from validation.check.record.comparing import check_record
+from validation.check.record.record_comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.measurements.channel_comparison import Record
 from validation.measurements.record import load_measurement
-from validation.measurements.record_comparison import RecordComparison
-from validation.measurements.record_orders import check_record
 from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
@@ -118,7 +118,7 @@ def report(
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
-    measured = None if record is None else load_measurement(record)
+    measured = None if record is None else load_measurement(record).curves()
     if measured is not None:
         check_record(measured, gear_pair)  # refused before any work
     with whole_folder(target, force=force) as folder, warnings.catch_warnings():

@@ -25,10 +25,10 @@ from lumped.model.sweep import resolved_sweep, systems_over_speed
 from lumped.outcomes import Absent, Outcome
 from lumped.schema.pair import GearPair
 from lumped.typing import IntArray, Progress
+from validation.check.curves import Curves
+from validation.check.record.comparing import compare_record
+from validation.check.record.record_comparison import RecordComparison
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.measurements.comparing import compare_record
-from validation.measurements.record import Measurement
-from validation.measurements.record_comparison import RecordComparison
 from validation.prediction.budget import error_budget
 from validation.prediction.inputs import given_and_assumed, uncertain_inputs
 from validation.prediction.motion import (
@@ -104,7 +104,7 @@ class Results:
         effort: Effort,
         name: str = "",
         progress: Progress | None = None,
-        record: Measurement | None = None,
+        record: Curves | None = None,
     ) -> None:
         self.given = pair
         self.pair = pair.healthy
