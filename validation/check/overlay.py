@@ -128,3 +128,34 @@ def _binned(samples: _Samples, bins: int) -> _Bins:
         samples=count.astype(np.float64),
         relative_rms=rms / span if span > 0.0 else np.nan,
     )
+
+
+def figure_data(problem: Problem, *, bins: int = 64) -> xr.Dataset:
+    """Return ``overlay`` with the amplitudes of the orders and the misfit of each channel.
+
+    Returns
+    -------
+    xarray.Dataset over ``channel``, ``bin`` and ``order``: the variables of ``overlay``; ``their_orders`` and
+    ``our_orders``, amplitudes in the SI unit of the channel, NaN without such an order; ``misfit``
+    """
+    data = overlay(problem, bins=bins)
+    rows = problem.misfit.channels
+    order = np.unique(np.concatenate([row.ours.orders for row in rows]))
+    dims = ("channel", "order")
+    amplitudes = {key: np.full((len(rows), order.size), np.nan) for key in ("their_orders", "our_orders")}
+    for number, row in enumerate(rows):
+        places = np.searchsorted(order, row.ours.orders)
+        amplitudes["their_orders"][number, places] = row.channel.orders.amplitudes
+        amplitudes["our_orders"][number, places] = row.ours.amplitudes
+    orders = labelled_dataset(
+        {
+            "their_orders": (dims, amplitudes["their_orders"], _BY_CHANNEL, "their amplitudes"),
+            "our_orders": (dims, amplitudes["our_orders"], _BY_CHANNEL, "our amplitudes"),
+            "misfit": ("channel", [row.total for row in rows], "1", "misfit of the channel"),
+        },
+        {
+            "channel": (data["channel"].to_numpy(), "1", "channel"),
+            "order": (order, "1", "mesh order"),
+        },
+    )
+    return data.merge(orders, combine_attrs="override")

@@ -30,6 +30,7 @@ class Problem:
     frequency : mesh frequency of the curves over that of the pair, and what mistakes it
     given_shift : mesh cycles from the moment when pair A was at A to the first sample, where the user states
         them; None: the shift is searched
+    refined : curves of the same model with half the step; None: the model cannot be called so
     """
 
     pair: GearPair
@@ -37,6 +38,7 @@ class Problem:
     motion: MotionCurves
     frequency: Frequency
     given_shift: float | None = None
+    refined: Curves | None = None
 
     @classmethod
     def of(cls, pair: GearPair, curves: Curves, motion: MotionCurves, shift: float | None = None) -> Problem:

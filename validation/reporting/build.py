@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import time
 import warnings
@@ -27,7 +26,6 @@ from validation.check.record.record_comparison import RecordComparison
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
 from validation.measurements.record import load_measurement
-from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
@@ -39,6 +37,7 @@ from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
 from validation.reporting.page_one import PageOne, page_one, title
+from validation.reporting.pictures import draw_pictures
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
 from validation.reporting.tables import write_tables
@@ -134,7 +133,7 @@ def report(
         pictures = first_figures(results)
         blocks = [block for _, content in chapters for block in content.blocks]
         every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
-        images = _draw(every, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
+        images = draw_pictures(every, folder / "figures", lambda share: tell(0.85 + 0.12 * share, "figures"))
         tell(0.97, "data")
         _write_data(results, folder / "data")
         (folder / "tables").mkdir()
@@ -229,18 +228,6 @@ def _number(number: Number) -> dict[str, Any]:
     }
     words = {"label": number.label, "unit": number.unit, "note": number.note, "scope": number.scope}
     return words | sizes
-
-
-def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict[str, str]:
-    """Draw the pictures. Returns key of a picture -> data URI of the file."""
-    folder.mkdir()
-    images = {}
-    for count, picture in enumerate(pictures):
-        progress(count / len(pictures), "figures")
-        path = folder / f"{picture.key}.svg"
-        save(picture.figure(), path, new=True)
-        images[picture.key] = "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()
-    return images
 
 
 def _write_data(results: Results, folder: Path) -> None:
