@@ -77,6 +77,7 @@ class Curves:
     recurrence : mesh cycles after which the same labelled tooth pair is in contact again; None: the teeth of
         the pinion
     statics : name in ``STATICS`` -> value in SI
+    remarks : sentences on how the source was read: units that were assumed, columns that were not used
     """
 
     name: str
@@ -88,6 +89,7 @@ class Curves:
     pinion_torque: float | None = None
     recurrence: int | None = None
     statics: Mapping[str, FloatArray] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse samples that no comparison can use."""
@@ -159,6 +161,7 @@ class ValuesOverSpeed:
     columns : values at these speeds
     role : "model" or "measurement"
     pinion_torque : stated pinion torque [N m]; None: not stated
+    remarks : sentences on how the source was read
     """
 
     name: str
@@ -166,3 +169,4 @@ class ValuesOverSpeed:
     columns: tuple[SpeedColumn, ...]
     role: Role = "model"
     pinion_torque: float | None = None
+    remarks: tuple[str, ...] = ()
