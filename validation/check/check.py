@@ -29,7 +29,8 @@ from validation.check.motion_curves import MotionCurves
 from validation.check.over_speed import SpeedMisfit, speed_misfit
 from validation.check.overlay import figure_data
 from validation.check.problem import Problem
-from validation.check.reading import OtherModel, other_model, read
+from validation.check.reading.other_model import OtherModel, other_model
+from validation.check.reading.reader import read
 from validation.check.reference import lumped_motion, multibody_motion
 from validation.check.static import StaticRung, static_rung
 from validation.check.words import differs_words, percent, subject

@@ -78,7 +78,7 @@ class Curves:
     recurrence : mesh cycles after which the same labelled tooth pair is in contact again; None: the teeth of
         the pinion
     statics : name in ``STATICS`` -> value in SI
-    remarks : sentences on what the reading assumed or left out
+    remarks : sentences on how the source was read: units that were assumed, columns that were not used
     """
 
     name: str
@@ -171,7 +171,7 @@ class ValuesOverSpeed:
     columns : values at these speeds
     role : "model" or "measurement"
     pinion_torque : stated pinion torque [N m]; None: not stated
-    remarks : sentences on what the reading assumed or left out
+    remarks : sentences on how the source was read
     """
 
     name: str
