@@ -36,6 +36,11 @@ class Quantity:
     summed: bool = False
     has_mean: bool = True
 
+    @property
+    def is_rotation(self) -> bool:
+        """Whether the quantity is an angle, which another model may give with its nominal rotation."""
+        return self.unit == "rad"
+
 
 def _quantities() -> Iterator[Quantity]:
     """All quantities, the transmission error first."""
