@@ -24,7 +24,7 @@ from lumped.schema.pair import GearPair
 from validation.check.curves import Curves, Role, ValuesOverSpeed
 from validation.check.ladder import Explanation, Ladder, climb
 from validation.check.mesh_frequency import SAME
-from validation.check.misfit import Misfit
+from validation.check.misfit import LIMIT, Misfit
 from validation.check.motion_curves import MotionCurves
 from validation.check.over_speed import SpeedMisfit, speed_misfit
 from validation.check.overlay import figure_data
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: Default limit of the misfit.
-LIMIT = 0.05
 #: Default processor time of the search for explanations [s].
 BUDGET = 60.0
 #: A change between the last two blocks of cycles above this share of the motion is no settled motion.

@@ -25,6 +25,8 @@ from validation.check.motion_curves import MotionCurves
 from validation.check.quantities import Quantity
 from validation.signals.complex_orders import LEAST, ComplexOrders, common_shift
 
+#: Default limit of the misfit of curves that agree.
+LIMIT = 0.05
 #: A mean below this share of our mean is a mean that an exporter or a sensor removed. The mean of a record
 #: that is no whole number of cycles is not quite that of a cycle.
 _REMOVED = 0.05

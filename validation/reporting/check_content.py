@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from validation.check.check import Check, Rung
+from validation.check.ladder import Ladder
 from validation.check.ladder_data import ladder_data
 from validation.check.misfit import ChannelMisfit
 from validation.check.overlay import figure_data
+from validation.check.problem import Problem
 from validation.check.static import StaticRow
 from validation.check.words import percent, static_words, subject
 from validation.plots.check import ladder_figure, motion_figure, speed_figure
@@ -50,7 +52,9 @@ def parts_of(check: Check) -> tuple[CheckPart, ...]:
     if check.problem is not None:
         parts.append(CheckPart("motion", "The motion", motion_content(check)))
     if check.ladder is not None:
-        parts.append(CheckPart("explanations", "What would explain it", ladder_content(check)))
+        assert check.problem is not None
+        content = ladder_content(check.problem, check.ladder, check.limit)
+        parts.append(CheckPart("explanations", "What would explain it", content))
     if check.over_speed is not None:
         parts.append(CheckPart("over_speed", "Over speed", _speed_content(check)))
     return tuple(parts)
@@ -233,12 +237,9 @@ class _StepRow(NamedTuple):
     misfit: float
 
 
-def ladder_content(check: Check) -> Content:
-    """Write the chapter of the explanations: bars that fall, and what the curves do not tell apart."""
-    assert check.problem is not None
-    assert check.ladder is not None
-    ladder = check.ladder
-    who = subject(check.role)
+def ladder_content(problem: Problem, ladder: Ladder, limit: float) -> Content:
+    """Write the explanations of a misfit: bars that fall, and what the curves do not tell apart."""
+    who = subject(problem.curves.role)
     if not ladder.steps:
         words = "No named explanation makes the difference much smaller."
         return Content(words, (Text(f"{ladder.runs} motions were computed."),))
@@ -272,7 +273,7 @@ def ladder_content(check: Check) -> Content:
     picture = Picture(
         "explanations",
         "The misfit after each step. Dashed: the limit.",
-        ladder_data(check.problem, ladder, check.limit),
+        ladder_data(problem, ladder, limit),
         ladder_figure,
     )
     return Content(words, (picture, table, Text(f"{ladder.runs} motions were computed.")))
