@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.fields.text_file import parse_toml
 from validation.check.quantities import QUANTITIES
+from validation.check.reading.attributes import operating_point
 from validation.check.reading.meaning import abscissa_of
 from validation.check.reading.places_of_pairs import heading_of_place
 from validation.check.reading.table import Column, Table, listed, numbers_of
@@ -44,7 +44,12 @@ def table_of_dataset(data: xr.Dataset, name: str) -> Table:
         elif variable.dims not in ((), ("pair",)):
             unused.append(heading)
     remarks = (f"Not over {dimension} alone, and not used: {listed(unused)}.",) if unused else ()
-    return Table(name, tuple(columns), _operating_point(data), remarks=remarks)
+    return Table(
+        name,
+        tuple(columns),
+        operating_point(data.attrs, one_speed="speed" not in data.sizes),
+        remarks=remarks,
+    )
 
 
 def _of_pair(name: str) -> bool:
@@ -62,25 +67,6 @@ def _dimension(data: xr.Dataset) -> str:
     sizes = ", ".join(f"{dim}: {size}" for dim, size in data.sizes.items())
     action = "Name the dimension of the samples 'time', 'order' or 'speed'."
     raise refuse("theirs", f"dimensions {sizes}", "a dimension 'time', 'order' or 'speed'", action)
-
-
-def _operating_point(data: xr.Dataset) -> dict[str, Any]:
-    """Speed and torque of the attributes; of the parameters that a result of this program carries."""
-    stated: dict[str, Any] = {}
-    for key in ("pinion_torque", "pinion_speed"):
-        value = data.attrs.get(key)
-        if isinstance(value, str) or key == "pinion_torque":
-            stated[key] = value
-    parameters = data.attrs.get("parameters")
-    if isinstance(parameters, str) and "speed" not in data.sizes:
-        try:
-            operating = parse_toml(parameters, "parameters").get("operating", {})
-        except ParameterError:
-            operating = {}
-        speed = operating.get("pinion_speed") if isinstance(operating, dict) else None
-        if isinstance(speed, (int, float, str)):
-            stated["pinion_speed"] = speed if isinstance(speed, str) else f"{float(speed)!r} rpm"
-    return {key: value for key, value in stated.items() if value is not None}
 
 
 def read_netcdf_table(path: Path, field: str) -> Table:

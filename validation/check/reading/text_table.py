@@ -37,6 +37,8 @@ _SAMPLE = 200
 _COMMENTS = ("#", "%", "!", "//")
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?")
+#: Stands between a name and its unit while a line is split at blanks.
+_JOINT = "\ue000"
 _BLANKS = re.compile(r"\s+")
 
 Decimal = Literal[".", ","]
@@ -132,9 +134,9 @@ def _split(line: str, delimiter: str) -> list[str]:
     """Cells of a line without surrounding blanks and quotes."""
     if delimiter == " ":
         single = _BLANKS.sub(" ", line.strip())
-        joined = re.sub(r" (?=[\[({])", "\x1f", single)  # a unit belongs to the name before it
+        joined = re.sub(r" (?=[\[({])", _JOINT, single)  # a unit belongs to the name before it
         quoted = re.findall(r'"[^"]*"|\S+', joined)
-        return [cell.strip('"').replace("\x1f", " ") for cell in quoted]
+        return [cell.strip('"').replace(_JOINT, " ") for cell in quoted]
     if '"' in line or "'" in line:
         quote = '"' if '"' in line else "'"
         try:
