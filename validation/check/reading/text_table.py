@@ -250,8 +250,9 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
             cells = _trimmed(_split(text, delimiter), block.cells) or _trimmed(_split(text, " "), block.cells)
             if cells and any(understood(cell) for cell in cells):
                 return _Headings(cells, None, index)
-    if block.first and any(line.strip() for line in lines[: block.first]):
-        count = len(_split(lines[block.first - 1], delimiter))
+    others = [line for line in lines[: block.first] if line.strip() and not _is_comment(line)]
+    if others:
+        count = len(_split(others[-1], delimiter))
         raise refuse(
             field, f"{block.cells} columns of numbers, {count} headings", "one heading for each column",
             "Give one heading for each column; put headings with commas in quotes.",
