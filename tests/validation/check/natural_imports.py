@@ -176,9 +176,7 @@ def loads_of_tooth_pairs(k, folder):
 @row
 def rates_and_accelerations(k, folder):
     head = "time [s],TE velocity [mm/s],vx1 [mm/s],theta_p_ddot [deg/s^2],mesh stiffness [N/um]\n"
-    body = rows(
-        k.time, 1e3 * k.dte_dot, 1e3 * k.x_p_dot, np.degrees(k.theta_p_ddot), 1e-6 * k.mesh_stiffness
-    )
+    body = rows(k.time, 1e3 * k.dte_dot, 1e3 * k.x_p_dot, np.degrees(k.theta_p_ddot), 1e-6 * k.mesh_stiffness)
     return text(folder, "r.csv", head + body), {
         "dte_dot": k.dte_dot, "x_p_dot": k.x_p_dot, "theta_p_ddot": k.theta_p_ddot,
         "mesh_stiffness": k.mesh_stiffness,
@@ -235,7 +233,9 @@ def mesh_phase(k, folder):
 
 def _spectrum(k, name):
     mean, amplitude, phase = k.waves[name]
-    complex_amplitudes = np.array([mean, amplitude * np.exp(1j * phase), 0.25 * amplitude * np.exp(-1j * phase)])
+    complex_amplitudes = np.array(
+        [mean, amplitude * np.exp(1j * phase), 0.25 * amplitude * np.exp(-1j * phase)]
+    )
     s = np.arange(256) / 256
     values = mean + amplitude * np.cos(2 * PI * s + phase) + 0.25 * amplitude * np.cos(4 * PI * s - phase)
     return complex_amplitudes, values
@@ -423,6 +423,13 @@ def netcdf(k, folder):
 
 
 @row
+def classic_netcdf(k, folder):
+    data, expected = dataset_with_units(k, folder)
+    data.to_netcdf(folder / "x.nc", engine="scipy", format="NETCDF3_CLASSIC")
+    return folder / "x.nc", expected
+
+
+@row
 def numpy_archive(k, folder):
     np.savez(folder / "x.npz", time=k.time, dte=k.dte, pinion_torque=56.5)
     return folder / "x.npz", {"places": k.time, "dte": k.dte, "torque": 56.5}
@@ -451,7 +458,9 @@ def mapping_with_facts(k, folder):
 
 @row
 def unit_of_another_kind(k, folder):
-    return text(folder, "u.csv", "time [s],dte [N]\n" + rows(k.time, k.dte)), "dte [N]: unit = N: allowed a unit of m"
+    return text(
+        folder, "u.csv", "time [s],dte [N]\n" + rows(k.time, k.dte)
+    ), "dte [N]: unit = N: allowed a unit of m"
 
 
 @row
@@ -504,5 +513,3 @@ def no_source(k, folder):
 def known(name):
     """Motion of the row; one in two on another pair."""
     return Known(OTHER) if sorted(ROWS).index(name) % 2 else Known()
-
-

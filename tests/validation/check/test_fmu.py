@@ -11,7 +11,7 @@ from tests.validation.check.known_curves import OTHER, PAIR
 from validation.check.reading import fmu
 from validation.check.reading.reader import read
 
-#: Co-simulation of a transmission error that settles with a time constant of 20 mesh cycles.
+#: Co-simulation of a transmission error that settles with a time constant of 15 mesh cycles.
 SLAVE = """
 import math
 from pythonfmu import Fmi2Causality, Fmi2Slave, Real
@@ -27,7 +27,7 @@ class Stage(Fmi2Slave):
 
     def do_step(self, time, step):
         cycles = (time + step) / {period}
-        self.dte_um = 5.0 + 2.0 * math.cos(2.0 * math.pi * cycles) + 3.0 * math.exp(-cycles / 20.0)
+        self.dte_um = 5.0 + 2.0 * math.cos(2.0 * math.pi * cycles) + 3.0 * math.exp(-cycles / 15.0)
         self.phi_p = {omega} * (time + step)
         self.oil = 70.0
         return True
@@ -58,13 +58,13 @@ def test_an_fmu_is_simulated_until_its_motion_repeats(stage):
     g = pair.geometry
     cycles = curves.places / g.mesh_period
     assert [one.quantity for one in curves.channels] == ["dte", "theta_p"]
-    # exp(-64/20) is 4 % of 3 um, more than a thousandth; exp(-256/20) is not.
+    # 3 um exp(-32/15) is more than a thousandth of 4 um, 3 um exp(-128/15) is not.
     assert "over 256 mesh cycles, of which the last 16 are read." in curves.remarks[0]
     assert cycles[-1] == pytest.approx(256.0, rel=1e-9)
     assert cycles[-1] - cycles[0] == pytest.approx(16.0, rel=1e-3)
-    # FMPy reads after each communication step; 3 um exp(-240/20) is 2e-11 m.
+    # FMPy reads after each communication step; 3 um exp(-240/15) is 3e-13 m.
     expected = 5e-6 + 2e-6 * np.cos(2.0 * np.pi * cycles)
-    np.testing.assert_allclose(curves.channels[0].values, expected, atol=5e-11)
+    np.testing.assert_allclose(curves.channels[0].values, expected, atol=1e-12)
     np.testing.assert_allclose(curves.channels[1].values, g.omega_pinion * curves.places, rtol=1e-9)
 
 

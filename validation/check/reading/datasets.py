@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -75,7 +75,10 @@ def read_netcdf_table(path: Path, field: str) -> Table:
 
     try:
         _check_links(path)
-        with xr.open_dataset(path, decode_times=False, mask_and_scale=False) as opened:
+        options: dict[str, Any] = {"engine": "scipy"}
+        if h5py.is_hdf5(path):
+            options = {"engine": "h5netcdf", "phony_dims": "sort"}
+        with xr.open_dataset(path, decode_times=False, mask_and_scale=False, **options) as opened:
             if opened.nbytes > MOST_BYTES:
                 raise ValueError(f"it claims to hold {opened.nbytes:.3g} bytes")
             data = opened.load()

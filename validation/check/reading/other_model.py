@@ -31,7 +31,8 @@ class OtherModel:
     file, numbers in the units of the file (``parameters["pinion"]["teeth"]``,
     ``parameters["operating"]["pinion_torque"]`` in N m). Three more sections are in SI: "geometry" with the
     fields of ``lumped.Geometry``, "bodies" with masses and inertias, and "si" with ``pinion_speed`` [rad/s],
-    ``pinion_torque`` [N m], ``module`` [m] and ``pressure_angle`` [rad]. The function returns a mapping from names to arrays, a data frame or a dataset.
+    ``pinion_torque`` [N m], ``module`` [m] and ``pressure_angle`` [rad]. The function returns a
+    mapping from names to arrays, a data frame or a dataset.
 
     Attributes
     ----------
