@@ -50,7 +50,8 @@ _PHRASES = (
 )  # fmt: skip
 _FILLERS = {
     "the", "of", "on", "in", "at", "der", "des", "am", "im", "dynamic", "dyn", "signal", "total", "sum",
-    "all", "pairs", "dynamische", "dynamischer", "channel", "cm", "mea", "along", "rotational", "center", "centre",
+    "all", "pairs", "dynamische", "dynamischer", "channel", "cm", "mea", "along", "rotational", "center",
+    "centre",
 }  # fmt: skip
 _RATES = {
     **dict.fromkeys(("dot", "rate", "velocity", "vel", "speed", "geschwindigkeit", "v"), 1),

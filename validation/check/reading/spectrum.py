@@ -6,7 +6,7 @@ cycles s. A complex amplitude is U_m = a_m exp(i p_m). Amplitudes are peak value
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -172,6 +172,7 @@ def _spectrum(parts: dict[str, OrderColumn]) -> _Spectrum:
     first = next(iter(parts.values()))
     values = {part: use.values for part, use in parts.items()}
     has_phase = True
+    amplitudes: Any
     if set(values) == {"real", "imag"}:
         amplitudes = values["real"] + 1j * values["imag"]
     elif set(values) == {"amplitude", "phase"}:

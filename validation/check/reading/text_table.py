@@ -37,6 +37,8 @@ _SAMPLE = 200
 _COMMENTS = ("#", "%", "!", "//")
 _POINT = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _COMMA = re.compile(r"[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?")
+#: Stands between a name and its unit while a line is split at blanks.
+_JOINT = "\ue000"
 _BLANKS = re.compile(r"\s+")
 
 Decimal = Literal[".", ","]
@@ -132,9 +134,9 @@ def _split(line: str, delimiter: str) -> list[str]:
     """Cells of a line without surrounding blanks and quotes."""
     if delimiter == " ":
         single = _BLANKS.sub(" ", line.strip())
-        joined = re.sub(r" (?=[\[({])", "\x1f", single)  # a unit belongs to the name before it
+        joined = re.sub(r" (?=[\[({])", _JOINT, single)  # a unit belongs to the name before it
         quoted = re.findall(r'"[^"]*"|\S+', joined)
-        return [cell.strip('"').replace("\x1f", " ") for cell in quoted]
+        return [cell.strip('"').replace(_JOINT, " ") for cell in quoted]
     if '"' in line or "'" in line:
         quote = '"' if '"' in line else "'"
         try:
@@ -248,8 +250,9 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
             cells = _trimmed(_split(text, delimiter), block.cells) or _trimmed(_split(text, " "), block.cells)
             if cells and any(understood(cell) for cell in cells):
                 return _Headings(cells, None, index)
-    if block.first and any(line.strip() for line in lines[: block.first]):
-        count = len(_split(lines[block.first - 1], delimiter))
+    others = [line for line in lines[: block.first] if line.strip() and not _is_comment(line)]
+    if others:
+        count = len(_split(others[-1], delimiter))
         raise refuse(
             field, f"{block.cells} columns of numbers, {count} headings", "one heading for each column",
             "Give one heading for each column; put headings with commas in quotes.",

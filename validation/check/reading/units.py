@@ -30,6 +30,8 @@ _WORDS = {
 }  # fmt: skip
 #: Gravity of Earth, the unit of accelerometers [m/s^2], by definition (CGPM 1901).
 _STANDARD_GRAVITY = 9.80665
+#: A number is no unit; 1/min is.
+_NUMBER = re.compile(r"\s*[+-]?[\d.]+(?!\s*/)")
 _DIMENSIONLESS = ("", "-", "–", "1", "none", "ohne")
 
 
@@ -46,7 +48,7 @@ def _converted(unit: str, si: str) -> float | None:
         return 1.0
     if si == "m/s^2" and unit.strip() in ("g", "G", "g0", "gn"):
         return _STANDARD_GRAVITY
-    if len(unit) > 40 or unit.strip() in _DIMENSIONLESS:
+    if len(unit) > 40 or unit.strip() in _DIMENSIONLESS or _NUMBER.match(unit):
         return None
     try:
         return to_si(f"1 {_plain(unit)}", _STATED[si])
