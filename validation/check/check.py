@@ -389,4 +389,8 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
     ]
     if removed:
         remarks.append(f"Without their means, which were removed: {', '.join(removed)}.")
+    shown = {row.channel.channel.name for row in problem.misfit.channels}
+    unseen = [channel.name for channel in problem.curves.channels if channel.name not in shown]
+    if unseen:
+        remarks.append(f"Not compared, no whole engagement in the samples: {', '.join(unseen)}.")
     return tuple(remarks)
