@@ -20,7 +20,7 @@ def main(arguments: list[str]) -> None:
         "| name | kind | truth | pair | channels | s | off as written, shape [%] |\n|---|---|---|---|---|---|---|"
     )
     for case in cases():
-        if kinds and case.kind not in kinds or words and not any(word in case.name for word in words):
+        if (kinds and case.kind not in kinds) or (words and not any(word in case.name for word in words)):
             continue
         start = time.perf_counter()
         record = case.curves()

@@ -18,7 +18,7 @@ ORDERS = 40
 class Difference(NamedTuple):
     """Of a channel, over the swing (rms without mean) of the sound record: as it is, and the shape alone.
 
-    The shape is that of the complex mesh orders from 1 up, after the shift in time that fits all channels best.
+    The shape: complex mesh orders from 1 up, after the shift in time that fits all channels best.
     """
 
     as_written: float

@@ -1,6 +1,6 @@
 """Numbers that the user copied from the parameter file of a pair, and the line of action of the gears.
 
-Nothing here calls a function of the packages: involutes, tips and centre distance by the textbook (ISO 21771).
+Nothing here calls a function of the packages. Involutes, tips and centre distance by ISO 21771.
 """
 
 from __future__ import annotations

@@ -1,109 +1,16 @@
-"""Integrators that users take: fixed steps, implicit steps, those of scipy, harmonic balance, exponentials."""
+"""Integrators that users take: fixed steps, those of scipy, exponentials, harmonic balance, shooting."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import scipy.linalg
-from numba import njit
 from scipy.integrate import solve_ivp
 
-from benchmarks.foreign_models.model import STATES, rates
+from benchmarks.foreign_models.kernels import jacobian, rates, run_fixed
+from benchmarks.foreign_models.model import STATES
 
 #: Largest number of Newton steps towards a periodic motion.
 NEWTON_STEPS = 25
-
-
-@njit(cache=True)
-def euler_step(time, state, step, numbers, table):
-    out = np.empty_like(state)
-    rates(time, state, numbers, table, out)
-    return state + step * out
-
-
-@njit(cache=True)
-def semi_implicit_step(time, state, step, numbers, table):
-    """Euler-Cromer: new velocities first, then displacements with them."""
-    out = np.empty_like(state)
-    rates(time, state, numbers, table, out)
-    new = state.copy()
-    new[6:] += step * out[6:]
-    new[:6] += step * new[6:]
-    return new
-
-
-@njit(cache=True)
-def heun_step(time, state, step, numbers, table):
-    first, second = np.empty_like(state), np.empty_like(state)
-    rates(time, state, numbers, table, first)
-    rates(time + step, state + step * first, numbers, table, second)
-    return state + 0.5 * step * (first + second)
-
-
-@njit(cache=True)
-def rk4_step(time, state, step, numbers, table):
-    k1, k2 = np.empty_like(state), np.empty_like(state)
-    k3, k4 = np.empty_like(state), np.empty_like(state)
-    rates(time, state, numbers, table, k1)
-    rates(time + 0.5 * step, state + 0.5 * step * k1, numbers, table, k2)
-    rates(time + 0.5 * step, state + 0.5 * step * k2, numbers, table, k3)
-    rates(time + step, state + step * k3, numbers, table, k4)
-    return state + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-
-
-@njit(cache=True)
-def jacobian(time, state, numbers, table):
-    """Derivatives of the rates by differences; scales fit micrometres."""
-    matrix = np.empty((state.size, state.size))
-    base, out = np.empty_like(state), np.empty_like(state)
-    rates(time, state, numbers, table, base)
-    for j in range(state.size):
-        small = 1e-9 if j < 6 else 1e-4
-        other = state.copy()
-        other[j] += small
-        rates(time, other, numbers, table, out)
-        matrix[:, j] = (out - base) / small
-    return matrix
-
-
-@njit(cache=True)
-def theta_step(time, state, step, numbers, table, theta):
-    """Implicit step: theta 1/2 is the trapezoidal rule, which is Newmark's beta 1/4; theta 1 is backward Euler."""
-    now, then = np.empty_like(state), np.empty_like(state)
-    rates(time, state, numbers, table, now)
-    new = state + step * now
-    for _ in range(2):
-        rates(time + step, new, numbers, table, then)
-        residual = new - state - step * ((1.0 - theta) * now + theta * then)
-        matrix = np.eye(state.size) - step * theta * jacobian(time + step, new, numbers, table)
-        new = new - np.linalg.solve(matrix, residual)
-    return new
-
-
-@njit(cache=True)
-def run_fixed(method, start, time, step, substeps, samples, numbers, table):
-    """States at sample times, of shape (samples, states), by fixed steps; ``step`` between samples."""
-    states = np.empty((samples, start.size))
-    state = start.copy()
-    small = step / substeps
-    for n in range(samples):
-        states[n] = state
-        for m in range(substeps):
-            at = time + n * step + m * small
-            if method == 0:
-                state = rk4_step(at, state, small, numbers, table)
-            elif method == 1:
-                state = heun_step(at, state, small, numbers, table)
-            elif method == 2:
-                state = euler_step(at, state, small, numbers, table)
-            elif method == 3:
-                state = semi_implicit_step(at, state, small, numbers, table)
-            elif method == 4:
-                state = theta_step(at, state, small, numbers, table, 0.5)
-            else:
-                state = theta_step(at, state, small, numbers, table, 1.0)
-    return states
 
 
 FIXED = {"rk4": 0, "heun": 1, "euler": 2, "euler_cromer": 3, "newmark": 4, "backward_euler": 5}
@@ -240,6 +147,3 @@ def periodic_start(
             break
     numbers["torque_g"] = torque
     return state, torque
-
-
-Integrator = Callable[..., np.ndarray]

@@ -1,4 +1,4 @@
-"""Stiffness of a tooth pair and signed coefficient of friction over the path of contact, as the user coded them.
+"""Stiffness of a tooth pair and signed coefficient of friction over the path of contact, coded by the user.
 
 Sources: ISO 6336-1 method B; Benedict and Kelley 1961; Xu and Kahraman 2007; docs/theory/friction.md.
 """

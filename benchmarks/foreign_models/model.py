@@ -11,22 +11,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numba import njit
 
 from benchmarks.foreign_models.drawing import Drawing, Line, Wheel, line_of_action
-from benchmarks.foreign_models.laws import Law, constant, friction_law, stiffness_law
+from benchmarks.foreign_models.laws import Law, friction_law, stiffness_law
 
 #: Entries of a mesh cycle in the tables of the coefficients.
 TABLE = 16384
 
+#: Numbers of the equations: the period, torques, bodies, bearings, signs of terms, forces that do not vary.
 FIELDS = (
-    "period phase torque_p torque_g base_p base_g inertia_p inertia_g mass_p mass_g "
-    "stiffness_xp stiffness_xg stiffness_yp stiffness_yg damping_xp damping_xg damping_yp damping_yg "
-    "unilateral rigid moment_sign_p moment_sign_g force_sign_xp force_sign_xg force_sign_yp force_sign_yg "
-    "load_xp load_xg load_yp load_yg drive_stiffness ripple ripple_order x_in_approach hardening delta_ref"
-).split()
+    *("period", "phase", "torque_p", "torque_g", "base_p", "base_g"),
+    *("inertia_p", "inertia_g", "mass_p", "mass_g"),
+    *("stiffness_xp", "stiffness_xg", "stiffness_yp", "stiffness_yg"),
+    *("damping_xp", "damping_xg", "damping_yp", "damping_yg"),
+    *("unilateral", "rigid", "moment_sign_p", "moment_sign_g"),
+    *("force_sign_xp", "force_sign_xg", "force_sign_yp", "force_sign_yg"),
+    *("load_xp", "load_xg", "load_yp", "load_yg"),
+    *("drive_stiffness", "ripple", "ripple_order", "x_in_approach", "hardening", "reference_compression"),
+)
 NUMBERS = np.dtype([(name, "f8") for name in FIELDS])
-ENTRY = np.dtype([(name, "f8") for name in "stiffness damping mu error error_rate arm_p arm_g".split()])
+ENTRY = np.dtype(
+    [(name, "f8") for name in ["stiffness", "damping", "mu", "error", "error_rate", "arm_p", "arm_g"]]
+)
 
 #: Order of the displacements in a state; their rates follow in the same order.
 DISPLACEMENTS = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
@@ -49,7 +55,7 @@ class Model:
     mass_g: float
     stiffness: Law
     friction: Law
-    damping: Callable[["Model", np.ndarray], np.ndarray]
+    damping: Callable[[Model, np.ndarray], np.ndarray]
     speed: float
     torque: float
     unilateral: bool = False
@@ -59,8 +65,8 @@ class Model:
     bearing_damping: dict[str, float] = field(default_factory=dict)
     signs: dict[str, float] = field(default_factory=dict)
     others: dict[str, float] = field(default_factory=dict)
-    arm_p: Callable[["Model", np.ndarray], np.ndarray] = lambda model, xi: xi
-    arm_g: Callable[["Model", np.ndarray], np.ndarray] = lambda model, xi: model.line.length - xi
+    arm_p: Callable[[Model, np.ndarray], np.ndarray] = lambda model, xi: xi
+    arm_g: Callable[[Model, np.ndarray], np.ndarray] = lambda model, xi: model.line.length - xi
     total: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
     table: int = TABLE
     period_factor: float = 1.0
@@ -95,9 +101,11 @@ def ratio_damping(model: Model, xi: np.ndarray) -> np.ndarray:
     return 2.0 * model.drawing.mesh_damping * np.sqrt(model.stiffness(xi) * model.effective_mass)
 
 
-def model_of(drawing: Drawing, unilateral: bool = False, torsional: bool = False) -> Model:
-    """Build the user's model from the numbers of the drawing."""
-    line = line_of_action(drawing)
+def model_of(
+    drawing: Drawing, unilateral: bool = False, torsional: bool = False, line: Line | None = None
+) -> Model:
+    """Build the user's model from the numbers of the drawing; ``line`` by default that of the drawing."""
+    line = line_of_action(drawing) if line is None else line
     mass_p, inertia_p = disc(drawing.pinion, drawing.module)
     mass_g, inertia_g = disc(drawing.gear, drawing.module)
     stiffness: dict[str, float] = {}
@@ -176,95 +184,3 @@ def table_of(model: Model) -> np.ndarray:
     if model.total is not None:
         table["stiffness"] *= model.total(phase, table["stiffness"].sum(axis=0))
     return table
-
-
-@njit(cache=True)
-def column(time, numbers, entries):
-    """Entry of the tables at a time."""
-    cycles = time / numbers.period + numbers.phase
-    return min(int((cycles - np.floor(cycles)) * entries), entries - 1)
-
-
-@njit(cache=True)
-def pair_load(delta, rate, entry, numbers):
-    """Normal load of one tooth pair."""
-    compression = delta - entry.error
-    elastic = entry.stiffness * compression
-    if numbers.hardening != 0.0:
-        elastic *= abs(compression / numbers.delta_ref) ** numbers.hardening
-    if numbers.unilateral > 0.0 and elastic < 0.0:
-        elastic = 0.0
-    load = elastic + entry.damping * (rate - entry.error_rate)
-    if numbers.unilateral > 0.0 and load < 0.0:
-        load = 0.0
-    return load
-
-
-@njit(cache=True)
-def approach(state, numbers):
-    """Approach of the flanks delta."""
-    turned = numbers.base_p * state[0] - numbers.base_g * state[1]
-    return turned + numbers.x_in_approach * (state[2] - state[3])
-
-
-@njit(cache=True)
-def rates(time, state, numbers, table, out):
-    """Rates of a state, equations (1), (2) and (6) to (9)."""
-    delta = approach(state, numbers)
-    delta_rate = approach(state[6:], numbers)
-    j = column(time, numbers, table.shape[1])
-    normal, friction, moment_p, moment_g = 0.0, 0.0, 0.0, 0.0
-    for i in range(table.shape[0]):
-        entry = table[i, j]
-        if entry.stiffness == 0.0 and entry.damping == 0.0:
-            continue
-        load = pair_load(delta, delta_rate, entry, numbers)
-        normal += load
-        friction += entry.mu * load
-        moment_p += entry.arm_p * entry.mu * load
-        moment_g += entry.arm_g * entry.mu * load
-    drive = numbers.torque_p - numbers.drive_stiffness * state[0]
-    drive += numbers.ripple * np.cos(2.0 * np.pi * numbers.ripple_order * time / numbers.period)
-    out[:6] = state[6:]
-    out[6] = (drive - numbers.base_p * normal - numbers.moment_sign_p * moment_p) / numbers.inertia_p
-    out[7] = (
-        -numbers.torque_g + numbers.base_g * normal + numbers.moment_sign_g * moment_g
-    ) / numbers.inertia_g
-    if numbers.rigid > 0.0:
-        out[8:12] = 0.0
-        return
-    spring_xp = numbers.stiffness_xp * state[2] + numbers.damping_xp * state[8]
-    spring_xg = numbers.stiffness_xg * state[3] + numbers.damping_xg * state[9]
-    spring_yp = numbers.stiffness_yp * state[4] + numbers.damping_yp * state[10]
-    spring_yg = numbers.stiffness_yg * state[5] + numbers.damping_yg * state[11]
-    out[8] = (numbers.load_xp - spring_xp - numbers.force_sign_xp * normal) / numbers.mass_p
-    out[9] = (numbers.load_xg - spring_xg + numbers.force_sign_xg * normal) / numbers.mass_g
-    out[10] = (numbers.load_yp - spring_yp + numbers.force_sign_yp * friction) / numbers.mass_p
-    out[11] = (numbers.load_yg - spring_yg - numbers.force_sign_yg * friction) / numbers.mass_g
-
-
-@njit(cache=True)
-def tooth_loads(times, states, numbers, table, normal, friction):
-    """Write normal loads and friction forces of the tooth pairs at states, of shape (pairs, times)."""
-    for n in range(times.size):
-        delta, delta_rate = approach(states[n], numbers), approach(states[n, 6:], numbers)
-        j = column(times[n], numbers, table.shape[1])
-        for i in range(table.shape[0]):
-            entry = table[i, j]
-            if entry.stiffness == 0.0 and entry.damping == 0.0:
-                continue
-            normal[i, n] = pair_load(delta, delta_rate, entry, numbers)
-            friction[i, n] = entry.mu * normal[i, n]
-
-
-__all__ = [
-    "DISPLACEMENTS",
-    "STATES",
-    "Model",
-    "constant",
-    "model_of",
-    "numbers_of",
-    "rates",
-    "table_of",
-    "tooth_loads",
-]

@@ -23,7 +23,7 @@ def _file(name: str) -> dict[str, Any]:
 
 
 def pair_from(name: str, title: str, **changes: Any) -> dict[str, Any]:
-    """Return a parameter file as a mapping; a change is named by its path with two underscores for a point."""
+    """Parameter file as a mapping; a change is named by its path, with two underscores for a point."""
     pair = copy.deepcopy(_file(name))
     for section in ("assumed", "sources", "shafts", "uncertainty"):
         pair.pop(section, None)

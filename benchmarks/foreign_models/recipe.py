@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.foreign_models.drawing import Drawing, drawing_of
+from benchmarks.foreign_models.drawing import Drawing, Line, drawing_of, line_of_action
 from benchmarks.foreign_models.integrators import (
     FIXED,
     harmonic_balance,
     periodic_start,
     run_exponentials,
-    run_fixed,
     run_scipy,
 )
+from benchmarks.foreign_models.kernels import run_fixed, tooth_loads
 from benchmarks.foreign_models.model import (
     DISPLACEMENTS,
     STATES,
@@ -24,7 +24,6 @@ from benchmarks.foreign_models.model import (
     model_of,
     numbers_of,
     table_of,
-    tooth_loads,
 )
 
 Curves = dict[str, np.ndarray]
@@ -65,13 +64,14 @@ class Settings:
 
 @dataclass(frozen=True)
 class Recipe:
-    """A call makes the record. The mistake is a change of the drawing, the model, the settings or the curves."""
+    """A call makes the record. A mistake changes the drawing, the line, the model, the settings or the curves."""
 
     pair: Mapping[str, Any]
     settings: Settings
     unilateral: bool = False
     torsional: bool = False
     drawing: Callable[[Drawing], Drawing] = field(default=lambda drawing: drawing)
+    line: Callable[[Line], Line] = field(default=lambda line: line)
     model: Callable[[Model], Model] = field(default=lambda model: model)
     numerics: Callable[[Settings], Settings] = field(default=lambda settings: settings)
     curves: Callable[[Curves, Model], Curves] = field(default=lambda curves, model: curves)
@@ -79,7 +79,8 @@ class Recipe:
     @property
     def user_model(self) -> Model:
         drawing = self.drawing(drawing_of(self.pair))
-        return self.model(model_of(drawing, self.unilateral, self.torsional))
+        line = self.line(line_of_action(drawing))
+        return self.model(model_of(drawing, self.unilateral, self.torsional, line))
 
     def __call__(self) -> Curves:
         model = self.user_model
@@ -111,7 +112,7 @@ def record(model: Model, settings: Settings) -> Curves:
     steps = max(START_STEPS, int(settings.samples * settings.substeps)) if settings.method in FIXED else 2048
     if settings.method == "exponentials":
         steps = 4096
-    start, brake = started(model, numbers, table, steps)
+    start, _ = started(model, numbers, table, steps)
     if settings.settle:
         start = settled(numbers, table, settings, step)
     states = integrated(settings, start, times, step, numbers, table)
@@ -119,7 +120,7 @@ def record(model: Model, settings: Settings) -> Curves:
 
 
 def started(model: Model, numbers: np.void, table: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
-    """Return a state on the periodic motion; with teeth that only push, from the motion of teeth that pull."""
+    """State on the periodic motion; that of teeth that only push is sought from that of teeth that pull."""
     guess = np.zeros(STATES)
     if model.unilateral:
         numbers["unilateral"] = 0.0
@@ -145,9 +146,9 @@ def settled(numbers: np.void, table: np.ndarray, settings: Settings, step: float
         start[2], start[3] = -force / float(numbers["stiffness_xp"]), force / float(numbers["stiffness_xg"])
         start[0] += (start[3] - start[2]) / float(numbers["base_p"])
     method = FIXED.get(settings.method, 0)
-    samples = int(round(settings.settle * settings.samples)) + 1
+    samples = round(settings.settle * settings.samples) + 1
     run = run_fixed(method, start, 0.0, step, settings.substeps, samples, numbers, table)
-    whole = int(round(settings.settle * settings.samples / settings.settle))
+    whole = round(settings.samples)
     end: np.ndarray = run[-1]
     # The user holds the mean speed: what is left of the start's common rotation is taken out.
     speed = (end[0] - run[-1 - whole, 0]) / float(numbers["period"])
@@ -187,8 +188,9 @@ def labelled(
     for index, name in enumerate(DISPLACEMENTS):
         curves[name] = states[:, index].copy()
         curves[f"{name}_dot"] = states[:, 6 + index].copy()
+    without_drift(curves, model)
     line = model.line
-    turned = line.base_radius_p * states[:, 0] - line.base_radius_g * states[:, 1]
+    turned = line.base_radius_p * curves["theta_p"] - line.base_radius_g * curves["theta_g"]
     curves["dte"] = turned + states[:, 2] - states[:, 3]
     normal = np.zeros((table.shape[0], times.size))
     friction = np.zeros_like(normal)
@@ -202,6 +204,19 @@ def labelled(
             damper = float(numbers[f"damping_{along}{end}"]) * curves[f"{along}_{end}_dot"]
             curves[f"bearing_force_{along}_{end}"] = -spring - damper
     return curves
+
+
+def without_drift(curves: Curves, model: Model) -> None:
+    """Take the common rotation at constant speed out of both angles: the user holds the mean speed."""
+    times = curves["time"]
+    cycle = round(model.period / (times[1] - times[0]))
+    if times.size < 2 * cycle:
+        return
+    first, last = curves["theta_p"][:cycle].mean(), curves["theta_p"][-cycle:].mean()
+    speed = (last - first) / (times[-1] - times[cycle - 1])
+    curves["theta_p"] -= speed * (times - times[0])
+    ratio = model.line.base_radius_p / model.line.base_radius_g
+    curves["theta_g"] -= ratio * speed * (times - times[0])
 
 
 def chosen(curves: Curves, settings: Settings) -> Curves:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
-from benchmarks.foreign_models.drawing import RPM, Drawing, line_of_action
-from benchmarks.foreign_models.laws import constant, coulomb, parabola, stiffness_law
+from benchmarks.foreign_models.drawing import Drawing
 from benchmarks.foreign_models.model import Model
 from benchmarks.foreign_models.pairs import PAIRS
 from benchmarks.foreign_models.recipe import Curves, Recipe, Settings
