@@ -16,9 +16,8 @@ def main(arguments: list[str]) -> None:
     warnings.simplefilter("ignore")
     kinds = [word for word in arguments if word in KINDS]
     words = [word for word in arguments if word not in KINDS]
-    print(
-        "| name | kind | truth | pair | channels | s | off as written, shape [%] |\n|---|---|---|---|---|---|---|"
-    )
+    print("| name | kind | truth | pair | channels | s | off as written, off in shape [%] |")
+    print("|---|---|---|---|---|---|---|")
     for case in cases():
         if (kinds and case.kind not in kinds) or (words and not any(word in case.name for word in words)):
             continue
@@ -28,12 +27,16 @@ def main(arguments: list[str]) -> None:
         assert isinstance(case.curves, Recipe)
         off = differences(record, case.curves)
         cells = ", ".join(f"{name} {100 * d.as_written:.2g} {100 * d.shape:.2g}" for name, d in off.items())
-        channels = len(record) - 1
-        truth = "; ".join(case.truth)
-        print(
-            f"| {case.name} | {case.kind} | {truth} | {case.pair['name']} | {channels} | {seconds:.2f} | {cells} |",
-            flush=True,
+        row = (
+            case.name,
+            case.kind,
+            "; ".join(case.truth),
+            case.pair["name"],
+            len(record) - 1,
+            f"{seconds:.2f}",
+            cells,
         )
+        print("| " + " | ".join(map(str, row)) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from benchmarks.foreign_models.mistakes import Wrong
 from benchmarks.foreign_models.sound import sound_recipes
 from benchmarks.foreign_models.two import TWO
-from benchmarks.foreign_models.wrong import WRONG, Wrong
+from benchmarks.foreign_models.wrong import WRONG
 
 KINDS = ("sound", "wrong", "two")
 

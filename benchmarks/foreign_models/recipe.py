@@ -28,8 +28,8 @@ from benchmarks.foreign_models.model import (
 
 Curves = dict[str, np.ndarray]
 
-#: Steps of a mesh cycle by which a periodic start is computed.
-START_STEPS = 1024
+#: Steps of a mesh cycle for a periodic start, where those of the record do not end with the cycle.
+START_STEPS = 4096
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Recipe:
-    """A call makes the record. A mistake changes the drawing, the line, the model, the settings or the curves."""
+    """A call makes the record. A mistake changes the drawing, line, model, settings or curves."""
 
     pair: Mapping[str, Any]
     settings: Settings
@@ -75,6 +75,8 @@ class Recipe:
     model: Callable[[Model], Model] = field(default=lambda model: model)
     numerics: Callable[[Settings], Settings] = field(default=lambda settings: settings)
     curves: Callable[[Curves, Model], Curves] = field(default=lambda curves, model: curves)
+    sound_unilateral: bool | None = None
+    sound_torsional: bool | None = None
 
     @property
     def user_model(self) -> Model:
@@ -93,7 +95,9 @@ class Recipe:
         """The record without mistake, noise or coarse steps: RK4 on 4096 steps of a cycle."""
         fine = -(-4096 // int(self.settings.samples))
         settings = replace(self.settings, method="rk4", substeps=fine, settle=0, noise=0.0)
-        return Recipe(self.pair, settings, self.unilateral, self.torsional, model=finer)
+        unilateral = self.unilateral if self.sound_unilateral is None else self.sound_unilateral
+        torsional = self.torsional if self.sound_torsional is None else self.sound_torsional
+        return Recipe(self.pair, settings, unilateral, torsional, model=finer)
 
 
 def finer(model: Model) -> Model:
@@ -109,9 +113,8 @@ def record(model: Model, settings: Settings) -> Curves:
     step = model.period / settings.samples
     count = int(np.ceil(settings.cycles * settings.samples))
     times = np.arange(count) * step
-    steps = max(START_STEPS, int(settings.samples * settings.substeps)) if settings.method in FIXED else 2048
-    if settings.method == "exponentials":
-        steps = 4096
+    whole = float(settings.samples).is_integer() and settings.method in FIXED
+    steps = int(settings.samples * settings.substeps) if whole else START_STEPS
     start, _ = started(model, numbers, table, steps)
     if settings.settle:
         start = settled(numbers, table, settings, step)
