@@ -38,7 +38,7 @@ def short_tips(drawing: Drawing) -> Drawing:
 
 
 def reversed_in_the_middle(model: Model, law: Law) -> Law:
-    """The curve of the coefficient of friction, moved so that it changes its sign in the middle of the path."""
+    """The curve of the coefficient of friction, moved so that its sign changes in the middle of the path."""
     line = model.line
     distance = line.pitch_point - 0.5 * (line.start + line.end)
     return lambda xi: law(xi + distance)
@@ -215,7 +215,7 @@ TWO: list[Wrong] = [
     ),
     Wrong(
         "tip_circle_discs_and_soft_bearings",
-        changed_pair("kb_lost", 5100.0, 150.0),
+        changed_pair("kb_lost", 7480.0, 150.0),
         ("dte", "x_p", "x_g"),
         (
             Mistake(

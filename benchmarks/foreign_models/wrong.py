@@ -95,7 +95,7 @@ def static_curve(curves: Curves, model: Model) -> Curves:
 
 
 def same_peak_to_peak(curves: Curves, model: Model) -> Curves:
-    """Motion at another speed, on the time axis of this one, scaled to the peak to peak of the right motion."""
+    """Motion at another speed, on this time axis, scaled to the peak to peak of the right motion."""
     pair = dict(model.drawing.parameters)
     right = Recipe(pair, Settings(samples=512, cycles=1))()["dte"]
     swing = curves["dte"] - curves["dte"].mean()
