@@ -137,13 +137,15 @@ def orders_of_channel(
         action = "Count the mesh cycles until the same labelled pair is in contact again."
         raise refuse("recurrence", motion.recurrence, f">= {period}", action)
     since = motion.age(cycles + shift, channel.tooth_pair)
-    inside = since < first + period
+    # The shift is known to a bin: what seems to be a bin before the first contact may be the first contact.
+    since = np.where(since >= motion.recurrence + first - BIN, since - motion.recurrence, since)
+    inside = since < first - BIN + period
     most = resolved_orders(cycles[inside], period, most_orders)
     if most < 1:
         allowed = f"curves in which pair {channel.tooth_pair} is in contact for many samples"
         refused = f"{np.count_nonzero(inside)} samples in contact"
         raise refuse(f"channel {channel.name}", refused, allowed, "Give more; check pair and recurrence.")
-    passed = cycles[inside] + shift - PAIR_LABELS.index(channel.tooth_pair) - first
+    passed = cycles[inside] + shift - PAIR_LABELS.index(channel.tooth_pair) - first + BIN
     engagement = np.floor(passed / motion.recurrence).astype(np.int64)
     while True:
         # Less the shift, so that one shift puts our motion in the phase of every channel.
