@@ -1,4 +1,4 @@
-"""Reference cases: curves of gear pairs beside which another model can be laid, with what is known about them.
+"""Reference cases: gear pairs and equations with curves beside which another model can be laid.
 
 Source: docs/reference_cases.md.
 """

@@ -76,7 +76,8 @@ def _rectangular() -> dict[str, Any]:
     mean = pair_stiffness * contact_ratio
     return {
         "form": "rectangular",
-        "statement": f"{_MOTION}; k = 2 k_i for 0 <= t < (contact_ratio - 1) T, then k = k_i = pair_stiffness",
+        "statement": f"{_MOTION}; k = 2 pair_stiffness for 0 <= t < (contact_ratio - 1) T, then "
+        "pair_stiffness",
         "mass": mass,
         "damping": _damping(mass, mean, 0.06),
         "force": 2400.0,
@@ -117,9 +118,10 @@ def _sliding() -> dict[str, Any]:
     return {
         "form": "sliding friction",
         "statement": f"{_MOTION}; k = SUM k_i (1 + s_i mu a(X_i)) over the tooth pairs in contact, k_i = "
-        "pair_stiffness; X_i = path_start + base_pitch t/T, and one base_pitch more for the pair ahead, up to "
-        "path_end; s_i = -1 before pitch_point, 1 beyond; a = m (r_bp X/J_p + r_bg (tangent_points - X)/J_g), "
-        "1/m = r_bp^2/J_p + r_bg^2/J_g; friction = SUM s_i mu k_i delta",
+        "pair_stiffness; X_i = path_start + base_pitch t/T, and one base_pitch more for the pair ahead, up "
+        "to path_end; s_i = -1 before pitch_point, 1 beyond; "
+        "a = m (r_bp X/J_p + r_bg (tangent_points - X)/J_g), 1/m = r_bp^2/J_p + r_bg^2/J_g; "
+        "friction = SUM s_i mu k_i delta",
         "damping": _damping(mass, mean, 0.06),
         "force": 1100.0,
         "period": _period(mass, mean, 0.37),
@@ -161,7 +163,7 @@ DEFINITIONS = (
     ),
     Definition(
         "sliding_friction",
-        "One degree of freedom, 19/53 teeth, constant stiffness of a tooth pair, constant friction coefficient.",
+        "One degree of freedom, 19/53 teeth, constant stiffness of a tooth pair and friction coefficient.",
         "The friction force has the wrong sign, or the arms of friction stand still.",
         "M. Vaishya and R. Singh, J. Sound Vib. 243 (2001) 525-545, for any ratio of teeth",
         equation=_sliding(),
@@ -221,7 +223,7 @@ DEFINITIONS = (
     ),
     Definition(
         "profile_shift_15_52",
-        "15/52 with profile shifts +0.75 and +0.58: contact ratio 1.10, operating pressure angle far from 20 degrees.",
+        "15/52 with profile shifts +0.75 and +0.58: contact ratio 1.10, large operating pressure angle.",
         "The pressure angle of the rack replaces the operating pressure angle.",
         _EXAMPLE,
         "unilateral",
@@ -238,7 +240,7 @@ DEFINITIONS = (
     ),
     Definition(
         "shafts_46_61",
-        "46/61 with a contact ratio of 2.28, each gear on an elastic shaft in two bearings between motor and load.",
+        "46/61 with a contact ratio of 2.28, on elastic shafts in four bearings between motor and load.",
         "The mass of the shaft is missing, or the shaft is a spring without bending.",
         _EXAMPLE,
         "unilateral",

@@ -94,7 +94,7 @@ class SingleDegree(Protocol):
 
 
 class _Flow(NamedTuple):
-    """Map of a segment from its start to times: state = ``transition`` (k, 2, 2) state_0 + ``forced`` (k, 2)."""
+    """Map from the start of a segment to times (k,): ``transition`` (k, 2, 2) and ``forced`` (k, 2)."""
 
     transition: FloatArray
     forced: FloatArray
@@ -312,14 +312,10 @@ class InvolutePair(NamedTuple):
 
     @property
     def effective_mass(self) -> float:
-        """m [kg], 1/m = r_bp^2/J_p + r_bg^2/J_g."""
-        return float(
-            1.0
-            / (
-                self.base_radius_pinion**2 / self.inertia_pinion
-                + self.base_radius_gear**2 / self.inertia_gear
-            )
-        )
+        """Effective mass m [kg], 1/m = r_bp^2/J_p + r_bg^2/J_g."""
+        pinion = self.base_radius_pinion**2 / self.inertia_pinion
+        gear = self.base_radius_gear**2 / self.inertia_gear
+        return 1.0 / (pinion + gear)
 
     def friction_arm(self, position: FloatArray) -> FloatArray:
         """Share of a friction force that acts along delta, m (r_bp X/J_p + r_bg (L - X)/J_g), at X (k,) [m].
@@ -341,11 +337,11 @@ def sliding_mesh(
     force: float,
     period: float,
 ) -> PiecewiseLinearMesh:
-    """Mesh of tooth pairs with constant stiffness and constant friction coefficient, for contact ratio 1 to 2.
+    """Mesh of tooth pairs with constant stiffness and friction coefficient, for a contact ratio of 1 to 2.
 
     A pair in contact at X has the load N = k_i delta and the friction force s mu N, with s = -1 before the
-    pitch point and s = 1 beyond it. So k(t) = SUM k_i (1 + s_i mu a(X_i)), which is linear in time between the
-    events of the mesh cycle. The damper acts between the gears: its force causes no friction.
+    pitch point and s = 1 beyond it. So k(t) = SUM k_i (1 + s_i mu a(X_i)), which is linear in time between
+    the events of the mesh cycle. The damper acts between the gears: its force causes no friction.
 
     Parameters
     ----------
@@ -370,12 +366,9 @@ def sliding_mesh(
         middle = 0.5 * (events[:-1] + events[1:]) + number
         in_contact = middle < contact_ratio
         sign = np.where(middle < pitch, -1.0, 1.0)
-        edges = pair.path_start + pair.base_pitch * (events + number)
-        factor = 1.0 + np.multiply.outer(sign * friction_coefficient, np.ones(2)) * np.column_stack(
-            [pair.friction_arm(edges[:-1]), pair.friction_arm(edges[1:])]
-        )
-        start += pair_stiffness * in_contact * factor[:, 0]
-        end += pair_stiffness * in_contact * factor[:, 1]
+        arm = pair.friction_arm(pair.path_start + pair.base_pitch * (events + number))
+        start += pair_stiffness * in_contact * (1.0 + sign * friction_coefficient * arm[:-1])
+        end += pair_stiffness * in_contact * (1.0 + sign * friction_coefficient * arm[1:])
         stiffness += pair_stiffness * in_contact
         friction += pair_stiffness * in_contact * sign * friction_coefficient
     return PiecewiseLinearMesh(

@@ -27,7 +27,8 @@ INDEX = "index.toml"
 LICENCE_FILE = "LICENSE"
 #: Layout of the statements. The number rises with every change that breaks programs that read them.
 SCHEMA_VERSION = 1
-#: Significant digits of the numbers in a table of curves; times have two more.
+#: Digits of the numbers in a table of curves: a channel is resolved to 1e-8 of its peak to peak or better by
+#: a factor of 10. Times have two digits more.
 DIGITS = 8
 #: Unit of a column -> its size in SI.
 UNITS: Mapping[str, float] = {
@@ -72,10 +73,22 @@ def curves_text(time: FloatArray, channels: Mapping[str, FloatArray]) -> str:
     """
     heads = ["time [us]", *(f"{name} [{column_unit(name)}]" for name in channels)]
     columns = [[f"{value:.{DIGITS + 2}g}" for value in time / UNITS["us"]]]
-    for name, values in channels.items():
-        columns.append([f"{value:.{DIGITS}g}" for value in values / UNITS[column_unit(name)] + 0.0])
+    columns += [_numbers(values / UNITS[column_unit(name)]) for name, values in channels.items()]
     lines = [",".join(heads), *(",".join(row) for row in zip(*columns, strict=True))]
     return "\n".join(lines) + "\n"
+
+
+def _numbers(values: FloatArray) -> list[str]:
+    """Return values (k,) as text with as many decimals as resolve their peak to peak."""
+    size = float(np.ptp(values)) or float(np.abs(values).max()) or 1.0
+    decimals = max(DIGITS - 1 - int(np.floor(np.log10(size))), 0)
+    return [_short(f"{value:.{decimals}f}") for value in values]
+
+
+def _short(text: str) -> str:
+    """Return a decimal number without zeros at its end, and zero without a sign."""
+    short = text.rstrip("0").rstrip(".") if "." in text else text
+    return "0" if short in ("-0", "") else short
 
 
 def read_curves(

@@ -41,6 +41,7 @@ from validation.reference_cases.files import (
     curves_file,
     curves_text,
     pair_file,
+    read_curves,
 )
 
 #: Every so many samples of a curve are compared with the transition matrices of floquet.
@@ -89,10 +90,11 @@ class Computed:
     stride: int = 1
 
     def stated(self) -> dict[str, dict[str, float]]:
-        """Return channel -> way -> discrepancy, rounded up."""
+        """Return channel -> way -> discrepancy from the curves as the file has them, rounded up."""
         static = {name: self.static.of_unit(unit_of(name)) for name in self.curves}
+        published = read_curves(curves_text(self.time, self.curves), "published").channels
         return discrepancies(
-            {name: values[:: self.stride] for name, values in self.curves.items()},
+            {one.name: one.values[:: self.stride] for one in published},
             self.others,
             static,
             self.period,
@@ -123,7 +125,7 @@ def channels_of_equation(
 ) -> dict[str, FloatArray]:
     """Return the channels of a motion (k,) with one degree of freedom.
 
-    The mesh force is that of the tooth pairs and of the damper. The friction force is that of the tooth pairs.
+    The mesh force is that of the tooth pairs and of the damper. The tooth pairs alone make friction.
     """
     stiffness = equation.mesh_stiffness(time)
     channels = {
@@ -150,7 +152,7 @@ def by_transition_matrices(equation: SingleDegree, times: FloatArray) -> FloatAr
         values[:, 1, 0] = -equation.stiffness(time) / equation.mass
         values[:, 1, 1] = -equation.damping / equation.mass
         values[:, 1, 2] = equation.force / equation.mass
-        return values * scale / scale[:, None]
+        return np.asarray(values * scale / scale[:, None])
 
     marks = np.union1d(times[1:], equation.edges[1:-1])
     system = PeriodicSystem(matrix, equation.period, tuple(marks), vectorized=True)
@@ -222,7 +224,7 @@ def six_degrees(definition: Definition, pair: GearPair) -> Computed:
         _, reference, exact = both_motions(pair, samples)
         count = period * samples
         # The runs begin ten cycles after the start of the period; the period is turned back.
-        turn = int(round(float(reference["time"][0]) / pair.geometry.mesh_period)) * samples
+        turn = round(float(reference["time"][0]) / pair.geometry.mesh_period) * samples
         order = np.roll(np.arange(count), turn % count)
         exact = exact.isel(time=order)
     else:
