@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+import lumped
 from lumped.errors import ParameterError
 from lumped.model.equations import THETA_G, THETA_P, structure
 from lumped.schema.bodies import bodies_of
@@ -14,6 +15,7 @@ from tests.unlike_pairs import unlike_pair
 from validation.reference_cases.case import reference
 from validation.reference_cases.definitions import DEFINITIONS
 from validation.reference_cases.equations import InvolutePair, PiecewiseLinearMesh, equation_of, sliding_mesh
+from validation.reference_cases.make import by_transition_matrices
 
 ONE_DEGREE = [one for one in DEFINITIONS if one.equation is not None]
 
@@ -152,3 +154,50 @@ def test_a_contact_ratio_above_two_is_refused():
     table = next(one.equation for one in DEFINITIONS if one.name == "sliding_friction")
     with pytest.raises(ParameterError, match=r"contact ratio = .*between 1 and 2"):
         equation_of({**table, "path_end": table["path_start"] + 2.1 * table["base_pitch"]})
+
+
+@pytest.mark.parametrize("name", ["larger_gear_drives_contact_lost", "rack_25_degrees_always_pushing"])
+@pytest.mark.parametrize("friction_coefficient", [0.0, 0.1])
+def test_six_degrees_on_stiff_bearings_approach_the_closed_form(name, friction_coefficient):
+    """The give of the bearings is k/K: bearings twice as stiff halve the difference.
+
+    The tooth dampers of the model follow the stiffness, so they are left out on both sides. The period is not
+    the resonance of an order, and the mean brake torque is that of the model with six degrees.
+    """
+    pair = unlike_pair(name).with_(
+        mesh__contact="prescribed", mesh__relief="ignored", mesh__stiffness={"model": "rectangular"},
+        mesh__damping_ratio=0.0, law="coulomb", friction__coefficient=friction_coefficient, speed=2900,
+    )  # fmt: skip
+    numbers = numbers_of(pair)
+    operating = pair.operating
+    differences = []
+    for factor in (2000.0, 4000.0):
+        k = float(lumped.mesh_stiffness(pair)["mesh_stiffness"].min())
+        ends = [f"bearings.{end}.{axis}" for end in ("pinion", "gear") for axis in ("loa", "oloa")]
+        stiff = pair.with_({f"{one}_stiffness": factor * k for one in ends})
+        stiff = stiff.with_({f"{one}_damping_ratio": 0.5 for one in ends})
+        motion = lumped.steady_state(stiff, supports="springs", samples_per_cycle=256)
+        torques = operating.pinion_torque * numbers.base_radius_pinion / numbers.inertia_pinion
+        torques += motion.attrs["brake_torque"] * numbers.base_radius_gear / numbers.inertia_gear
+        mesh = sliding_mesh(
+            numbers, pair_stiffness=k, friction_coefficient=friction_coefficient, damping=0.0,
+            force=numbers.effective_mass * torques, period=pair.geometry.mesh_period,
+        )  # fmt: skip
+        exact = mesh.motion(motion["time"].to_numpy()).dte
+        differences.append((motion["dte"].to_numpy() - exact) / np.ptp(exact))
+    coarse, fine = (np.abs(one).max() for one in differences)
+    assert fine < 1e-2
+    assert coarse / fine == pytest.approx(2.0, rel=0.1)
+    # In the limit the closed form remains; the bearings ring after a jump, which is no multiple of k/K.
+    assert np.abs(2.0 * differences[1] - differences[0]).max() < 3e-4
+
+
+@pytest.mark.parametrize("definition", ONE_DEGREE, ids=lambda one: one.name)
+def test_transition_matrices_give_the_closed_form(definition):
+    equation = equation_of(definition.equation)
+    time = equation.period * np.arange(256) / 256
+    motion = equation.motion(time)
+    dte, dte_dot = by_transition_matrices(equation, time).T
+    # The matrices were asked for 1e-12 of the period's matrix.
+    assert np.abs(dte - motion.dte).max() < 1e-11 * np.abs(motion.dte).max()
+    assert np.abs(dte_dot - motion.dte_dot).max() < 1e-11 * np.abs(motion.dte_dot).max()
