@@ -40,11 +40,14 @@ def reference(
     from lumped.errors import refuse
     from validation.reference_cases.case import reference as case_of
     from validation.reference_cases.case import reference_names
+    from validation.reference_cases.discrepancy import percent
     from validation.reference_cases.output import write_case
 
     if name is None or list_:
         if output is not None:
-            raise refuse("NAME", "missing", "a case beside --output", "List the cases: spurcheck reference.")
+            raise refuse(
+                "NAME", "missing", "a case beside --output", "List the cases: spurcheck reference --list."
+            )
         cases = [case_of(one) for one in ([name] if name else reference_names())]
         rows = [
             (
@@ -74,8 +77,7 @@ def reference(
         if any(getattr(one, way) is not None for one in case.discrepancy.values())
     ]
     rows_of_channels = [
-        (channel, *("" if (share := getattr(one, way)) is None else f"{100 * share:.2g} %" for way in ways))
-        for channel, one in case.discrepancy.items()
+        (channel, *(percent(getattr(one, way)) for way in ways)) for channel, one in case.discrepancy.items()
     ]
     head = "channel" + "".join(f" | >{way.replace('_', ' ')}" for way in ways)
     show("Discrepancy from the curves, share of the amplitude:", head, rows_of_channels)

@@ -41,6 +41,7 @@ class Definition:
     equation : table of the equation with one degree of freedom, see ``equation_of``; None for a pair
     channels : names of quantities
     samples_per_cycle : samples of a mesh cycle
+    steps_per_sample : factor by which the lumped model has more samples, which shorten its steps
     """
 
     name: str
@@ -51,6 +52,7 @@ class Definition:
     equation: Mapping[str, Any] | None = None
     channels: tuple[str, ...] = SIX_DEGREES
     samples_per_cycle: int = SAMPLES
+    steps_per_sample: int = 1
 
 
 def _period(mass: float, mean_stiffness: float, ratio: float) -> float:
@@ -237,6 +239,7 @@ DEFINITIONS = (
         # The free rotation of the train is no channel: it fades over many periods.
         channels=tuple(name for name in SIX_DEGREES if name != "theta_p"),
         samples_per_cycle=SAMPLES_OWN_TEETH,
+        steps_per_sample=8,
     ),
     Definition(
         "shafts_46_61",

@@ -88,6 +88,13 @@ def rounded_up(value: float) -> float:
     return float(f"{np.ceil(value / unit) * unit:.2g}")
 
 
+def percent(value: float | None) -> str:
+    """Return a discrepancy as text in percent; an empty text for a way that does not exist."""
+    if value is None:
+        return ""
+    return "< 0.001 %" if value < 1e-5 else f"{100.0 * value:.2g} %"
+
+
 def discrepancies(
     curves: Mapping[str, FloatArray],
     others: Mapping[str, Mapping[str, FloatArray]],

@@ -215,9 +215,11 @@ def six_degrees(definition: Definition, pair: GearPair) -> Computed:
     """Compute a case of a gear pair."""
     samples = definition.samples_per_cycle
     contact = definition.contact or "linear"
-    motion = lumped.steady_state(pair, contact=contact, samples_per_cycle=samples)
-    finer = lumped.steady_state(pair, contact=contact, samples_per_cycle=2 * samples).isel(
-        time=slice(None, None, 2)
+    motion, finer = (
+        lumped.steady_state(pair, contact=contact, samples_per_cycle=share * samples).isel(
+            time=slice(None, None, share)
+        )
+        for share in (definition.steps_per_sample, 2 * definition.steps_per_sample)
     )
     period = int(motion.attrs.get("period_cycles", 1))
     if period > 1:  # teeth differ

@@ -31,6 +31,7 @@ def test_a_case_is_described_with_its_discrepancies():
     assert "multibody" in result.output
     assert "closed form" not in result.output
     assert f"{100 * reference('contact_lost_43_22').discrepancy['dte'].multibody:.2g} %" in result.output
+    assert "< 0.001 %" in result.output
 
 
 @pytest.mark.parametrize("name", ["tip_relief_33_35", "sliding_friction"])
