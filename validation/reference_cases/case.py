@@ -1,6 +1,6 @@
 """Reference cases: gear pairs and equations with curves beside which another model can be laid.
 
-Source: docs/reference_cases.md.
+Sources: docs/theory/equations.md and docs/theory/multibody.md; of one degree of freedom ``equations.py``.
 """
 
 from __future__ import annotations
