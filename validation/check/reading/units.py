@@ -68,6 +68,11 @@ def si_factor(unit: str, si: str, field: str) -> float:
     raise refuse(f"{field}: unit", shown(unit), f"a unit of {si}, such as {', '.join(usual)}", advice)
 
 
+def converts(unit: str, si: str) -> bool:
+    """Return whether a unit converts to an SI unit."""
+    return _converted(unit, si) is not None
+
+
 @lru_cache(maxsize=4096)
 def is_unit(text: str) -> bool:
     """Return whether a text is a unit of any quantity that is read here, or the sign of no unit."""
