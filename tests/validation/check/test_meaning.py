@@ -31,7 +31,8 @@ UNDERSTOOD = {
 }  # fmt: skip
 #: One sign more or a missing word leaves open which quantity it is.
 NOT_UNDERSTOOD = (
-    "theta_rad", "Channel 1 x", "phi rad", "x", "F", "M1", "torque", "Fx1", "force pinion", "alpha1", "pinion gear x", "x_y_p", "angle", "foo",
+    "theta_rad", "Channel 1 x", "phi rad",
+    "x", "F", "M1", "torque", "Fx1", "force pinion", "alpha1", "pinion gear x", "x_y_p", "angle", "foo",
     "dte_ddddot",
     "normal", "bearing force pinion", "1", "", "H1", "dte rms",
 )  # fmt: skip
