@@ -36,6 +36,21 @@ def text(folder, name, content, encoding="utf-8"):
 
 
 @row
+def pandas_csv_with_numbered_rows(k, folder):
+    lines = [
+        f"{n},{t:.9e},{1e3 * x / 0.0254:.9e}" for n, (t, x) in enumerate(zip(k.time, k.x_g, strict=True))
+    ]
+    return text(folder, "p.csv", ",Time_s,x_g [mil]\n" + "\n".join(lines)), {"places": k.time, "x_g": k.x_g}
+
+
+@row
+def unknown_letter(k, folder):
+    return text(
+        folder, "e.csv", "t,ε\n" + rows(k.time, k.dte)
+    ), "theirs = ε: allowed a column named by one of"
+
+
+@row
 def csv_in_si_without_units(k, folder):
     return text(folder, "a.csv", "time,dte,x_p\n" + rows(k.time, k.dte, k.x_p)), {
         "places": k.time, "dte": k.dte, "x_p": k.x_p,

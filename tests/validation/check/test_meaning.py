@@ -59,7 +59,8 @@ def test_every_quantity_is_understood_by_its_name_and_by_its_words(name):
 
 
 @pytest.mark.parametrize(("heading", "kind", "unit"), [
-    ("t / s", "time", "s"), ("Zeit [ms]", "time", "ms"), ("X_Value", "time", None), ("t(s)", "time", "s"),
+    ("t / s", "time", "s"), ("Time_s", "time", "s"),
+    ("Zeit [ms]", "time", "ms"), ("X_Value", "time", None), ("t(s)", "time", "s"),
     ("mesh phase [-]", "mesh_phase", "-"), ("t/T_m", "mesh_phase", None), ("n [1/min]", "speed", "1/min"),
     ("pinion speed (rpm)", "speed", "rpm"), ("Raddrehzahl", "gear_speed", None), ("Ordnung", "order", None),
     ("speed_rpm", "speed", "rpm"), ("pinion angle [deg]", "pinion_angle", "deg"),

@@ -219,7 +219,7 @@ def _base(kind: str, gear: str | None, axis: str | None) -> str:
 
 
 _ABSCISSAE: dict[str, AbscissaKind] = {
-    **dict.fromkeys(("t", "time", "zeit", "times", "xvalue", "xwert", "timestamp", "simulationtime", "tout",
+    **dict.fromkeys(("t", "time", "zeit", "xvalue", "xwert", "timestamp", "simulationtime", "tout",
                      "elapsedtime"), "time"),
     **dict.fromkeys(("meshphase", "meshcycle", "meshcycles", "phase", "tau", "ttm", "meshposition",
                      "eingriffsphase", "mesh", "numberofmeshcycles"), "mesh_phase"),
@@ -228,7 +228,7 @@ _ABSCISSAE: dict[str, AbscissaKind] = {
     **dict.fromkeys(("rotationangle", "angle", "drehwinkel", "winkel", "pinionangle", "rollangle",
                      "pinionrollangle", "ritzelwinkel"), "pinion_angle"),
     **dict.fromkeys(("gearangle", "wheelangle", "gearrotationangle", "radwinkel"), "gear_angle"),
-    **dict.fromkeys(("speed", "pinionspeed", "rpm", "n", "n1", "drehzahl", "inputspeed", "omega", "speeds",
+    **dict.fromkeys(("speed", "pinionspeed", "rpm", "n", "n1", "drehzahl", "inputspeed", "omega",
                      "rotationalspeed", "rotorspeed", "ritzeldrehzahl", "pinionrotationalspeed",
                      "np"), "speed"),
     **dict.fromkeys(("gearspeed", "outputspeed", "n2", "wheelspeed", "raddrehzahl", "ng"), "gear_speed"),

@@ -25,6 +25,7 @@ _USUAL = {
 #: Words that exporters write for a unit -> the unit.
 _WORDS = {
     "mikrometer": "um", "mum": "um", "µ": "um", "μ": "um", "my": "um", "sek": "s", "secs": "s",
+    "mil": "thou", "mils": "thou",
     "sekunden": "s", "sekunde": "s", "grad": "deg", "degrees": "deg", "umdrehungen": "turn",
     "revs": "turn", "rev": "turn", "newtonmeter": "N*m",
 }  # fmt: skip
