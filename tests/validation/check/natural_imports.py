@@ -36,6 +36,21 @@ def text(folder, name, content, encoding="utf-8"):
 
 
 @row
+def pandas_csv_with_numbered_rows(k, folder):
+    lines = [
+        f"{n},{t:.9e},{1e3 * x / 0.0254:.9e}" for n, (t, x) in enumerate(zip(k.time, k.x_g, strict=True))
+    ]
+    return text(folder, "p.csv", ",Time_s,x_g [mil]\n" + "\n".join(lines)), {"places": k.time, "x_g": k.x_g}
+
+
+@row
+def unknown_letter(k, folder):
+    return text(
+        folder, "e.csv", "t,ε\n" + rows(k.time, k.dte)
+    ), "theirs = ε: allowed a column named by one of"
+
+
+@row
 def csv_in_si_without_units(k, folder):
     return text(folder, "a.csv", "time,dte,x_p\n" + rows(k.time, k.dte, k.x_p)), {
         "places": k.time, "dte": k.dte, "x_p": k.x_p,
@@ -195,7 +210,7 @@ def extra_columns_are_named(k, folder):
 @row
 def whole_rotations(k, folder):
     head = "t [s],phi_p [deg],phi_g [deg]\n"
-    turns = k.pair.operating.pinion_speed * k.time + k.theta_p
+    turns = 6.0 + k.pair.operating.pinion_speed * k.time + k.theta_p
     wrapped = np.mod(np.degrees(turns), 360.0)
     gear = k.turn_g + k.theta_g
     return text(folder, "w.csv", head + rows(k.time, wrapped, np.degrees(gear), number="{:.12e}")), {
@@ -248,6 +263,22 @@ def orders_with_phases(k, folder):
     phases = np.angle(amplitudes, deg=True)
     return text(folder, "o.csv", head + rows(np.arange(3), 1e6 * np.abs(amplitudes), phases)), {
         "abscissa": "mesh_cycles", "dte": values,
+    }  # fmt: skip
+
+
+@row
+def orders_with_a_phase_of_no_name(k, folder):
+    amplitudes, values = _spectrum(k, "mesh_force")
+    head = "order;Fm [kN];phase [deg]\n"
+    body = rows(np.arange(3), 1e-3 * np.abs(amplitudes), np.angle(amplitudes, deg=True), delimiter=";")
+    return text(folder, "o.csv", head + body), {"abscissa": "mesh_cycles", "mesh_force": values}
+
+
+@row
+def torque_beside_time(k, folder):
+    head = "t [s],T [N m],speed [rpm],dte [um]\n"
+    return text(folder, "t.csv", head + rows(k.time, k.mesh_force, k.friction, 1e6 * k.dte)), {
+        "places": k.time, "dte": k.dte, "remark": "not used: T [N m], speed [rpm]",
     }  # fmt: skip
 
 
@@ -372,7 +403,10 @@ def hdf5(folder, kind, **arrays):
 
 @row
 def matlab_version_73(k, folder):
-    return hdf5(folder, "double", t=k.time, dte=k.dte), {"places": k.time, "dte": k.dte}
+    mass = np.array([[2.0, 0.3], [0.1, 1.0]])  # HDF5 of MATLAB is transposed
+    return hdf5(folder, "double", t=k.time, dte=k.dte, M=mass.T), {
+        "places": k.time, "dte": k.dte, "statics": {"M": mass},
+    }  # fmt: skip
 
 
 @row

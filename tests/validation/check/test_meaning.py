@@ -31,6 +31,7 @@ UNDERSTOOD = {
 }  # fmt: skip
 #: One sign more or a missing word leaves open which quantity it is.
 NOT_UNDERSTOOD = (
+    "theta_rad", "Channel 1 x", "phi rad",
     "x", "F", "M1", "torque", "Fx1", "force pinion", "alpha1", "pinion gear x", "x_y_p", "angle", "foo",
     "dte_ddddot",
     "normal", "bearing force pinion", "1", "", "H1", "dte rms",
@@ -58,7 +59,8 @@ def test_every_quantity_is_understood_by_its_name_and_by_its_words(name):
 
 
 @pytest.mark.parametrize(("heading", "kind", "unit"), [
-    ("t / s", "time", "s"), ("Zeit [ms]", "time", "ms"), ("X_Value", "time", None), ("t(s)", "time", "s"),
+    ("t / s", "time", "s"), ("Time_s", "time", "s"),
+    ("Zeit [ms]", "time", "ms"), ("X_Value", "time", None), ("t(s)", "time", "s"),
     ("mesh phase [-]", "mesh_phase", "-"), ("t/T_m", "mesh_phase", None), ("n [1/min]", "speed", "1/min"),
     ("pinion speed (rpm)", "speed", "rpm"), ("Raddrehzahl", "gear_speed", None), ("Ordnung", "order", None),
     ("speed_rpm", "speed", "rpm"), ("pinion angle [deg]", "pinion_angle", "deg"),

@@ -84,5 +84,8 @@ def test_without_positions_the_place_is_the_label():
     curves = read({"time": time, "normal_load": loads}, PAIR)
     assert [(one.tooth_pair, one.values[0]) for one in curves.channels] == [("A", 0.0), ("B", 9.0)]
     assert curves.recurrence is None
+    columns = read({"time": time, "normal_load": loads.T}, PAIR)
+    for one, other in zip(curves.channels, columns.channels, strict=True):
+        np.testing.assert_array_equal(one.values, other.values)
     with pytest.raises(ParameterError, match="number of pairs"):
         read({"time": time, "normal_load": np.zeros((9, 10))}, PAIR)

@@ -122,7 +122,8 @@ def table_of_text(
         notes.append("Numbers are read with a decimal comma.")
     preamble = [line for line in lines[: headings.first] if line.strip() and not _is_comment(line)]
     if preamble:
-        notes.append(f"{len(preamble)} lines before the headings are not used.")
+        lines_are = "lines before the headings are" if len(preamble) > 1 else "line before the headings is"
+        notes.append(f"{len(preamble)} {lines_are} not used.")
     return Table(name, columns, remarks=tuple(notes))
 
 
@@ -242,7 +243,7 @@ def _headings(lines: list[str], layout: Layout, block: _Block, field: str) -> _H
     ]
     if above and len(above) > 1 and _units_row(above[0][1]) and not _units_row(above[1][1]):
         return _Headings(above[1][1], [_bare(cell) for cell in above[0][1]], above[1][0])
-    if above and not _units_row(above[0][1]):
+    if len(above) == 1 or (above and not _units_row(above[0][1])):
         return _Headings(above[0][1], None, above[0][0])
     for index in range(block.first - 1, max(block.first - 50, -1), -1):
         if _is_comment(lines[index]):

@@ -25,6 +25,7 @@ _USUAL = {
 #: Words that exporters write for a unit -> the unit.
 _WORDS = {
     "mikrometer": "um", "mum": "um", "µ": "um", "μ": "um", "my": "um", "sek": "s", "secs": "s",
+    "mil": "thou", "mils": "thou",
     "sekunden": "s", "sekunde": "s", "grad": "deg", "degrees": "deg", "umdrehungen": "turn",
     "revs": "turn", "rev": "turn", "newtonmeter": "N*m",
 }  # fmt: skip
@@ -66,6 +67,11 @@ def si_factor(unit: str, si: str, field: str) -> float:
     usual = _USUAL[si]
     advice = nearest(unit, usual) or f"Write the unit in brackets after the name, such as [{usual[-1]}]."
     raise refuse(f"{field}: unit", shown(unit), f"a unit of {si}, such as {', '.join(usual)}", advice)
+
+
+def converts(unit: str, si: str) -> bool:
+    """Return whether a unit converts to an SI unit."""
+    return _converted(unit, si) is not None
 
 
 @lru_cache(maxsize=4096)
