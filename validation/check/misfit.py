@@ -4,7 +4,8 @@
 
 U_m are the complex orders of the other model, V_m those of our motion, s the one shift in time of all
 channels. ``scale`` is the amplitude of the larger of both motions, so that e is 0 for equal motions, about 1
-where one motion is zero, and never explodes where one model leaves a channel at rest. The expected square of the noise of the samples is taken from |U_m - V_m|^2.
+where one motion is zero, and never explodes where one model leaves a channel at rest. The expected square of
+the noise of the samples is taken from |U_m - V_m|^2.
 
 Sources: docs/how_to/check_your_model.md, "Misfit".
 """
