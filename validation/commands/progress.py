@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 
 from rich.progress import BarColumn, Progress, ProgressColumn, Task, TimeElapsedColumn
+from rich.table import Column
 from rich.text import Text
 
 from validation.commands.terminal import stderr
@@ -22,7 +23,7 @@ class StageColumn(ProgressColumn):
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        super().__init__()
+        super().__init__(Column(no_wrap=True))
         self._clock = clock
         self._last = ("", 0.0)
         self._since = clock()

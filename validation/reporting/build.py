@@ -27,17 +27,13 @@ from validation.measurements.channel_comparison import Record
 from validation.measurements.record import load_measurement
 from validation.measurements.record_comparison import RecordComparison
 from validation.measurements.record_orders import check_record
-from validation.plots.style import save
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
-from validation.reporting.chapters import CHAPTERS
 from validation.reporting.effort import FULL, QUICK
 from validation.reporting.facts import Fact
-from validation.reporting.first_figures import first_figures
 from validation.reporting.first_numbers import Number, first_numbers
 from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
-from validation.reporting.page import render
 from validation.reporting.page_one import PageOne, page_one, title
 from validation.reporting.relations import failed_checks
 from validation.reporting.results import Results
@@ -129,6 +125,11 @@ def report(
         if early is not None:
             tell(0.0, "motion")
             early(title(results), first_numbers(results.prediction))
+        # Chapters and figures import matplotlib, for which the first numbers need not wait.
+        from validation.reporting.chapters import CHAPTERS
+        from validation.reporting.first_figures import first_figures
+        from validation.reporting.page import render
+
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         first = page_one(results)
         pictures = first_figures(results)
@@ -233,6 +234,8 @@ def _number(number: Number) -> dict[str, Any]:
 
 def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict[str, str]:
     """Draw the pictures. Returns key of a picture -> data URI of the file."""
+    from validation.plots.style import save
+
     folder.mkdir()
     images = {}
     for count, picture in enumerate(pictures):
