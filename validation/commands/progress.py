@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, Task, TimeElapsedColumn
 from rich.table import Column
 from rich.text import Text
-
-from validation.commands.terminal import stderr
 
 #: Standstill from which the bar says how long the present step takes [s].
 _LONG = 1
@@ -38,9 +37,8 @@ class StageColumn(ProgressColumn):
         return Text(task.description if seconds < _LONG else f"{task.description} ({seconds} s)")
 
 
-def bar_of_stages() -> Progress:
-    """Return the progress bar on stderr. Without a terminal nothing is drawn."""
-    console = stderr()
+def bar_of_stages(console: Console) -> Progress:
+    """Return a progress bar on a console. Nothing is drawn on a console that is no terminal."""
     return Progress(
         StageColumn(),
         BarColumn(),

@@ -51,7 +51,7 @@ def test_the_bar_on_a_terminal_is_drawn_anew_while_the_program_is_silent(
 
     screen = Terminal()
     monkeypatch.setattr(
-        progress, "stderr", lambda: PlainConsole(file=screen, force_terminal=True, width=100, quiet=False)
+        terminal, "stderr", lambda: PlainConsole(file=screen, force_terminal=True, width=100, quiet=False)
     )
     start = time.monotonic()
     with progress_bar("report") as tell:
