@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from floquet.engine.refinement import TOLERANCE, refine
+from floquet.engine.refinement import TOLERANCE, NodeValues, refine
 
 
 def tongues(x, y, centres, widths):
@@ -27,7 +27,7 @@ def refined(shape, x, radius, verdict):
 
     def ask(nodes):
         evaluated.extend(nodes.tolist())
-        return radius.ravel()[nodes], verdict.ravel()[nodes], np.zeros(nodes.size)
+        return NodeValues(radius.ravel()[nodes], verdict.ravel()[nodes], np.zeros(nodes.size))
 
     return refine(shape, x, ask), evaluated
 

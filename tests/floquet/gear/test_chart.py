@@ -5,7 +5,7 @@ import pytest
 
 from floquet import PeriodicSystem, Spectrum, label_regions, monodromy, scan, stability_chart
 from floquet.engine.multipliers import radii_with_bounds, verdicts
-from floquet.engine.refinement import gaps, refine
+from floquet.engine.refinement import NodeValues, gaps, refine
 from floquet.gear import chart as module
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
@@ -221,7 +221,7 @@ def test_refinement_finds_the_tongues_of_mathieu() -> None:
         i, j = np.unravel_index(nodes, (a.size, q.size))
         values, errors = mathieu_many(a[i], q[j])
         radius, error = radii_with_bounds(values, errors)
-        return radius, verdicts(radius, error).astype(np.intp), gaps(values)
+        return NodeValues(radius, verdicts(radius, error), gaps(values))
 
     got = refine((a.size, q.size), np.ones(a.size), ask, rows=(0, -1))
     assert got.known.mean() < 0.4
