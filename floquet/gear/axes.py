@@ -330,8 +330,9 @@ class _Law:
         self.ends = MeshCycle.of(variation.pair).elements.friction.interval
         self.positions = _positions(replace(self.path, L_XA=self.ends[0], L_XD=self.ends[1]))
         self.values = cache(self._values)
+        self.at = cache(self._at)
 
-    def at(self, rpm: float) -> ContactPath:
+    def _at(self, rpm: float) -> ContactPath:
         return self.path.at_speed(rpm * np.pi / 30.0)
 
     def in_force(self, rpm: float) -> FrictionLaw | None:

@@ -277,7 +277,9 @@ class FlowPolynomial:
             size.growth = within * largest / (1.0 - largest * wrong)
         error = size.error(periods, damping, _factor_change(T / t, factor_values))
         error += (1.0 + 2.0 / math.pi * math.log(x.size)) ** 2 * float(flow.errors.max())  # Lebesgue's
-        coefficients = np.einsum("aA,bB,ABij->abij", to_T, to_z, matrices)
+        along_period = (to_T @ matrices.reshape(x.size, -1)).reshape(matrices.shape)
+        coefficients = to_z @ along_period.reshape(x.size, y.size, -1)
+        coefficients = coefficients.reshape(matrices.shape)
         return cls(coefficients, error if math.isfinite(error) else math.inf, size.growth)
 
 
