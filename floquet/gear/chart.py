@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -381,10 +381,7 @@ class ChartSlice:
         damping = np.sort(self.damping)
         verdict = np.zeros((speeds.size - 1, damping.size - 1), dtype=np.intp)
         family_of_speed = self._rows[0][order]
-        ends = np.concatenate([[0], 1 + np.flatnonzero(np.diff(family_of_speed)), [family_of_speed.size]])
-        for i, j in pairwise(ends):
-            if j - i < 2:
-                continue
+        for i, j in self._smooth_runs(speeds, family_of_speed):
             family = self.families[family_of_speed[i]]
             block = self._block(int(family_of_speed[i]), rtol)
             # Motions that the mesh does not couple must die out, too: else only instability can be proven.
@@ -408,6 +405,14 @@ class ChartSlice:
             decided = lowest if separate_fade else np.minimum(lowest, 0)
             verdict[i : j - 1] = np.where(lowest == highest, decided, 0)
         return verdict
+
+    def _smooth_runs(self, speeds: FloatArray, family_of_speed: IntArray) -> Iterator[tuple[int, int]]:
+        """First index and end of runs of two or more neighbouring speeds in which factors are smooth."""
+        for i, j in _runs(family_of_speed):
+            family = self.families[family_of_speed[i]]
+            for first, end in _runs(family.smooth_groups(speeds[i:j])):
+                if end - first > 1:
+                    yield i + first, i + end
 
     def solve(
         self, places: IntArray, indices: Mapping[str, IntArray], points: ChartPoints, rtol: float
@@ -434,6 +439,11 @@ class ChartSlice:
             values = np.concatenate([result.multipliers, separate], axis=1)
             errors = np.concatenate([result.errors, separate_errors], axis=1)
             points.put(places[members], values, errors, True, result.multipliers.shape[1])
+
+
+def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:
+    """First index and end of runs of equal numbers."""
+    return pairwise([0, *(1 + np.flatnonzero(np.diff(numbers))).tolist(), numbers.size])
 
 
 def label_variation(variation: GearVariation) -> Tongue:
