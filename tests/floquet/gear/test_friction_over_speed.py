@@ -58,8 +58,12 @@ def test_families_give_the_law_of_every_speed(name: str, law: str) -> None:
             assert np.abs(ours - fitted(xi)).max() < 1e-9
 
 
-#: Pairs with laws whose mean coefficient is that of law II, whose bounds move at low speeds.
-MEANS = [("heavily_relieved_under_load", "smoothed_coulomb"), ("unlike_teeth_finite_elements", "coulomb")]
+#: Pairs with laws whose mean coefficient is that of law II. The bounds of law II move at low speeds, with the
+#: rack at all speeds, where they are far from the pitch point.
+MEANS = [
+    ("heavily_relieved_under_load", "smoothed_coulomb"), ("unlike_teeth_finite_elements", "coulomb"),
+    ("rack_25_degrees_always_pushing", "smoothed_coulomb"),
+]  # fmt: skip
 
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
@@ -85,7 +89,7 @@ def test_the_mean_coefficient_is_a_line_in_the_logarithm_of_speed_within_a_group
         assert bend(np.geomspace(*ends, 40)) < 1e-8  # fits of law II are within 1e-10 of mu above 0.01
     slowest = speeds[groups == groups.max()][0]
     assert bend(np.geomspace(speeds[0], slowest, 40)) > 1e-7
-    assert groups.max() < 0.4 * speeds.size
+    assert groups.max() < 0.4 * speeds.size or name.startswith("rack")
 
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")
