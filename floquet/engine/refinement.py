@@ -108,8 +108,12 @@ def refine(
     chart.verdict[leaves.places] = leaves.nodes.verdict
     known[leaves.places] = True
     leaves.fill(Plane(np.arange(n) * m, np.arange(m)), chart)
-    radius, misfit, verdict = (values.reshape(shape) for values in chart)
-    return Refined(radius, verdict, known.reshape(shape), misfit)
+    return Refined(
+        chart.radius.reshape(shape),
+        chart.verdict.reshape(shape),
+        known.reshape(shape),
+        chart.error.reshape(shape),
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -514,7 +514,7 @@ def label_regions(pair: AnyPair | GearVariation, chart: xr.Dataset) -> list[Labe
     return regions
 
 
-def _counts(numbered: npt.NDArray[np.int32], count: int) -> IntArray:
+def _counts(numbered: npt.NDArray[np.integer], count: int) -> IntArray:
     """Number of nodes of each of so many regions; a copy of all numbers as 8 bytes each would be large."""
     result = np.zeros(count + 1, dtype=np.int64)
     flat = numbered.ravel()
