@@ -74,7 +74,6 @@ NO_FIGURE = {
     "lumped.shaft_modes", "lumped.stiffness_components", "lumped.tooth_gaps",
     "multibody.attribution", "floquet.stability_boundaries", "floquet.stability_margins",
     "validation.check.check",
-    "validation.exchange.compare_matrices",
     "validation.studies.run_sweep", "validation.uncertainty", "validation.write_interactive_page",
 }  # fmt: skip
 
@@ -236,7 +235,7 @@ def test_every_dataset_has_its_figure(result, name, kind):
     if isinstance(found, Exception):
         return
     for path, data in datasets(found):
-        if name in NO_FIGURE:
+        if name in NO_FIGURE and "time" not in data.dims:  # a motion in a result has the figure of a motion
             with pytest.raises(ParameterError, match="result"):
                 spurcheck.plot(data)
         else:

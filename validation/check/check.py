@@ -33,7 +33,15 @@ from validation.check.reading.other_model import OtherModel, other_model
 from validation.check.reading.reader import read
 from validation.check.reference import lumped_motion, multibody_motion
 from validation.check.static import StaticRung, static_rung
-from validation.check.words import differs_words, percent, subject
+from validation.check.words import (
+    ladder_words,
+    low_speed_failure,
+    motion_failure,
+    percent,
+    speed_failure,
+    static_failure,
+    subject,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -156,7 +164,18 @@ class Check:
                 f"Not comparable: {who[0].lower()}{who[1:]} differs by {percent(self.misfit)}, but both "
                 f"programs of spurcheck differ by {percent(self.discrepancy)} here."
             )
-        return f"{who} {verb}{size}." + differs_words(self)
+        sentences = [f"{who} {verb}{size}."]
+        if self.failed is Rung.STATIC:
+            sentences.append(static_failure(self.static))
+        elif self.failed is Rung.LOW_SPEED and self.low_speed is not None:
+            sentences.append(low_speed_failure(self.low_speed))
+        elif self.failed is Rung.MOTION and self.problem is not None:
+            sentences.append(motion_failure(self.problem, self.limit))
+        elif self.failed is Rung.OVER_SPEED and self.over_speed is not None:
+            sentences.append(speed_failure(self.over_speed))
+        if self.ladder is not None and (self.ladder.steps or self.failed is Rung.MOTION):
+            sentences.append(ladder_words(self.ladder))
+        return " ".join(sentences)
 
     @cached_property
     def channels(self) -> xr.Dataset:
