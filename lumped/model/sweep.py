@@ -21,7 +21,7 @@ from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.powers import balance
 from lumped.model.results import farthest_reversal, load_range
 from lumped.model.steady import periodic_solution, sample_times
-from lumped.model.steady_state import steady_state
+from lumped.model.steady_state import periodic_motion
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.elements import MeshElements
 from lumped.ranges import warned_once
@@ -151,14 +151,14 @@ def _linear_motions(pairs: Iterable[GearPair], supports: Supports, samples: int)
 def _motions(
     pairs: Iterable[GearPair], contact: ContactArgument, supports: Supports, samples: int
 ) -> Iterator[_Motion | None]:
-    """Yield the motions of `lumped.steady_state`; None at a speed without periodic motion."""
+    """Yield the motions of `periodic_motion`; None at a speed without periodic motion."""
     for pair in pairs:
         try:
-            result = steady_state(pair, contact=contact, supports=supports, samples_per_cycle=samples)
+            motion = periodic_motion(pair, contact, supports, samples)
         except NumericalError:
             yield None
             continue
-        yield {str(name): values.to_numpy() for name, values in result.data_vars.items()}, result.attrs
+        yield motion.values, motion.attributes
 
 
 def _label(name: str) -> tuple[str, str]:

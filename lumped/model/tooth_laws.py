@@ -247,8 +247,9 @@ def _steps(laws: ToothLaws, largest_step: float, outputs: int, ends: FloatArray)
     marks = np.where(np.abs(marks - nearest) < _INSIDE, nearest, marks)
     marks = marks[np.diff(marks, prepend=-1.0) > _INSIDE]
     parts = np.maximum(1, np.ceil(np.diff(marks) / largest_step - 1e-9)).astype(np.int64)
-    pieces = zip(marks, marks[1:], parts, strict=False)
-    edges = np.concatenate([*(low + (high - low) * np.arange(n) / n for low, high, n in pieces), [1.0]])
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    inside = np.repeat(np.diff(marks), parts) * number / np.repeat(parts, parts)
+    edges = np.append(np.repeat(marks[:-1], parts) + inside, 1.0)
     starts = np.zeros(edges.size - 1, dtype=np.int64)
     starts[np.searchsorted(edges, even[:-1] - _INSIDE)] = 1
     return _Steps(edges, starts)

@@ -20,7 +20,7 @@ from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motio
 from lumped.model.momentary_load import momentary_tables, run, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
-from lumped.model.revolution_motion import RevolutionMotion, Touch, labelled_motion
+from lumped.model.revolution_motion import RevolutionMotion, Touch, plain_motion
 from lumped.model.solution import Initial, initial_state, transient
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.model.steady_state import check_printed
@@ -94,7 +94,7 @@ def simulate(
     run_motion = motion(pair, cycles, samples, initial, supports, progress)
     if not np.isfinite(run_motion.states).all():
         raise NumericalError("The motion grows beyond all numbers: take fewer cycles, or a stable pair.")
-    return labelled_motion(run_motion, attributes, periodic=False)
+    return plain_motion(run_motion, lambda: attributes, periodic=False).dataset
 
 
 def _linear_run(
