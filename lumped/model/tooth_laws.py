@@ -366,4 +366,5 @@ def mesh_tables(
         duration=g.mesh_period,
         lengthening=laws.mesh.lengthening,
         law=laws.contact_law(),
+        alike=laws.pair is laws.healthy,
     )

@@ -17,7 +17,7 @@ from lumped.errors import NumericalError
 from lumped.labelling import provenance
 from lumped.model.cycle_maps import CycleSteps, linear_motion, linear_steps, loads_of, stepped_run
 from lumped.model.linear_or_unilateral import ContactArgument, MotionForm, motion_form
-from lumped.model.momentary_load import momentary_tables, run, steps_of
+from lumped.model.momentary_load import MomentaryRuns, momentary_tables, steps_of
 from lumped.model.periodic_system import LTVSystem, Supports, supports_of
 from lumped.model.propagation import step_maps
 from lumped.model.revolution_motion import RevolutionMotion, Touch, plain_motion
@@ -159,10 +159,11 @@ def _unilateral_run(
     state = initial_state(system, initial, steady)
     states = []
     loads = []
+    runs = MomentaryRuns(pair, system, steady.tables)
     # One cycle more gives the end of the last one.
     for first in range(0, cycles + 1, _BLOCK):
         count = min(_BLOCK, cycles + 1 - first)
-        block = run(pair, steady.tables, system, first, count, count, state, torques)
+        block = runs.run(first, count, count, state, torques)
         states.append(block.states)
         loads.append(block.loads)
         state = block.end
