@@ -339,6 +339,8 @@ def mesh_tables(
         slopes["stiffness"] = 0.0
         slopes["damping"] = 0.0
         slopes["mu"] = 0.0
+    unlike = laws.pair is not laws.healthy
+    no_shapes = np.zeros((*position.shape, 2), TOOTH)  # the numbers of like teeth are 0: no shape acts
     turning = laws.turning()
     angle = 2.0 * np.pi / turning["cycles"] * phase[..., None]
     pinion, gear = tooth_errors(laws.pair)
@@ -351,8 +353,8 @@ def mesh_tables(
         position=position,
         laws=np.stack([laws.of_kind(kind, position) for kind in kinds]),
         slopes=slopes,
-        shape=laws.shapes(position),
-        shape_slope=_slopes(laws.shapes, position, in_step, distance),
+        shape=laws.shapes(position) if unlike else no_shapes,
+        shape_slope=_slopes(laws.shapes, position, in_step, distance) if unlike else no_shapes,
         flanks=np.array([laws.ends(kind) for kind in kinds], FLANKS),
         coupling=_coupling(laws, position),
         kinds=laws.kinds,
@@ -366,5 +368,5 @@ def mesh_tables(
         duration=g.mesh_period,
         lengthening=laws.mesh.lengthening,
         law=laws.contact_law(),
-        alike=laws.pair is laws.healthy,
+        alike=not unlike,
     )
