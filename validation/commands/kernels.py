@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lumped.typing import Progress
-    from validation.prediction.second_process import SecondProcess
 
 #: Functions that a report compiles, with nested functions (counted on an empty cache, numba 0.63).
 _FUNCTIONS = 150
@@ -43,20 +42,6 @@ def compiling(bar: Progress) -> Iterator[Progress]:
         if helper is not None:
             helper.kill()
             helper.wait()
-
-
-@contextmanager
-def sampling() -> Iterator[SecondProcess | None]:
-    """Start a second process that computes samples. None: one core, or the second one compiles."""
-    from lumped.cache import cores
-    from validation.prediction.second_process import SecondProcess
-
-    second = SecondProcess() if cores() > 1 and _all_stored() else None
-    try:
-        yield second
-    finally:
-        if second is not None:
-            second.close()
 
 
 def _all_stored() -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.kernels import compiling, sampling
+from validation.commands.kernels import compiling
 from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, show, stderr, stdout
 from validation.files.formatting import number
 
@@ -73,7 +73,7 @@ def report(
         raise refuse("--require", "record", "with a record", "Add --record FILE.")
     check_target(output, force=force)
     name, gear_pair = pair
-    with progress_bar("report") as bar, compiling(bar) as tell, sampling() as second_process:
+    with progress_bar("report") as bar, compiling(bar) as tell:
         written = write(
             gear_pair,
             output,
@@ -86,7 +86,6 @@ def report(
             supports=supports,
             progress=tell,
             early=_show_early,
-            second_process=second_process,
         )
     console = stdout()
     first = written.first

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -87,21 +87,6 @@ class Sampled(Generic[T]):
     results: tuple[T, ...]
     taken: int
     asked: int
-
-
-class Elsewhere(Protocol):
-    """The samples of ``speed_band`` in another process, from the first one on."""
-
-    @property
-    def count(self) -> int:
-        """Number of samples whose results have arrived."""
-
-    @property
-    def seconds(self) -> float:
-        """Processor time of these samples in the other process [s]."""
-
-    def first(self, count: int) -> list[FloatArray | None]:
-        """Wait for the results of the first samples; fewer where the other process has ended before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,7 +245,6 @@ def speed_band(
     samples: int = 32,
     step_angle: float = STEP,
     seconds: float | None = None,
-    elsewhere: Elsewhere | None = None,
 ) -> xr.Dataset:
     """Return 5 and 95 % of the linear peak to peak on springs, ``low`` and ``high`` [m], over ``speed_rpm``.
 
@@ -270,8 +254,6 @@ def speed_band(
     samples : number of samples
     step_angle : largest angle of the fastest vibration in a step [rad]
     seconds : processor time after which no further sample begins [s]
-    elsewhere : the same samples in another process, which computes them from the first one on. None: all
-        samples are computed by this process
 
     Returns
     -------
@@ -279,14 +261,9 @@ def speed_band(
     have a motion. Attributes ``taken``, the number of begun samples, and ``asked``, the number of requested
     samples
     """
-
-    def run(sample: GearPair) -> FloatArray:
-        return _peaks(sample, speeds_rpm, step_angle)
-
-    if elsewhere is None:
-        sampled = _each_sample(pair, at_operating_speed, samples, run, seconds)
-    else:
-        sampled = _from_both_ends(pair, at_operating_speed, samples, run, seconds, elsewhere)
+    sampled = _each_sample(
+        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds
+    )
     low = high = np.full(np.shape(speeds_rpm), np.nan)
     if len(sampled.results) >= least_samples(sampled.asked, LEAST_BAND):
         low, high = np.nanpercentile(np.array(sampled.results), PERCENTILES[::2], axis=0)
@@ -348,88 +325,22 @@ def _each_sample(
     seconds: float | None,
 ) -> Sampled[T]:
     """Results at samples of the inputs until the processor time [s] is over. ``run`` computes a machine."""
-    results = list(_in_order(pair, at_operating_speed, samples, run, seconds))
-    return Sampled(tuple(one for one in results if one is not None), len(results), samples)
-
-
-def _in_order(
-    pair: GearPair,
-    at_operating_speed: xr.Dataset,
-    samples: int,
-    run: Callable[[GearPair], T],
-    seconds: float | None,
-) -> Iterator[T | None]:
-    """Yield the results of ``_each_sample`` from the first sample on. None: the sample has no motion."""
     deadline = Deadline(seconds)
-    for changes in _changes_of_samples(pair, at_operating_speed, samples):
-        if deadline.passed:
-            return
-        yield _of_machine(pair, changes, run)
-
-
-def _from_both_ends(
-    pair: GearPair,
-    at_operating_speed: xr.Dataset,
-    samples: int,
-    run: Callable[[GearPair], FloatArray],
-    seconds: float | None,
-    elsewhere: Elsewhere,
-) -> Sampled[FloatArray]:
-    """Results of ``_each_sample``, the last samples by this process and the first ones by another process.
-
-    The processor time is that of both processes.
-    """
-    deadline = Deadline(seconds)
-    changes = list(_changes_of_samples(pair, at_operating_speed, samples))
-    last_results: list[FloatArray | None] = []
-    rest = samples
-    while rest > elsewhere.count + 1 and deadline.left > elsewhere.seconds:
-        rest -= 1
-        last_results.append(_of_machine(pair, changes[rest], run))
-    results = elsewhere.first(rest)
-    while len(results) < rest and deadline.left > elsewhere.seconds:  # the other process has ended
-        results.append(_of_machine(pair, changes[len(results)], run))
-    results += last_results[::-1]
-    return Sampled(tuple(one for one in results if one is not None), len(results), samples)
-
-
-def _of_machine(
-    pair: GearPair, changes: Sequence[tuple[Input, float]], run: Callable[[GearPair], T]
-) -> T | None:
-    """Result of one machine. None: a value is refused, or there is no motion."""
-    try:
-        return run(varied(pair, changes))
-    except SpurcheckError:
-        return None
-
-
-def _changes_of_samples(
-    pair: GearPair, at_operating_speed: xr.Dataset, samples: int
-) -> Iterator[list[tuple[Input, float]]]:
-    """Yield the inputs of each sample with their shares."""
     inputs = uncertain_inputs(pair)
     swing = np.ptp(np.nan_to_num(at_operating_speed["dte_peak_to_peak_swing"].to_numpy()), axis=1)
     by_name = dict(zip(at_operating_speed["input"].to_numpy().tolist(), swing, strict=True))
     importance = np.array([by_name.get(one.field, swing.max()) for one in inputs])
+    results = list[T]()
+    taken = 0
     for point in sobol_points(importance, samples, int(at_operating_speed.attrs["seed"])):
-        yield [(one, float(u)) for one, u in zip(inputs, point, strict=True)]
-
-
-def peaks_of_samples(
-    pair: GearPair,
-    speeds_rpm: FloatArray,
-    at_operating_speed: xr.Dataset,
-    samples: int,
-    step_angle: float,
-    seconds: float | None,
-) -> Iterator[FloatArray | None]:
-    """Yield the peak to peak (speeds,) [m] of each sample of ``speed_band``, which has the same arguments.
-
-    None: the sample has no motion. The samples end with the processor time.
-    """
-    return _in_order(
-        pair, at_operating_speed, samples, lambda one: _peaks(one, speeds_rpm, step_angle), seconds
-    )
+        if deadline.passed:
+            break
+        taken += 1
+        try:
+            results.append(run(varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=True)])))
+        except SpurcheckError:
+            continue
+    return Sampled(tuple(results), taken, samples)
 
 
 def _peaks(pair: GearPair, speeds_rpm: FloatArray, step_angle: float) -> FloatArray:

@@ -28,7 +28,6 @@ from validation.measurements.record import load_measurement
 from validation.measurements.record_comparison import RecordComparison
 from validation.measurements.record_orders import check_record
 from validation.plots.style import save
-from validation.prediction.second_process import SecondProcess
 from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
@@ -82,7 +81,6 @@ def report(
     supports: Supports | None = None,
     progress: Progress | None = None,
     early: Callable[[str, Sequence[Number]], None] | None = None,
-    second_process: SecondProcess | None = None,
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
 
@@ -106,7 +104,6 @@ def report(
         does not say that it is about springs
     progress : called with the finished fraction and what is being done
     early : called with the title and the numbers that need neither samples nor charts, once they are known
-    second_process : computes samples while this process computes everything else; the caller ends it
 
     Raises
     ------
@@ -128,7 +125,7 @@ def report(
         # The page says where a law is outside its range at the operating point; each speed and sample more
         # would say it again.
         warnings.simplefilter("ignore", LawRangeWarning)
-        results = Results(gear_pair, QUICK if quick else FULL, named, None, measured, second_process)
+        results = Results(gear_pair, QUICK if quick else FULL, named, record=measured)
         if early is not None:
             tell(0.0, "motion")
             early(title(results), first_numbers(results.prediction))
@@ -184,9 +181,6 @@ def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -
         shown = max(shown, (first + fraction * seconds) / total)  # a chapter may compute several results
         progress(shown, stage)
 
-    if results.second_process is not None:
-        results.progress = progress
-        results.compute_without_samples()
     # Samples first, charts last: another process compiles the second program meanwhile, and then the charts.
     for chapter in sorted(chapters, key=lambda one: (one.key == "stability") - (one.key == "how_sure")):
         results.progress = partial(tell, done, chapter.seconds)

@@ -15,7 +15,7 @@ import multibody
 from floquet.gear.axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.jump_search import JumpSearch, contact_loss_windows, search_jumps
 from floquet.gear.motions import GearOrbit
-from lumped.errors import NumericalError, ParameterError, SpurcheckError
+from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
 from lumped.model.periodic_system import LTVSystem, without_shafts
@@ -40,7 +40,6 @@ from validation.prediction.motion import (
     predicted,
 )
 from validation.prediction.resonance import Resonance, nearest_resonance
-from validation.prediction.second_process import SampleRequest, SecondProcess
 from validation.prediction.uncertainty import (
     LEAST_BAND,
     LONG_STEP,
@@ -93,7 +92,6 @@ class Results:
     name : how a command names the pair: a file or a preset
     progress : called with the finished fraction and the name of the present computation
     record : a measured record of the pair at its operating point
-    second_process : computes samples while this process computes everything else; None: there is none
 
     Raises
     ------
@@ -107,7 +105,6 @@ class Results:
         name: str = "",
         progress: Progress | None = None,
         record: Measurement | None = None,
-        second_process: SecondProcess | None = None,
     ) -> None:
         self.given = pair
         self.pair = pair.healthy
@@ -116,9 +113,6 @@ class Results:
         self.effort = effort
         self.name = name or pair.name
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
-        self.second_process = second_process if self.samples_wanted else None
-        if self.second_process is not None:
-            self.second_process.compute(self.sample_request)
 
     def stage(self, name: str) -> Progress:
         """Report the start of a computation. Return the function that takes the finished fraction."""
@@ -194,47 +188,10 @@ class Results:
     @cached_property
     def uncertainty(self) -> xr.Dataset | Absent:
         """Samples of the prediction with varied inputs. Absent: the inputs are not varied."""
-        if not self.samples_wanted:
+        if not self.effort.samples or not uncertain_inputs(self.pair):
             return Absent(Outcome.NOT_ASKED)
         stage = self.stage("uncertain inputs")
-        if self.second_process is not None:
-            result = self.second_process.uncertainty(self.pair, self.samples)
-            if result is not None:
-                return result
-            self.second_process = None
         return uncertainty(self.pair, self.samples, seconds=self.effort.sample_seconds, progress=stage)
-
-    @property
-    def samples_wanted(self) -> bool:
-        """Whether the effort has samples, and the pair has inputs to vary."""
-        return self.effort.samples > 0 and bool(uncertain_inputs(self.pair))
-
-    @cached_property
-    def sample_request(self) -> SampleRequest:
-        """Arguments of ``uncertainty`` and ``band``."""
-        # Resonances are wider the faster the pair runs.
-        low, high = self.speeds
-        slow = self.vibrations > _MANY
-        count = self.effort.band_speeds
-        return SampleRequest(
-            pair=self.pair,
-            samples=self.samples,
-            sample_seconds=self.effort.sample_seconds,
-            pair_on_springs=self.pair_on_springs,
-            speeds_rpm=np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2,
-            band_samples=self.effort.band_samples,
-            step_angle=LONG_STEP if slow else STEP,
-            band_seconds=self.effort.band_seconds,
-        )
-
-    def compute_without_samples(self) -> None:
-        """Compute what needs no samples, while the second process computes them.
-
-        A result that fails is computed again by the chapter that shows it, which says what failed.
-        """
-        for name in ("resonance", "modes", "teeth", "second", "sweep", "jump_search", "chart"):
-            with suppress(SpurcheckError):
-                getattr(self, name)
 
     @property
     def samples(self) -> int:
@@ -270,16 +227,15 @@ class Results:
         if isinstance(self.uncertainty, Absent):
             return self.uncertainty
         self.stage("range over speed")
-        request = self.sample_request
-        return speed_band(
-            self.pair_on_springs,
-            request.speeds_rpm,
-            self.uncertainty,
-            request.band_samples,
-            request.step_angle,
-            request.band_seconds,
-            self.second_process,
-        )
+        # Resonances are wider the faster the pair runs.
+        low, high = self.speeds
+        slow = self.vibrations > _MANY
+        count = self.effort.band_speeds
+        speeds = np.linspace(low**0.5, high**0.5, count // 2 if slow else count) ** 2
+        step = LONG_STEP if slow else STEP
+        samples = self.effort.band_samples
+        seconds = self.effort.band_seconds
+        return speed_band(self.pair_on_springs, speeds, self.uncertainty, samples, step, seconds)
 
     @cached_property
     def teeth_band(self) -> xr.Dataset | None:
