@@ -30,6 +30,7 @@ class Problem:
     frequency : mesh frequency of the curves over that of the pair, and what mistakes it
     given_shift : mesh cycles from the moment when pair A was at A to the first sample, where the user states
         them; None: the shift is searched
+    refined : the curves of the other model with half the step; None: the other model gives curves only
     """
 
     pair: GearPair
@@ -37,12 +38,20 @@ class Problem:
     motion: MotionCurves
     frequency: Frequency
     given_shift: float | None = None
+    refined: Curves | None = None
 
     @classmethod
-    def of(cls, pair: GearPair, curves: Curves, motion: MotionCurves, shift: float | None = None) -> Problem:
+    def of(
+        cls,
+        pair: GearPair,
+        curves: Curves,
+        motion: MotionCurves,
+        shift: float | None = None,
+        refined: Curves | None = None,
+    ) -> Problem:
         """Return the problem of curves and a motion, with the mesh frequency that the curves show."""
         frequency = mesh_frequency(curves, pair, mistakes=curves.role == "model")
-        return cls(pair, curves, motion, frequency, shift)
+        return cls(pair, curves, motion, frequency, shift, refined)
 
     @cached_property
     def cycles(self) -> FloatArray:
@@ -99,12 +108,21 @@ class Problem:
             for channel in channels
         )
 
-    def misfit_with(self, motion: MotionCurves, theirs: tuple[ChannelOrders, ...] | None = None) -> Misfit:
-        """Return the misfit of channels (by default those of the curves) and another motion of ours."""
+    def misfit_with(
+        self,
+        motion: MotionCurves,
+        theirs: tuple[ChannelOrders, ...] | None = None,
+        *,
+        free_shift: bool = False,
+    ) -> Misfit:
+        """Return the misfit of channels (by default those of the curves) and another motion of ours.
+
+        ``free_shift`` says whether the shift is searched although the user states it.
+        """
         return misfit_of(
             self.theirs if theirs is None else theirs,
             motion,
-            shift=self.given_shift,
+            shift=None if free_shift else self.given_shift,
             near=self.coarse_shift,
             means=self.means,
         )
