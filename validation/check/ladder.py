@@ -15,7 +15,7 @@ from validation.check.explanations.registry import EXPLANATIONS
 from validation.check.mesh_frequency import SAME
 from validation.check.motion_curves import MotionCurves
 from validation.check.problem import Problem
-from validation.check.search import BudgetSpentError, Path, Search, Step, without_step
+from validation.check.search import OF_FREQUENCY, BudgetSpentError, Path, Search, Step, without_step
 
 #: Paths that are followed at the same time, and most steps of a path.
 _BEAM = 3
@@ -34,8 +34,6 @@ _EXCHANGES = 2
 _BETTER = 0.9
 #: Alternatives are named up to this many times the misfit.
 _WITHIN = 2.0
-#: Causes of another mesh frequency. One of them is the first step where the frequency is another one.
-OF_FREQUENCY = ("time axis", "speed of the curves")
 
 
 @dataclass(frozen=True)
@@ -124,12 +122,20 @@ def _best_path(search: Search, limit: float, floor: float) -> Path:
     best = beam[0]
     enough = max(limit * _ENOUGH, floor)
     while best.trial.value > enough and len(best.steps) < _MOST_STEPS and not search.spent:
-        candidates = [
-            one for path in beam for one in search.expand(path) if _accepted(one, path, limit, floor)
-        ]
+        candidates: list[Path] = []
+        for path in beam:
+            candidates += [one for one in search.expand(path) if _accepted(one, path, limit, floor)]
+            if candidates and min(one.trial.value for one in candidates) <= enough:
+                break
         beam = _distinct(candidates, floor)
         if not beam or not _accepted(beam[0], best, limit, floor):
-            break
+            if best.trial.value <= limit or len(best.steps) > 1:
+                break
+            # No single step says enough: a wrong sign may hide every other cause.
+            joint = [one for one in search.with_reading(best) if _accepted(one, best, limit, floor)]
+            beam = _distinct([*beam, *joint], floor)
+            if not beam:
+                break
         best = beam[0]
     return best
 

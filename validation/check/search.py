@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lumped.errors import SpurcheckError
+from lumped.model.revolution_motion import Origin
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from validation.check.curve_orders import ChannelOrders
@@ -45,6 +46,10 @@ _GAIN = 0.02
 _REFINED = 6
 #: A screened candidate must promise to lower the misfit to this share.
 _PROMISES = 0.97
+#: Causes of another mesh frequency. One of them is the first step where the frequency is another one.
+OF_FREQUENCY = ("time axis", "speed of the curves")
+#: Readings that can hide every other cause.
+HIDING = ("sign of a channel", "channels swapped", "time reversed")
 
 
 class Step(NamedTuple):
@@ -202,7 +207,8 @@ class Search:
             try:
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
-                    self._motions[key] = motion_of(pair, physics, self.problem.curves.recurrence)
+                    again = self.problem.curves.recurrence
+                    self._motions[key] = motion_of(pair, physics, again, settles=self._settles)
             except SpurcheckError:
                 self._motions[key] = None
         return self._motions[key]
@@ -237,14 +243,47 @@ class Search:
         return self._expanded[path.keys]
 
     @property
+    def _settles(self) -> bool:
+        """Whether motions are looked for by runs that settle: only where that of the pair was found so."""
+        return bool(self.problem.motion.motion.attrs.get("origin") == Origin.SETTLED.value)
+
+    @property
     def spent(self) -> bool:
         """Whether the budget is spent."""
         return time.process_time() > self._end
 
     def _with_one_step_more(self, path: Path) -> list[Path]:
-        taken_up = self._taken_up(path)
+        screened = self._screened(path)
+        promising = [one for rest, one in screened if rest < _PROMISES * path.trial.value]
+        fixed = [one for one in promising if one.steps[-1].choice is not None]
+        free = [one for one in promising if one.steps[-1].choice is None]
+        result = [self.fitted(one) for one in (*fixed[:_REFINED], *free[:_REFINED])]
+        result += fixed[_REFINED:]
+        return self._archived(result)
+
+    def with_reading(self, path: Path) -> list[Path]:
+        """Return paths with two steps more: another reading, and any other cause.
+
+        A wrong sign, or two channels that are swapped, can hide every other cause. The motions are those of
+        ``expand``, so that a reading costs little.
+        """
+        screened = []
+        try:
+            for step in list(self._fixed_steps(path)):
+                if step.cause.name in HIDING:
+                    trial = self.trial((*path.steps, step))
+                    if trial is not None:
+                        screened += self._screened(Path((*path.steps, step), trial))
+        except BudgetSpentError:
+            pass
+        screened.sort(key=lambda one: one[0])
+        return self._archived([self.fitted(one) for _, one in screened[:_REFINED]])
+
+    def _screened(self, path: Path) -> list[tuple[float, Path]]:
+        """Paths with one step more, not fitted, and the misfit that each promises; the smallest first."""
         screened: list[tuple[float, Path]] = []
         try:
+            taken_up = self._taken_up(path)
             for step in self._fixed_steps(path):
                 trial = self.trial((*path.steps, step))
                 if trial is not None:
@@ -253,16 +292,13 @@ class Search:
             screened += self._screened_free(path, taken_up)
         except BudgetSpentError:
             pass
-        screened.sort(key=lambda one: one[0])
-        promising = [one for rest, one in screened if rest < _PROMISES * path.trial.value]
-        fixed = [one for one in promising if one.steps[-1].choice is not None]
-        free = [one for one in promising if one.steps[-1].choice is None]
-        result = [self.fitted(one) for one in (*fixed[:_REFINED], *free[:_REFINED])]
-        result += fixed[_REFINED:]
-        result.sort(key=lambda one: one.trial.value)
-        for one in result:
+        return sorted(screened, key=lambda one: one[0])
+
+    def _archived(self, paths: list[Path]) -> list[Path]:
+        """The paths, the smallest misfit first, after they are put into the archive."""
+        for one in paths:
             self._keep(one)
-        return result
+        return sorted(paths, key=lambda one: one.trial.value)
 
     def _keep(self, path: Path) -> None:
         before = self.archive.get(path.keys)
@@ -276,7 +312,7 @@ class Search:
             variant = step.of(variant)
         names = {step.cause.name for step in path.steps if step.cause.kind is not Kind.READING}
         for cause in self.causes:
-            if cause.free or cause.name in names:
+            if cause.free or cause.name in names or self._of_start(cause):
                 continue
             try:
                 choices = cause.choices(self.problem, variant)
@@ -286,6 +322,10 @@ class Search:
                 step = Step(cause, choice)
                 if step.key not in path.keys:
                     yield step
+
+    def _of_start(self, cause: Cause) -> bool:
+        """Whether a cause is tried only at the start: another mesh frequency that the curves show."""
+        return cause.name in OF_FREQUENCY and self.problem.curves.abscissa == "time"
 
     def _screened_free(self, path: Path, taken_up: FloatArray) -> Iterator[tuple[float, Path]]:
         """Best place of each free parameter between the trials of its grid, by straight residuals."""

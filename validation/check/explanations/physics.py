@@ -92,19 +92,27 @@ class Physics:
 UNALTERED = Physics()
 
 
-def motion_of(pair: GearPair, physics: Physics, recurrence: int | None) -> MotionCurves:
+def motion_of(
+    pair: GearPair, physics: Physics, recurrence: int | None, *, settles: bool = True
+) -> MotionCurves:
     """Return the motion of a pair with alterations of the model.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    physics : alterations of the model
+    recurrence : as of ``lumped_motion``
+    settles : whether a run settles where no stable motion is near the linear one; such a run takes seconds
 
     Raises
     ------
     NumericalError : the altered model has no stable periodic motion, or the pair does not allow the alteration
     ParameterError : a law refuses the pair
     """
-    alike = pair.healthy is pair
     prescribed = pair.mesh.contact == "prescribed"
-    if physics == UNALTERED and not (alike and prescribed):
+    if pair.healthy is not pair and physics == UNALTERED:
         return lumped_motion(pair, recurrence)
-    if not alike or (physics.of_equations and pair.shafts is not None):
+    if pair.healthy is not pair or (physics.of_equations and pair.shafts is not None):
         raise NumericalError("This alteration needs like teeth; of the equations of motion, springs too.")
     if physics.stiffness and not prescribed:
         raise NumericalError("A stiffness over the mesh cycle needs prescribed contact.")
@@ -116,14 +124,15 @@ def motion_of(pair: GearPair, physics: Physics, recurrence: int | None) -> Motio
             return MotionCurves(pair, linear, 1, again)
     if physics.pulling:
         raise NumericalError("The linear motion is unstable.")
-    if physics == UNALTERED:
-        return lumped_motion(pair, recurrence)
     if physics.of_equations:
         start = periodic_solution(system, np.zeros(1), estimate_error=False)
         if start.spectral_radius > _GROWS:
             raise NumericalError("The motion of the altered equations grows without bound.")
-    shooting = Shooting(pair, system, AlteredLaws(pair, physics), _SAMPLES)
-    motion = motion_of_shooting(shooting)
+    motion = motion_of_shooting(
+        Shooting(pair, system, AlteredLaws(pair, physics), _SAMPLES), settles=settles
+    )
+    if motion.spectral_radius > UNSTABLE:
+        raise NumericalError("The periodic motion is unstable.")
     labelled = labelled_motion(motion, provenance(pair, samples_per_cycle=_SAMPLES, contact="unilateral"))
     return MotionCurves(pair, _with_bearing_forces(labelled, physics, system), motion.period, again)
 
